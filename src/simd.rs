@@ -274,9 +274,9 @@ macro_rules! compiled_for_each_level {
                 }
             }
             match level {
-                // To be tried on every machine.
+                // To be tried on every machine; a program that has to be small leaves it out.
                 #[cfg(feature = "simd")]
-                crate::simd::Level::Arrays => $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*),
+                crate::simd::Level::Arrays if !cfg!(mode13h_leave_out = "simd-arrays") => $generic::<_, $($names)*>(crate::simd::Portable, $($argument),*),
                 _ => $generic::<_, $($names)*>(crate::simd::BASELINE, $($argument),*),
             }
         }

@@ -174,7 +174,7 @@ fn find_simd() -> Option<Found> {
 
 fn find_arrays() -> Option<Found> {
     #[cfg(feature = "simd")]
-    return Some((Level::Arrays, simd::arrays::fill));
+    return (!cfg!(mode13h_leave_out = "simd-arrays")).then_some((Level::Arrays, simd::arrays::fill as Fill));
     #[cfg(not(feature = "simd"))]
     return None;
 }
