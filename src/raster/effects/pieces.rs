@@ -20,7 +20,7 @@ pub(super) const CAPACITY: usize = 64;
 pub(super) const PIXELS: usize = CAPACITY * PIECE + LANES;
 
 /// A face: its corners, and what they carry.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Face {
     pub(super) vertices: [Vertex; 3],
     pub(super) attributes: [Attributes; 3],
