@@ -213,6 +213,8 @@ impl TriangleSetup8 {
     ) -> Basis<S> {
         let [ax, bx, cx] = [s.i32s(&corners.x[0]), s.i32s(&corners.x[1]), s.i32s(&corners.x[2])];
         let [ay, by, cy] = [s.i32s(&corners.y[0]), s.i32s(&corners.y[1]), s.i32s(&corners.y[2])];
+        // The box of culling, found again by eight operations for eight triangles. To hand it on, culling would pack three
+        // more lists, and these would be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
         let bottom = s.max_i32(s.max_i32(ay, by), cy);
         let column = first_centre(s, s.min_i32(s.min_i32(ax, bx), cx));
