@@ -156,9 +156,12 @@ pub(crate) struct Homogeneous {
 }
 
 impl ObjectView {
-    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies inside the
-    /// raster's guard band by a whole pixel, more than all rounding of a clipped point comes to.
-    pub(crate) const LIMIT: f64 = 4095.0;
+    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies beyond the last
+    /// pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by [`ROOM`](Self::ROOM).
+    pub(crate) const LIMIT: f64 = 4095.75;
+
+    /// Room for what a clipped point is off the limit by rounding, in pixels.
+    pub(crate) const ROOM: f64 = 0.25;
 
     /// The reach beyond which a sum of products might overflow f32, or, below its inverse, vanish in it.
     const FAST_REACH: f64 = 1e30;
@@ -384,8 +387,8 @@ impl ObjectView {
 
     #[inline]
     fn vertex(&self, x: f64, y: f64, w: f64, shade: U8F8) -> Option<Vertex> {
-        // Half a pixel of room for what a clipped point is off the limit by rounding. NaN fails.
-        if !(x.abs() <= Self::LIMIT + 0.5 && y.abs() <= Self::LIMIT + 0.5) {
+        // NaN fails.
+        if !(x.abs() <= Self::LIMIT + Self::ROOM && y.abs() <= Self::LIMIT + Self::ROOM) {
             return None;
         }
         Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, self.depth(w)).ok()

@@ -1,11 +1,11 @@
 //! Clipping in homogeneous space, in wide integers: the near plane first, then the guard band.
 //!
 //! Corners get 12 bits more behind their point than vertices have: a cut is rounded, and one on the
-//! guard band's edge, 4,095 pixels away, leads through the whole picture.
+//! guard band's edge, 4,096 pixels away, leads through the whole picture.
 //!
 //! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the guard band
-//! is `a·W ± b·X` with a at most 2³¹ and b at most 2³¹: below 2⁷⁶. A cut multiplies it by a difference of coordinates:
-//! 2⁷⁶ · 2⁴⁵ = 2¹²¹.
+//! is `a·W ± b·X` with a at most 2³¹ and b at most 2³²: below 2⁷⁷. A cut multiplies it by a difference of coordinates:
+//! 2⁷⁷ · 2⁴⁵ = 2¹²².
 
 use super::view::{Homogeneous, ObjectView, vertex};
 use crate::fixed::U8F8;
@@ -55,13 +55,13 @@ impl Corner {
     }
 }
 
-/// The distance of a corner from a plane, 0 or more inside. For the guard band it is twice that times focal lengths, in
-/// 1/65,536.
+/// The distance of a corner from a plane, 0 or more inside. For the guard band it is four times that times W, in
+/// 1/65,536 pixel.
 fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
     let Corner { x, y, w, .. } = *corner;
-    let limit = 2 * i128::from(ObjectView::LIMIT);
-    let (width, height) = (i128::from(view.lens.width), i128::from(view.lens.height));
-    let [fx, fy] = view.lens.focal.map(i128::from);
+    let limit = i128::from(ObjectView::LIMIT);
+    let (width, height) = (2 * i128::from(view.lens.width), 2 * i128::from(view.lens.height));
+    let [fx, fy] = view.lens.focal.map(|f| 2 * i128::from(f));
     let distance = match plane {
         0 => w - (i128::from(view.near) << EXTRA),
         1 => ((limit + width) << 16) * w + 2 * fx * x,
@@ -69,7 +69,7 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
         3 => ((limit + height) << 16) * w + 2 * fy * y,
         _ => ((limit - height) << 16) * w - 2 * fy * y,
     };
-    // A vertex that was projected counts as inside, with the half pixel of room that it had.
+    // A vertex that was projected counts as inside, with the room that it had.
     if corner.vertex.is_some() { distance.max(0) } else { distance }
 }
 

@@ -201,9 +201,9 @@ impl ObjectView {
     /// The max distance of an object's point from the eye along an axis of the view, in 1/65,536: 65,536 units.
     pub(super) const REACH: i64 = 1 << 32;
 
-    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies inside the
-    /// raster's guard band by a whole pixel, more than all rounding of a clipped point comes to.
-    pub(super) const LIMIT: i64 = 4095;
+    /// The limit of projected coordinates, in quarters of a pixel either way; points beyond it are clipped. It lies beyond
+    /// the last pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by a quarter of a pixel.
+    pub(super) const LIMIT: i64 = 4 * 4096 - 1;
 
     pub(super) fn new<I: Index>(
         view: &View,
@@ -274,11 +274,11 @@ impl ObjectView {
     }
 }
 
-/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. Half a pixel of room is left, because
-/// rounding may take a clipped point off the limit.
+/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. A quarter of a pixel of room is left,
+/// because rounding may take a clipped point off the limit.
 #[inline]
 pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
-    let limit = i128::from(ObjectView::LIMIT * 256 + 128);
+    let limit = i128::from(ObjectView::LIMIT * 64 + 64);
     let within = |c: i128| (-limit..=limit).contains(&c).then_some(I24F8::from_bits(c as i32));
     Vertex::new(within(x)?, within(y)?, shade, depth).ok()
 }

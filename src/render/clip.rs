@@ -1,7 +1,7 @@
 //! Clipping in homogeneous space: the near plane first, then the guard band, in f64.
 //!
 //! Only what the raster cannot take is cut off: what lies nearer than the near plane, and what is
-//! projected more than 4,095 pixels away. The screen's edges need no clipping, the raster leaves
+//! projected more than 4,096 pixels away. The screen's edges need no clipping, the raster leaves
 //! out what lies beyond them exactly. [`raster::clip`](crate::raster::clip) goes through the
 //! planes in an order that leaves no crack.
 

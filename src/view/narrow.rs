@@ -24,7 +24,7 @@ impl ObjectView {
 
 impl Narrow {
     /// The max coordinate, in pixels.
-    pub(crate) const LIMIT: f32 = ObjectView::LIMIT as f32 + 0.5;
+    pub(crate) const LIMIT: f32 = (ObjectView::LIMIT + ObjectView::ROOM) as f32;
 }
 
 const _: () = assert!(Vertex::GUARD_BAND as f32 >= Narrow::LIMIT * 256.0);

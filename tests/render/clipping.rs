@@ -11,7 +11,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::cover::SortedTriangle;
-use mode13h::raster::{Rect, Vertex};
+use mode13h::raster::{Frame, Rect, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
@@ -125,7 +125,7 @@ fn r7_a_corner_within_rounding_of_the_limit() {
             let depth = 0.5 + random.unit() * 4.0;
             Vec3::new(((x - 160.0) / fx * depth) as f32, (-(y - 100.0) / fy * depth) as f32, -depth as f32)
         };
-        let (from, to) = (4095.0 + random.unit() * 0.5, -1000.0 - random.unit() * 3000.0);
+        let (from, to) = (4095.75 + random.unit() * 0.25, -1000.0 - random.unit() * 3000.0);
         let mut across_at = || random.unit() * 400.0 - 200.0;
         let (p_at, q_at) = (across_at(), across_at());
         let (p, q) = (point(&mut random, from, p_at), point(&mut random, to, q_at));
@@ -144,6 +144,35 @@ fn r7_a_corner_within_rounding_of_the_limit() {
         }
     }
     assert!(clipped.iter().all(|&clipped| clipped > 700), "one face is clipped, the other is not: {clipped:?}");
+}
+
+/// A wall that reaches beyond the frame on all sides covers every pixel of it, the last column and row of the largest frame
+/// among them.
+#[test]
+fn r7_a_wall_fills_frames_of_every_size() {
+    let sizes =
+        (0..=12).flat_map(|bit| [(1 << bit) - 1, 1 << bit, (1 << bit) + 1]).filter(|size| (1..=4096).contains(size));
+    let shapes = sizes.flat_map(|size: u32| [(size, 3), (3, size)]).collect::<Vec<_>>();
+    let mut tried = Tried::new("r7_a_wall_fills_frames_of_every_size", 72 * 2 * 4);
+    let mut scene = scene(shapes::wall(1, 1));
+    scene.objects_mut()[0].position = Vec3::new(0.0, 0.0, -1.0);
+    scene.objects_mut()[0].scale = 8192.0;
+    scene.background = 255;
+    for (width, height) in shapes {
+        for path in VertexPath::ALL {
+            for method in HiddenSurfaces::ALL {
+                let mut renderer = Renderer::new();
+                (renderer.settings.vertex_path, renderer.settings.hidden_surfaces) = (path, Some(method));
+                let mut pixels = vec![0; (width * height) as usize];
+                let frame = Frame::new(&mut pixels, width, height, width as usize).expect("a frame");
+                renderer.draw_frame(&scene, frame, (1, 1)).expect("a legal scene");
+                let bare = pixels.iter().filter(|pixel| **pixel == 255).count();
+                assert_eq!(bare, 0, "{width} × {height}, {path}, {method}");
+                tried.add(1);
+            }
+        }
+    }
+    tried.done();
 }
 
 /// There is no far plane: with every method a wall is seen from a hundred thousand million times the

@@ -1,6 +1,6 @@
 //! Clipping: what is left of a face that reaches beyond the near plane or the guard band.
 //!
-//! The planes come in one order: near, then 4,095 pixels from the frame's upper left corner to the left, to
+//! The planes come in one order: near, then 4,095.75 pixels from the frame's upper left corner to the left, to
 //! the right, up and down. A polygon is left, drawn as the fan of triangles from its first corner;
 //! if rounding has dented it, from the first from which no triangle of the fan turns the other way.
 
@@ -11,7 +11,7 @@ use super::eye::Eye;
 use super::vector::{Vector, between};
 
 /// Distance from the frame's upper left corner to which faces are drawn, in pixels, along x and along y.
-const LIMIT: f64 = 4095.0;
+const LIMIT: f64 = 4095.75;
 
 /// A corner of what is left of a face.
 #[derive(Clone, Copy, Debug)]
