@@ -13,7 +13,7 @@ pub struct Surface {
     pub diffuse: [f32; 3],
     /// `Ks`: specular red, green, blue, as a rule 0 to 1.
     pub specular: [f32; 3],
-    /// `Ns`: the specular exponent, as a rule 0 to 1,000.
+    /// `Ns`: the specular exponent, as a rule 0 to 1,000. 0, or none in the file, means no highlight.
     pub shininess: f32,
     /// `map_Kd`: the path of a texture, joined to the folder of the MTL file.
     pub texture: Option<String>,

@@ -130,7 +130,7 @@ fn models(group: &mut Group, random: &mut Random) {
         });
 
         let lines: Vec<&str> = text.lines().collect();
-        for broken in ["v 0 NaN 0", "f 1 2", "f 1 0 2", "f 1 2 99999999", "v 1 2", "f a b c"] {
+        for broken in ["v 0 NaN 0", "f 1 x", "f 1 0 2", "f 1 2 99999999", "v 1 2", "f a b c"] {
             let line = random.below(lines.len() as u32) as usize;
             let mut spoilt = lines.clone();
             spoilt.insert(line, broken);

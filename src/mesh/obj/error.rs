@@ -45,8 +45,6 @@ pub enum ObjErrorKind {
         /// The number of entries: in the file, or for a negative index up to this line.
         count: usize,
     },
-    /// A face of one or two corners.
-    FewCorners(usize),
     /// The file holds no face.
     NoFaces,
     /// All corners of each face are on a line, or in one point.
@@ -87,8 +85,6 @@ impl fmt::Display for ObjErrorKind {
             Self::NotCorner(word) => write!(f, "`{word}` is not the corner of a face"),
             Self::IndexZero => write!(f, "index 0: indices count from 1"),
             Self::IndexOutOfRange { what, index, count } => write!(f, "there is no {what} {index}, only {count}"),
-            Self::FewCorners(1) => write!(f, "a face with 1 corner; 3 are needed"),
-            Self::FewCorners(corners) => write!(f, "a face with {corners} corners; 3 are needed"),
             Self::NoFaces => write!(f, "no faces"),
             Self::NoArea => write!(f, "no face has an area, so nothing can be drawn"),
             Self::TooLarge(what) => write!(f, "{what}"),

@@ -1,6 +1,7 @@
 //! Lines and words, of OBJ and MTL alike.
 
 use core::mem;
+use core::str::FromStr;
 use std::borrow::ToOwned;
 use std::io::{self, BufRead};
 use std::string::String;
@@ -103,11 +104,28 @@ pub(super) fn name(rest: &[u8]) -> String {
 /// The next word as a finite number, or `None` at the end of the line.
 pub(super) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ObjErrorKind> {
     let Some(word) = words.next() else { return Ok(None) };
-    match str::from_utf8(word).ok().and_then(|word| word.parse::<f32>().ok()) {
+    parsed(word, f32::is_finite)
+}
+
+fn parsed<T: FromStr + Copy>(word: &[u8], is_finite: fn(T) -> bool) -> Result<Option<T>, ObjErrorKind> {
+    match str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
         None => Err(ObjErrorKind::NotNumber(shown(word))),
-        Some(value) if !value.is_finite() => Err(ObjErrorKind::NotFinite(shown(word))),
+        Some(value) if !is_finite(value) => Err(ObjErrorKind::NotFinite(shown(word))),
         value => Ok(value),
     }
+}
+
+/// Reads the `N` numbers that the statement needs in f64; all are within the range of f32.
+pub(super) fn wide_numbers<'a, const N: usize>(
+    words: &mut impl Iterator<Item = &'a [u8]>,
+    what: &'static str,
+) -> Result<[f64; N], ObjErrorKind> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        let word = words.next().ok_or(ObjErrorKind::Missing(what))?;
+        *value = parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ObjErrorKind::Missing(what))?;
+    }
+    Ok(values)
 }
 
 /// Reads the `N` numbers that the statement needs.

@@ -61,7 +61,22 @@ pub(super) fn surfaces(
             Surface { name: name.clone(), ..Surface::default() }
         }));
     }
+    warn_of_no_exponent(&surfaces, path, warnings);
     Ok(surfaces)
+}
+
+/// Warns, once for the model, of surfaces that have a `Ks` and no `Ns` above 0: they are drawn without a highlight.
+fn warn_of_no_exponent(surfaces: &[Surface], path: &Path, warnings: &mut Warnings) {
+    let has_none = |surface: &&Surface| surface.specular != [0.0; 3] && surface.shininess <= 0.0;
+    let mut without = surfaces.iter().filter(has_none);
+    let Some(first) = without.next() else { return };
+    let others = match without.count() {
+        0 => String::new(),
+        1 => " and one other".into(),
+        more => format!(" and {more} others"),
+    };
+    let (path, name) = (path.display(), &first.name);
+    warnings.push(|| format!("{path}: material {name}{others}: Ks without an Ns above 0 gives no highlight"));
 }
 
 /// The MTL files that a model names. Each is read once, however often it is named.
@@ -110,7 +125,7 @@ fn read(
             b"Ks" => color(rest).map(|color| set(&mut surface.specular, color, path, line, warnings)),
             b"Ns" => match number(&mut words(rest)) {
                 Ok(Some(exponent)) => {
-                    surface.shininess = exponent;
+                    surface.shininess = exponent.max(0.0);
                     Ok(())
                 }
                 Ok(None) => Err(ObjErrorKind::Missing("an exponent (1)")),

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `v x y z` | a position; what follows (a weight, a colour) is left alone |
 //! | `vt u v`, `vn x y z` | texture coordinates (`v` is 0 if left out), a normal |
-//! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more; negative indices count back from the last; an index may name what comes later in the file |
+//! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more, fewer are left out with a warning; negative indices count back from the last; an index may name what comes later in the file |
 //! | `s` | a smoothing group, for faces without normals; `off` and 0: each face is flat |
 //! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
 //! | all others, `l` and `p` among them | left alone |
@@ -16,6 +16,9 @@
 //! A corner without a normal, or with one of length 0, gets the mean by angle over faces at that position: those of the
 //! same smoothing group; or, if the file names no group, those that meet at no more than the crease angle
 //! ([`Options::crease`]).
+//!
+//! Positions are read in f64. If their middle is more than 16 half extents from 0, as on maps, it is moved to 0 before they
+//! are rounded to f32, and a warning says by how much.
 //!
 //! Two faults of scans are mended in a model that is closed, each with a warning. Pairs of triangles back to back, of the
 //! same three points, are left out where other faces go on at their edges; sheets with a rim of their own, as leaves, stay.
@@ -187,6 +190,17 @@ fn read(
     };
     let model = statement::read(reader, path)?;
     let surfaces = material::surfaces(&model, path, library, &mut warnings)?;
+    let shown = path.display();
+    match model.short {
+        None => {}
+        Some((line, 1)) => warnings.push(|| format!("{shown}:{line}: left out a face of fewer than 3 corners")),
+        Some((line, count)) => {
+            warnings.push(|| format!("{shown}:{line}: left out {count} faces of fewer than 3 corners, the first here"));
+        }
+    }
+    if let Some([x, y, z]) = model.middle {
+        warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));
+    }
     let (mesh, mended) = gather::mesh(model, surfaces, options.crease).map_err(|(line, kind)| ObjError {
         path: path.to_owned(),
         line,

@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use glam::{Vec2, Vec3};
 
-use super::line::{Lines, keyword, name, number, numbers, shown, words};
+use super::line::{Lines, keyword, name, number, numbers, shown, wide_numbers, words};
 use super::polygon::MAX_CONCAVE;
 use super::{Mesh, ObjError, ObjErrorKind};
 
@@ -46,21 +46,30 @@ pub(super) struct Model {
     pub(super) libraries: Vec<(u64, String)>,
     /// Line of the first `usemtl` of each name.
     pub(super) name_lines: Vec<u64>,
+    /// The line of the first face of fewer than three corners, and the number of them. They are left out.
+    pub(super) short: Option<(u64, usize)>,
+    /// The point of the file that lies at 0 in `positions`, if it is another.
+    pub(super) middle: Option<[f64; 3]>,
 }
+
+/// Positions are kept about 0 if their middle is farther from it than this many times their half extent. Up to there f32
+/// rounds them by less than 2⁻²⁰ of the extent, which is 1/256 pixel in the largest frame.
+const FAR: f64 = 16.0;
 
 /// Reads all lines.
 pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError> {
     let mut model = Model { runs: vec![(0, 0)], names: vec![String::new()], name_lines: vec![0], ..Model::default() };
     let mut later = Later::default();
+    let mut positions = Vec::new();
     let mut known = std::collections::HashMap::from([(String::new(), 0)]);
     let mut lines = Lines::new(reader);
     while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
         let (word, rest) = keyword(text);
         let result = match word {
-            b"v" => position(&mut model, rest),
+            b"v" => position(&mut positions, rest),
             b"vt" => texcoord(&mut model, rest),
             b"vn" => normal(&mut model, rest),
-            b"f" => face(&mut model, &mut later, line, rest),
+            b"f" => face(&mut model, positions.len(), &mut later, line, rest),
             b"usemtl" => {
                 let next = model.names.len();
                 let number = *known.entry(name(rest)).or_insert_with_key(|name| {
@@ -85,11 +94,29 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError>
         };
         result.map_err(|kind| ObjError::of_line(path, line, kind))?;
     }
-    later.check(&model).map_err(|(line, kind)| ObjError::of_line(path, line, kind))?;
+    later.check(positions.len(), &model).map_err(|(line, kind)| ObjError::of_line(path, line, kind))?;
     if model.sizes.is_empty() {
         return Err(ObjError::of_file(path, ObjErrorKind::NoFaces));
     }
+    model.middle = far_middle(&positions, &model.corners);
+    let [x, y, z] = model.middle.unwrap_or_default();
+    model.positions =
+        positions.into_iter().map(|p| Vec3::new((p[0] - x) as f32, (p[1] - y) as f32, (p[2] - z) as f32)).collect();
     Ok(model)
+}
+
+/// The middle of the positions that faces use, if it is [`FAR`] from 0.
+fn far_middle(positions: &[[f64; 3]], corners: &[Corner]) -> Option<[f64; 3]> {
+    let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
+    for corner in corners {
+        for (axis, &c) in positions[corner.position as usize].iter().enumerate() {
+            (low[axis], high[axis]) = (low[axis].min(c), high[axis].max(c));
+        }
+    }
+    let half = |axis: usize| (high[axis] - low[axis]) / 2.0;
+    let extent = half(0).max(half(1)).max(half(2));
+    let middle = [0, 1, 2].map(|axis| low[axis] + half(axis));
+    middle.iter().any(|c| c.abs() > FAR * extent).then_some(middle)
 }
 
 /// One more, if there is room for it.
@@ -101,8 +128,8 @@ fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ObjErrorKind> {
     Ok(())
 }
 
-fn position(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
-    push(&mut model.positions, Vec3::from_array(numbers(&mut words(rest), "a position (3)")?))
+fn position(positions: &mut Vec<[f64; 3]>, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    push(positions, wide_numbers(&mut words(rest), "a position (3)")?)
 }
 
 fn texcoord(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {
@@ -132,8 +159,8 @@ fn foreign(word: &[u8], text: &[u8]) -> Result<(), ObjErrorKind> {
     if !word.starts_with(b"#") && text.iter().any(binary) { Err(ObjErrorKind::NotText) } else { Ok(()) }
 }
 
-fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<(), ObjErrorKind> {
-    let counts = [model.positions.len(), model.texcoords.len(), model.normals.len()];
+fn face(model: &mut Model, positions: usize, later: &mut Later, line: u64, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    let counts = [positions, model.texcoords.len(), model.normals.len()];
     let first = model.corners.len();
     for word in words(rest) {
         let mut indices = [Corner::NONE; 3];
@@ -154,7 +181,9 @@ fn face(model: &mut Model, later: &mut Later, line: u64, rest: &[u8]) -> Result<
     }
     let size = model.corners.len() - first;
     if size < 3 {
-        return Err(ObjErrorKind::FewCorners(size));
+        model.corners.truncate(first);
+        model.short.get_or_insert((line, 0)).1 += 1;
+        return Ok(());
     }
     if model.corners.len() > u32::MAX as usize {
         return Err(ObjErrorKind::TooLarge("more than 4,294,967,295 corners"));
@@ -219,8 +248,8 @@ impl Later {
         Ok(from_zero as u32)
     }
 
-    fn check(&self, model: &Model) -> Result<(), (u64, ObjErrorKind)> {
-        let counts = [model.positions.len(), model.texcoords.len(), model.normals.len()];
+    fn check(&self, positions: usize, model: &Model) -> Result<(), (u64, ObjErrorKind)> {
+        let counts = [positions, model.texcoords.len(), model.normals.len()];
         let missing = (0..3).filter_map(|kind| {
             let count = counts[kind];
             let &(index, line) = self.records[kind].iter().find(|&&(index, _)| index > count as i64)?;
