@@ -70,7 +70,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let meter = EffectCost { renderer: || set_alike.set_alike(), frames: &frames, time: of_one };
     let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
     if *json {
-        return output::print_json(&as_json(&name, &rows, prices.as_deref()));
+        return output::print_json(&as_json(&name, renderer.plan().near_needed(), &rows, prices.as_deref()));
     }
     let plan = renderer.plan();
     let head = Head { name: &name, at, plan, stats: &stats, planning: meter.plan()? };
@@ -104,6 +104,8 @@ fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) ->
 struct Json<'a> {
     schema: u32,
     scene: &'a str,
+    /// The least near distance that depths need, if the camera's is smaller.
+    near_needed: Option<f32>,
     objects: Vec<JsonObject<'a>>,
 }
 
@@ -124,7 +126,12 @@ struct JsonEffect<'a> {
     ns_per_frame: Option<Option<u64>>,
 }
 
-fn as_json<'a>(name: &'a str, rows: &'a [Row], prices: Option<&'a [Option<u64>]>) -> Json<'a> {
+fn as_json<'a>(
+    name: &'a str,
+    near_needed: Option<f32>,
+    rows: &'a [Row],
+    prices: Option<&'a [Option<u64>]>,
+) -> Json<'a> {
     let objects = rows.chunk_by(|a, b| a.place == b.place).scan(0, |first, rows| {
         let prices = prices.map(|prices| &prices[*first..][..rows.len()]);
         *first += rows.len();
@@ -137,7 +144,7 @@ fn as_json<'a>(name: &'a str, rows: &'a [Row], prices: Option<&'a [Option<u64>]>
         });
         Some(JsonObject { object: &rows[0].object, effects: effects.collect() })
     });
-    Json { schema: 2, scene: name, objects: objects.collect() }
+    Json { schema: 2, scene: name, near_needed, objects: objects.collect() }
 }
 
 /// Facts about all objects.
@@ -166,6 +173,9 @@ impl Head<'_> {
         if !stats.redrawn {
             paragraph("nothing changed since the frame before, so this one is not drawn again");
         }
+        if let Some(near) = plan.near_needed() {
+            paragraph(&near_warning(near));
+        }
         let each = if objects > 1 { format!(", {:.0} ns an object", planning / objects as f64) } else { String::new() };
         paragraph(&format!("making the plan takes {planning:.0} ns{each}, the median of many"));
         if let Some(frame) = frame {
@@ -178,6 +188,14 @@ impl Head<'_> {
         }
         text
     }
+}
+
+/// What to say of a camera whose near distance is too small for depths.
+pub(crate) fn near_warning(needed: f32) -> String {
+    format!(
+        "the near distance is less than a millionth of the farthest one: depths are too coarse for what is far, and the \
+         error budget does not hold there; take at least {needed:.2e}"
+    )
 }
 
 /// Columns of text.

@@ -51,6 +51,9 @@ pub(crate) enum Change {
     Unchanged,
 }
 
+/// The least near / w with which a depth of 30 bits keeps ten.
+const LEAST_DEPTH: f64 = 1.0 / 1_048_576.0;
+
 /// Makes the plan of a frame, in place.
 #[inline(never)]
 pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [LampBeam], plan: &mut Plan) {
@@ -59,6 +62,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.chosen = reason != Reason::Asked;
     plan.objects.clear();
     plan.seen = Rect::NOWHERE;
+    let mut farthest = 0.0_f64;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
         if !inputs.scene.is_visible(place) {
             plan.objects.push(ObjectPlan::new(inputs.shading));
@@ -76,9 +80,12 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
+        farthest = farthest.max(rules.reach.farthest);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
         plan.objects.push(rules.all(in_range));
     }
+    let needed = (farthest * LEAST_DEPTH) as f32;
+    plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
     // That of the sources draws beyond a triangle's edges, and 16.16 clips in its own way.
     if inputs.shading == Shading::GouraudVintage || inputs.integer {
         plan.seen = Rect::EVERYWHERE;
@@ -286,7 +293,7 @@ impl Rules<'_> {
         let count = bright().count();
         if count == 0 {
             Decision::off(Reason::NoLight)
-        } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && m.specular == 0.0) {
+        } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && !m.is_specular()) {
             Decision::off(Reason::NoResponse)
         } else if lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
             Decision::off(Reason::LampsOutOfRange { count })

@@ -184,6 +184,8 @@ pub struct Plan {
     pub(crate) order: Vec<usize>,
     /// The part of the screen that may show any of them.
     pub(crate) seen: Rect,
+    /// See [`Plan::near_needed`].
+    pub(crate) near_needed: Option<f32>,
 }
 
 impl Plan {
@@ -194,7 +196,18 @@ impl Plan {
             objects: Vec::new(),
             order: Vec::new(),
             seen: Rect::NOWHERE,
+            near_needed: None,
         }
+    }
+
+    /// A near distance for the camera that depths need, if its own is too small for them: 2⁻²⁰ of the distance that the
+    /// farthest visible object reaches to.
+    ///
+    /// Depths are near / w in steps of 2⁻³⁰. Below this they have fewer than ten bits for what is far, which then hides and
+    /// is hidden at random; perspective-correct shades and textures and the error budget are off there, too.
+    #[must_use]
+    pub fn near_needed(&self) -> Option<f32> {
+        self.near_needed
     }
 
     /// The way to leave out hidden surfaces.

@@ -230,8 +230,9 @@ impl ObjectState {
         let bounds = object.mesh().bounds();
         let falls_on_it = |lamp: &&LampBeam| match plan.stages().lamps {
             Lamps::None => false,
-            Lamps::InRange => crate::light::lamp_reaches(lamp, bounds),
-            Lamps::All => true,
+            // A lamp out of range adds nothing to any vertex, but it would widen a budget's bounds.
+            Lamps::All if plan.max_error().is_none() => true,
+            Lamps::InRange | Lamps::All => crate::light::lamp_reaches(lamp, bounds),
         };
         self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
     }

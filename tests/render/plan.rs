@@ -1,13 +1,15 @@
 //! The plan: only what a scene calls for is computed, and that changes no picture.
 
+use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
+use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Screen, Shading, Stats};
+use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Shading, Stats};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
 
@@ -82,6 +84,42 @@ fn the_full_work_gives_the_same_bytes() {
             tried.add(1);
         }
         assert_eq!(stats.hidden_surfaces, chosen.plan().hidden_surfaces());
+    }
+}
+
+/// Within an error budget, too: what is out of range, such as a lamp, changes no decision on a face.
+#[test]
+fn the_full_work_gives_the_same_bytes_within_a_budget() {
+    let mut tried = Tried::new("the_full_work_gives_the_same_bytes_within_a_budget", 1_000);
+    let mut random = Random::named("full work within a budget");
+    let random_scenes = (0..20).map(|i| (format!("random scene {i}"), scenes::random(&mut random)));
+    let all: Vec<_> = scenes::all().into_iter().chain(random_scenes).collect();
+    for (name, mut scene) in all {
+        for _ in 0..random.within(1, 3) {
+            // As strong as may be, and out of everybody's range.
+            let place = Vec3::from([0; 3].map(|_| 300.0 + 50.0 * random.unit() as f32));
+            scene.add_light(Light::lamp(place, 20.0).with_intensity(10.0_f32.powf(8.0 * random.unit() as f32 - 4.0)));
+        }
+        for max_error in [0.6, 1.0, 2.0, 4.0, 8.0] {
+            let frame = |force: Option<Effect>| {
+                draw(&scene, |renderer| {
+                    renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
+                    if let Some(effect) = force {
+                        renderer.force(effect, Some(true));
+                    }
+                })
+                .0
+            };
+            let expected = frame(None);
+            for effect in Effect::ALL {
+                if effect.class() != Class::SavesWork || effect == Effect::BackFaceCulling {
+                    continue;
+                }
+                let differ = differing(&expected, &frame(Some(effect)));
+                assert!(differ == 0, "{name}, {effect} forced, within {max_error}: {differ} pixels differ");
+                tried.add(1);
+            }
+        }
     }
 }
 
@@ -637,4 +675,23 @@ fn the_way_to_hidden_surfaces_follows_the_objects() {
         assert_eq!(stats.hidden_surfaces, expected);
         tried.add(1);
     }
+}
+
+/// The plan names a near distance that is enough, if the camera's is not, and only then.
+#[test]
+fn a_near_distance_that_depths_cannot_take_is_told() {
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    let needed = |scene: &Scene| draw(scene, |_| ()).2.plan().near_needed();
+    assert_eq!(needed(&scene), None);
+    scene.camera.near = 1e-9;
+    let near = needed(&scene).expect("too near");
+    // The farthest vertex is nearer than the far side of the box.
+    let farthest = scene.camera.eye.z + 2.0;
+    assert!(near > 1e-7 && near <= farthest / 1_048_576.0 * 1.01, "{near}");
+    scene.camera.near = near;
+    assert_eq!(needed(&scene), None);
+    scene.camera.near = near * 0.9;
+    assert_eq!(needed(&scene), Some(near));
+    scene.objects_mut()[0].visible = false;
+    assert_eq!(needed(&scene), None, "nothing is seen");
 }
