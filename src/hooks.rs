@@ -3,7 +3,9 @@
 //!
 //! A game needs none of this. It may change with any version.
 
-use crate::light::Light;
+use alloc::vec::Vec;
+
+use crate::light::{Light, Material};
 use crate::mesh::Mesh;
 pub use crate::plan::reason::name_of;
 pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
@@ -64,6 +66,12 @@ pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
 #[must_use]
 pub fn shared_mesh(object: &Object) -> &Shared<Mesh> {
     object.shared_mesh()
+}
+
+/// A copy of an object with another mesh, whose vertices must each have one surface, and a material for each surface of it.
+#[must_use]
+pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) -> Object {
+    object.with_mesh(mesh, materials)
 }
 
 /// Checks a light.

@@ -183,8 +183,7 @@ impl Body {
             own = own_colors_on(along, material, full);
         }
         let color = Rgb::from_intensities(own.0.map(|channel| channel * full));
-        // With the exponent 0 a highlight would be everywhere.
-        let is_shiny = material.specular > 0.0 && material.shininess > 0.0;
+        let is_shiny = material.specular > 0.0 && material.is_specular();
         let light = Rgb::from_intensities(own.1.map(|channel| channel * material.specular));
         Self {
             full,

@@ -51,7 +51,9 @@ pub(crate) struct Reflectance {
     /// ka·Ia.
     pub(crate) ambient: f64,
     pub(crate) diffuse: f64,
+    /// 0 for a material without a highlight.
     pub(crate) specular: f64,
+    /// Above 0 if there is a highlight.
     pub(crate) shininess: f64,
     /// The factors of the body's light, on three channels.
     pub(crate) color: Wide,

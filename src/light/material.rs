@@ -47,9 +47,10 @@ pub struct Material {
     pub ambient: f32,
     /// kd: the share of a light that it gives back in all directions.
     pub diffuse: f32,
-    /// ks: the share of a light that it mirrors; with 0 there is no highlight.
+    /// ks: the share of a light that it mirrors. 0 means no highlight.
     pub specular: f32,
-    /// s: the shininess, above 0; 1 is a broad highlight, 100 a point.
+    /// s: the shininess, the exponent of the highlight: 1 is a broad one, 100 a point. 0 means no highlight, whatever
+    /// `specular` is, as in modelling programs. A negative number is an error when a scene is drawn.
     pub shininess: f32,
     /// The entries of the palette, for a material that is lit on one channel and has no texture.
     pub ramp: RampChoice,
@@ -175,7 +176,7 @@ impl Material {
     #[must_use]
     #[doc(hidden)]
     pub fn is_specular(&self) -> bool {
-        self.specular != 0.0
+        self.specular != 0.0 && self.shininess > 0.0
     }
 
     pub(crate) fn is_finite(&self) -> bool {

@@ -43,8 +43,12 @@ impl SurfaceMaterial {
             answer: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
-                specular: if plan.is_on(Effect::Specular) { f64::from(material.specular) } else { 0.0 },
-                shininess: f64::from(material.shininess).max(0.0),
+                specular: if plan.is_on(Effect::Specular) && material.is_specular() {
+                    f64::from(material.specular)
+                } else {
+                    0.0
+                },
+                shininess: f64::from(material.shininess),
                 color: material.color.map(f64::from),
                 highlight: material.highlight.map(f64::from),
             },

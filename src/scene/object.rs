@@ -100,6 +100,11 @@ impl Object {
     }
 
     /// For each vertex of the mesh, the index of its surface.
+    /// A copy with another mesh, and everything else as it is: `materials` must be those of the mesh.
+    pub(crate) fn with_mesh(&self, mesh: Shared<Mesh>, materials: Vec<Material>) -> Self {
+        Self { mesh, materials, ..self.clone() }
+    }
+
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         self.mesh.vertex_surfaces()
@@ -121,6 +126,9 @@ impl Object {
         }
         if !self.materials.iter().all(Material::is_finite) {
             return Err("the numbers of its materials must be finite");
+        }
+        if self.materials.iter().any(|material| material.shininess < 0.0) {
+            return Err("the shininess of its materials must not be negative");
         }
         Ok(())
     }

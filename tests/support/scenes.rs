@@ -55,6 +55,24 @@ pub fn floor(image: &str, times: f32) -> Scene {
     scene
 }
 
+/// A torus with a sphere and a hidden cube as children, and a cone as a grandchild; each parent is turned, moved and scaled. The 16.16 path refuses it.
+pub fn family() -> Scene {
+    let mut scene = showing("torus");
+    let mut parent = scene.object_ids()[0];
+    for (shape, visible) in [("sphere", true), ("cone", true), ("cube", false)] {
+        let mut child = Object::new(shapes::by_name(shape).expect("listed")).named(shape);
+        child.position = Vec3::new(0.7, 0.4, 0.5);
+        child.scale = 0.5;
+        child.angles = [0.3, 1.0, 0.2].map(Angle::from_radians);
+        (child.parent, child.visible) = (Some(parent), visible);
+        let child = scene.add(child);
+        if shape == "sphere" {
+            parent = child;
+        }
+    }
+    scene
+}
+
 /// A wall close to the eye with a lamp before it.
 fn lamp_on_wall(slices: u32) -> Scene {
     let mut scene = Scene::new();

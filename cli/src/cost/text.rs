@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use mode13h::render::Shading;
 use mode13h_lab::cost::{BudgetRow, OptionRow, ShadingRow, Study, TimeRow, Verdict};
 
 /// The tables of shadings and budgets, and where the rest is.
@@ -13,6 +14,13 @@ pub(super) fn text(study: &Study, directory: Option<&Path>) -> String {
     );
     text += &heading();
     text.extend(study.shadings.iter().map(shading));
+    if let Some(row) = study.shadings.iter().find(|row| row.shading == Shading::default()) {
+        let percent = row.not_compared * 100.0;
+        text += &format!(
+            "\ncover: pixels that show another face than the truth. They are not compared; {percent:.2} % of {}'s\n",
+            row.shading
+        );
+    }
     text += "\n* none is as near to lit and faster, as far as times can be told apart. Errors in shades of 1/255: largest against gouraud, largest and root\n  \
              mean square against lit\n\n";
     text += "  budget  within E  largest    swim   µs/frame  best single shading        µs/frame  ratio\n";

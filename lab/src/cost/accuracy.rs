@@ -3,6 +3,7 @@
 //! The truth of a frame is drawn once for all ways. Frames are judged on all processors; what is found does not depend
 //! on who found it.
 
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
@@ -11,7 +12,7 @@ use std::thread;
 use super::configuration::{BUDGETS, Configuration, Kind};
 use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
-use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth};
+use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth, TruthFrame};
 use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
@@ -88,7 +89,7 @@ pub(super) struct Results {
     swim: Swim,
     /// Shades by which the worst pixel is beyond its shading's bound, negative where none is; `None` without a bound.
     pub(super) excess: Option<f64>,
-    /// The largest error of each frame against `lit`, at pixels where light at the pixel itself is within rounding.
+    /// The largest error of each frame against `lit` beside what the rounding of vertices explains.
     pub(super) worst: Vec<f64>,
     /// The shades of the first frame; `error_map` holds its errors against `lit`.
     pub(super) picture: Vec<u8>,
@@ -113,14 +114,19 @@ impl Results {
         self.gouraud.cover_errors
     }
 
+    /// The share of covered pixels that show another face than they should, and are not compared; 0 if none is covered.
+    pub(super) fn not_compared(&self) -> f64 {
+        let others = self.gouraud.cover_errors;
+        others as f64 / (self.gouraud.pixels() + others).max(1) as f64
+    }
+
     /// Pixels that show another face than they should, vertices unrounded.
     pub(super) fn cover_errors_unrounded(&self) -> u64 {
         self.unrounded.cover_errors
     }
 
     /// The share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte needs if that is more,
-    /// those counted in where vertices that are rounded put
-    /// light at the pixel itself off; 1 if none was compared.
+    /// beside what the rounding of vertices explains; 1 if none was compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
         // Below 2⁵³: pixels.
@@ -223,18 +229,10 @@ impl Referee<'_> {
         let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
         let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
         let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
-        // Where light at the pixel itself is off by more than rounding, as vertices are rounded, nothing is promised. The
-        // integers have no such light: what they are off is theirs.
-        let mut exact = (self.base)();
-        exact.settings.vertex_path = VertexPath::Float;
-        exact.settings.accuracy = Some(Shading::Phong.into());
-        *probe.renderer() = exact;
-        probe.dither(None);
-        let exact = ErrorMap::new(&lit, &probe.look(scene, Screen::MODE_13H)?);
-        let sure: Vec<bool> =
-            exact.iter().flat_map(ErrorMap::errors).map(|off| off.is_none_or(|off| off <= LIT)).collect();
+        // What the rounding of vertices explains is nobody's error. It is looked at where an error is large.
+        let mut shifts = Shifts { truth: &truth, lit: &lit, known: BTreeMap::new() };
         let linear_error = self.linear_error(scene)?;
-        let judged = |way: &Configuration<'_>| {
+        let mut judged = |way: &Configuration<'_>| {
             let shown = self.look(way, scene, probe)?;
             let mut findings = Results::default();
             if let Kind::Choice(_) = way.kind {
@@ -249,16 +247,16 @@ impl Referee<'_> {
             };
             findings.gouraud.count(&numeric);
             findings.lit.count(&model);
-            let worst = model.errors().zip(&sure).filter(|(_, sure)| **sure).filter_map(|(error, _)| error);
-            let worst = worst.fold(0.0, f64::max);
+            let worst = shifts.worst(&model);
             findings.worst.push(worst);
             if let (Kind::Shading(shading), Some(linear_error)) = (way.kind, linear_error) {
                 findings.excess = linear_rounding(shading).map(|rounding| worst - linear_error - rounding);
             }
             for (kept, bound) in findings.kept.iter_mut().zip(BUDGETS) {
-                let keeps =
-                    |(error, sure): (Option<f64>, &bool)| error.is_some_and(|error| error <= bound.max(LIT) || !sure);
-                kept.within = model.errors().zip(&sure).filter(|pair| keeps(*pair)).count() as u64;
+                let allowed = bound.max(LIT);
+                let mut keeps = |(place, error): (usize, f64)| error <= allowed || error <= allowed + shifts.of(place);
+                let errors = model.errors().enumerate().filter_map(|(place, error)| Some((place, error?)));
+                kept.within = errors.filter(|pair| keeps(*pair)).count() as u64;
                 kept.patch = model.largest_patch(bound);
             }
             findings.entries.count(scene, &shown, probe.renderer());
@@ -268,7 +266,7 @@ impl Referee<'_> {
             }
             Ok(findings)
         };
-        self.ways.iter().map(judged).collect()
+        self.ways.iter().map(&mut judged).collect()
     }
 
     /// The bound of linear shades in a frame that [`Renderer::linear_error`] states, against light at every pixel. `None`
@@ -311,6 +309,40 @@ impl Referee<'_> {
             all.push(findings);
         }
         Ok(all)
+    }
+}
+
+/// What the rounding of vertices explains of the errors at the pixels of a frame.
+struct Shifts<'a> {
+    truth: &'a Truth<'a>,
+    lit: &'a TruthFrame,
+    known: BTreeMap<usize, f64>,
+}
+
+impl Shifts<'_> {
+    /// By how many shades light at a pixel may be off, as vertices are rounded.
+    fn of(&mut self, place: usize) -> f64 {
+        let (truth, lit) = (self.truth, self.lit);
+        *self.known.entry(place).or_insert_with(|| {
+            // A frame's sides are at most 4,096.
+            let (x, y) = (place as u32 % lit.width, place as u32 / lit.width);
+            lit.pixels[place].and_then(|pixel| truth.rounding_shift(pixel.face, x, y)).unwrap_or_default()
+        })
+    }
+
+    /// The largest error beside that.
+    fn worst(&mut self, model: &ErrorMap) -> f64 {
+        let mut errors: Vec<_> =
+            model.errors().enumerate().filter_map(|(place, error)| Some((error?, place))).collect();
+        errors.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut worst = 0.0;
+        for (error, place) in errors {
+            if error <= worst {
+                break;
+            }
+            worst = worst.max(error - self.of(place));
+        }
+        worst
     }
 }
 

@@ -236,7 +236,6 @@ impl Numbered {
     /// An object with another mesh, each of its materials once for every digit, which it shows whatever the
     /// light.
     fn object(&self, like: &Object, mesh: &Shared<Mesh>) -> Object {
-        let mut object = Object::new(Shared::clone(mesh));
         let digits = |material: &Material| {
             let mut digits = vec![material.clone(); self.base];
             for (digit, material) in digits.iter_mut().enumerate() {
@@ -248,13 +247,8 @@ impl Numbered {
             digits
         };
         let surfaces = mesh.surfaces().len() / self.base;
-        object.materials = like.materials.iter().take(surfaces).flat_map(digits).collect();
-        object.pivot = like.pivot;
-        object.position = like.position;
-        object.scale = like.scale;
-        object.up_axis = like.up_axis;
-        object.angles = like.angles;
-        object
+        let materials = like.materials.iter().take(surfaces).flat_map(digits).collect();
+        hooks::with_mesh(like, Shared::clone(mesh), materials)
     }
 
     /// The triangle of a number.

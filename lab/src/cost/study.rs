@@ -115,6 +115,8 @@ pub struct ShadingRow {
     pub error_palette: f64,
     /// Pixels that show another face than they should, over all frames, vertices rounded alike.
     pub cover_errors: u64,
+    /// Those pixels as a share of all that are covered, 0 to 1: nothing is said of their shades.
+    pub not_compared: f64,
     /// Shades by which the worst pixel is beyond the shading's bound, negative if none is. Shadings that are linear on the
     /// screen have one, where the plan states how far linear shades are off.
     pub excess: Option<f64>,

@@ -35,8 +35,7 @@ pub(super) fn intensity(
             let r = sub(times(normal, 2.0 * cosine), l);
             let along = dot(r, v);
             if along > 0.0 {
-                // A power below 0 counts as 0.
-                highlight = f64::from(material.specular) * libm::pow(along, f64::from(material.shininess).max(0.0));
+                highlight = f64::from(material.specular) * libm::pow(along, f64::from(material.shininess));
             }
         }
         for (channel, id) in strength(light, in_color).into_iter().enumerate() {

@@ -30,7 +30,7 @@
 //! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. A value linear on
 //! the screen cannot be continued to a vertex behind the eye, so there the engine's rule is the definition:
 //! the intensity where an edge meets the near plane is linear along the edge in space; what is left of the
-//! face is drawn as the fan from its first corner. The guard band, which lies 4,095 pixels from the frame's corner, cuts
+//! face is drawn as the fan from its first corner. The guard band, which lies 4,095.75 pixels from the frame's corner, cuts
 //! after the near plane, and changes no intensity that is linear on the screen.
 //!
 //! [`ErrorMap`] compares the engine's picture of the scene, as [`Shown`]. [`Tiles`] gives `Lit` part by part.
@@ -281,6 +281,21 @@ impl<'a> Truth<'a> {
     #[must_use]
     pub fn sampling(&self, face: Face, x: f64, y: f64) -> Option<TruePixel> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
+    }
+
+    /// How many shades light on `face` changes by about the centre of a pixel, as far as a vertex may be from its place: half
+    /// of 1/256 pixel by rounding, and a thousandth of a pixel by f32. On a face whose corners are moved by no more than that,
+    /// the point seen at a pixel is moved by no more. A fifth is added for what light does between the places looked at.
+    /// `None` if the face is not seen at the centre itself.
+    #[must_use]
+    pub fn rounding_shift(&self, face: Face, x: u32, y: u32) -> Option<f64> {
+        const REACH: f64 = 0.5 / 256.0 + 0.001;
+        let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let here = self.sampling(face, x, y)?.intensity;
+        let places = (-4..=4).flat_map(|i| (-4..=4).map(move |j| [i, j].map(|k: i32| REACH * f64::from(k) / 4.0)));
+        let near = places.filter_map(|[dx, dy]| Some(self.sampling(face, x + dx, y + dy)?.intensity));
+        let change = near.map(|near| (0..3).fold(0.0, |most, i| f64::max(most, (near[i] - here[i]).abs())));
+        Some(1.2 * 255.0 * change.fold(0.0, f64::max))
     }
 
     /// Truth at the centre of a pixel if `face` is seen there, by any standard. `None` if the face does not cover the

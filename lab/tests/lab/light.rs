@@ -8,7 +8,7 @@ use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material, RampChoice};
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::raster::Vertex;
 use mode13h::render::{RenderError, Renderer, Screen, Shading};
@@ -197,6 +197,30 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
 
 /// A light whose strength on a channel is more than f32 holds is refused: as infinity it would leave no number beside one
 /// of the other sign.
+/// Shininess 0 is no highlight, whatever the other materials of the object are; below 0 it is refused.
+#[test]
+fn without_shininess_there_is_no_highlight() {
+    let frame = |specular: f32, shininess: f32, other: f32| {
+        let cube = shapes::cube();
+        let half = (0..cube.triangles().len()).map(|triangle| (triangle % 2) as u16).collect();
+        let cube = cube.with_surfaces(vec![Surface::default(); 2], half).expect("two surfaces");
+        let mut scene = Scene::showing(cube);
+        let materials = &mut scene.objects_mut()[0].materials;
+        (materials[0].specular, materials[0].shininess) = (specular, shininess);
+        (materials[1].specular, materials[1].shininess) = (other, 20.0);
+        let mut vga = Vga::new();
+        Renderer::new().draw(&scene, &mut vga).map(|_| vga.pixels().to_vec()).map_err(|error| error.to_string())
+    };
+    for other in [0.0, 0.5] {
+        let without = frame(0.0, 20.0, other);
+        assert!(without.is_ok());
+        assert_eq!(frame(0.5, 0.0, other), without, "beside {other}");
+        assert_ne!(frame(0.5, 1e-30, other), without, "beside {other}");
+        let error = frame(0.5, -1.0, other).expect_err("below 0");
+        assert_eq!(error, "object 0: the shininess of its materials must not be negative");
+    }
+}
+
 #[test]
 fn n5_a_light_stronger_than_f32_holds_is_refused() {
     let mut tried = Tried::new("n5_a_light_stronger_than_f32_holds_is_refused", 24);

@@ -7,13 +7,14 @@ use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
+use mode13h::hooks;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::raster::FrameError;
 use mode13h::render::{Accuracy, HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
-use mode13h::scene::{Camera, Object, Scene};
+use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::span::channels::mix_cube;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::{Probe, ProbeError};
@@ -47,6 +48,7 @@ fn all() -> Vec<(String, Scene)> {
 
 fn load() -> Vec<(String, Scene)> {
     let mut all = scenes::all();
+    all.push(("parents".to_string(), scenes::family()));
     for shipped in &mode13h::scene::shipped::ALL {
         for part in [0.05, 0.73] {
             let mut scene = shipped.load().expect("a scene that loads").scene;
@@ -234,11 +236,8 @@ fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
         if error <= rounding {
             continue;
         }
-        let near = about(place % 320, place / 320).filter_map(|(x, y)| truth.sampling(right.face, x, y));
-        let moved =
-            near.map(|near| (0..3).fold(0.0, |most, i| f64::max(most, (near.intensity[i] - right.intensity[i]).abs())));
-        // Between the places that are tried, light changes a little more.
-        let allowed = rounding + 1.2 * 255.0 * moved.fold(0.0, f64::max);
+        let (x, y) = (place as u32 % 320, place as u32 / 320);
+        let allowed = rounding + truth.rounding_shift(right.face, x, y).unwrap_or_default();
         assert!(
             error <= allowed,
             "{name}: ({}, {}) is {error:.3} off, {allowed:.3} are explained",
@@ -292,13 +291,7 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
 fn flattened(scene: &Scene) -> [Scene; 2] {
     let [mut flat, mut parted] = [scene.clone(), scene.clone()];
     for (i, object) in scene.objects().iter().enumerate() {
-        let with = |mesh: Mesh| {
-            let mut with = Object::new(mesh);
-            (with.pivot, with.position, with.scale) = (object.pivot, object.position, object.scale);
-            (with.up_axis, with.materials) = (object.up_axis, object.materials.clone());
-            with.angles = object.angles;
-            with
-        };
+        let with = |mesh: Mesh| hooks::with_mesh(object, Shared::new(mesh), object.materials.clone());
         let mut mesh = object.mesh().clone();
         mesh.flat();
         flat.objects_mut()[i] = with(mesh);

@@ -206,12 +206,12 @@ fn highlight(
         let across = greater(slowly, lesser(beyond, lobe.peak));
         (seen * s * slope, seen * s * (turn * turn * across + aside * slope))
     } else {
-        // The power has a bounded slope away from its edge alone.
+        // s·c^(s − 1) and s(s − 1)·c^(s − 2) are bounded away from c = 0 alone, where the power may be a step.
         let inverse = 1.0 / lowest;
         let power = if s >= 1.0 { inverse } else { inverse * inverse };
-        let power = if lowest > 0.05 { power } else { HUGE };
         (s * power, s * (1.0 + (s - 1.0).abs()) * (turn * turn + aside) * power)
     };
+    let is_smooth = s >= 2.0 || lowest > 0.05;
     // The light of the horizon, where the highlight begins at once.
     let horizon = spread * fall.turn + 0.5 * BEND * fall.turn * fall.turn;
     let (is_lit, is_dark) = (facing_least - horizon > 0.0, facing_most + horizon <= 0.0);
@@ -220,7 +220,7 @@ fn highlight(
     let least = if is_lit { lesser(fall.least * power, most) } else { 0.0 };
     let steep = 2.0 * part * (fall.most * slope * turn + fall.first * bright);
     let error = 0.5 * part * part * (fall.second * bright + 2.0 * fall.first * slope * turn + fall.most * bend);
-    let (steep, error) = if is_lit { (steep, error) } else { (HUGE, HUGE) };
+    let (steep, error) = if is_lit && is_smooth { (steep, error) } else { (HUGE, HUGE) };
     let range = lesser(steep, most - least);
     Term { error: lesser(error, range), range, most, least }
 }

@@ -101,6 +101,7 @@ impl Case {
             }
         }
         let shininess = match random.unit() {
+            kind if kind < 0.1 => random.log(1e-30, 2.0),
             kind if kind < 0.2 => random.log(0.1, 2.0),
             kind if kind < 0.6 => 1.0 + (60.0 * random.unit()).floor(),
             _ => random.log(1.0, 300.0),

@@ -21,8 +21,8 @@ pub(super) fn apply(
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
     set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0));
-    // A material that never was shiny has no exponent.
-    if material.shininess <= 0.0 {
+    // Without an exponent there would be no highlight.
+    if layout.specular.is_some() && material.shininess <= 0.0 {
         material.shininess = SHININESS;
     }
     if let Some(color) = layout.color {

@@ -31,6 +31,7 @@ fn shading(shading: Shading, ratio: f64, gouraud: f64, lit: f64) -> ShadingRow {
         error_lit: errors(lit),
         error_palette: 1.5,
         cover_errors: 0,
+        not_compared: 0.0,
         excess: None,
         swim: 0.4,
         efficient: true,
