@@ -90,7 +90,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::from)?;
     let title = format!("{name} at {at} s, row {y}, {accuracy}");
     match out {
-        Some(out) => output::file(|| chart::svg(&title, &row, out)).map_err(Failure::from),
+        Some(out) => output::file(out, || chart::svg(&title, &row, out)),
         None if *json => output::print_json(&row_json(&name, at, &row)),
         None => output::print(&chart::text(&title, &row)),
     }

@@ -102,7 +102,7 @@ impl Film {
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<Option<Figures>, Failure> {
-        output::long_file(|| {
+        output::long_file(self.file(), || {
             let figures = match self.kind {
                 Kind::Gif => self.write_gif(progress, renderer_pool, &draw).map(Some),
                 Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw).map(Some),

@@ -65,7 +65,7 @@ fn write_pages(all: clap::Command, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(format!("{name}.1"));
         commands.extend(command.get_subcommands().cloned());
         let bytes = page(command)?;
-        output::file(|| export::write_atomically(&path, |file| file.write_all(&bytes)))?;
+        output::file(&path, || export::write_atomically(&path, |file| file.write_all(&bytes)))?;
     }
     Ok(())
 }

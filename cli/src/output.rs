@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use mode13h::export::{ExportError, Picture, Png, Scale};
+use mode13h::export::{Picture, Png, Scale};
 use mode13h::vga::Vga;
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::read_files;
 
 /// Held while a file is written, by any number of threads.
 static WRITING: RwLock<()> = RwLock::new(());
@@ -37,15 +38,21 @@ pub(crate) fn finish_files_when_interrupted() {
     let _ = ctrlc::set_handler(end);
 }
 
-/// Writes a file that ends whole also if the program is told to end meanwhile.
-pub(crate) fn file<T>(write: impl FnOnce() -> T) -> T {
+/// Writes a file: the one way to do so, for all commands. What was read, or written by this very command, is not
+/// overwritten, whatever name leads to it. The file is whole even if the program is told to end meanwhile.
+pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, Failure> {
+    read_files::spare(path)?;
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
-    write()
+    let written = write().map_err(Into::into)?;
+    read_files::add_written(path);
+    Ok(written)
 }
 
-/// Writes a file that takes long. `write` looks at [`is_interrupted`] every moment, and gives the file up then: in that
-/// case this never returns, and the program ends as interrupted.
-pub(crate) fn long_file<T>(write: impl FnOnce() -> T) -> T {
+/// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` looks at
+/// [`is_interrupted`] every moment, and gives the file up then: in that case this never returns, and the program ends as
+/// interrupted.
+pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    path.map_or(Ok(()), read_files::spare)?;
     let writing = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
     let result = write();
     drop(writing);
@@ -62,16 +69,16 @@ pub(crate) fn is_interrupted() -> bool {
 }
 
 /// Writes what `vga` shows as a PNG: indexed, or in true colour if `rgb`.
-pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), ExportError> {
+pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), Failure> {
     let palette = vga.palette();
     let picture = Picture::mode_13h(vga.pixels(), &palette);
     let scale = scale.unwrap_or(if rgb { Scale::FiveBySix } else { Scale::One });
-    file(|| Png { scale, rgb }.save(&picture, path))
+    file(path, || Png { scale, rgb }.save(&picture, path))
 }
 
 /// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
 /// the current directory. Nothing is overwritten.
-pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, ExportError> {
+pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, Failure> {
     let mut names = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
     // Some number below 2⁶⁴ is free, as no directory holds so many files.
     let path = names.find(|path| path.symlink_metadata().is_err()).unwrap_or_default();

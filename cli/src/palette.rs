@@ -162,7 +162,7 @@ fn make(
 fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
     let extension = out.extension().unwrap_or_default().to_string_lossy();
     if extension.eq_ignore_ascii_case("png") {
-        return output::file(|| chart(palette, out)).map_err(Failure::from);
+        return output::file(out, || chart(palette, out));
     }
     let Some(format) = Format::by_extension(&extension) else {
         let known = input::palette_extensions();
@@ -170,7 +170,7 @@ fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
         return Err(Failure::words(reason));
     };
     let bytes = format.write(palette, name);
-    output::file(|| export::write_atomically(out, |file| file.write_all(&bytes))).map_err(Failure::from)
+    output::file(out, || export::write_atomically(out, |file| file.write_all(&bytes)))
 }
 
 /// The 256 colours in 16 rows of 16, each a square of 16 pixels.

@@ -1,4 +1,4 @@
-//! The files that were read. None of them is ever written over, by whatever name.
+//! The files that were read, and those that were written. None of them is ever written over, by whatever name.
 
 use std::cell::RefCell;
 use std::fs;
@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::failure::Failure;
 
-/// The files that were read so far, and the names that they were read by.
-static READ: Mutex<Vec<(Identity, PathBuf)>> = Mutex::new(Vec::new());
+/// The files so far, the names that led to them, and what was done to them.
+static USED: Mutex<Vec<(Identity, PathBuf, &str)>> = Mutex::new(Vec::new());
 
 /// A file itself, whatever name leads to it.
 #[derive(PartialEq, Eq)]
@@ -54,10 +54,19 @@ pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
 /// Keeps in mind that a file is read.
 pub(crate) fn add(path: &Path) {
     NOTED.with_borrow_mut(|noted| noted.iter_mut().for_each(|noted| noted.push(path.to_path_buf())));
+    note(path, "read");
+}
+
+/// Keeps in mind that a file was written.
+pub(crate) fn add_written(path: &Path) {
+    note(path, "written just now");
+}
+
+fn note(path: &Path, what: &'static str) {
     if let Some(identity) = Identity::of(path) {
-        let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-        if read.iter().all(|(other, _)| *other != identity) {
-            read.push((identity, path.to_path_buf()));
+        let mut used = USED.lock().unwrap_or_else(PoisonError::into_inner);
+        if used.iter().all(|(other, ..)| *other != identity) {
+            used.push((identity, path.to_path_buf(), what));
         }
     }
 }
@@ -67,17 +76,17 @@ pub(crate) fn add_all(paths: &[PathBuf]) {
     paths.iter().for_each(|path| add(path));
 }
 
-/// A failure if writing under this name would replace a file that was read. To be asked once all is read, and before
-/// much time is spent.
+/// A failure if writing under this name would replace a file that was read, or written by this command.
+/// [`output::file`](crate::output::file) asks; a command that takes long asks before it begins, too, once all is read.
 pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
     let Some(identity) = Identity::of(out) else { return Ok(()) };
-    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    let Some((_, path)) = read.iter().find(|(other, _)| *other == identity) else { return Ok(()) };
+    let used = USED.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some((_, path, what)) = used.iter().find(|(other, ..)| *other == identity) else { return Ok(()) };
     let out_name = out.display();
     let reason = match path == out {
-        true => format!("{out_name}: was read, and is not overwritten; give another name to write to"),
+        true => format!("{out_name}: was {what}, and is not overwritten; give another name to write to"),
         false => format!(
-            "{out_name}: is {}, which was read, and is not overwritten; give another name to write to",
+            "{out_name}: is {}, which was {what}, and is not overwritten; give another name to write to",
             path.display()
         ),
     };

@@ -137,8 +137,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         out.files().iter().try_for_each(|file| output::refuse_overwriting(file, options.force))?;
     }
     records.as_ref().map_or(Ok(()), |records| records.spare(frames))?;
-    if options.record.as_ref() == Some(&path) {
-        return Err(Failure::words(format!("{}: one name for the picture and its record", path.display())));
+    let outputs = [Some(&path), options.record.as_ref(), options.record_errors.as_ref()];
+    if let [Some(a), Some(b), _] | [Some(a), _, Some(b)] | [_, Some(a), Some(b)] = outputs
+        && a == b
+    {
+        return Err(Failure::words(format!("{}: one name for two files to write", a.display())));
     }
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
@@ -146,7 +149,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let run = Run::of(options, &motion, &stage, kernel)?;
     if let Some(path) = &options.record_errors {
         read_files::spare(path)?;
-        output::file(|| run.record().save(path)).map_err(Failure::from)?;
+        output::file(path, || run.record().save(path))?;
     }
     let make = || Artist {
         renderer: options.shading.renderer(&options.drawing, kernel),
@@ -175,9 +178,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
         Ok(())
     };
+    let written: Mutex<Vec<u32>> = Mutex::default();
     let picture = |names: &Names, artist: &mut Artist, number| {
         draw(artist, number)?;
-        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale).map_err(Failure::from)?;
+        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale)?;
+        written.lock().unwrap_or_else(PoisonError::into_inner).push(number);
         progress.inc(1);
         Ok(())
     };
@@ -201,7 +206,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     progress.finish_and_clear();
-    let film = result?;
+    let film = match (result, &out) {
+        (Err(failure), Out::Pictures(names, _)) => {
+            let written = written.into_inner().unwrap_or_else(PoisonError::into_inner);
+            return Err(saying_which(failure, names, written));
+        }
+        (result, _) => result?,
+    };
     if options.json {
         let drawn = drawn.into_inner().unwrap_or_else(PoisonError::into_inner);
         return output::print_json(&as_json(options, &out, film, drawn));
@@ -214,6 +225,21 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
         None => Ok(()),
     }
+}
+
+/// A failure that says which pictures of a row were written before it.
+fn saying_which(failure: Failure, names: &Names, mut written: Vec<u32>) -> Failure {
+    if written.is_empty() {
+        return failure;
+    }
+    written.sort_unstable();
+    let runs = written.chunk_by(|a, b| a + 1 == *b).map(|run| match run {
+        [one] => names.of(*one).display().to_string(),
+        [first, .., last] => format!("{} to {}", names.of(*first).display(), names.of(*last).display()),
+        [] => String::new(),
+    });
+    let runs: Vec<String> = runs.collect();
+    failure.saying(format!("{failure}; written before that: {}", runs.join(", ")))
 }
 
 /// Lists the files that were written and, with --stats, the counts of drawing.
@@ -437,7 +463,7 @@ impl Artist {
     fn record(&mut self, path: &Path) -> Result<(), Failure> {
         let record =
             Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
-        output::file(|| record.save(path)).map_err(Failure::from)
+        output::file(path, || record.save(path))
     }
 }
 

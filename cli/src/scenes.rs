@@ -1,6 +1,6 @@
 //! `mode13h scenes`: the scenes that are compiled in.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use mode13h::export;
@@ -15,13 +15,13 @@ use crate::{output, typo};
 pub(crate) struct Options {
     /// Write the file of a scene, to be edited
     ///
-    /// It is NAME.toml in this directory. One that exists is not overwritten without --force.
+    /// It is NAME.toml in this directory. A file that exists is not overwritten without --force.
     #[arg(long, value_name = "NAME")]
     copy: Option<String>,
-    /// The name of the copy; what it holds is overwritten
+    /// The name of the copy, which ends in .toml
     #[arg(short, long, value_name = "FILE", requires = "copy")]
     out: Option<PathBuf>,
-    /// Overwrite NAME.toml
+    /// Overwrite the file
     #[arg(long, requires = "copy")]
     force: bool,
     /// Print the list as JSON
@@ -39,14 +39,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
         return Err(Failure::words(format!("{name}: no such scene{near} (mode13h scenes lists them)")));
     };
-    match out {
-        Some(out) => write(&scene, out),
-        None => {
-            let out = PathBuf::from(format!("{name}.toml"));
-            output::refuse_overwriting(&out, *force)?;
-            write(&scene, &out)
-        }
+    let out = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
+    if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return Err(Failure::words(format!("{}: the file of a scene ends in .toml", out.display())));
     }
+    output::refuse_overwriting(&out, *force)?;
+    output::file(&out, || export::write_atomically(&out, |file| file.write_all(scene.text.as_bytes())))
 }
 
 /// A line for each scene, with what it shows, and one for all shapes.
@@ -61,8 +59,4 @@ fn list_json() -> Value {
     let scenes: Vec<Value> =
         shipped::ALL.iter().map(|scene| json!({ "name": scene.name, "shows": scene.shows() })).collect();
     json!({ "schema": 1, "scenes": scenes, "shapes": shapes::NAMES })
-}
-
-fn write(scene: &Shipped, out: &Path) -> Result<(), Failure> {
-    Ok(output::file(|| export::write_atomically(out, |file| file.write_all(scene.text.as_bytes())))?)
 }

@@ -49,7 +49,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let bytes = case.png()?;
-    output::file(|| export::write_atomically(&path, |file| file.write_all(&bytes)))?;
+    output::file(&path, || export::write_atomically(&path, |file| file.write_all(&bytes)))?;
     if *json {
         let mut case = case_json(case);
         case["schema"] = 1.into();

@@ -1,5 +1,6 @@
 //! The files of a study: checked before it is made, and not lost when they cannot be written after it.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{env, fs, process};
 
@@ -11,17 +12,33 @@ use crate::{output, read_files};
 /// Their names.
 const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", "report.html"];
 
-/// Checks that they can be written into a directory, which need not exist yet, that none of them was read, and that
-/// none is overwritten unless that is allowed.
-pub(super) fn check(directory: &Path, overwrites: bool) -> Result<(), Failure> {
+/// What the first bytes of each hold, which tells it from a file of another origin.
+const MARKS: [&str; NAMES.len()] =
+    ["round,order,kind,name,frames,ns", "\"schema\"", "<svg width=\"860\"", "content=\"mode13h cost\""];
+
+/// Returns whether a file begins as that of a study does.
+fn is_of_a_study(path: &Path, mark: &str) -> bool {
+    let mut beginning = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut beginning));
+    read.is_ok() && String::from_utf8_lossy(&beginning).contains(mark)
+}
+
+/// Checks that they can be written into a directory, which need not exist yet, and that none of them was read. Files of an
+/// earlier study are overwritten if the user named the directory, others by force alone.
+pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
         return Err(Failure::file(format!("{}: is no directory", directory.display())));
     }
     if directory.is_dir() {
-        return NAMES.iter().try_for_each(|name| {
+        return NAMES.iter().zip(MARKS).try_for_each(|(name, mark)| {
             let path = directory.join(name);
             read_files::spare(&path)?;
-            output::refuse_overwriting(&path, overwrites)?;
+            if !forced && path.symlink_metadata().is_ok() && !is_of_a_study(&path, mark) {
+                let path = path.display();
+                let reason = "exists already, and is no file of a study; --force overwrites it";
+                return Err(Failure::file(format!("{path}: {reason}")));
+            }
+            output::refuse_overwriting(&path, forced || is_named)?;
             export::check_writable(&path).map_err(Failure::from)
         });
     }
@@ -52,6 +69,6 @@ fn write_into(directory: &Path, contents: &[String; NAMES.len()]) -> Result<(), 
     fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
     NAMES.iter().zip(contents).try_for_each(|(name, text)| {
         let path = directory.join(name);
-        output::file(|| export::write_atomically(path, |out| out.write_all(text.as_bytes()))).map_err(Failure::from)
+        output::file(&path, || export::write_atomically(&path, |out| out.write_all(text.as_bytes())))
     })
 }

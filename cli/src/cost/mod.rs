@@ -111,8 +111,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
     };
     // Before much time is spent.
-    let overwrites = out.is_some() || *force;
-    directory.as_deref().map_or(Ok(()), |directory| files::check(directory, overwrites))?;
+    directory.as_deref().map_or(Ok(()), |directory| files::check(directory, out.is_some(), *force))?;
     let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
     if let Some(counts) = &counts {
         kernel = counts.kernel.parse::<Kernel>().map_err(Failure::words)?;

@@ -391,7 +391,7 @@ impl Demo {
             }
             self.motion.go_to(self.stage.scene.picture);
             self.draw()?;
-            let path = output::numbered_picture(self.on_screen()).map_err(Failure::from)?;
+            let path = output::numbered_picture(self.on_screen())?;
             let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
             eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
         }

@@ -10,12 +10,13 @@ mod player;
 mod unpack;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mode13h::export;
 use mode13h::hooks;
 use mode13h::palette::{BIOS, Palette};
+use mode13h::plan::Effect;
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
 
 use self::pack::pack;
@@ -24,8 +25,8 @@ use self::unpack::unpack;
 use crate::failure::Failure;
 use crate::input;
 use crate::options::{Drawing, one_of};
-use crate::output;
-use crate::turntable::Turntable;
+use crate::turntable::{Pose, Turntable};
+use crate::{output, read_files};
 
 /// Stub and image, as `machines/dos/build` makes them.
 static PLAYER: &[u8] = include_bytes!("player.bin");
@@ -47,7 +48,7 @@ const STACK: usize = 0x1_0000;
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The name of the program [default: INPUT.EXE in this directory]
+    /// The name of the program, .exe or .img [default: INPUT.EXE in this directory]
     ///
     /// A name that ends in .img is that of a floppy of 1.44 MB, which starts the program without DOS.
     #[arg(short, long, value_name = "FILE")]
@@ -79,7 +80,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, out, force, frames, shading, drawing } = options;
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
+    let ends_in = |out: &Path, wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
     let out = match out {
+        Some(out) if !(ends_in(out, "exe") || ends_in(out, "img")) => {
+            return Err(Failure::words(format!("{}: a program for DOS ends in .exe, a floppy in .img", out.display())));
+        }
         Some(out) => out.clone(),
         None => {
             let out = PathBuf::from(format!("{}.EXE", short_name(&name)));
@@ -88,20 +93,38 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let mut stage = drawing.stage(drawing.input(input)?)?;
+    read_files::spare(&out)?;
     let mut renderer = Renderer::new();
     renderer.settings.kernel = kernel;
     renderer.settings.accuracy = shading.map(Into::into);
+    if let Some(losses) = losses(&mut stage, &renderer)? {
+        eprintln!("mode13h: {losses}");
+    }
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
     let packed = pack(&film);
     let body = body(&packed, film.len(), vertices)?;
-    let is_floppy = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("img"));
-    let program = if is_floppy { floppy(&body) } else { program(&body) };
+    let program = if ends_in(&out, "img") { floppy(&body) } else { program(&body) };
     // What is drawn is what the program unpacks.
     let sum = unpack(&packed)
         .and_then(|film| hash_of(&film))
         .ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
-    output::file(|| export::write_atomically(&out, |file| file.write_all(&program)))?;
+    output::file(&out, || export::write_atomically(&out, |file| file.write_all(&program)))?;
     output::print(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
+}
+
+/// What the film leaves out of a scene, if anything: effects that it calls for and that 16.16 does not know.
+fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Failure> {
+    let mut renderer = like.set_alike();
+    stage.show(0.0, Pose::FIRST);
+    let called_for = |path: VertexPath, renderer: &mut Renderer| -> Result<Vec<Effect>, Failure> {
+        renderer.settings.vertex_path = path;
+        let plan = renderer.make_plan(&stage.scene, Screen::MODE_13H)?;
+        Ok(Effect::ALL.into_iter().filter(|effect| plan.is_on_anywhere(*effect)).collect())
+    };
+    let (float, fixed) =
+        (called_for(VertexPath::Float, &mut renderer)?, called_for(VertexPath::Integer, &mut renderer)?);
+    let lost: Vec<&str> = float.into_iter().filter(|effect| !fixed.contains(effect)).map(Effect::name).collect();
+    Ok((!lost.is_empty()).then(|| format!("left out, because the program computes in 16.16: {}", lost.join(", "))))
 }
 
 /// A name that DOS can have: at most eight letters, digits and a few signs.

@@ -678,8 +678,6 @@ fn f4_what_was_read_is_never_overwritten() {
     fs::hard_link(path("scene.toml"), path("study/report.html")).expect("a link");
     fs::create_dir(path("of-model")).expect("made");
     std::os::unix::fs::symlink("../box.mtl", path("of-model/cost.json")).expect("a link");
-    let names = names_in(directory.path());
-    let before: Vec<Option<Vec<u8>>> = names.iter().map(|name| fs::read(path(name)).ok()).collect();
 
     let absolute = path("box.png").to_string_lossy().into_owned();
     let mut all: Vec<Vec<&str>> = Vec::new();
@@ -705,6 +703,12 @@ fn f4_what_was_read_is_never_overwritten() {
     all.push(vec!["explain", "scene.toml", "--row", "5", "-o", "link.svg"]);
     all.push(vec!["cost", "scene.toml", "-o", "study"]);
     all.push(vec!["cost", "box.obj", "-o", "of-model"]);
+    for (name, target) in [("link.exe", "box.obj"), ("link.img", "scene.toml")] {
+        std::os::unix::fs::symlink(target, path(name)).expect("a link");
+        all.push(vec!["dos", target, "-o", name, "--frames", "1"]);
+    }
+    let names = names_in(directory.path());
+    let before: Vec<Option<Vec<u8>>> = names.iter().map(|name| fs::read(path(name)).ok()).collect();
     for words in all {
         assert_fails(&run(&directory, &words), 2, "is not overwritten");
         tried.add(1);
@@ -715,6 +719,72 @@ fn f4_what_was_read_is_never_overwritten() {
     }
     // What was not read may be, as ever.
     succeed(&directory, &["render", "cube", "-o", "box.png"]);
+}
+
+/// What a command writes is of its own kind, and no second file of the same command.
+#[test]
+fn f4_what_is_of_another_kind_is_not_overwritten() {
+    let mut tried = Tried::new("f4_what_is_of_another_kind_is_not_overwritten", 9);
+    let directory = directory();
+    for name in ["house.obj", "house.mtl", "report.html", "Cargo.toml"] {
+        fs::write(directory.path().join(name), "what stood there").expect("written");
+    }
+    let cost = ["cost", "cube", "--frames", "1", "--seconds", "0", "-o"];
+    for (words, status, line) in [
+        (vec!["dos", "cube", "-o", "house.obj"], 2, "house.obj: a program for DOS ends in .exe, a floppy in .img"),
+        (vec!["dos", "cube", "-o", "house"], 2, "ends in .exe"),
+        (vec!["scenes", "--copy", "torus", "-o", "house.obj"], 2, "house.obj: the file of a scene ends in .toml"),
+        (vec!["scenes", "--copy", "torus", "-o", "Cargo.toml"], 3, "Cargo.toml: exists already"),
+        ([&cost[..], &["."]].concat(), 3, "report.html: exists already, and is no file of a study"),
+        (
+            vec!["render", "cube", "-o", "b.gif", "--max-time", "5", "--record-errors", "b.gif"],
+            2,
+            "b.gif: one name for two files to write",
+        ),
+        (vec!["render", "cube", "-o", "b.png", "--record", "b.png"], 2, "b.png: one name for two files to write"),
+        (
+            vec!["render", "cube", "-o", "b.png", "--max-time", "5", "--record-errors", "./b.png"],
+            2,
+            "which was written just now, and is not overwritten",
+        ),
+    ] {
+        assert_fails(&run(&directory, &words), status, line);
+        tried.add(1);
+    }
+    for name in ["house.obj", "house.mtl", "report.html", "Cargo.toml"] {
+        assert_eq!(read(&directory, name), b"what stood there", "{name}");
+    }
+    // A study replaces an earlier one.
+    for _ in 0..2 {
+        let output = run(&directory, &[&cost[..], &["study"]].concat());
+        assert!(output.status.success(), "{output:?}");
+    }
+    tried.add(1);
+}
+
+/// A row of pictures that is broken off says which of them there are.
+#[test]
+fn a_row_that_fails_says_what_was_written() {
+    let directory = directory();
+    fs::create_dir(directory.path().join("a3.png")).expect("made");
+    let words = ["render", "cube", "-o", "a%d.png", "--frames", "5", "--threads", "1"];
+    assert_fails(&run(&directory, &words), 3, "; written before that: a0.png to a2.png");
+}
+
+/// A program for DOS says what a scene loses in it.
+#[test]
+fn dos_says_what_is_left_out() {
+    let directory = directory();
+    let said = |scene: &str| {
+        let output = run(&directory, &["dos", scene, "-o", "a.exe", "--frames", "1"]);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    assert_eq!(said("torus"), "");
+    assert_eq!(
+        said("crate"),
+        "mode13h: left out, because the program computes in 16.16: perspective, texture, mipmaps\n"
+    );
 }
 
 #[test]
@@ -1179,6 +1249,11 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 3, "fog.toml: exists already; --force");
     assert_eq!(read(&directory, "fog.toml"), b"what stood there");
     assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 2, "frog: no such scene; did you mean fog?");
+    assert_fails(
+        &run(&directory, &["scenes", "--copy", "fog", "-o", "fog.toml"]),
+        3,
+        "fog.toml: exists already; --force",
+    );
     assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 3, "none does not exist");
     // A copy is the scene.
     succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--at", "1"]);

@@ -70,7 +70,7 @@ fn f1_broken_models_are_refused_with_their_place() {
         ("vn 0 NaN 0\n".into(), ":4: `NaN` is not a finite number"),
         ("vt inf\n".into(), ":4: `inf` is not a finite number"),
         ("f 1 2 \\\n\\\n9\nf 1 2 3\n".into(), ":4: there is no vertex 9, only 3"),
-        ("f 1 \\\n2\n".into(), ":4: a face with 2 corners; 3 are needed"),
+        ("f 1 \\\n4\n".into(), ":4: there is no vertex 4, only 3"),
         (String::new(), ": no faces"),
         ("l 1 2 3\np 1\n".into(), ": no faces"),
         ("\0\0\0\0\n".into(), ":4: not a text file"),
@@ -641,7 +641,7 @@ fn f4_a_row_of_pictures_that_cannot_be_written() {
         fs::create_dir(folder.path().join("x4.png")).expect("made");
         let words = ["render", "torus", "-o", "x%d.png", "--frames", "9", "--threads", threads];
         let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
-        assert!(said.ends_with("x4.png: is a directory\n"), "{said}");
+        assert!(said.contains("x4.png: is a directory; written before that: x0.png"), "{said}");
         for name in names_in(folder.path()).into_iter().filter(|name| name != "x4.png") {
             let bytes = fs::read(folder.path().join(&name)).expect("read");
             assert_eq!(&bytes[bytes.len() - 8..][..4], b"IEND", "{name} is not whole");

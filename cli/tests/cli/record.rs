@@ -111,7 +111,7 @@ fn f4_what_cannot_be_recorded_or_replayed_is_one_line() {
         ("verify --replay .", 3, ".: "),
         ("verify --replay broken.rec --seed 1", 2, "--seed"),
         ("render cube -o x.png --record none/x.rec", 3, "none/x.rec: the directory none does not exist"),
-        ("render cube -o x.png --record x.png", 2, "x.png: one name for the picture and its record"),
+        ("render cube -o x.png --record x.png", 2, "x.png: one name for two files to write"),
     ] {
         assert_fails(&run(directory.path(), words), status, says);
         tried.add(1);

@@ -60,7 +60,7 @@ const FAR: f64 = 16.0;
 pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError> {
     let mut model = Model { runs: vec![(0, 0)], names: vec![String::new()], name_lines: vec![0], ..Model::default() };
     let mut later = Later::default();
-    let mut positions = Vec::new();
+    let mut positions: Vec<Wide> = Vec::new();
     let mut known = std::collections::HashMap::from([(String::new(), 0)]);
     let mut lines = Lines::new(reader);
     while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
@@ -99,17 +99,38 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError>
         return Err(ObjError::of_file(path, ObjErrorKind::NoFaces));
     }
     model.middle = far_middle(&positions, &model.corners);
-    let [x, y, z] = model.middle.unwrap_or_default();
-    model.positions =
-        positions.into_iter().map(|p| Vec3::new((p[0] - x) as f32, (p[1] - y) as f32, (p[2] - z) as f32)).collect();
+    // In place, as a file may hold many.
+    model.positions = positions.into_iter().map(|p| p.narrow(model.middle)).collect();
     Ok(model)
 }
 
+/// A position in some 48 bits: the nearest of f32, and what is left of each coordinate.
+#[derive(Clone, Copy)]
+struct Wide([f32; 3], [f32; 3]);
+
+impl Wide {
+    fn new(position: [f64; 3]) -> Self {
+        let near = position.map(|c| c as f32);
+        Self(near, [0, 1, 2].map(|axis| (position[axis] - f64::from(near[axis])) as f32))
+    }
+
+    fn get(self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| f64::from(self.0[axis]) + f64::from(self.1[axis]))
+    }
+
+    /// The position in f32, about another one if there is any.
+    fn narrow(self, middle: Option<[f64; 3]>) -> Vec3 {
+        let Some(middle) = middle else { return Vec3::from_array(self.0) };
+        let position = self.get();
+        Vec3::from_array([0, 1, 2].map(|axis| (position[axis] - middle[axis]) as f32))
+    }
+}
+
 /// The middle of the positions that faces use, if it is [`FAR`] from 0.
-fn far_middle(positions: &[[f64; 3]], corners: &[Corner]) -> Option<[f64; 3]> {
+fn far_middle(positions: &[Wide], corners: &[Corner]) -> Option<[f64; 3]> {
     let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
     for corner in corners {
-        for (axis, &c) in positions[corner.position as usize].iter().enumerate() {
+        for (axis, c) in positions[corner.position as usize].get().into_iter().enumerate() {
             (low[axis], high[axis]) = (low[axis].min(c), high[axis].max(c));
         }
     }
@@ -128,8 +149,8 @@ fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ObjErrorKind> {
     Ok(())
 }
 
-fn position(positions: &mut Vec<[f64; 3]>, rest: &[u8]) -> Result<(), ObjErrorKind> {
-    push(positions, wide_numbers(&mut words(rest), "a position (3)")?)
+fn position(positions: &mut Vec<Wide>, rest: &[u8]) -> Result<(), ObjErrorKind> {
+    push(positions, Wide::new(wide_numbers(&mut words(rest), "a position (3)")?))
 }
 
 fn texcoord(model: &mut Model, rest: &[u8]) -> Result<(), ObjErrorKind> {

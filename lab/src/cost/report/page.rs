@@ -32,6 +32,7 @@ pub fn html(study: &Study) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta name="generator" content="mode13h cost";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 @for style in STYLES { style { (PreEscaped(style)) } }
