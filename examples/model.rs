@@ -10,7 +10,8 @@ use mode13h::window::{self, Flow, Key};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("which model? (a path to an .obj file)")?;
-    let mut scene = Scene::from_model(&path)?;
+    let (mut scene, warnings) = Scene::from_model(&path)?;
+    warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let mut renderer = Renderer::new();
     window::run(&path, |vga, input, seconds| -> Result<Flow, Box<dyn Error>> {
         scene.set_time(seconds);

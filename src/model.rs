@@ -119,7 +119,8 @@ impl Scene {
     /// once in a [round](Self::duration) as [`showing`](Self::showing) says. A model with colours gets a palette made
     /// for them; a grey one is drawn in greys.
     ///
-    /// It leaves out the warnings, which [`load`] returns.
+    /// The second value are the warnings, one line each: parts of the model that were left out or mended, and textures that
+    /// could not be read.
     ///
     /// ```no_run
     /// use mode13h::export;
@@ -127,8 +128,10 @@ impl Scene {
     /// use mode13h::scene::Scene;
     /// use mode13h::vga::Vga;
     ///
+    /// let (scene, warnings) = Scene::from_model("crate.obj")?;
+    /// warnings.iter().for_each(|warning| eprintln!("{warning}"));
     /// let mut vga = Vga::new();
-    /// Renderer::new().draw(&Scene::from_model("crate.obj")?, &mut vga)?;
+    /// Renderer::new().draw(&scene, &mut vga)?;
     /// export::png(&vga, "crate.png")?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -136,13 +139,13 @@ impl Scene {
     /// # Errors
     ///
     /// [`ModelError`] with the file and the line, or with the part that cannot be drawn.
-    pub fn from_model(path: impl AsRef<Path>) -> Result<Self, ModelError> {
-        let object = load(path, &obj::Options::default()).map_err(ModelError::Obj)?.object;
+    pub fn from_model(path: impl AsRef<Path>) -> Result<(Self, Vec<String>), ModelError> {
+        let Model { object, warnings } = load(path, &obj::Options::default()).map_err(ModelError::Obj)?;
         let has_colors = object.has_colors();
         let mut scene = Self::showing(object);
         if has_colors {
             auto_palette::of_scene(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
         }
-        Ok(scene)
+        Ok((scene, warnings))
     }
 }

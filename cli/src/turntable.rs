@@ -3,7 +3,7 @@
 use mode13h::Angle;
 use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Material};
+use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::mesh::Mesh;
 use mode13h::model::with_textures;
 use mode13h::palette::{Palette, Rgb};
@@ -222,17 +222,19 @@ impl Turntable {
     }
 
     /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
-    /// objects that have colours of their own are drawn in them; of a model, which asks for nothing itself, with dither,
-    /// as no palette for everything has many shades of one colour.
+    /// objects are drawn in the nearest entries to their own colours, with dither, as no palette for everything has many
+    /// shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dithers = self.dithers;
         let shown = self.materials_shown();
-        for ((object, shown), own) in self.scene.objects_mut().iter_mut().zip(shown).zip(&self.materials) {
+        let has_no_ramps = matches!(colors, Colors::Palette(palette) if palette.ramps() == 0);
+        for (object, shown) in self.scene.objects_mut().iter_mut().zip(shown) {
             object.materials = shown;
-            if matches!(colors, Colors::Palette(palette) if palette.ramps() == 0) && has_colors(object, own) {
+            if has_no_ramps {
+                let named = |material: &Material| matches!(material.ramp, RampChoice::Number(_));
+                dithers |= object.materials.iter().any(named);
                 let shown = object.materials.iter().zip(object.mesh().surfaces());
                 object.materials = shown.map(|(material, surface)| material.in_own_colors(surface)).collect();
-                dithers |= matches!(self.shown, Shown::Model);
             }
         }
         self.scene.preferences.dither = self.dither.unwrap_or(dithers);

@@ -13,7 +13,8 @@ use crate::texture::Texture;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum RampChoice {
-    /// The palette's ramp of this number, counted round. A palette with one ramp always gives that.
+    /// The palette's ramp of this number, counted round. A palette with one ramp always gives that. With a palette of no ramps
+    /// it means [`Nearest`](Self::Nearest), dithered, in the colours of the mesh's surface if the material is white.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
@@ -170,6 +171,11 @@ impl Material {
     pub fn takes_channels(&self) -> bool {
         let has_image = self.texture.is_some() || self.environment.is_some();
         self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
+    }
+
+    /// Returns whether it names a ramp of a palette that has none.
+    pub(crate) fn misses_ramp(&self, palette: Option<&Palette>) -> bool {
+        matches!(self.ramp, RampChoice::Number(_)) && palette.is_some_and(|palette| palette.ramps() == 0)
     }
 
     /// Returns whether it has a highlight.

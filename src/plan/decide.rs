@@ -437,14 +437,25 @@ impl Rules<'_> {
         {
             return Decision::on(Reason::ColoredLight { light });
         }
-        match self.object.materials.iter().position(Material::takes_channels) {
-            Some(material) => Decision::on(Reason::ColoredMaterial { material }),
-            None => Decision::off(Reason::NoColor),
+        if let Some(material) = self.object.materials.iter().position(Material::takes_channels) {
+            return Decision::on(Reason::ColoredMaterial { material });
         }
+        if self.misses_ramp() { Decision::on(Reason::NoRamps) } else { Decision::off(Reason::NoColor) }
+    }
+
+    /// Returns whether a material without an image names a ramp, and the scene's palette has none.
+    fn misses_ramp(&self) -> bool {
+        let has_image = |material: &Material| material.texture.is_some() || material.environment.is_some();
+        let palette = self.scene.palette.as_ref();
+        self.object.materials.iter().any(|material| material.misses_ramp(palette) && !has_image(material))
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
         if !self.inputs.dithers {
+            // Few palettes without ramps have many shades of one colour.
+            if before.is_on(Effect::RgbChannels) && self.misses_ramp() {
+                return Decision::on(Reason::NoRamps).choosing(Choice::Ordered8x8);
+            }
             Decision::off(Reason::NotAsked)
         } else if before.is_on(Effect::Phong)
             && self.shading == Shading::PhongTable

@@ -152,6 +152,8 @@ pub enum Reason {
     },
     /// Neither light nor material is coloured.
     NoColor,
+    /// A material names a ramp, and the palette has none.
+    NoRamps,
     /// Shades come from a table of whole ones: nothing lies between two of them.
     WholeShades,
     /// The vertex path in 16.16 does not know it.
@@ -238,6 +240,7 @@ impl Reason {
             Self::ColoredLight { light } => format!("light {light} is coloured"),
             Self::ColoredMaterial { material: i } => format!("{} is drawn in its own colours", material(i)),
             Self::WholeShades => "the table of normals holds whole shades".to_string(),
+            Self::NoRamps => "the palette has no ramps: colours are the nearest entries, dithered".to_string(),
             Self::NotInIntegers => "the 16.16 vertex path has none".to_string(),
             Self::NoColor => "neither light nor material is coloured".to_string(),
         }

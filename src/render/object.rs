@@ -225,7 +225,11 @@ impl ObjectState {
         let Some(source) = &self.source else { return };
         self.paints.clear();
         let palette = scene.palette.as_ref();
-        self.paints.extend(object.materials.iter().map(|m| SurfaceMaterial::new(m, scene.ambient, palette, plan)));
+        let surfaces = object.materials.iter().zip(object.mesh().surfaces());
+        self.paints.extend(surfaces.map(|(material, surface)| match material.misses_ramp(palette) {
+            true => SurfaceMaterial::new(&material.in_own_colors(surface), scene.ambient, palette, plan),
+            false => SurfaceMaterial::new(material, scene.ambient, palette, plan),
+        }));
         self.lamps.clear();
         let bounds = object.mesh().bounds();
         let falls_on_it = |lamp: &&LampBeam| match plan.stages().lamps {

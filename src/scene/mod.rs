@@ -70,6 +70,7 @@ pub struct Scene {
     /// entry.
     pub background_color: Option<Rgb>,
     /// The palette that the DAC is loaded with when the scene is drawn; with `None` it is left alone.
+    /// Materials that name ramps are drawn in the nearest entries, dithered, if it has none.
     pub palette: Option<Palette>,
     /// The change of the palette as time passes.
     pub palette_animation: Option<PaletteAnimation>,

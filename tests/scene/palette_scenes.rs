@@ -378,3 +378,34 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
     scene.preferences.mipmaps = Some(false);
     assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
 }
+
+/// With a palette of a few colours and no ramps, a material that names a ramp is drawn in the nearest entries, dithered.
+#[test]
+fn a_palette_without_ramps_means_the_nearest_entries_dithered() {
+    let mut colors = [Rgb::BLACK; 256];
+    let rgb = |color: u32| Rgb::new((color >> 16) as u8, (color >> 8) as u8, color as u8);
+    let ega = [0x0000aa, 0x00aa00, 0x00aaaa, 0xaa0000, 0xaa00aa, 0xaa5500, 0xaaaaaa, 0x555555, 0xffffff];
+    ega.iter().zip(&mut colors[1..]).for_each(|(color, entry)| *entry = rgb(*color));
+    let palette = Palette::from_colors(colors);
+    assert_eq!(palette.ramps(), 0);
+    let yellow = Surface { diffuse: [0.9, 0.8, 0.1], ..Surface::default() };
+    for surface in [Surface::default(), yellow] {
+        let torus = shapes::torus(24, 12);
+        let faces = torus.triangles().len();
+        let mut scene = Scene::showing(torus.with_surfaces(vec![surface.clone()], vec![0; faces]).expect("a surface"));
+        scene.palette = Some(palette.clone());
+        let draw = |scene: &Scene| {
+            let mut vga = Vga::new();
+            Renderer::new().draw(scene, &mut vga).expect("a legal scene");
+            vga.pixels().to_vec()
+        };
+        let bytes = draw(&scene);
+        let used: std::collections::BTreeSet<u8> = bytes.iter().copied().collect();
+        assert!(used.len() > 3 && used.iter().all(|entry| *entry < 10), "{used:?}");
+        let material = &mut scene.objects_mut()[0].materials[0];
+        *material = material.in_own_colors(&surface);
+        assert_eq!(material.ramp, RampChoice::Nearest);
+        scene.preferences.dither = true;
+        assert!(draw(&scene) == bytes, "as asked for by hand");
+    }
+}
