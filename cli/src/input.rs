@@ -3,10 +3,11 @@
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, Read};
-use std::path::Path;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use flate2::bufread::MultiGzDecoder;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, obj, shapes};
 use mode13h::model;
@@ -42,22 +43,93 @@ impl Input {
 }
 
 /// Meaning of INPUT, for the help.
-pub(crate) const HELP: &str = "A scene (.toml), a model (.obj), or the name of a scene or a shape";
+pub(crate) const HELP: &str =
+    "A scene (.toml), a model (.obj), - for either on standard input, or the name of a scene or a shape";
 
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {
-    format!("{HELP}. `mode13h scenes` lists the names. Where a scene and a shape share a name, it is the scene.")
+    format!(
+        "{HELP}. Files may be packed (.gz). `mode13h scenes` lists the names. Where a scene and a shape share a name, it is \
+         the scene. What a scene or model on standard input names is looked for in this directory."
+    )
+}
+
+/// An INPUT that is not a plain file of its own: standard input, or a packed file. Its bytes, the name to call it by, and
+/// whether it is a scene.
+struct Stream {
+    bytes: Box<dyn BufRead>,
+    path: PathBuf,
+    is_scene: bool,
+}
+
+/// The stream that an INPUT names, if it names one.
+fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
+    let path = Path::new(words);
+    let failed = |error: io::Error| Failure::file(format!("{}: {error}", path.display()));
+    let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
+        (Box::new(io::stdin().lock()), PathBuf::from("standard input"))
+    } else if has_extension(path, "gz") {
+        (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.with_extension(""))
+    } else {
+        return Ok(None);
+    };
+    let mut bytes = unpacked(bytes).map_err(failed)?;
+    let is_scene = match has_extension(&name, "toml") || has_extension(&name, "obj") {
+        true => has_extension(&name, "toml"),
+        false => {
+            // A scene has a list of objects, and a line of a model begins with a word and a number.
+            let mut all = Vec::new();
+            bytes.read_to_end(&mut all).map_err(failed)?;
+            let is_scene = String::from_utf8_lossy(&all).lines().any(|line| {
+                let line = line.trim_start();
+                line.starts_with("[[objects]]") || line.starts_with("objects")
+            });
+            bytes = Box::new(io::Cursor::new(all));
+            is_scene
+        }
+    };
+    if path.is_file() {
+        read_files::add(path);
+    }
+    Ok(Some(Stream { bytes, path: name, is_scene }))
+}
+
+/// The bytes themselves, or what they hold if they begin as a packed file does.
+fn unpacked(mut bytes: Box<dyn BufRead>) -> io::Result<Box<dyn BufRead>> {
+    let is_packed = bytes.fill_buf()?.starts_with(&[0x1F, 0x8B]);
+    Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(bytes))) } else { bytes })
+}
+
+/// Opens a file that a scene or a model on a stream names. Only ordinary files are accepted.
+fn ordinary(path: &Path) -> io::Result<Box<dyn BufRead>> {
+    match path.metadata()?.is_file() {
+        true => Ok(Box::new(BufReader::new(File::open(path)?))),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
+    }
 }
 
 /// Name of an INPUT, whether it can be loaded or not.
 pub(crate) fn name_of(words: &OsStr) -> String {
+    if words == "-" || words == "/dev/stdin" {
+        return "stdin".into();
+    }
+    let unpacked = Path::new(words).file_stem().filter(|_| has_extension(Path::new(words), "gz"));
+    let words = unpacked.unwrap_or(words);
     Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
 }
 
 /// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
 /// line each.
 pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Failure> {
-    let loaded = if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
+    let stream = stream(words)?;
+    let loaded = if let Some(Stream { mut bytes, path, is_scene: true }) = stream {
+        let mut text = Vec::new();
+        let failed = |error| Failure::file(format!("{}: {error}", path.display()));
+        bytes.by_ref().take(LONGEST_SCENE).read_to_end(&mut text).map_err(failed)?;
+        Scene::from_toml_bytes(&text, &path, ordinary)
+    } else if let Some(stream) = stream {
+        return model_of(stream, options).map(|model| Input::Model(Box::new(model)));
+    } else if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
         shipped.load()
     } else if has_extension(Path::new(words), "toml") {
         scene::file::load(words)
@@ -74,6 +146,23 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
     Ok(Input::Scene { name: name_of(words), scene: Box::new(scene) })
 }
 
+/// No scene is longer; what is, is refused as too long.
+const LONGEST_SCENE: u64 = 1 << 25;
+
+/// The model of a stream. Warnings go to standard error, a line each.
+fn model_of(stream: Stream, options: &obj::Options) -> Result<Model, Failure> {
+    let library = |path: &Path| {
+        let mut bytes = Vec::new();
+        ordinary(path)?.read_to_end(&mut bytes).map(|_| bytes)
+    };
+    let loaded = obj::parse_with(stream.bytes, &stream.path, library, options).map_err(Failure::from)?;
+    read_files::add_all(&loaded.files);
+    for warning in loaded.warnings {
+        warn(warning);
+    }
+    Ok(Model { name: name_of(stream.path.as_os_str()), mesh: loaded.mesh })
+}
+
 /// Says a line on standard error.
 fn warn(warning: impl Display) {
     eprintln!("mode13h: {}", on_one_line(&warning.to_string()));
@@ -88,6 +177,9 @@ pub(crate) fn model(words: &OsStr, options: &obj::Options) -> Result<Model, Fail
 
 /// A model; `kinds` says what files there are, `known` what names, where it is none of them.
 fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
+    if let Some(stream) = stream(words)?.filter(|stream| !stream.is_scene) {
+        return model_of(stream, options);
+    }
     let path = Path::new(words);
     let (name, mesh) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
         if options.crease.is_some() {

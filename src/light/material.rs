@@ -14,7 +14,7 @@ use crate::texture::Texture;
 #[non_exhaustive]
 pub enum RampChoice {
     /// The palette's ramp of this number, counted round. A palette with one ramp always gives that. With a palette of no ramps
-    /// it means [`Nearest`](Self::Nearest), dithered, in the colours of the mesh's surface if the material is white.
+    /// it means [`Nearest`](Self::Nearest); a white material is then drawn in the colours of the mesh's surface, and dithered.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
@@ -111,7 +111,13 @@ impl Material {
             highlight: [1.0; 3],
             texture: None,
             environment: None,
-            blend: Blend::Opaque,
+            // 1 to 254 of 255: the cast truncates after the half.
+            blend: match surface.opacity {
+                opacity if opacity > 0.0 && opacity < 1.0 => {
+                    Blend::Mix((opacity * 255.0 + 0.5).clamp(1.0, 254.0) as u8)
+                }
+                _ => Blend::Opaque,
+            },
             response: None,
         }
     }

@@ -15,13 +15,15 @@ pub struct Surface {
     pub specular: [f32; 3],
     /// `Ns`: the specular exponent, as a rule 0 to 1,000. 0, or none in the file, means no highlight.
     pub shininess: f32,
+    /// `d`, or 1 − `Tr`: the share that hides what lies behind, 0 to 1; 1 is opaque.
+    pub opacity: f32,
     /// `map_Kd`: the path of a texture, joined to the folder of the MTL file.
     pub texture: Option<String>,
 }
 
 impl Default for Surface {
     fn default() -> Self {
-        Self { name: String::new(), diffuse: [1.0; 3], specular: [0.0; 3], shininess: 0.0, texture: None }
+        Self { name: String::new(), diffuse: [1.0; 3], specular: [0.0; 3], shininess: 0.0, opacity: 1.0, texture: None }
     }
 }
 

@@ -443,11 +443,12 @@ impl Rules<'_> {
         if self.misses_ramp() { Decision::on(Reason::NoRamps) } else { Decision::off(Reason::NoColor) }
     }
 
-    /// Returns whether a material without an image names a ramp, and the scene's palette has none.
+    /// Returns whether a material without an image and a colour of its own names a ramp, and the scene's palette has none.
     fn misses_ramp(&self) -> bool {
         let has_image = |material: &Material| material.texture.is_some() || material.environment.is_some();
+        let is_plain = |material: &Material| !material.takes_channels() && !has_image(material);
         let palette = self.scene.palette.as_ref();
-        self.object.materials.iter().any(|material| material.misses_ramp(palette) && !has_image(material))
+        self.object.materials.iter().any(|material| material.misses_ramp(palette) && is_plain(material))
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {

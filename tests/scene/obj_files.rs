@@ -9,7 +9,7 @@ use crate::support::property::property;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
-use mode13h::light::Material;
+use mode13h::light::{Blend, Material};
 use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
@@ -43,7 +43,8 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 #[test]
 fn a_file_with_materials() {
     let Loaded { mesh, warnings, .. } = obj::load(data("chest.obj")).unwrap();
-    assert_eq!(warnings, [""; 0]);
+    let place = data("chest.mtl");
+    assert_eq!(warnings, [format!("{}:6: options of map_Kd (-s, -o, -clamp) left out", place.display())]);
     assert_eq!(mesh.triangles().len(), 12);
     assert!(mesh.is_closed() && mesh.is_convex());
     assert_eq!(mesh.volume(), 4.0);
@@ -667,6 +668,41 @@ fn without_an_exponent_there_is_no_highlight() {
     assert_eq!((one.warnings.len(), shiny(one)), (0, vec![true, false]));
 }
 
+/// Glass by `d` or `Tr`; what is not read makes one warning each.
+#[test]
+fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
+    let load = |obj: &str, mtl: &str| {
+        let text = format!("mtllib a.mtl\n{obj}usemtl a\nf 1 2 3\n");
+        obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap()
+    };
+    for (mtl, blend) in [
+        ("d 0.5", Blend::Mix(128)),
+        ("d 1", Blend::Opaque),
+        ("d -halo 0.25", Blend::Mix(64)),
+        ("Tr 0.75", Blend::Mix(64)),
+        ("d 1\nTr 1", Blend::Opaque),
+        ("Tr 1\nd 1", Blend::Opaque),
+        ("d 0.001", Blend::Mix(1)),
+        ("d 7", Blend::Opaque),
+    ] {
+        let loaded = load(TRIANGLE, &format!("newmtl a\n{mtl}\n"));
+        assert_eq!(Object::new(loaded.mesh).materials[0].blend, blend, "{mtl}");
+    }
+    let unseen = load(TRIANGLE, "newmtl a\nd 0\n");
+    assert_eq!(unseen.mesh.surfaces()[0].opacity, 1.0);
+    assert_eq!(unseen.warnings, ["a.mtl:2: a material that cannot be seen is drawn; its d or Tr is left out"]);
+    let colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\n";
+    let mtl = "newmtl a\nmap_d a.png\nmap_Kd -s 2 2 -clamp on a.png\nnewmtl b\nmap_d a.png\n";
+    assert_eq!(
+        load(colored, mtl).warnings,
+        [
+            "a.mtl:2: map_d left out, 2 times",
+            "a.mtl:3: options of map_Kd (-s, -o, -clamp) left out",
+            "model.obj:2: colours of vertices left out"
+        ]
+    );
+}
+
 #[test]
 fn surfaces_are_those_in_use_in_order() {
     let mtl = "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nnewmtl a\nKd 0 0 1\n";
@@ -686,7 +722,7 @@ fn library_names() {
     let read = |line: &str, files: &[&str]| {
         let text = format!("{line}\n{TRIANGLE}usemtl a\nf 1 2 3\n");
         let library = |path: &Path| match files.iter().any(|file| Path::new(file) == path) {
-            true => Ok(b"newmtl a\nmap_Kd -o 1 -bm 0.5 -mm 0 1 textures/a b.png\n".to_vec()),
+            true => Ok(b"newmtl a\nmap_Kd -o 0 -bm 0.5 -mm 0 1 textures/a b.png\n".to_vec()),
             false => Err(io::ErrorKind::NotFound.into()),
         };
         let loaded = obj::parse(text.as_bytes(), "model.obj", library).unwrap();

@@ -11,7 +11,7 @@ use mode13h::palette::{Lut64K, Palette, Rgb};
 use mode13h::render::{Mapping, Renderer};
 use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
-use mode13h::texture::{Mipmap, Texture, TextureError};
+use mode13h::texture::{self, Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
 
 fn random_color(random: &mut Random) -> Rgb {
@@ -453,5 +453,37 @@ mod files {
             let _ = load(path("cut.png"));
             tried.add(1);
         }
+    }
+}
+
+/// The same picture in every kind of file is the same texture; JPEG is near to it. None is told by a name.
+#[cfg(feature = "images")]
+#[test]
+fn every_kind_of_picture_is_read() {
+    use std::io::Cursor;
+
+    use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, WebP};
+
+    // Few colours, which GIF holds exactly, in large blocks, which JPEG holds nearly.
+    let picture = image::RgbImage::from_fn(64, 32, |x, y| {
+        image::Rgb([if x < 32 { 200 } else { 40 }, if y < 16 { 180 } else { 60 }, if x < 16 { 220 } else { 30 }])
+    });
+    let decoded = |format| {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).expect("written");
+        texture::decode(Cursor::new(bytes.into_inner())).expect("read")
+    };
+    let right = decoded(Png);
+    for format in [Tga, Bmp, Gif, WebP] {
+        assert_eq!(decoded(format), right, "{format:?}");
+    }
+    let near = decoded(Jpeg);
+    let color = |texture: &Texture, i: usize| texture.colors()[usize::from(texture.texels()[i])];
+    let off = (0..64 * 32).map(|i| color(&near, i).distance_squared(color(&right, i))).collect::<Vec<_>>();
+    // Half of the colours' resolution is lost at the blocks' edges, and little elsewhere.
+    let share = off.iter().filter(|off| **off > 3 * 12 * 12).count() as f64 / off.len() as f64;
+    assert!(share < 0.1, "{share} of the texels are off");
+    for broken in [&b"GIF89a"[..], b"\xFF\xD8\xFF\xE0", b"RIFF....WEBP", b"BM", b"nothing", b"", &[0; 18]] {
+        assert!(texture::decode(Cursor::new(broken)).is_err(), "{broken:?}");
     }
 }

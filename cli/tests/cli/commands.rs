@@ -771,6 +771,49 @@ fn a_row_that_fails_says_what_was_written() {
     assert_fails(&run(&directory, &words), 3, "; written before that: a0.png to a2.png");
 }
 
+/// A model or a scene comes by a pipe, or packed; all give one picture. What they name is beside them, or here.
+#[test]
+fn input_comes_by_a_pipe_or_packed() {
+    use std::io::Write;
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+
+    let directory = directory();
+    let put = |name: &str, bytes: &[u8]| fs::write(directory.path().join(name), bytes).expect("written");
+    let model = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let scene = "palette = 'copper'\n[[objects]]\nmodel = 'a.obj'\n[[lights]]\nsun = [0, 0, 1]\n";
+    put("a.mtl", b"newmtl a\nKd 0.9 0.2 0.1\n");
+    for (name, text) in [("a.obj", model), ("s.toml", scene)] {
+        put(name, text.as_bytes());
+        let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+        packed.write_all(text.as_bytes()).expect("packed");
+        let packed = packed.finish().expect("packed");
+        put(&format!("{name}.gz"), &packed);
+        succeed(&directory, &["render", name, "-o", "plain.png"]);
+        succeed(&directory, &["render", &format!("{name}.gz"), "-o", "packed.png"]);
+        assert!(read(&directory, "packed.png") == read(&directory, "plain.png"), "{name}.gz");
+        for (words, bytes) in [("-", text.as_bytes()), ("/dev/stdin", text.as_bytes()), ("-", &packed)] {
+            let mut child = program(&directory)
+                .args(["render", words, "-o", "piped.png"])
+                .stdin(std::process::Stdio::piped())
+                .spawn()
+                .expect("started");
+            child.stdin.take().expect("a pipe").write_all(bytes).expect("read");
+            assert!(child.wait().expect("ended").success(), "{name} by {words}");
+            assert!(read(&directory, "piped.png") == read(&directory, "plain.png"), "{name} by {words}");
+        }
+    }
+    put("broken.obj.gz", b"\x1f\x8b\x08 no");
+    assert_fails(&run(&directory, &["render", "broken.obj.gz", "-o", "x.png"]), 3, "broken.obj");
+    assert_fails(&run(&directory, &["render", "none.obj.gz", "-o", "x.png"]), 3, "none.obj.gz: No such file");
+    assert_fails(
+        &run(&directory, &["render", "a.obj.gz", "-o", "x.png", "--record", "a.obj.gz"]),
+        2,
+        "is not overwritten",
+    );
+}
+
 /// A program for DOS says what a scene loses in it.
 #[test]
 fn dos_says_what_is_left_out() {

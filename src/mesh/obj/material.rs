@@ -9,7 +9,7 @@ use std::vec::Vec;
 
 use super::line::{Lines, keyword, name, number, words};
 use super::statement::Model;
-use super::warnings::Warnings;
+use super::warnings::{LeftOut, Warnings};
 use super::{ObjError, ObjErrorKind};
 use crate::mesh::Surface;
 
@@ -112,10 +112,12 @@ fn read(
 ) -> Result<(), ObjError> {
     let mut lines = Lines::new(bytes);
     let mut current: Option<Surface> = None;
+    let (mut has_d, mut left_out) = (false, LeftOut::default());
     while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
         let (word, rest) = keyword(text);
         if word == b"newmtl" {
             let new = Surface { name: name(rest), ..Surface::default() };
+            has_d = false;
             known.extend(current.replace(new).map(|done| (done.name.clone(), done)));
             continue;
         }
@@ -133,6 +135,23 @@ fn read(
             },
             b"map_Kd" => {
                 surface.texture = texture(rest).map(|file| beside(path, &file));
+                if places_otherwise(rest) {
+                    left_out.add("options of map_Kd (-s, -o, -clamp)", line);
+                }
+                Ok(())
+            }
+            // Of both, `d` counts: some programs mean the opposite by `Tr`, and write both.
+            b"Tr" if has_d => Ok(()),
+            b"d" | b"Tr" => opacity(rest).map(|share| {
+                has_d |= word == b"d";
+                surface.opacity = if word == b"d" { share } else { 1.0 - share };
+                if surface.opacity == 0.0 {
+                    left_out.add("a material that cannot be seen is drawn; its d or Tr is", line);
+                    surface.opacity = 1.0;
+                }
+            }),
+            b"map_d" => {
+                left_out.add("map_d", line);
                 Ok(())
             }
             _ => Ok(()),
@@ -140,7 +159,14 @@ fn read(
         result.map_err(|kind| ObjError::of_line(path, line, kind))?;
     }
     known.extend(current.map(|done| (done.name.clone(), done)));
+    left_out.warn(path, warnings);
     Ok(())
+}
+
+/// `d` or `Tr`, which may stand behind `-halo`.
+fn opacity(rest: &[u8]) -> Result<f32, ObjErrorKind> {
+    let mut words = words(rest).filter(|word| *word != b"-halo");
+    Ok(number(&mut words)?.ok_or(ObjErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
 }
 
 /// Red, green and blue; one number stands for all three. `None` for a spectral file or CIE XYZ, which
@@ -189,6 +215,31 @@ fn texture(rest: &[u8]) -> Option<String> {
         rest = after.trim_ascii();
     }
     (!rest.is_empty()).then(|| name(rest))
+}
+
+/// Returns whether the options of a texture statement move, stretch or clamp the texture.
+fn places_otherwise(rest: &[u8]) -> bool {
+    let mut neutral = 0.0;
+    let mut option: &[u8] = b"";
+    words(rest).any(|word| {
+        if word.starts_with(b"-") && number(&mut [word].into_iter()).is_err() {
+            (option, neutral) = (word, if word == b"-s" { 1.0 } else { 0.0 });
+            return false;
+        }
+        let value = number(&mut [word].into_iter());
+        match option {
+            b"-s" | b"-o" => match value {
+                Ok(value) => value != Some(neutral),
+                // The name of the file.
+                Err(_) => {
+                    option = b"";
+                    false
+                }
+            },
+            b"-clamp" => word == b"on",
+            _ => false,
+        }
+    })
 }
 
 /// A path as an MTL file gives it, from its own folder.

@@ -2,11 +2,11 @@
 //!
 //! | statement | read as |
 //! |---|---|
-//! | `v x y z` | a position; what follows (a weight, a colour) is left alone |
+//! | `v x y z` | a position; a weight behind it is left alone, a colour left out with a warning |
 //! | `vt u v`, `vn x y z` | texture coordinates (`v` is 0 if left out), a normal |
 //! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more, fewer are left out with a warning; negative indices count back from the last; an index may name what comes later in the file |
 //! | `s` | a smoothing group, for faces without normals; `off` and 0: each face is flat |
-//! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `map_Kd` of the MTL file |
+//! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `d` or `Tr`, `map_Kd` of the MTL file; `map_d` and the options of `map_Kd` are left out with a warning |
 //! | all others, `l` and `p` among them | left alone |
 //!
 //! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be UTF-8 and may
@@ -197,6 +197,9 @@ fn read(
         Some((line, count)) => {
             warnings.push(|| format!("{shown}:{line}: left out {count} faces of fewer than 3 corners, the first here"));
         }
+    }
+    if model.colored > 0 {
+        warnings.push(|| format!("{shown}:{}: colours of vertices left out", model.colored));
     }
     if let Some([x, y, z]) = model.middle {
         warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));

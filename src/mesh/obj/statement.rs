@@ -48,6 +48,8 @@ pub(super) struct Model {
     pub(super) name_lines: Vec<u64>,
     /// The line of the first face of fewer than three corners, and the number of them. They are left out.
     pub(super) short: Option<(u64, usize)>,
+    /// The line of the first vertex with a colour; 0 if there is none. Colours are left out.
+    pub(super) colored: u64,
     /// The point of the file that lies at 0 in `positions`, if it is another.
     pub(super) middle: Option<[f64; 3]>,
 }
@@ -66,7 +68,12 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Model, ObjError>
     while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
         let (word, rest) = keyword(text);
         let result = match word {
-            b"v" => position(&mut positions, rest),
+            b"v" => {
+                if model.colored == 0 && words(rest).nth(5).is_some() {
+                    model.colored = line;
+                }
+                position(&mut positions, rest)
+            }
             b"vt" => texcoord(&mut model, rest),
             b"vn" => normal(&mut model, rest),
             b"f" => face(&mut model, positions.len(), &mut later, line, rest),

@@ -1,5 +1,6 @@
 //! Warnings of a model, as many as anyone would read.
 
+use std::path::Path;
 use std::string::String;
 use std::vec::Vec;
 
@@ -30,5 +31,29 @@ impl Warnings {
             more => self.kept.push(format!("{more} more warnings like these")),
         }
         self.kept
+    }
+}
+
+/// Statements that are not read, each of which makes one warning, however often it stands in a file.
+#[derive(Default)]
+pub(super) struct LeftOut {
+    /// What, the first line of it, and the number of times.
+    of: Vec<(&'static str, u64, u64)>,
+}
+
+impl LeftOut {
+    pub(super) fn add(&mut self, what: &'static str, line: u64) {
+        match self.of.iter_mut().find(|(known, ..)| *known == what) {
+            Some((.., count)) => *count += 1,
+            None => self.of.push((what, line, 1)),
+        }
+    }
+
+    pub(super) fn warn(self, path: &Path, warnings: &mut Warnings) {
+        let path = path.display();
+        for (what, line, count) in self.of {
+            let times = if count == 1 { String::new() } else { format!(", {count} times") };
+            warnings.push(|| format!("{path}:{line}: {what} left out{times}"));
+        }
     }
 }
