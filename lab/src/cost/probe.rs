@@ -132,9 +132,11 @@ impl Probe {
     fn numbers(&mut self, mut scene: Scene, screen: Screen) -> Result<Vec<usize>, ProbeError> {
         let mut numbers = vec![0; screen.width as usize * screen.height as usize];
         let mut unit = 1;
+        let own = scene.objects().to_vec();
         for digit in 0..self.numbered.digits.len() {
-            for (object, mesh) in scene.objects_mut().iter_mut().zip(&self.numbered.digits[digit]) {
-                *object = self.numbered.object(object, mesh);
+            let meshes = &self.numbered.digits[digit];
+            for ((object, own), mesh) in scene.objects_mut().iter_mut().zip(&own).zip(meshes) {
+                *object = self.numbered.object(own, mesh);
             }
             for (number, byte) in numbers.iter_mut().zip(self.draw(&scene, screen)?) {
                 *number += unit * usize::from(byte);

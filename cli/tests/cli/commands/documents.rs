@@ -22,12 +22,16 @@ const DOCUMENTS: [(&str, &str); 6] = [
 ];
 
 /// The documents for those who change the engine: their files are checked, their words are not.
-const MORE_DOCUMENTS: [(&str, &str); 7] = [
+const MORE_DOCUMENTS: [(&str, &str); 11] = [
     ("ARCHITECTURE.md", include_str!("../../../../ARCHITECTURE.md")),
     ("CONTRIBUTING.md", include_str!("../../../../CONTRIBUTING.md")),
     ("docs/decisions.md", include_str!("../../../../docs/decisions.md")),
     ("docs/sources.md", include_str!("../../../../docs/sources.md")),
     ("docs/testing.md", include_str!("../../../../docs/testing.md")),
+    ("docs/machines.md", include_str!("../../../../docs/machines.md")),
+    ("docs/mutants.md", include_str!("../../../../docs/mutants.md")),
+    ("tests/HARD_CASES.md", include_str!("../../../../tests/HARD_CASES.md")),
+    ("web/README.md", include_str!("../../../../web/README.md")),
     ("lab/README.md", include_str!("../../../../lab/README.md")),
     ("cli/README.md", include_str!("../../../README.md")),
 ];
@@ -285,8 +289,16 @@ fn documents_name_files_that_are_there() {
         let folders =
             [".ci/", "tests/", "src/", "asm/", "examples/", "benches/", "fuzz/", "palettes/", "docs/", "lab/", "cli/"];
         for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
+            // A line and a column may stand behind it.
+            let path = path.find(".rs:").map_or(path, |end| &path[..end + 3]);
             if folders.iter().any(|folder| path.starts_with(folder)) {
                 assert!(root.join(path).exists(), "{document}: there is no {path}");
+                tried.add(1);
+            } else if path.ends_with(".rs") && path.contains('/') && !path.contains('*') {
+                // In the engine's sources, or in those of the laboratory.
+                let is_there =
+                    ["src", "lab/src", "cli/src"].iter().any(|sources| root.join(sources).join(path).exists());
+                assert!(is_there || folder.join(path).exists(), "{document}: there is no {path}");
                 tried.add(1);
             }
         }

@@ -7,6 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::figures::{asked, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::{ShadingRow, Study};
+use mode13h::render::Shading;
 
 /// Errors below are drawn here: a logarithmic axis has no 0.
 const FLOOR: f64 = 0.01;
@@ -74,8 +75,8 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
         .x_label_formatter(&|ns| time_tick(*ns))
         .y_label_formatter(&|error| asked(*error))
-        .x_desc("time for a frame (logarithmic)")
-        .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic{floor})"))
+        .x_desc("time for a frame (logarithmic; better: left)")
+        .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic; better: down{floor})"))
         .draw()?;
 
     let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
@@ -121,7 +122,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
 fn points(study: &Study) -> Vec<Point> {
     let shading = |row: &ShadingRow| Point {
         at: (row.per_frame.median, row.error_lit.rms.max(FLOOR)),
-        name: row.shading.to_string(),
+        name: name_of(row.shading),
         budget: false,
         efficient: row.efficient,
     };
@@ -136,6 +137,11 @@ fn points(study: &Study) -> Vec<Point> {
     points.retain(|p| p.at.0.is_finite() && p.at.1.is_finite() && p.at.0 > 0.0);
     points.sort_by_key(|p| (!p.efficient, p.budget));
     points
+}
+
+/// The name of a shading in a chart, which says which is the default.
+pub(super) fn name_of(shading: Shading) -> String {
+    if shading == Shading::default() { format!("{shading} (default)") } else { shading.to_string() }
 }
 
 /// A point as `shared/chart.js` takes it: nanoseconds, an error, and JSON of its kind and name.
@@ -166,7 +172,7 @@ fn budget_name(row: &crate::cost::BudgetRow) -> String {
 /// The points of [`chart_svg`].
 pub(super) fn points_json(study: &Study) -> String {
     let shading =
-        |row: &ShadingRow| (row.per_frame.median, row.error_lit.rms, shading_mark(row.shading, row.efficient));
+        |row: &ShadingRow| (row.per_frame.median, row.error_lit.rms, shading_mark(name_of(row.shading), row.efficient));
     let budget =
         |row: &crate::cost::BudgetRow| (row.per_frame.median, row.rms, budget_mark(&budget_name(row), row.max_error));
     json(study.shadings.iter().map(shading).chain(study.budget.iter().map(budget)))

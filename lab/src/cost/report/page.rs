@@ -74,7 +74,7 @@ pub fn html(study: &Study) -> String {
 fn error_chart(study: &Study) -> Markup {
     let description = "Error against lit and time for a frame of every shading and budget, both logarithmic; the table \
                        below has the figures";
-    let axes = ["time for a frame", "error in shades, r.m.s."];
+    let axes = ["time for a frame (better: left)", "error in shades, r.m.s. (better: down)"];
     markup! {
         (chart(description, axes, &points_json(study), &chart_svg(study)))
         p.key {

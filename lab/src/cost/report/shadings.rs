@@ -6,6 +6,7 @@ use super::figures::{at_most, count, interval, list, percent, ratio, shades, thr
 use super::pictures;
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study};
+use mode13h::render::Shading;
 
 /// A part of a frame's time: its name, its class in the style, and which it is.
 type Part = (&'static str, &'static str, fn(&Split) -> f64);
@@ -80,14 +81,22 @@ fn bar(split: &Split) -> Markup {
     }
 }
 
-/// Shadings that cannot be told apart.
+/// Shadings that cannot be told apart, each pair once: with the first of the two in the table.
 fn ties(study: &Study) -> Markup {
-    let tied = || study.shadings.iter().filter(|row| !row.as_fast_as.is_empty());
+    let mut tied: Vec<(Shading, Vec<Shading>)> = Vec::new();
+    for row in &study.shadings {
+        let is_listed =
+            |other: &Shading| tied.iter().any(|(first, with)| first == other && with.contains(&row.shading));
+        let others: Vec<Shading> = row.as_fast_as.iter().copied().filter(|other| !is_listed(other)).collect();
+        if !others.is_empty() {
+            tied.push((row.shading, others));
+        }
+    }
     html! {
-        @if tied().next().is_some() {
+        @if !tied.is_empty() {
             div.warning {
                 p { strong { "Cannot be told apart by their times" } ", as the intervals of their ratios contain 1; their order means nothing:" }
-                ul { @for row in tied() { li { (row.shading) " and " (list(&row.as_fast_as)) } } }
+                ul { @for (shading, others) in &tied { li { (shading) " and " (list(others)) } } }
             }
         } @else if study.shadings.len() > 1 {
             p { "The times of all shadings can be told apart." }

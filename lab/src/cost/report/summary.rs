@@ -24,15 +24,15 @@ fn arithmetic(input: &str, linear: &ShadingRow, period: Option<&ShadingRow>) -> 
     let error = match linear.error_gouraud.max {
         error if !error.is_finite() => "has an error that is not known".to_string(),
         0.0 => "is exact".to_string(),
-        error => format!("is off from exact Gouraud shading by at most {}", of_shades(error)),
+        error => format!("is within {} of 255 shades of exact Gouraud shading", at_most(error)),
     };
     let price = match period {
-        Some(period) => takes(linear, period, "the loop of the period"),
+        Some(period) => takes(linear, period, "the loop as it was printed"),
         None if linear.per_frame.median.is_finite() => format!("takes {} a frame", time(linear.per_frame.median)),
         None => "takes a time that is not known".to_string(),
     };
-    let name = if linear.shading == Shading::Gouraud88 { "8.8" } else { "8.8, reseeded," };
-    format!("On {input} {name} {error} and {price}.")
+    let name = if linear.shading == Shading::Gouraud88 { "old loop, done right," } else { "old loop, reseeded," };
+    format!("On {input} the {name} {error} and {price}.")
 }
 
 /// The error of the model, and what removing it costs.
@@ -40,28 +40,26 @@ fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let left = linear.error_lit.max;
     let Some(phong) = phong else {
         return match left {
-            left if left.is_finite() => format!("From light at every pixel it is off by up to {}.", of_shades(left)),
+            left if left.is_finite() => format!("Against light at every pixel it is off by up to {}.", of_shades(left)),
             _ => "How far it is from light at every pixel is not known.".to_string(),
         };
     };
     let rest = phong.error_lit.max;
-    let price = takes(phong, linear, "8.8");
+    let price = takes(phong, linear, "the old loop");
     if !left.is_finite() || !rest.is_finite() {
-        format!("How far either is from light at every pixel is not known; Phong {price}.")
+        format!("How far either is from light at every pixel is not known; lighting every pixel {price}.")
     } else if left <= NOTHING {
-        format!("No error remains that Phong could remove; it {price}.")
+        format!("Lighting every pixel has no error to remove; it {price}.")
     } else if rest >= left + NOTHING {
         format!(
-            "Phong is no nearer to light at every pixel, off by up to {} against {}, and {price}.",
+            "Lighting every pixel is no nearer, off by up to {} against {}, and {price}.",
             of_shades(rest),
             at_most(left)
         )
     } else if rest > left - NOTHING {
-        format!("Phong removes nothing of the remaining {} and {price}.", of_shades(left))
-    } else if rest <= NOTHING {
-        format!("Phong removes the remaining {} and {price}.", of_shades(left))
+        format!("Lighting every pixel leaves the error at {} and {price}.", of_shades(left))
     } else {
-        format!("Phong removes the remaining {} but for {} and {price}.", of_shades(left), at_most(rest))
+        format!("Lighting every pixel takes the error from {} to {} and {price}.", at_most(left), of_shades(rest))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::chart::name_of;
 use super::{budget_svg, budgets::verdict, chart_svg, html, summary, time_svg};
 use crate::cost::{
     Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
@@ -193,7 +194,7 @@ fn the_chart_that_scripts_draw_has_every_point() {
     assert_eq!(points.matches(r#"{"ms":"#).count(), study.shadings.len() + study.budget.len());
     for row in &study.shadings {
         let (ms, error) = (row.per_frame.median / 1e6, row.error_lit.rms);
-        let point = format!(r#"{{"ms":{ms},"error":{error},"kind":"shading","name":"{}","#, row.shading);
+        let point = format!(r#"{{"ms":{ms},"error":{error},"kind":"shading","name":"{}","#, name_of(row.shading));
         assert!(points.contains(&point), "{point} in {points}");
     }
     for row in &study.budget {
@@ -233,7 +234,7 @@ fn charts_name_every_point() {
     };
     let names = texts(&chart);
     for row in &study.shadings {
-        assert!(names.contains(&row.shading.to_string()), "{} in {names:?}", row.shading);
+        assert!(names.contains(&name_of(row.shading)), "{} in {names:?}", row.shading);
     }
     assert!(names.contains(&"≤ 8".to_string()) && names.contains(&"≤ 1".to_string()), "{names:?}");
     assert!(!names.iter().any(|name| name.contains("drawn at")), "no error is below the floor");
@@ -276,38 +277,42 @@ fn a_summary_is_true_of_any_figures() {
     let cases: Vec<(Vec<ShadingRow>, &str)> = vec![
         (
             vec![shading(GouraudVintage, 1.0 / 1.02, 9.0, 12.0), linear(), shading(Phong, 4.3, 0.0, 0.52)],
-            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 1.02 times as long as the \
-             loop of the period. Phong removes the remaining 11.5 shades but for 0.52 and takes 4.30 times as long as 8.8.",
+            "On torus the old loop, done right, is within 0.7 of 255 shades of exact Gouraud shading and takes 1.02 times \
+             as long as the loop as it was printed. Lighting every pixel takes the error from 11.5 to 0.52 shades and \
+             takes 4.30 times as long as the old loop.",
         ),
         (
             vec![shading(GouraudVintage, 1.25, 9.0, 12.0), linear(), shading(Phong, 0.9, 0.0, 0.0)],
-            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 0.80 times as long as the \
-             loop of the period. Phong removes the remaining 11.5 shades and takes 0.90 times as long as 8.8.",
+            "On torus the old loop, done right, is within 0.7 of 255 shades of exact Gouraud shading and takes 0.80 times \
+             as long as the loop as it was printed. Lighting every pixel takes the error from 11.5 to 0 shades and takes \
+             0.90 times as long as the old loop.",
         ),
         (
             vec![tied(shading(GouraudVintage, 1.01, 9.0, 12.0), Gouraud88), linear()],
-            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes as long as the loop of the \
-             period, as far as can be told. From light at every pixel it is off by up to 11.5 shades.",
+            "On torus the old loop, done right, is within 0.7 of 255 shades of exact Gouraud shading and takes as long as \
+             the loop as it was printed, as far as can be told. Against light at every pixel it is off by up to 11.5 \
+             shades.",
         ),
         (
             vec![shading(Gouraud88, 1.0, 0.0, 0.0), shading(Phong, 5.0, 0.0, 0.0)],
-            "On torus 8.8 is exact and takes 100 µs a frame. No error remains that Phong could remove; it takes 5.00 \
-             times as long as 8.8.",
+            "On torus the old loop, done right, is exact and takes 100 µs a frame. Lighting every pixel has no error to \
+             remove; it takes 5.00 times as long as the old loop.",
         ),
         (
             vec![shading(Gouraud88Reseeded, 1.1, 0.991, 0.5), shading(Phong, 5.5, 0.0, 0.51)],
-            "On torus 8.8, reseeded, is off from exact Gouraud shading by at most 1 shade and takes 110 µs a frame. \
-             Phong removes nothing of the remaining 0.5 shades and takes 5.00 times as long as 8.8.",
+            "On torus the old loop, reseeded, is within 1 of 255 shades of exact Gouraud shading and takes 110 µs a \
+             frame. Lighting every pixel leaves the error at 0.5 shades and takes 5.00 times as long as the old loop.",
         ),
         (
             vec![linear(), shading(Phong, 2.0, 0.0, 14.03)],
-            "On torus 8.8 is off from exact Gouraud shading by at most 0.7 shades and takes 100 µs a frame. Phong is no \
-             nearer to light at every pixel, off by up to 14.1 shades against 11.5, and takes 2.00 times as long as 8.8.",
+            "On torus the old loop, done right, is within 0.7 of 255 shades of exact Gouraud shading and takes 100 µs a \
+             frame. Lighting every pixel is no nearer, off by up to 14.1 shades against 11.5, and takes 2.00 times as \
+             long as the old loop.",
         ),
         (
             vec![shading(Gouraud88, f64::NAN, f64::NAN, f64::NAN), shading(Phong, 2.0, 0.0, 1.0)],
-            "On torus 8.8 has an error that is not known and takes a time that is not known. How far either is from \
-             light at every pixel is not known; Phong takes a time that is not known.",
+            "On torus the old loop, done right, has an error that is not known and takes a time that is not known. How \
+             far either is from light at every pixel is not known; lighting every pixel takes a time that is not known.",
         ),
         (
             vec![shading(Flat, 1.0, 9.0, 28.0), shading(Phong, 5.0, 0.0, 0.5)],
