@@ -190,11 +190,14 @@ impl Head<'_> {
     }
 }
 
-/// What to say of a camera whose near distance is too small for depths.
-pub(crate) fn near_warning(needed: f32) -> String {
+/// What to say of a camera whose near distance is too small for depths. Three digits, rounded up, are enough.
+fn near_warning(needed: f32) -> String {
+    let needed = f64::from(needed);
+    let unit = 10_f64.powf(needed.log10().floor() - 2.0);
     format!(
         "the near distance is less than a millionth of the farthest one: depths are too coarse for what is far, and the \
-         error budget does not hold there; take at least {needed:.2e}"
+         error budget does not hold there; take at least {:.2e}",
+        (needed / unit).ceil() * unit
     )
 }
 

@@ -15,13 +15,13 @@ use crate::{output, typo};
 pub(crate) struct Options {
     /// Write the file of a scene, to be edited
     ///
-    /// It is NAME.toml in this directory. A file that exists is not overwritten without --force.
+    /// It is NAME.toml in this directory. One that exists is not overwritten without --force.
     #[arg(long, value_name = "NAME")]
     copy: Option<String>,
-    /// The name of the copy, which ends in .toml
+    /// The name of the copy, which ends in .toml; what it holds is overwritten
     #[arg(short, long, value_name = "FILE", requires = "copy")]
     out: Option<PathBuf>,
-    /// Overwrite the file
+    /// Overwrite NAME.toml
     #[arg(long, requires = "copy")]
     force: bool,
     /// Print the list as JSON
@@ -43,7 +43,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         return Err(Failure::words(format!("{}: the file of a scene ends in .toml", out.display())));
     }
-    output::refuse_overwriting(&out, *force)?;
+    if options.out.is_none() {
+        output::refuse_overwriting(&out, *force)?;
+    }
     output::file(&out, || export::write_atomically(&out, |file| file.write_all(scene.text.as_bytes())))
 }
 

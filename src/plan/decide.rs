@@ -314,10 +314,17 @@ impl Rules<'_> {
 
     fn specular(&self, before: &ObjectPlan) -> Decision {
         let decision = self.material_has(Material::is_specular);
-        if decision.on && !before.is_on(Effect::Lighting) {
-            return Decision::off(before[Effect::Lighting].reason);
+        if decision.on {
+            return if before.is_on(Effect::Lighting) {
+                decision
+            } else {
+                Decision::off(before[Effect::Lighting].reason)
+            };
         }
-        decision
+        match self.object.materials.iter().position(|material| material.specular != 0.0) {
+            Some(material) => Decision::off(Reason::NoShininess { material }),
+            None => decision,
+        }
     }
 
     fn gouraud(&self, before: &ObjectPlan) -> Decision {

@@ -93,6 +93,11 @@ pub enum Reason {
         /// Its place among the object's materials.
         material: usize,
     },
+    /// A material has a specular share, but none has a shininess above 0 beside it.
+    NoShininess {
+        /// Its place among the object's materials.
+        material: usize,
+    },
     /// No material of the object has it.
     NoMaterialHas,
     /// The shades of the vertices differ.
@@ -214,6 +219,7 @@ impl Reason {
             Self::LampsOutOfRange { count: 1 } => "the lamp does not reach it".to_string(),
             Self::LampsOutOfRange { count } => format!("none of {count} lamps reaches it"),
             Self::MaterialHas { material: i } => format!("{} has it", material(i)),
+            Self::NoShininess { material: i } => format!("{} has a shininess of 0", material(i)),
             Self::NoMaterialHas => none(),
             Self::ShadesDiffer => "shades differ from vertex to vertex".to_string(),
             Self::Budget { max_error } => format!("within an error budget of {max_error} shades, face by face"),

@@ -99,12 +99,12 @@ impl Object {
         &self.mesh
     }
 
-    /// For each vertex of the mesh, the index of its surface.
     /// A copy with another mesh, and everything else as it is: `materials` must be those of the mesh.
     pub(crate) fn with_mesh(&self, mesh: Shared<Mesh>, materials: Vec<Material>) -> Self {
         Self { mesh, materials, ..self.clone() }
     }
 
+    /// For each vertex of the mesh, the index of its surface.
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         self.mesh.vertex_surfaces()

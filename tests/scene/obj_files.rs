@@ -295,7 +295,7 @@ fn lines_of_all_kinds() {
         format!("{TRIANGLE}f 1 2 3 \\"),
         format!("# C:\\models\\\n{TRIANGLE}f 1 2 3\n"),
         format!("{TRIANGLE}l 1 2 3\np 1\ns off\no x\ng\nvp 1 1\nf 1 2 3\n"),
-        "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 2\nf +1 +2 +3".to_owned(),
+        "v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 2\nf +1 +2 +3".to_owned(),
         format!("{TRIANGLE}v 9 9 9\nf 1 2 3\n"),
     ] {
         assert_eq!(mesh(&text), plain, "{text}");

@@ -22,6 +22,8 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
         ("folder/bent.obj", b"v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n"),
+        ("folder/dull.obj", b"mtllib dull.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl dull\nf 1 2 3\n"),
+        ("folder/dull.mtl", b"newmtl dull\nKs 1 1 1\n"),
         ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
         ("folder/it.mtl", b"newmtl tin\nmap_Kd none.png\n"),
         ("folder/broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n"),
@@ -160,8 +162,8 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "3:20: key `objects[0].material.diffuse`: expected a number from 0 to 1, found 1.1",
         ),
         (
-            object("material.shininess = 0"),
-            "3:22: key `objects[0].material.shininess`: expected a number above 0, at most 1000, found 0",
+            object("material.shininess = -1"),
+            "3:22: key `objects[0].material.shininess`: expected a number from 0 to 1000, found -1",
         ),
         (
             object("material.ramp = -1"),
@@ -521,6 +523,22 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!(scene.lights()[0], Light::sun([0.0, 1.0, 0.0]).with_intensity(2.0).with_color([0.0, 1.0, 0.0]));
     let Light::Lamp { range, .. } = scene.lights()[1] else { panic!("a lamp") };
     assert_eq!(range, 5.0);
+}
+
+/// A highlight that only the file asks for has an exponent of 20. One that the file or the model turns off stays off.
+#[test]
+fn a_shininess_of_0_stays() {
+    let of = |object: &str| {
+        let loaded = loaded(&format!("[[objects]]\n{object}")).expect("a legal scene");
+        let material = &loaded.scene.objects()[0].materials[0];
+        (material.specular, material.shininess)
+    };
+    assert_eq!(of("shape = 'cube'\nmaterial.specular = 0.5"), (0.5, 20.0));
+    assert_eq!(of("shape = 'cube'\nmaterial.specular = 0.5\nmaterial.shininess = 0"), (0.5, 0.0));
+    assert_eq!(of("shape = 'cube'\nmaterial.specular = 0.5\nmaterial.shininess = 1e-30"), (0.5, 1e-30));
+    // Ks without Ns.
+    assert_eq!(of("model = 'dull.obj'\nmaterial.diffuse = 0.5"), (1.0, 0.0));
+    assert_eq!(of("model = 'dull.obj'\nmaterial.specular = 0.5"), (0.5, 20.0));
 }
 
 #[test]

@@ -194,7 +194,7 @@ fn an_option_does_what_its_key_does() {
         fs::read(directory.path().join("x.png")).expect("a picture")
     };
     let lit = "objects = [{ shape = 'wall', subdivisions = [2, 2], material.texture = 'crate', angles = [60, 20, 0] }]\n\
-               lights = [{ lamp = [0, 0, 1], range = 3 }]\nambient = 0.2\npalette = 'cube'\n";
+               lights = [{ lamp = [0, 0, 1], range = 3 }]\nambient = 0.2\npalette = 'materials-8x32'\n";
     fs::write(directory.path().join("plain.toml"), lit).expect("written");
     for (key, value) in [
         ("shading", "phong"),

@@ -11,7 +11,7 @@ use super::eye::Eye;
 use super::vector::{Vector, between};
 
 /// Distance from the frame's upper left corner to which faces are drawn, in pixels, along x and along y.
-const LIMIT: f64 = 4095.75;
+pub(super) const LIMIT: f64 = 4095.75;
 
 /// A corner of what is left of a face.
 #[derive(Clone, Copy, Debug)]

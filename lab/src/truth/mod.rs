@@ -284,18 +284,41 @@ impl<'a> Truth<'a> {
     }
 
     /// How many shades light on `face` changes by about the centre of a pixel, as far as a vertex may be from its place: half
-    /// of 1/256 pixel by rounding, and a thousandth of a pixel by f32. On a face whose corners are moved by no more than that,
-    /// the point seen at a pixel is moved by no more. A fifth is added for what light does between the places looked at.
-    /// `None` if the face is not seen at the centre itself.
+    /// of 1/256 pixel by rounding, a thousandth of a pixel by f32, and half a step of its depth. On a face whose corners are
+    /// moved by no more than that across the screen, the point seen at a pixel is moved by no more, and what depths move
+    /// it by comes on top. A fifth is added for what light does between the places looked at. `None` if the face is not
+    /// seen at the centre itself.
     #[must_use]
     pub fn rounding_shift(&self, face: Face, x: u32, y: u32) -> Option<f64> {
-        const REACH: f64 = 0.5 / 256.0 + 0.001;
+        let reach = 0.5 / 256.0 + 0.001 + self.depth_shift(&self.triangle(face)?.1);
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
         let here = self.sampling(face, x, y)?.intensity;
-        let places = (-4..=4).flat_map(|i| (-4..=4).map(move |j| [i, j].map(|k: i32| REACH * f64::from(k) / 4.0)));
+        let places = (-4..=4).flat_map(|i| (-4..=4).map(move |j| [i, j].map(|k: i32| reach * f64::from(k) / 4.0)));
         let near = places.filter_map(|[dx, dy]| Some(self.sampling(face, x + dx, y + dy)?.intensity));
         let change = near.map(|near| (0..3).fold(0.0, |most, i| f64::max(most, (near[i] - here[i]).abs())));
         Some(1.2 * 255.0 * change.fold(0.0, f64::max))
+    }
+
+    /// How many pixels the rounding of depths to 2⁻³⁰ moves the point of a face that is seen at a pixel by.
+    ///
+    /// A pixel has weights aᵢ on the screen, and on the face weights in proportion to aᵢ·near/wᵢ. Depths that are off by a
+    /// share of up to ε give it the weights on the face of the point that has aᵢ(1 ± ε) on the screen. These weights
+    /// change as in Lemma 9 of `docs/budget.md`, with ρ = (1 + ε)/(1 − ε), so the point moves by that share of the
+    /// longest edge. What is clipped is no farther away, and its edges lie in the guard band.
+    fn depth_shift(&self, corners: &[Corner; 3]) -> f64 {
+        let farthest = corners.iter().fold(0.0_f64, |most, corner| most.max(corner.seen[2]));
+        // Beyond 1 a depth may be anything.
+        let off = (farthest / self.eye.near * f64::powi(2.0, -31)).min(1.0);
+        let (more, less) = (libm::sqrt(1.0 + off), libm::sqrt(1.0 - off));
+        let diagonal = 2.0 * core::f64::consts::SQRT_2 * clip::LIMIT;
+        let edge = |[a, b]: [usize; 2]| {
+            let [[ax, ay], [bx, by]] = [a, b].map(|corner| self.eye.project(corners[corner].seen));
+            libm::hypot(ax - bx, ay - by)
+        };
+        let is_whole = corners.iter().all(|corner| corner.seen[2] >= self.eye.near);
+        let longest =
+            if is_whole { [[0, 1], [1, 2], [2, 0]].map(edge).into_iter().fold(0.0, f64::max) } else { diagonal };
+        (more - less) / (more + less) * longest.min(diagonal)
     }
 
     /// Truth at the centre of a pixel if `face` is seen there, by any standard. `None` if the face does not cover the

@@ -15,6 +15,7 @@ use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::render::{Accuracy, Renderer};
 use mode13h::scene::{Object, Scene};
+use mode13h::vga::Vga;
 use mode13h_lab::cost::Probe;
 use mode13h_lab::truth::{ErrorMap, Screen, Shown, Standard, Truth};
 
@@ -370,6 +371,35 @@ holes! {
     no_pixel_is_beyond_through_a_telephoto_lens: Telephoto, 33;
     no_pixel_is_beyond_in_several_lights: Several, 60;
     no_pixel_is_beyond_in_mixed_scenes: Mixed, 40;
+}
+
+/// Near planes as near as the plan says that they may be, and up to 16 times as far: the promise holds from there on.
+#[test]
+fn no_pixel_is_beyond_from_the_nearest_near_plane_on() {
+    let count = std::env::var("MODE13H_SCENES").map_or(90, |count| count.parse().expect("a number"));
+    let mut tried = Tried::new("no_pixel_is_beyond_from_the_nearest_near_plane_on", 10_000);
+    let mut random = Random::named("nearest near plane");
+    let mut broken = Vec::new();
+    for i in 0..count {
+        let kind = Kind::ALL[i % Kind::ALL.len()];
+        let (screen, mut genes) = (screen(&mut random), Genes::new(&mut random));
+        let mut scene = scene(kind, &mut genes);
+        scene.camera.near = f32::MIN_POSITIVE;
+        let mut renderer = Renderer::new();
+        renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+        let Some(needed) = renderer.plan().near_needed() else { continue };
+        let times = if random.unit() < 0.5 { 1.0 } else { 16.0_f32.powf(random.unit() as f32) };
+        scene.camera.near = needed * times;
+        let worst = worst(&scene, screen);
+        tried.add(worst.pixels);
+        if worst.pixels > 0 {
+            tried.worst("beyond", worst.beyond);
+        }
+        if worst.beyond > 0.0 {
+            broken.push(format!("{kind:?} {i}, {times} times {needed}: {worst} of {screen:?}"));
+        }
+    }
+    assert!(broken.is_empty(), "{} of {count} scenes: {broken:#?}", broken.len());
 }
 
 /// Climbs from random scenes towards the worst pixel.

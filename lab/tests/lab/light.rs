@@ -135,7 +135,9 @@ fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 
         }
         let mirrored = sub(normal.map(|c| 2.0 * cosine * c), towards);
         let along = to_eye.map_or(0.0, |to_eye| dot(mirrored, to_eye).max(0.0));
-        let highlight = if along > 0.0 { along.powf(f64::from(material.shininess)) } else { 0.0 };
+        // A shininess of 0 is no highlight.
+        let highlight =
+            if along > 0.0 && material.shininess > 0.0 { along.powf(f64::from(material.shininess)) } else { 0.0 };
         sum += strength * (f64::from(material.diffuse) * cosine + f64::from(material.specular) * highlight);
     }
     sum
@@ -158,7 +160,7 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
         scene.camera = Camera { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, ..Camera::default() };
         scene.ambient = 0.5;
         let object = scene.add(Object::new(mesh));
-        let shininess = random.one_of(&[1.0, 8.0, 60.0]);
+        let shininess = random.one_of(&[0.0, 1e-30, 1.0, 8.0, 60.0]);
         let material = Material { ambient: 0.25, diffuse: 0.5, specular: 0.5, shininess, ..Material::default() };
         scene[object].materials = vec![material.clone()];
         for _ in 0..random.within(1, 3) {
@@ -195,8 +197,6 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
     assert!(lit > 500, "{lit} corners are lit");
 }
 
-/// A light whose strength on a channel is more than f32 holds is refused: as infinity it would leave no number beside one
-/// of the other sign.
 /// Shininess 0 is no highlight, whatever the other materials of the object are; below 0 it is refused.
 #[test]
 fn without_shininess_there_is_no_highlight() {
@@ -221,6 +221,8 @@ fn without_shininess_there_is_no_highlight() {
     }
 }
 
+/// A light whose strength on a channel is more than f32 holds is refused: as infinity it would leave no number beside one
+/// of the other sign.
 #[test]
 fn n5_a_light_stronger_than_f32_holds_is_refused() {
     let mut tried = Tried::new("n5_a_light_stronger_than_f32_holds_is_refused", 24);

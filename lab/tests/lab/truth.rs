@@ -157,6 +157,11 @@ fn a_highlight_straight_ahead() {
     let truth = Truth::new(&scene, screen(64)).expect("a legal scene");
     let top = truth.sampling(Face { object: 0, triangle: 1 }, 31.9999, 24.0001).expect("it is met");
     assert!((top.intensity[0] - 0.5 * along.powi(4)).abs() < 1e-4, "{top:?}");
+    // With a shininess of 0 there is none, and with next to none it is full wherever there is any.
+    for (shininess, expected) in [(0.0, 0.0), (1e-30, 0.5)] {
+        scene.objects_mut()[0].materials[0].shininess = shininess;
+        assert_close(at(&draw(&scene, 64, Standard::Lit), 32, 32).intensity[0], expected);
+    }
 }
 
 /// A wall from w = 2 at the left to w = 6 at the right, 32 pixels wide, whose light falls in at 0.28 and 0.6.

@@ -143,6 +143,14 @@ impl Case {
         case
     }
 
+    /// A faint exponent: where r·v passes 0 the highlight is a step, nearly, and it is flat elsewhere.
+    fn stepped(random: &mut Random) -> Self {
+        let mut case = Self::new(random);
+        case.answer.shininess = if random.chance(0.1) { 0.0 } else { random.log(1e-30, 1.0) };
+        case.answer.specular = random.log(1e-2, 10.0);
+        case
+    }
+
     fn lights(&self) -> Lights<'_> {
         Lights { suns: &self.suns, lamps: &self.lamps, eye: self.eye }
     }
@@ -328,6 +336,7 @@ fn no_sampled_error_is_beyond_its_bound() {
     }
     for _ in 0..500 {
         try_case(&Case::grazing(&mut random), &mut random, 12);
+        try_case(&Case::stepped(&mut random), &mut random, 12);
     }
     ratios.sort_by(f64::total_cmp);
     let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64) as usize];
@@ -343,7 +352,11 @@ fn no_sampled_error_is_beyond_its_bound() {
 fn bound_of_many_more_patches() {
     let mut random = Random(14);
     for _ in 0..400_000 {
-        let case = if random.chance(0.1) { Case::grazing(&mut random) } else { Case::new(&mut random) };
+        let case = match random.unit() {
+            kind if kind < 0.1 => Case::grazing(&mut random),
+            kind if kind < 0.2 => Case::stepped(&mut random),
+            _ => Case::new(&mut random),
+        };
         try_case(&case, &mut random, 12);
     }
 }

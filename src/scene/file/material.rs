@@ -20,11 +20,9 @@ pub(super) fn apply(
     set(&mut material.ambient, layout.ambient.map(|share| share.0));
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
-    set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0));
-    // Without an exponent there would be no highlight.
-    if layout.specular.is_some() && material.shininess <= 0.0 {
-        material.shininess = SHININESS;
-    }
+    // A highlight that is asked for here has an exponent.
+    let given = layout.specular.is_some() && material.shininess == 0.0;
+    set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0).or(given.then_some(SHININESS)));
     if let Some(color) = layout.color {
         material.color = color.0;
     }

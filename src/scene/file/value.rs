@@ -82,7 +82,7 @@ numbers! {
     /// A size.
     NotNegative(f32): "a number of at least 0", |x| x >= 0.0;
     /// An exponent.
-    Shininess(f32): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
+    Shininess(f32): "a number from 0 to 1000", |x| (0.0..=1000.0).contains(&x);
     /// Rounds in a scene's duration.
     Rounds(f64): "a number other than 0, from -1000 to 1000", |x| x != 0.0 && x.abs() <= 1000.0;
     /// Rounds in a scene's duration, for a motion without a way back.

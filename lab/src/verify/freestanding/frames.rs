@@ -4,9 +4,9 @@ use super::fingerprint::{START, fnv_1a};
 use alloc::boxed::Box;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
+use mode13h::light::{Light, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::palette::builtin;
+use mode13h::palette::{Ramp, builtin};
 use mode13h::render::{HiddenSurfaces, Renderer, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::span::Kernel;
@@ -61,6 +61,11 @@ pub fn frames_in_steps(kernel: Kernel, step: u64) -> Frames {
             for step in 0..4_u8 {
                 let mut scene = framed(mesh.clone());
                 scene.palette = Some(builtin::ALL[(shape + number) % builtin::ALL.len()].palette.clone());
+                // All entries, also of a palette without ramps.
+                let whole = scene.palette.as_ref().is_some_and(|palette| palette.ramps() == 0);
+                if whole {
+                    scene.objects_mut()[0].materials[0].ramp = RampChoice::Entries(Ramp::WHOLE);
+                }
                 scene.background = step;
                 scene.objects_mut()[0].angles = [0.4, f64::from(step) * 1.7, 0.1].map(Angle::from_radians);
                 drawing.draw(&scene);

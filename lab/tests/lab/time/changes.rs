@@ -672,9 +672,9 @@ fn object(random: &mut Random) -> Object {
 }
 
 fn material(random: &mut Random) -> Material {
-    let mut material = Material { ambient: 0.2, diffuse: 0.6, ..Material::default() };
+    let mut material = Material { ambient: 0.2, diffuse: 0.6, shininess: 8.0, ..Material::default() };
     match random.within(0, 5) {
-        0 => (material.specular, material.shininess) = (0.5, 8.0),
+        0 => material.specular = 0.5,
         1 => material.texture = Some(texture(random)),
         2 => material.environment = Some(texture(random)),
         3 => material.blend = Blend::Mix(120),
