@@ -33,7 +33,7 @@ pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<()
         return NAMES.iter().zip(MARKS).try_for_each(|(name, mark)| {
             let path = directory.join(name);
             read_files::spare(&path)?;
-            if !forced && path.symlink_metadata().is_ok() && !is_of_a_study(&path, mark) {
+            if is_named && !forced && path.symlink_metadata().is_ok() && !is_of_a_study(&path, mark) {
                 let path = path.display();
                 let reason = "exists already, and is no file of a study; --force overwrites it";
                 return Err(Failure::file(format!("{path}: {reason}")));
