@@ -22,7 +22,7 @@
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
-//! | `model` | a model file as a scene: mesh, textures, palette, framing | `obj`, `png` |
+//! | `model` | a model file as a scene: mesh, textures, light, palette, framing | `obj`, `png` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]

@@ -1,5 +1,7 @@
 //! A model file as a scene: mesh, textures, palette and framing by one call.
 
+mod studio;
+
 use core::error::Error;
 use core::fmt;
 use std::collections::HashMap;
@@ -13,6 +15,8 @@ use crate::mesh::obj::{self, ObjError};
 use crate::render::RenderError;
 use crate::scene::{Object, Scene, Shared};
 use crate::texture::{self, LoadError, Texture};
+
+pub use studio::studio;
 
 /// An error of a model file that gave no scene.
 #[derive(Debug)]
@@ -119,6 +123,12 @@ impl Scene {
     /// once in a [round](Self::duration) as [`showing`](Self::showing) says. A model with colours gets a palette made
     /// for them; a grey one is drawn in greys.
     ///
+    /// The model brings no light and no background. It is lit by a key light, a weaker fill from the other side and
+    /// ambient light, which are full light together: a face towards the eye shows 93 % of its Kd, or of its image,
+    /// beside which a grey Kd does not count. The background is the darkest grey, or else a blue, that stands out from
+    /// all that is seen over a turn. y points up, but z does for a sheet that looks along z. A low model is tilted until
+    /// it fills the picture's height as well as its width.
+    ///
     /// The second value are the warnings, one line each: parts of the model that were left out or mended, and textures that
     /// could not be read.
     ///
@@ -142,7 +152,7 @@ impl Scene {
     pub fn from_model(path: impl AsRef<Path>) -> Result<(Self, Vec<String>), ModelError> {
         let Model { object, warnings } = load(path, &obj::Options::default()).map_err(ModelError::Obj)?;
         let has_colors = object.has_colors();
-        let mut scene = Self::showing(object);
+        let mut scene = studio(object, None).map_err(ModelError::Scene)?;
         if has_colors {
             auto_palette::of_scene(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
         }

@@ -13,17 +13,30 @@ use mode13h::mesh::{Mesh, Weight, obj, shapes};
 use mode13h::model;
 use mode13h::palette::{Palette, builtin, file};
 use mode13h::scene::shipped::Shipped;
-use mode13h::scene::{self, Scene, Shared};
+use mode13h::scene::{self, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 use crate::failure::{Failure, on_one_line};
-use crate::turntable::Colors;
+use crate::turntable::{Colors, Turntable};
 use crate::{read_files, typo};
 
 /// A mesh, and what to call it.
 pub(crate) struct Model {
     pub(crate) name: String,
     pub(crate) mesh: Mesh,
+    /// One of the engine's shapes, not from a file.
+    pub(crate) is_shape: bool,
+}
+
+impl Model {
+    /// The stage on which it is shown, in greys.
+    pub(crate) fn stage(self, up: Option<UpAxis>) -> Result<Turntable, Failure> {
+        if self.is_shape {
+            return Ok(Turntable::of_shape(self.mesh, up));
+        }
+        let textures = textures(&self.mesh);
+        Turntable::of_model(self.mesh, up, &textures).map_err(Failure::from)
+    }
 }
 
 /// Scene or model that INPUT names.
@@ -160,7 +173,7 @@ fn model_of(stream: Stream, options: &obj::Options) -> Result<Model, Failure> {
     for warning in loaded.warnings {
         warn(warning);
     }
-    Ok(Model { name: name_of(stream.path.as_os_str()), mesh: loaded.mesh })
+    Ok(Model { name: name_of(stream.path.as_os_str()), mesh: loaded.mesh, is_shape: false })
 }
 
 /// Says a line on standard error.
@@ -181,18 +194,18 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
         return model_of(stream, options);
     }
     let path = Path::new(words);
-    let (name, mesh) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
+    let (name, mesh, is_shape) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
         if options.crease.is_some() {
             mesh.smooth(Weight::Angle, options.crease);
         }
-        (words.to_string_lossy().into_owned(), mesh)
+        (words.to_string_lossy().into_owned(), mesh, true)
     } else if has_extension(path, "obj") {
         let loaded = load(path, options).map_err(Failure::from)?;
         read_files::add_all(&loaded.files);
         for warning in loaded.warnings {
             warn(warning);
         }
-        (name_of(words), loaded.mesh)
+        (name_of(words), loaded.mesh, false)
     } else {
         let shown = path.display();
         return Err(match path.metadata() {
@@ -202,13 +215,13 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
             Err(error) => Failure::file(format!("{shown}: {error}")),
         });
     };
-    Ok(Model { name, mesh })
+    Ok(Model { name, mesh, is_shape })
 }
 
 /// Reads the texture of each surface of a model, if it names one that can be read and the model says where it lies.
 /// For one that cannot, a warning goes to standard error, a line, and the surface is drawn without it. Files named by
 /// several surfaces are read once.
-pub(crate) fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
+fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
     let (textures, errors) = model::textures(mesh);
     errors.iter().for_each(|error| warn(format!("{error}; drawn without it")));
     textures

@@ -16,7 +16,7 @@ use mode13h::scene::{Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
-use crate::input::{self, Input, Model};
+use crate::input::{self, Input};
 use crate::turntable::{Background, Colors, Turntable};
 pub(crate) use shading::ShadingOptions;
 
@@ -38,7 +38,7 @@ pub(crate) struct Drawing {
     /// [default: the scene's camera, or one that shows all of the model; TARGET is 0,0,0]
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
-    /// The axis of a model that points up [default: y]
+    /// The axis of a model that points up [default: y; z for a sheet that looks along it]
     #[arg(long, value_name = "AXIS", value_enum)]
     up: Option<Up>,
     /// The angle beyond which faces of a model meet at an edge
@@ -188,14 +188,23 @@ impl Drawing {
         Ok(input)
     }
 
+    /// Makes the stage of INPUT for a single picture: a model file is framed as it stands there, unless `--camera` says
+    /// from where.
+    pub(crate) fn still(&self, input: Input) -> Result<Turntable, Failure> {
+        let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
+        let mut stage = self.stage(input)?;
+        if is_reframed {
+            stage.frame_still();
+        }
+        Ok(stage)
+    }
+
     /// Makes the stage of INPUT, drawn as was asked for.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
             Input::Model(model) => {
-                let Model { mesh, .. } = *model;
-                let textures = input::textures(&mesh);
-                let stage = Turntable::of_model(mesh, self.up.unwrap_or(Up::Y).into(), &textures);
+                let stage = model.stage(self.up.map(UpAxis::from))?;
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }

@@ -11,11 +11,11 @@ use mode13h::palette::auto::Entries;
 use mode13h::palette::builtin::Builtin;
 use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
+use mode13h::scene::UpAxis;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};
 use crate::options::{self, Up};
-use crate::turntable::Turntable;
 use crate::{input, output, read_files};
 
 #[derive(Args)]
@@ -33,7 +33,7 @@ pub(crate) struct Options {
     /// textures, and white.
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
-    /// The axis of that model that points up [default: y]
+    /// The axis of that model that points up [default: y; z for a sheet that looks along it]
     #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
     up: Option<Up>,
     /// The angle beyond which two faces of that model meet at an edge
@@ -63,7 +63,7 @@ fn long_help() -> String {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { from, palette, up, crease, out, json } = options;
     let (name, palette, made) = match (from, palette) {
-        (Some(model), _) => make(model, up.unwrap_or(Up::Y), *crease, out.as_deref())?,
+        (Some(model), _) => make(model, *up, *crease, out.as_deref())?,
         (None, Some(words)) => {
             let (name, palette) = input::palette(words)?;
             out.as_deref().map_or(Ok(()), read_files::spare)?;
@@ -136,14 +136,14 @@ impl Made {
 /// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it.
 fn make(
     model: &OsStr,
-    up: Up,
+    up: Option<Up>,
     crease: Option<Angle>,
     out: Option<&Path>,
 ) -> Result<(String, Palette, Vec<Made>), Failure> {
-    let input::Model { name, mesh } = input::model(model, &obj::Options { crease })?;
+    let model = input::model(model, &obj::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
-    let textures = input::textures(&mesh);
-    let mut stage = Turntable::of_model(mesh, up.into(), &textures);
+    let name = model.name.clone();
+    let mut stage = model.stage(up.map(UpAxis::from))?;
     let automatic = stage.automatic().map_err(Failure::from)?.clone();
     let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);

@@ -128,7 +128,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json && film_kind(&path) == Some(Kind::Stream) {
         return Err(Failure::words("-: the film is on standard output, which leaves no room for --json"));
     }
-    let stage = options.drawing.stage(options.drawing.input(&options.input)?)?;
+    let input = options.drawing.input(&options.input)?;
+    let is_still = matches!(out, Out::Pictures(_, 1));
+    let stage = if is_still { options.drawing.still(input) } else { options.drawing.stage(input) }?;
     out.lasts(stage.seconds());
     let frames = out.frames();
     let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;

@@ -111,7 +111,7 @@ mod tests {
     use crate::turntable::Pose;
     use mode13h::mesh::shapes;
     use mode13h::palette::builtin;
-    use mode13h::scene::{UpAxis, shipped};
+    use mode13h::scene::shipped;
     use mode13h::texture::Texture;
     use mode13h::vga::Vga;
 
@@ -168,7 +168,7 @@ mod tests {
         let texture = "crate".parse::<Texture>().ok().map(mode13h::scene::Shared::new);
         let cube = builtin::by_name("cube").expect("built in").palette.clone();
         for colors in [Colors::Auto, cube.into()] {
-            let mut stage = Turntable::of_model(shapes::cube(), UpAxis::Y, std::slice::from_ref(&texture));
+            let mut stage = Turntable::of_model(shapes::cube(), None, std::slice::from_ref(&texture)).expect("a model");
             stage.set_colors(&colors).expect("a legal scene");
             stage.scene.preferences.dither = false;
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());

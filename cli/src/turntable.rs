@@ -5,7 +5,7 @@ use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::mesh::Mesh;
-use mode13h::model::with_textures;
+use mode13h::model::{studio, with_textures};
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
 use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
@@ -56,6 +56,8 @@ pub(crate) enum Background {
 pub(crate) struct Turntable {
     pub(crate) scene: Scene,
     shown: Shown,
+    /// True if the camera frames each pose of the model by itself, not the whole turn.
+    frames_still: bool,
     /// The camera's own place.
     camera: Camera,
     /// Factor of its size, whatever the pose.
@@ -85,11 +87,21 @@ enum Shown {
 }
 
 impl Turntable {
-    /// A model as [`Scene::showing`] shows it, in greys. `textures` are those of its surfaces.
-    pub(crate) fn of_model(mesh: Mesh, up: UpAxis, textures: &[Option<Shared<Texture>>]) -> Turntable {
+    /// A shape as [`Scene::showing`] shows it, in greys.
+    pub(crate) fn of_shape(mesh: Mesh, up: Option<UpAxis>) -> Turntable {
         let mut object = Object::new(mesh);
-        object.up_axis = up;
-        Turntable::new(Scene::showing(with_textures(object, textures)), Shown::Model)
+        object.up_axis = up.unwrap_or(UpAxis::Y);
+        Turntable::new(Scene::showing(object), Shown::Model)
+    }
+
+    /// A model in the [`studio`], in greys. `textures` are those of its surfaces.
+    pub(crate) fn of_model(
+        mesh: Mesh,
+        up: Option<UpAxis>,
+        textures: &[Option<Shared<Texture>>],
+    ) -> Result<Turntable, RenderError> {
+        let scene = studio(with_textures(Object::new(mesh), textures), up)?;
+        Ok(Turntable::new(scene, Shown::Model))
     }
 
     pub(crate) fn of_scene(scene: Scene) -> Turntable {
@@ -102,6 +114,7 @@ impl Turntable {
         Turntable {
             scene,
             shown,
+            frames_still: false,
             camera,
             zoom: 1.0,
             materials,
@@ -146,6 +159,9 @@ impl Turntable {
                     let [x, y, z] = object.angles;
                     object.angles = [x + Angle::from_radians(tilt), y + Angle::from_radians(turn), z];
                 }
+                if self.frames_still {
+                    self.scene.camera = Camera::framing_still(&self.scene.objects()[0]);
+                }
             }
             Shown::Scene if is_turned => self.scene.camera = gone_round(self.scene.camera, turn, tilt),
             Shown::Scene => {}
@@ -154,6 +170,11 @@ impl Turntable {
         if zoom != 1.0 {
             self.scene.camera = zoomed(self.scene.camera, zoom);
         }
+    }
+
+    /// Frames a model as it stands in each picture, for a single one, instead of over the whole turn.
+    pub(crate) fn frame_still(&mut self) {
+        self.frames_still = true;
     }
 
     /// Shows it so many times as large.
@@ -263,7 +284,7 @@ impl Turntable {
 
     /// The scene as it moves by itself, in its own palette.
     fn round(&self) -> Scene {
-        let mut stage = self.clone();
+        let mut stage = Turntable { frames_still: false, ..self.clone() };
         stage.show(0.0, Pose::FIRST);
         let mut scene = stage.scene;
         scene.palette.clone_from(&self.palette);
@@ -351,7 +372,7 @@ mod tests {
     #[test]
     fn the_scene_of_the_torus_is_the_model_on_its_stage() {
         let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");
-        let mut model = Turntable::of_model(mesh, UpAxis::Y, &[]);
+        let mut model = Turntable::of_shape(mesh, None);
         let scene = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("a scene that loads").scene;
         let mut scene = Turntable::of_scene(scene);
         let mut renderer = mode13h::render::Renderer::new();

@@ -18,19 +18,24 @@ use crate::vga::Vga;
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);
 
-/// The colours of the pixels that are mixed, as the card shows them, each with its area in parts of all covered pixels.
-/// The background's colour is among them, if one was chosen. `own` are the colours of the scene's materials, of all
-/// objects one after the other.
-pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>, RenderError> {
-    let everywhere = has_colored_light(scene) || scene.fog.is_some();
+/// The colours of the pixels that are mixed, or of those `everywhere`, as the card shows them, each with its area in
+/// parts of all covered pixels. The background's colour is among them, if one was chosen. `own` are the colours of the
+/// scene's materials, of all objects one after the other.
+pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let materials = scene.objects().iter().flat_map(|object| &object.materials);
-    let shines: Vec<bool> = materials.map(|material| material.blend != Blend::Opaque).collect();
+    let shines: Vec<bool> = materials.clone().map(|material| material.blend != Blend::Opaque).collect();
     let mixes = everywhere || shines.contains(&true);
     if !mixes && scene.background_color.is_none() {
         return Ok(Vec::new());
     }
     let mut numbers = Numbers::new(scene, false);
-    let mut channels = mixes.then(|| [0, 1, 2].map(|channel| picture(scene, own, channel)));
+    // The channels of what is grey are equal.
+    let is_grey = scene.fog.is_none()
+        && !has_colored_light(scene)
+        && own.iter().all(|colors| *colors == ([1.0; 3], [1.0; 3]))
+        && materials.clone().all(|material| material.texture.is_none() && material.environment.is_none());
+    let last = if is_grey { 0 } else { 2 };
+    let mut channels = mixes.then(|| (0..=last).map(|channel| picture(scene, own, channel)).collect::<Vec<_>>());
     let grey = grey();
     let mut counts: BTreeMap<Rgb, u32> = BTreeMap::new();
     let mut covered = 0_u32;
@@ -41,11 +46,11 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors]) -> Result<Vec<(Rgb, f32)>
         if let Some(color) = scene.background_color {
             *counts.entry(color.nearest_on_dac()).or_default() += background;
         }
-        let Some([red, green, blue]) = &mut channels else { continue };
-        let (red, green, blue) = (red.at(seconds)?, green.at(seconds)?, blue.at(seconds)?);
+        let Some(channels) = &mut channels else { continue };
+        let seen = channels.iter_mut().map(|channel| channel.at(seconds)).collect::<Result<Vec<_>, _>>()?;
         for (i, number) in numbers.iter().enumerate() {
             if number.is_some_and(|number| everywhere || shines[number]) {
-                let [r, g, b] = [red[i], green[i], blue[i]].map(|index| grey[index].r);
+                let [r, g, b] = [0, 1, 2].map(|channel| grey[seen[last.min(channel)][i]].r);
                 *counts.entry(Rgb::new(r, g, b)).or_default() += 1;
             }
         }

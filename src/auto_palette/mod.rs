@@ -118,7 +118,8 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
         });
     }
     let own: Vec<OwnColors> = bodies.iter().flatten().map(|body| body.own).collect();
-    let Automatic { palette, entries } = share_beside(&uses, &mixed::colors(scene, &own)?);
+    let Automatic { palette, entries } =
+        share_beside(&uses, &mixed::colors(scene, &own, in_channels || scene.fog.is_some())?);
 
     let mut entries = entries.into_iter();
     let mut automatic = AutomaticPalette { palette, entries: Vec::new(), materials: Vec::new() };
@@ -130,6 +131,20 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
         automatic.entries.push(own);
     }
     Ok(automatic)
+}
+
+/// The colours that a scene without a chosen background shows over a round, as the card has them, whatever the palette:
+/// each with its area in parts of all covered pixels.
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub(crate) fn colors_seen(scene: &Scene) -> Result<Vec<(Rgb, f32)>, RenderError> {
+    let plain = Surface::default();
+    let own = scene.objects().iter().flat_map(|object| {
+        let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
+        object.materials.iter().zip(surfaces).map(|(material, surface)| material.own_colors(surface))
+    });
+    mixed::colors(scene, &own.collect::<Vec<_>>(), true)
 }
 
 /// Returns for each object whether its plan calls for mipmaps at any moment.

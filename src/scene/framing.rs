@@ -297,6 +297,25 @@ fn narrow(v: Row) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
+/// The tilt at which an object that turns about its own upward axis fills the height of a 4:3 picture as well as its
+/// width: the lower it is, the more it is seen from above. It is `least` or more.
+///
+/// The object turns within a cylinder of radius r and height h. Seen from far away and tilted by θ, that is 2r wide and
+/// 2r·sin θ + h·cos θ high, which is √(4r² + h²)·sin(θ + atan(h / 2r)).
+#[cfg_attr(not(all(feature = "obj", feature = "png")), expect(dead_code, reason = "only model files are tilted so"))]
+pub(crate) fn tilt(object: &Object, least: Angle) -> Angle {
+    let (mut square, mut low, mut high) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+    for [x, y, z] in points(object, [Angle::default(); 3]) {
+        square = square.max(x * x + z * z);
+        (low, high) = (low.min(y), high.max(y));
+    }
+    let (width, height) = (2.0 * libm::sqrt(square), high - low);
+    // Not a number for a point, infinite for what is higher than the picture.
+    let sine = width / ASPECT / libm::sqrt(width * width + height * height);
+    let tilt = libm::asin(sine) - libm::atan2(height, width);
+    if tilt > least.to_radians() { Angle::from_radians(tilt) } else { least }
+}
+
 impl Camera {
     /// Makes a camera that looks along −z at an object that turns about its own upward axis: its `angles` about x and z
     /// stay, the one about y goes round. Over the whole turn it fills nine tenths of a 4:3 picture's width or height,
@@ -320,8 +339,20 @@ impl Camera {
     #[must_use]
     #[doc(hidden)]
     pub fn framing_turn(object: &Object) -> Self {
+        Self::framing_object(object, Turning::Upright)
+    }
+
+    /// Makes a camera that looks along −z at an object as it stands, which fills as much of the picture and is in the
+    /// middle of it.
+    #[must_use]
+    #[doc(hidden)]
+    pub fn framing_still(object: &Object) -> Self {
+        Self::framing_object(object, Turning::Still)
+    }
+
+    fn framing_object(object: &Object, turning: Turning) -> Self {
         let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
-        let swept = Swept::new(object, Turning::Upright, None);
+        let swept = Swept::new(object, turning, None);
         // A body that reaches farther than f32 cannot be framed exactly.
         from.camera(&[swept]).unwrap_or_else(|| {
             let bounds = object.mesh().bounds();
@@ -434,6 +465,26 @@ mod tests {
         for name in shapes::NAMES {
             let scene = Scene::showing(shapes::by_name(name).expect("listed"));
             check(name, &scene.objects()[0], &scene.camera);
+        }
+    }
+
+    /// The cylinder that a box turns in is 3/4 as high as it is wide, seen from far away, if it is low; a high one and what
+    /// has no size keep the least tilt.
+    #[test]
+    fn a_low_object_is_tilted_until_it_fills_the_height() {
+        let least = Angle::from_radians(0.35);
+        let tilted = |[x, y, z]: [f32; 3]| {
+            let corners = [[x, 0.0, z], [-x, 0.0, -z], [x, y, -z]].map(Vec3::from_array).to_vec();
+            tilt(&Object::new(Mesh::new(corners, vec![[0, 1, 2]]).expect("a mesh")), least)
+        };
+        for size in [[1.0, 0.0, 1.0], [3.0, 1.0, 0.5], [0.0, 0.25, 1.0], [1e-4, 1e-5, 1e-4]] {
+            let [x, y, z] = size.map(f64::from);
+            let width = 2.0 * libm::sqrt(x * x + z * z);
+            let (sine, cosine) = libm::sincos(tilted(size).to_radians());
+            assert!(((width * sine + y * cosine) / width - 0.75).abs() < 1e-6, "{size:?}");
+        }
+        for size in [[1.0, 4.0, 1.0], [0.0, 1.0, 0.0], [0.0; 3], [1e30, 3e38, 1e30]] {
+            assert_eq!(tilted(size), least, "{size:?}");
         }
     }
 

@@ -98,7 +98,7 @@ pub struct Scene {
 
 impl Scene {
     /// The tilt of the upper end of a [shown](Self::showing) object towards the eye.
-    const TILT: Angle = Angle::from_radians(0.35);
+    pub(crate) const TILT: Angle = Angle::from_radians(0.35);
 
     /// Makes an empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four
     /// seconds.
@@ -142,9 +142,14 @@ impl Scene {
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {
-        let mut object = object.into().centred();
+        Self::showing_tilted(object.into(), |_| Self::TILT)
+    }
+
+    /// Makes a scene that [shows](Self::showing) an object tilted otherwise. `tilt` is given the object in its place.
+    pub(crate) fn showing_tilted(object: Object, tilt: impl FnOnce(&Object) -> Angle) -> Self {
+        let mut object = object.centred();
         object.position = Vec3::ZERO;
-        object.angles = [Self::TILT, Angle::default(), Angle::default()];
+        object.angles = [tilt(&object), Angle::default(), Angle::default()];
         let mut scene = Self::new();
         scene.camera = Camera::framing_turn(&object);
         let start = object.angles;

@@ -24,5 +24,7 @@ mod palette_tables;
 mod scene_files;
 #[cfg(all(feature = "scene-files", feature = "png"))]
 mod shipped_scenes;
+#[cfg(all(feature = "obj", feature = "png"))]
+mod studio;
 #[cfg(feature = "alloc")]
 mod texture;

@@ -1104,10 +1104,10 @@ fn indexed(bytes: &[u8]) -> (Vec<Rgb>, Vec<u8>) {
     (palette.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect(), pixels)
 }
 
-/// The share of the covered pixels that are more green than red and blue.
+/// The share of the covered pixels that are more green than red and blue. The background is in the corner.
 fn green(bytes: &[u8]) -> f64 {
     let (palette, pixels) = indexed(bytes);
-    let covered: Vec<Rgb> = pixels.iter().filter(|&&i| i != 0).map(|&i| palette[usize::from(i)]).collect();
+    let covered: Vec<Rgb> = pixels.iter().filter(|&&i| i != pixels[0]).map(|&i| palette[usize::from(i)]).collect();
     let is_green =
         |color: &&Rgb| u16::from(color.g) > u16::from(color.r) + 20 && u16::from(color.g) > u16::from(color.b) + 20;
     covered.iter().filter(is_green).count() as f64 / covered.len() as f64
@@ -1145,10 +1145,11 @@ fn a_model_with_colours_is_shown_in_them() {
     // The 16.16 path has no textures: there the walls have a ramp of their own.
     succeed(&directory, &["render", &house, "-o", "fixed.png", "--arithmetic", "fixed"]);
     assert!(green(&read(&directory, "fixed.png")) > 0.05);
-    // In the window, too: with no display, what it shows first.
+    // In the window, too: with no display, what it shows first, framed for the whole turn as in a row.
     let output = run(&directory, &[&house]);
     assert!(output.status.success(), "{output:?}");
-    assert_eq!(indexed(&read(&directory, "mode13h-0001.png")), indexed(&read(&directory, "auto.png")));
+    succeed(&directory, &["render", &house, "-o", "row%d.png", "--frames", "2", "--turn", "360"]);
+    assert_eq!(indexed(&read(&directory, "mode13h-0001.png")), indexed(&read(&directory, "row0.png")));
 
     // Shapes have no colours of their own: they are grey as ever, unless asked for.
     succeed(&directory, &["render", "cylinder", "-o", "default.png"]);
@@ -1165,6 +1166,49 @@ fn a_model_with_colours_is_shown_in_them() {
     assert_eq!(String::from_utf8(output.stderr).expect("text").lines().count(), 2);
     let (palette, pixels) = indexed(&read(&directory, "chest.png"));
     assert!(pixels.iter().any(|&i| palette[usize::from(i)].r > palette[usize::from(i)].b + 40), "wood");
+}
+
+/// A single picture of a model file fills nine tenths of its width or height and is centred, within a pixel, from whatever
+/// side; the frames of a row share one camera. What is asked for goes before what was chosen.
+#[test]
+fn a_single_picture_of_a_model_is_framed_as_it_stands() {
+    let mut tried = Tried::new("a_single_picture_of_a_model_is_framed_as_it_stands", 12);
+    let directory = directory();
+    // A low wedge, open below.
+    let low = "v -3 0 -2\nv 3 0 -2\nv 3 0 2\nv -3 0 2\nv -3 0.4 0\nv 3 0.4 0\n\
+               f 4 3 6 5\nf 2 1 5 6\nf 1 4 5\nf 3 2 6\n";
+    fs::write(directory.path().join("low.obj"), low).expect("written");
+    let edges = |name: &str| {
+        let (_, pixels) = indexed(&read(&directory, name));
+        let covered = || (0..pixels.len()).filter(|&i| pixels[i] != pixels[0]);
+        let [columns, rows]: [Vec<usize>; 2] =
+            [covered().map(|i| i % 320).collect(), covered().map(|i| i / 320).collect()];
+        [columns.iter().min(), columns.iter().max(), rows.iter().min(), rows.iter().max()]
+            .map(|edge| *edge.expect("some"))
+    };
+    for degrees in 0..12 {
+        let turn = (30 * degrees).to_string();
+        succeed(&directory, &["render", "low.obj", "-o", "low.png", "--turn", &turn]);
+        let [left, right, top, bottom] = edges("low.png");
+        assert!(left.abs_diff(319 - right) <= 1 && top.abs_diff(199 - bottom) <= 1, "{turn}");
+        assert!(left.abs_diff(16) <= 1 || top.abs_diff(10) <= 1, "{turn}: {left}, {top}");
+        tried.add(1);
+    }
+    let explained = printed(&directory, &["explain", "low.obj", "--pixel", "160,100", "--json"]);
+    succeed(&directory, &["render", "low.obj", "-o", "low.png"]);
+    let byte = indexed(&read(&directory, "low.png")).1[100 * 320 + 160];
+    assert!(explained.contains(&format!("\"byte\": {byte}")), "{byte}: {explained}");
+
+    succeed(&directory, &["render", "low.obj", "-o", "asked.png", "--background", "#ffffff", "--up", "z"]);
+    let (palette, pixels) = indexed(&read(&directory, "asked.png"));
+    assert_eq!(palette[usize::from(pixels[0])], Rgb::WHITE);
+    assert_ne!(edges("asked.png"), edges("low.png"));
+    for (name, zoom) in [("far.png", "0.5"), ("near.png", "1")] {
+        succeed(&directory, &["render", "low.obj", "-o", name, "--zoom", zoom]);
+    }
+    assert!(edges("far.png")[0] > edges("near.png")[0] + 60);
+    succeed(&directory, &["render", "low.obj", "-o", "from.png", "--camera", "0,0,99"]);
+    assert!(edges("from.png")[0] > 140);
 }
 
 #[test]
