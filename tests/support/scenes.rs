@@ -55,24 +55,6 @@ pub fn floor(image: &str, times: f32) -> Scene {
     scene
 }
 
-/// A torus with a sphere and a hidden cube as children, and a cone as a grandchild; each parent is turned, moved and scaled. The 16.16 path refuses it.
-pub fn family() -> Scene {
-    let mut scene = showing("torus");
-    let mut parent = scene.object_ids()[0];
-    for (shape, visible) in [("sphere", true), ("cone", true), ("cube", false)] {
-        let mut child = Object::new(shapes::by_name(shape).expect("listed")).named(shape);
-        child.position = Vec3::new(0.7, 0.4, 0.5);
-        child.scale = 0.5;
-        child.angles = [0.3, 1.0, 0.2].map(Angle::from_radians);
-        (child.parent, child.visible) = (Some(parent), visible);
-        let child = scene.add(child);
-        if shape == "sphere" {
-            parent = child;
-        }
-    }
-    scene
-}
-
 /// A wall close to the eye with a lamp before it.
 fn lamp_on_wall(slices: u32) -> Scene {
     let mut scene = Scene::new();
@@ -109,6 +91,28 @@ pub fn random(random: &mut Random) -> Scene {
             false => Light::lamp(place, between(1.0, 5.0) as f32),
         });
     }
+    scene
+}
+
+/// Objects that hang from each other; a child of an object that was removed; and hidden ones before the rest, one by itself
+/// and one by its parent. Not among [`all`], as 16.16 knows no parents.
+pub fn parents() -> Scene {
+    let mut scene = showing("torus");
+    let torus = scene.object_ids()[0];
+    let mut add = |mesh: Mesh, position: [f32; 3], scale: f32, parent| {
+        let mut object = Object::new(mesh);
+        (object.position, object.scale, object.parent) = (position.into(), scale, parent);
+        object.angles = [0.4, -0.6, 0.2].map(Angle::from_radians);
+        scene.add(object)
+    };
+    let cube = add(shapes::cube(), [0.9, 0.5, 0.3], 0.5, Some(torus));
+    add(shapes::sphere(16, 8), [0.0, 1.3, 0.0], 0.6, Some(cube));
+    let removed = add(shapes::cube(), [5.0, 0.0, 0.0], 2.0, None);
+    add(shapes::cone(12, 2), [-0.5, -0.5, 0.5], 0.4, Some(removed));
+    let hidden = add(shapes::cube(), [0.0, 0.2, 1.0], 0.5, None);
+    add(shapes::sphere(12, 6), [0.0, -1.0, 0.0], 1.0, Some(hidden));
+    scene.remove(removed);
+    scene[hidden].visible = false;
     scene
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, TimeRow, Verdict};
+use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, TimeRow};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -82,6 +82,7 @@ struct JsonShading {
 struct JsonBudget {
     max_error: f64,
     within: f64,
+    not_compared: f64,
     largest: f64,
     rms: f64,
     largest_patch: usize,
@@ -92,6 +93,7 @@ struct JsonBudget {
     best_single_ns: Option<f64>,
     ratio: Option<f64>,
     ratio_interval: Option<[f64; 2]>,
+    verdict: String,
     triangles: BTreeMap<&'static str, u64>,
 }
 
@@ -99,16 +101,27 @@ struct JsonBudget {
 struct JsonTime {
     max_time_ns: f64,
     frames: usize,
+    mean_time_ns: f64,
     within: f64,
     mean_error: f64,
     max_error: f64,
+    least_that_fits: Option<f64>,
     largest: f64,
 }
 
 impl From<&TimeRow> for JsonTime {
     fn from(row: &TimeRow) -> Self {
-        let TimeRow { max_time, frames, within, mean_error, max_error, largest, .. } = *row;
-        Self { max_time_ns: max_time, frames, within, mean_error, max_error, largest }
+        let TimeRow { max_time, frames, mean_time, within, mean_error, max_error, least_that_fits, largest, .. } = *row;
+        Self {
+            max_time_ns: max_time,
+            frames,
+            mean_time_ns: mean_time,
+            within,
+            mean_error,
+            max_error,
+            least_that_fits,
+            largest,
+        }
     }
 }
 
@@ -176,6 +189,7 @@ impl From<&BudgetRow> for JsonBudget {
         Self {
             max_error: row.max_error,
             within: row.within,
+            not_compared: row.not_compared,
             largest: row.largest,
             rms: row.rms,
             largest_patch: row.patch,
@@ -186,6 +200,7 @@ impl From<&BudgetRow> for JsonBudget {
             best_single_ns: row.best_single.map(|time| time.median),
             ratio: row.ratio.map(|(ratio, _)| ratio),
             ratio_interval: row.ratio.map(|(_, of)| interval(of)),
+            verdict: row.verdict(),
             triangles: row.triangles.iter().map(|(shading, triangles)| (shading.name(), *triangles)).collect(),
         }
     }
@@ -209,12 +224,7 @@ impl<'a> From<&'a OptionRow> for JsonOption<'a> {
 
 impl<'a> From<&'a Claim> for JsonClaim<'a> {
     fn from(claim: &'a Claim) -> Self {
-        let verdict = match claim.verdict {
-            Verdict::Holds => "holds",
-            Verdict::HoldsInPart => "holds in part",
-            Verdict::DoesNotHold => "does not hold",
-        };
-        Self { claim: &claim.claim, measured: &claim.measured, verdict }
+        Self { claim: &claim.claim, measured: &claim.measured, verdict: claim.verdict.name() }
     }
 }
 

@@ -3,7 +3,6 @@
 mod files;
 mod instructions;
 mod json;
-mod text;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -149,12 +148,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     // Whatever became of the files, what was found out is not lost.
-    output::print(&if *json { as_json } else { text::text(&study, written.as_deref()) })?;
+    let written = written.map_or(String::new(), |directory| format!("\nwritten to {}\n", directory.display()));
+    output::print(&if *json { as_json } else { report::text(&study) + &written })?;
     result?;
     verdict(&study)
 }
 
-/// Fails where a budget or a shading has not kept its promise.
+/// Fails where a budget or a shading has not kept its promise, of accuracy or of time.
 fn verdict(study: &Study) -> Result<(), Failure> {
     match cost::promises_are_kept(study) {
         true => Ok(()),
@@ -229,14 +229,18 @@ mod tests {
         let subject = Subject { name: "wall", frames: &frames, steps: &[], renderer: &Renderer::new };
         let mut settings = Settings { shadings: vec![Shading::Gouraud88], ..Settings::default() };
         (settings.choices, settings.claims, settings.seconds, settings.at_most) = (false, false, 0.0, true);
-        let (kept, _) = cost::measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
+        let (mut kept, _) = cost::measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
+        // How long this machine takes is no matter here.
+        kept.budget.iter_mut().for_each(|row| row.ratio = Some((1.0, (1.0, 1.0))));
         assert!(cost::warnings(&kept).is_empty() && verdict(&kept) == Ok(()));
         let beyond = kept.shadings[0].excess.expect("a shading that is linear on the screen has a bound");
         assert!(beyond <= 0.0, "{beyond}");
-        let (mut budget, mut shading) = (kept.clone(), kept);
+        let (mut budget, mut late, mut shading) = (kept.clone(), kept.clone(), kept);
         (budget.budget[0].within, shading.shadings[0].excess) = (0.99, Some(0.25));
+        (late.budget[1].best_single_shading, late.budget[1].ratio) = (Some(Shading::Phong), Some((1.2, (1.1, 1.3))));
         for (study, says) in [
             (budget, "the budget of 16 keeps 99.00 % of the pixels within 16 shades, not 100 %"),
+            (late, "the budget of 8 takes 1.20 times as long as phong, not 1.05 at most"),
             (shading, "gouraud-8.8 is off by 0.25 shades more than its bound"),
         ] {
             let warnings = cost::warnings(&study);

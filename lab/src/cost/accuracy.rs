@@ -43,6 +43,12 @@ impl Against {
         self.pixels.count
     }
 
+    /// The share of the covered pixels that was not compared, 0 to 1.
+    fn share_not_compared(&self) -> f64 {
+        // Below 2⁵³: pixels.
+        self.cover_errors as f64 / (self.cover_errors + self.pixels()).max(1) as f64
+    }
+
     pub(super) fn errors(&self) -> Errors {
         Errors {
             max: self.pixels.max,
@@ -114,15 +120,14 @@ impl Results {
         self.gouraud.cover_errors
     }
 
-    /// The share of covered pixels that show another face than they should, and are not compared; 0 if none is covered.
-    pub(super) fn not_compared(&self) -> f64 {
-        let others = self.gouraud.cover_errors;
-        others as f64 / (self.gouraud.pixels() + others).max(1) as f64
-    }
-
     /// Pixels that show another face than they should, vertices unrounded.
     pub(super) fn cover_errors_unrounded(&self) -> u64 {
         self.unrounded.cover_errors
+    }
+
+    /// The share of the covered pixels that was not compared with `lit`, 0 to 1.
+    pub(super) fn not_compared(&self) -> f64 {
+        self.lit.share_not_compared()
     }
 
     /// The share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte needs if that is more,

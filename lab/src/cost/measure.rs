@@ -1,6 +1,6 @@
 //! A study: errors, times and what follows from both.
 
-use alloc::string::{String, ToString};
+use alloc::string::ToString;
 use alloc::vec::Vec;
 
 use super::accuracy::{Referee, Results};
@@ -8,16 +8,14 @@ use super::claims::claims;
 use super::clock::Clock;
 use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
 use super::interleaved::{Outcome, Samples, Spent, run_interleaved};
+use super::promises::PROMISE;
 use super::split::split;
 use super::statistics::{Ratio, Rng, quartiles};
 use super::timed::timed_rows;
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
-use mode13h::render::{FaceShading, Renderer, Screen, Shading};
+use mode13h::render::{FaceShading, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
-
-/// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
-const PROMISE: f64 = 1.0;
 
 /// Subject of a study.
 pub struct Subject<'a> {
@@ -118,6 +116,10 @@ pub fn measure(
     }
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
     let mut ways = Configuration::shadings_and_budgets(shadings);
+    if renderer().settings.vertex_path == VertexPath::Integer {
+        // It has no budget.
+        ways.retain(|way| !matches!(way.kind, Kind::Budget(_)));
+    }
     if *with_choices {
         ways.extend(choices(frames, renderer, shadings)?);
     }
@@ -281,6 +283,7 @@ impl Rows<'_> {
             BudgetRow {
                 max_error,
                 within: findings.within(bound),
+                not_compared: findings.not_compared(),
                 largest: findings.lit().max,
                 rms: findings.lit().rms,
                 patch: findings.kept[bound].patch,
@@ -337,41 +340,12 @@ fn mark_efficient(rows: &mut [ShadingRow]) {
     }
 }
 
-/// Warnings of a study, a line each: neighbours in time that cannot be told apart, and budgets and shadings that have not
-/// kept their promise.
-#[must_use]
-pub fn warnings(study: &Study) -> Vec<String> {
-    let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
-    rows.sort_by(|a, b| a.per_frame.median.total_cmp(&b.per_frame.median));
-    let tied = rows.windows(2).filter(|pair| pair[1].as_fast_as.contains(&pair[0].shading));
-    let tied = tied
-        .map(|pair| alloc::format!("{} and {} cannot be told apart by their times", pair[0].shading, pair[1].shading));
-    let broken = study.budget.iter().filter(|row| row.within < PROMISE).map(|row| {
-        let (share, promise) = (100.0 * row.within, 100.0 * PROMISE);
-        let error = row.max_error;
-        alloc::format!("the budget of {error} keeps {share:.2} % of the pixels within {error} shades, not {promise} %")
-    });
-    let beyond = study.shadings.iter().filter(|row| is_broken(row)).map(|row| {
-        let (shading, excess) = (row.shading, row.excess.unwrap_or(0.0));
-        alloc::format!("{shading} is off by {excess:.2} shades more than its bound")
-    });
-    tied.chain(broken).chain(beyond).collect()
-}
-
-/// Returns whether a pixel is beyond the bound of a shading.
-fn is_broken(row: &ShadingRow) -> bool {
-    row.excess.is_some_and(|excess| excess > 0.0)
-}
-
-/// Returns whether each budget keeps every pixel within its error, and each shading that has a bound within that.
-pub fn promises_are_kept(study: &Study) -> bool {
-    study.budget.iter().all(|row| row.within >= PROMISE) && !study.shadings.iter().any(is_broken)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::{Errors, Nanoseconds};
+    use alloc::string::String;
+
+    use crate::cost::{Errors, Nanoseconds, ties};
 
     fn row(shading: Shading, time: f64, rms: f64, tied: &[Shading]) -> ShadingRow {
         ShadingRow {
@@ -434,7 +408,7 @@ mod tests {
             options: Vec::new(),
             claims: Vec::new(),
         };
-        (study.shadings[1].ratio, study.shadings[1].ratio_interval, warnings(&study).is_empty())
+        (study.shadings[1].ratio, study.shadings[1].ratio_interval, ties(&study).is_empty())
     }
 
     fn recorded() -> Vec<Vec<f64>> {
@@ -463,44 +437,6 @@ mod tests {
         let (recorded, mut chance) = (recorded(), Rng::new(14));
         let tied = (0..1000).filter(|_| !told(&recorded, 1.0, &mut chance).2).count();
         assert!((929..=971).contains(&tied), "in {tied} of 1000 studies");
-    }
-
-    #[test]
-    fn a_broken_promise_is_a_warning() {
-        let row = |max_error, within| BudgetRow {
-            max_error,
-            within,
-            largest: 0.0,
-            rms: 0.0,
-            patch: 0,
-            swim: 0.0,
-            per_frame: Nanoseconds::default(),
-            best_single_shading: None,
-            best_single: None,
-            ratio: None,
-            triangles: Vec::new(),
-        };
-        let mut study = Study {
-            input: String::new(),
-            host: Host::default(),
-            kernel: String::new(),
-            frames: 1,
-            rounds: 25,
-            shadings: alloc::vec![self::row(Shading::Flat, 1.0, 1.0, &[])],
-            budget: alloc::vec![row(16.0, 1.0), row(8.0, PROMISE), row(0.5, 0.9956)],
-            times: Vec::new(),
-            options: Vec::new(),
-            claims: Vec::new(),
-        };
-        assert_eq!(warnings(&study), ["the budget of 0.5 keeps 99.56 % of the pixels within 0.5 shades, not 100 %"]);
-        assert!(!promises_are_kept(&study));
-        // A shading beyond its bound, and one at it.
-        study.budget.clear();
-        study.shadings.push(ShadingRow { excess: Some(0.0), ..self::row(Shading::Gouraud88, 1.0, 1.0, &[]) });
-        assert!(warnings(&study).is_empty() && promises_are_kept(&study));
-        study.shadings[1].excess = Some(0.125);
-        assert_eq!(warnings(&study), ["gouraud-8.8 is off by 0.12 shades more than its bound"]);
-        assert!(!promises_are_kept(&study));
     }
 
     #[test]

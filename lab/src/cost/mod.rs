@@ -11,6 +11,7 @@
 //! | `clock`, `interleaved`, `split` | times, all configurations side by side; the parts of a frame's time |
 //! | `timed` | frames against the clock: the least error that fits in a time |
 //! | `claims` | the sources' claims, measured |
+//! | `promises` | what the engine is held to, and the verdicts |
 //! | `statistics` | quartiles, ratios, and their ranges by chance |
 //! | `report` | a study as an HTML file and charts |
 
@@ -23,6 +24,7 @@ pub mod error_levels;
 mod interleaved;
 mod measure;
 mod probe;
+mod promises;
 mod quantization;
 #[cfg(feature = "report")]
 pub mod report;
@@ -35,8 +37,9 @@ pub use clock::Clock;
 pub use configuration::BUDGETS;
 pub use error::CostError;
 pub use interleaved::Samples;
-pub use measure::{Settings, Step, Subject, measure, promises_are_kept, warnings};
+pub use measure::{Settings, Step, Subject, measure};
 pub use probe::{Probe, ProbeError};
+pub use promises::{promises_are_kept, ties, warnings};
 pub use study::{
     Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
 };

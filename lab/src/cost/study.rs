@@ -115,7 +115,7 @@ pub struct ShadingRow {
     pub error_palette: f64,
     /// Pixels that show another face than they should, over all frames, vertices rounded alike.
     pub cover_errors: u64,
-    /// Those pixels as a share of all that are covered, 0 to 1: nothing is said of their shades.
+    /// The share of the covered pixels that was not compared with `lit`, 0 to 1, as another face was seen there.
     pub not_compared: f64,
     /// Shades by which the worst pixel is beyond the shading's bound, negative if none is. Shadings that are linear on the
     /// screen have one, where the plan states how far linear shades are off.
@@ -139,6 +139,8 @@ pub struct BudgetRow {
     pub max_error: f64,
     /// The share of covered pixels within it, against `lit`, 0 to 1.
     pub within: f64,
+    /// The share of the covered pixels that was not compared with `lit`, 0 to 1, as another face was seen there.
+    pub not_compared: f64,
     /// The largest error.
     pub largest: f64,
     /// The root mean square of the errors.
@@ -167,12 +169,17 @@ pub struct TimeRow {
     pub max_time: f64,
     /// Frames that were drawn, those left out in which the errors were tried.
     pub frames: usize,
+    /// The mean time of these.
+    pub mean_time: f64,
     /// The share of these within 1.05 times `max_time`, 0 to 1.
     pub within: f64,
     /// The mean of the errors that were accepted.
     pub mean_error: f64,
     /// The greatest of them.
     pub max_error: f64,
+    /// The least of [`BUDGETS`](super::BUDGETS) whose time for a frame, measured beside the shadings', is within
+    /// `max_time`; none may be.
+    pub least_that_fits: Option<f64>,
     /// The largest error of these frames against `lit`, but for pixels where rounded vertices put light at the pixel itself
     /// off.
     pub largest: f64,
@@ -244,6 +251,18 @@ pub enum Verdict {
     HoldsInPart,
     /// The claim does not hold.
     DoesNotHold,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsInPart => "holds in part",
+            Self::DoesNotHold => "does not hold",
+        }
+    }
 }
 
 /// A claim that an old text makes, and what was measured.

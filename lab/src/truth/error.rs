@@ -67,6 +67,15 @@ impl ErrorMap {
         self.cover_errors
     }
 
+    /// The share of the covered pixels that was not compared, 0 to 1: [`cover_errors`](Self::cover_errors) among all that
+    /// show a face, or should.
+    #[must_use]
+    pub fn share_not_compared(&self) -> f64 {
+        let compared = self.errors().flatten().count();
+        // Below 2⁵³: pixels.
+        self.cover_errors as f64 / (self.cover_errors + compared).max(1) as f64
+    }
+
     /// The error of each pixel, row-major, in shades; `None` where it was not compared.
     pub fn errors(&self) -> impl Iterator<Item = Option<f64>> {
         self.off.iter().map(|off| off.map(greatest))
@@ -265,7 +274,7 @@ mod tests {
         errors[9] = Some(-1.0);
         errors[31] = None;
         let map = map(&errors);
-        assert_eq!(map.cover_errors(), 1);
+        assert_eq!((map.cover_errors(), map.share_not_compared()), (1, 1.0 / 32.0));
         let figures = map.figures();
         assert_eq!((figures.count, figures.by_one), (31, 2));
         assert!(close(figures.max, 2.0) && close(figures.mean(), 3.0 / 31.0));

@@ -3,8 +3,8 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, SHADINGS, along, name, range, svg, ticks};
-use super::figures::time_tick;
+use super::chart::{Area, BETTER, BUDGETS, FAINT, INK, IntoPair, LETTERS, SHADINGS, along, name, range, svg, ticks};
+use super::figures::{name_of, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::Study;
 
@@ -22,7 +22,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
     let budgets: Vec<(f64, f64)> = budgets.filter(is_shown).collect();
     let single = |row: &crate::cost::BudgetRow| {
         let at = (row.max_error, row.best_single?.median);
-        is_shown(&at).then_some((at, row.best_single_shading?.to_string()))
+        is_shown(&at).then_some((at, name_of(row.best_single_shading?)))
     };
     let singles: Vec<((f64, f64), String)> = study.budget.iter().filter_map(single).collect();
     let across = range(budgets.iter().map(|at| at.0));
@@ -44,7 +44,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
         .x_label_formatter(&|bound| format!("{bound}"))
         .y_label_formatter(&|ns| time_tick(*ns))
-        .x_desc("budget: accepted error in shades of 1/255 (logarithmic)")
+        .x_desc(format!("budget: accepted error in shades of 1/255 (logarithmic); {BETTER}"))
         .y_desc("time for a frame (logarithmic)")
         .draw()?;
     chart.draw_series(LineSeries::new(budgets.iter().copied(), BUDGETS.stroke_width(2)))?;

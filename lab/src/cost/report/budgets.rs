@@ -2,16 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::figures::{asked, count, interval, percent, ratio, shades, time};
+use super::figures::{DASH, asked, count, interval, name_of, percent, quartiles, ratio, shades, time};
+use super::table::{Cell, Column, Table};
 use crate::cost::{BudgetRow, Study};
+use mode13h::render::FaceShading;
 
-/// The share of covered pixels that must be within the budget.
-const PROMISE: f64 = 1.0;
-
-/// Greatest time of a budget, in times of the best single shading.
-const LIMIT: f64 = 1.05;
-
-/// The table and its chart.
+/// The tables and the chart, for the page.
 pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
     html! {
         @if !study.budget.is_empty() { section {
@@ -22,68 +18,64 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
                 "single shading with exact cover that keeps the same promise."
             }
             (chart())
-            div.wide { table {
-                thead { tr {
-                    th { "budget, shades" } th { "within it" } th { "largest error" } th { "r.m.s." } th { "largest patch beyond, pixels" } th { "swim" } th { "a frame" } th { "quartiles" }
-                    th.text { "best single shading" } th { "its time" } th { "ratio" } th { "95 % interval" } th.text { "verdict" }
-                } }
-                tbody { @for row in &study.budget { (line(row)) } }
-            } }
-            h3 { "Which shading drew how many triangles" }
-            div.wide { table {
-                thead { tr { th { "budget, shades" } th.text { "triangles of all frames" } } }
-                tbody { @for row in &study.budget { tr {
-                    th scope="row" { (asked(row.max_error)) }
-                    td.text { (shared_out(row)) }
-                } } }
-            } }
+            (table(study).html())
+            @let shares = shares(study).html();
+            @if !shares.0.is_empty() { h3 { "Which shading drew how many triangles" } (shares) }
         } }
     }
 }
 
-fn line(row: &BudgetRow) -> Markup {
-    html! { tr {
-        th scope="row" { (asked(row.max_error)) }
-        td { (percent(row.within)) } td { (shades(row.largest)) } td { (shades(row.rms)) } td { (count(row.patch)) } td { (shades(row.swim)) }
-        td { (time(row.per_frame.median)) }
-        td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
-        @match (row.best_single_shading, row.best_single) {
-            (Some(shading), Some(best)) => { td.text { (shading) } td { (time(best.median)) } },
-            (Some(shading), None) => { td.text { (shading) } td { "–" } },
-            (None, _) => { td.text { "none keeps it" } td { "–" } },
-        }
-        @match row.ratio {
-            Some((times, between)) => { td { (ratio(times)) } td.soft { (interval(between)) } },
-            None => { td { "–" } td { "–" } },
-        }
-        td.text.verdict { (verdict(row)) }
-    } }
+/// What each budget keeps and costs.
+pub(super) fn table(study: &Study) -> Table {
+    let columns = [
+        Column::text("budget, shades").brief(),
+        Column::number("within it").brief(),
+        Column::number("not compared").brief(),
+        Column::number("largest error").brief(),
+        Column::number("r.m.s."),
+        Column::number("largest patch beyond, pixels"),
+        Column::number("swim").brief(),
+        Column::number("a frame").brief(),
+        Column::number("quartiles"),
+        Column::text("best single shading").brief(),
+        Column::number("its time").brief(),
+        Column::number("ratio").brief(),
+        Column::number("95 % interval"),
+        Column::text("verdict").brief(),
+    ];
+    let row = |row: &BudgetRow| -> Vec<Cell> {
+        vec![
+            asked(row.max_error).into(),
+            percent(row.within).into(),
+            percent(row.not_compared).into(),
+            shades(row.largest).into(),
+            shades(row.rms).into(),
+            count(row.patch).into(),
+            shades(row.swim).into(),
+            time(row.per_frame.median).into(),
+            quartiles(&row.per_frame),
+            row.best_single_shading.map_or("none keeps it".to_string(), name_of).into(),
+            row.best_single.map_or(DASH.to_string(), |best| time(best.median)).into(),
+            row.ratio.map_or(DASH.to_string(), |(times, _)| ratio(times)).into(),
+            row.ratio.map_or(DASH.into(), |(_, between)| interval(between)),
+            row.verdict().into(),
+        ]
+    };
+    Table::new(&columns, study.budget.iter().map(row).collect())
 }
 
-/// Verdict on the promise of accuracy and on the limit of time.
-pub(super) fn verdict(row: &BudgetRow) -> String {
-    let accuracy = if row.within >= PROMISE { "accuracy kept" } else { "accuracy not kept" };
-    let time = match (row.best_single_shading, row.ratio) {
-        (None, _) => "no single shading keeps it, so the time limit is void",
-        (Some(_), Some((times, _))) if times <= LIMIT => "time limit kept",
-        (Some(_), Some((times, (low, _)))) if times > LIMIT && low <= LIMIT => {
-            "time limit not kept, by no more than chance may do"
-        }
-        (Some(_), Some((times, _))) if times > LIMIT => "time limit not kept",
-        _ => "time limit not measured",
-    };
-    format!("{accuracy}; {time}")
+/// Which shading drew how many triangles.
+fn shares(study: &Study) -> Table {
+    let columns = [Column::text("budget, shades"), Column::text("triangles of all frames")];
+    let rows = study.budget.iter().filter(|row| !row.triangles.is_empty());
+    Table::new(&columns, rows.map(|row| vec![asked(row.max_error).into(), shared_out(row).into()]).collect())
 }
 
 fn shared_out(row: &BudgetRow) -> String {
     // Below 2⁵³.
     let sum = row.triangles.iter().map(|(_, triangles)| *triangles as f64).sum::<f64>();
-    let part = |(shading, triangles): &(mode13h::render::FaceShading, u64)| {
+    let part = |(shading, triangles): &(FaceShading, u64)| {
         format!("{shading} {} ({})", count(triangles), percent(*triangles as f64 / sum))
     };
-    if row.triangles.is_empty() {
-        "–".to_string()
-    } else {
-        row.triangles.iter().map(part).collect::<Vec<_>>().join(" · ")
-    }
+    row.triangles.iter().map(part).collect::<Vec<_>>().join(" · ")
 }

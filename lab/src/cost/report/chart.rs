@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figures::{asked, time_tick};
+use super::figures::{asked, name_of, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::{ShadingRow, Study};
 use mode13h::render::Shading;
@@ -17,6 +17,9 @@ pub(super) const FAINT: RGBColor = RGBColor(0xdd, 0xe0, 0xe4);
 pub(super) const SHADINGS: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
 pub(super) const BUDGETS: RGBColor = RGBColor(0xc4, 0x4e, 0x12);
 const BEATEN: RGBColor = RGBColor(0x8a, 0x90, 0x99);
+
+/// What the axes say of every chart here.
+pub(super) const BETTER: &str = "better: down and left";
 
 /// The letters' height, in pixels.
 pub(super) const LETTERS: i32 = 13;
@@ -75,8 +78,8 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
         .x_label_formatter(&|ns| time_tick(*ns))
         .y_label_formatter(&|error| asked(*error))
-        .x_desc("time for a frame (logarithmic; better: left)")
-        .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic; better: down{floor})"))
+        .x_desc(format!("time for a frame (logarithmic); {BETTER}"))
+        .y_desc(format!("error against lit, root mean square, in shades of 1/255 (logarithmic{floor})"))
         .draw()?;
 
     let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
@@ -139,11 +142,6 @@ fn points(study: &Study) -> Vec<Point> {
     points
 }
 
-/// The name of a shading in a chart, which says which is the default.
-pub(super) fn name_of(shading: Shading) -> String {
-    if shading == Shading::default() { format!("{shading} (default)") } else { shading.to_string() }
-}
-
 /// A point as `shared/chart.js` takes it: nanoseconds, an error, and JSON of its kind and name.
 type JsonPoint = (f64, f64, String);
 
@@ -156,8 +154,8 @@ fn json(points: impl Iterator<Item = JsonPoint>) -> String {
 }
 
 /// A shading's mark. Names are those of shadings, which need no escapes.
-fn shading_mark(shading: impl std::fmt::Display, efficient: bool) -> String {
-    format!(r#""kind":"shading","name":"{shading}","efficient":{efficient}"#)
+fn shading_mark(shading: Shading, efficient: bool) -> String {
+    format!(r#""kind":"shading","name":"{}","efficient":{efficient}"#, name_of(shading))
 }
 
 /// A budget's mark.
@@ -172,7 +170,7 @@ fn budget_name(row: &crate::cost::BudgetRow) -> String {
 /// The points of [`chart_svg`].
 pub(super) fn points_json(study: &Study) -> String {
     let shading =
-        |row: &ShadingRow| (row.per_frame.median, row.error_lit.rms, shading_mark(name_of(row.shading), row.efficient));
+        |row: &ShadingRow| (row.per_frame.median, row.error_lit.rms, shading_mark(row.shading, row.efficient));
     let budget =
         |row: &crate::cost::BudgetRow| (row.per_frame.median, row.rms, budget_mark(&budget_name(row), row.max_error));
     json(study.shadings.iter().map(shading).chain(study.budget.iter().map(budget)))

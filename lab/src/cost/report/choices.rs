@@ -2,51 +2,68 @@
 
 use maud::{Markup, html};
 
-use super::figures::{count, interval, percent, ratio, shades, time};
-use crate::cost::{Study, Verdict};
+use super::figures::{count, interval, percent, quartiles, ratio, shades, time};
+use super::table::{Cell, Column, Table};
+use crate::cost::{Claim, Study};
 
-/// The options, grouped by aspect.
+/// The options, grouped by aspect, for the page.
 pub(super) fn options(study: &Study) -> Markup {
     html! {
         @if !study.options.is_empty() { section {
             h2 { "What else may be chosen" }
             p { "One choice at a time, all else as by default. Ratios are to the first of each group; errors are against exact Gouraud shading over unrounded vertices." }
-            div.wide { table {
-                thead { tr {
-                    th { "" } th.text { "choice" } th { "a frame" } th { "quartiles" } th { "ratio" } th { "95 % interval" }
-                    th { "largest error" } th { "mean" } th { "r.m.s." } th { "r.m.s. of 4 × 4" } th { "off by ≥ 1" } th { "cover errors, pixels" }
-                } }
-                tbody { @for (i, row) in study.options.iter().enumerate() {
-                    @let first = i == 0 || study.options[i - 1].aspect != row.aspect;
-                    tr.first[first] {
-                        th scope="row" { @if first { (row.aspect) } }
-                        td.text { (row.name) }
-                        td { (time(row.per_frame.median)) }
-                        td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
-                        td { (ratio(row.ratio.0)) } td.soft { (interval(row.ratio.1)) }
-                        td { (shades(row.error.max)) } td { (shades(row.error.mean)) } td { (shades(row.error.rms)) }
-                        td { (shades(row.error.rms_of_blocks)) } td { (percent(row.error.off_by_one)) } td { (count(row.cover_errors)) }
-                    }
-                } }
-            } }
+            (table(study).html())
         } }
     }
 }
 
-/// The claims, each with what was measured.
+/// The options.
+pub(super) fn table(study: &Study) -> Table {
+    let columns = [
+        Column::text("aspect").brief(),
+        Column::text("choice").brief(),
+        Column::number("a frame").brief(),
+        Column::number("quartiles"),
+        Column::number("ratio").brief(),
+        Column::number("95 % interval").brief(),
+        Column::number("largest error").brief(),
+        Column::number("mean"),
+        Column::number("r.m.s.").brief(),
+        Column::number("r.m.s. of 4 × 4"),
+        Column::number("off by ≥ 1"),
+        Column::number("cover errors, pixels").brief(),
+    ];
+    let mut rows = Vec::new();
+    for (i, row) in study.options.iter().enumerate() {
+        let is_first = i == 0 || study.options[i - 1].aspect != row.aspect;
+        let cells: Vec<Cell> = vec![
+            (if is_first { row.aspect.name() } else { "" }).into(),
+            row.name.as_str().into(),
+            time(row.per_frame.median).into(),
+            quartiles(&row.per_frame),
+            ratio(row.ratio.0).into(),
+            interval(row.ratio.1),
+            shades(row.error.max).into(),
+            shades(row.error.mean).into(),
+            shades(row.error.rms).into(),
+            shades(row.error.rms_of_blocks).into(),
+            percent(row.error.off_by_one).into(),
+            count(row.cover_errors).into(),
+        ];
+        rows.push(cells);
+    }
+    Table::new(&columns, rows)
+}
+
+/// The claims, each with what was measured, for the page.
 pub(super) fn claims(study: &Study) -> Markup {
     html! {
         @if !study.claims.is_empty() { section {
             h2 { "What the sources claim" }
             div.wide { table.prose {
                 thead { tr { th.text { "claim" } th.text { "measured here" } th.text { "verdict" } } }
-                tbody { @for claim in &study.claims { tr {
-                    td.text { (claim.claim) } td.text { (claim.measured) }
-                    td.text { (match claim.verdict {
-                        Verdict::Holds => "holds",
-                        Verdict::HoldsInPart => "holds in part",
-                        Verdict::DoesNotHold => "does not hold",
-                    }) }
+                tbody { @for Claim { claim, measured, verdict } in &study.claims { tr {
+                    td.text { (claim) } td.text { (measured) } td.text { (verdict.name()) }
                 } } }
             } }
         } }

@@ -2,9 +2,13 @@
 
 use std::fmt::Display;
 
+use maud::html;
+
+use super::table::Cell;
+use crate::cost::Nanoseconds;
 use mode13h::render::Shading;
 
-const DASH: &str = "–";
+pub(super) const DASH: &str = "–";
 
 /// A time, in the unit in which it reads best.
 pub(super) fn time(nanoseconds: f64) -> String {
@@ -83,9 +87,24 @@ pub(super) fn ratio(ratio: f64) -> String {
     }
 }
 
-/// Formats an interval: from – to.
-pub(super) fn interval((low, high): (f64, f64)) -> String {
-    format!("{} to {}", ratio(low), ratio(high))
+/// The quartiles of a time.
+pub(super) fn quartiles(of: &Nanoseconds) -> Cell {
+    soft(format!("{} – {}", time(of.lower_quartile), time(of.upper_quartile)))
+}
+
+/// An interval: from – to.
+pub(super) fn interval((low, high): (f64, f64)) -> Cell {
+    soft(format!("{} to {}", ratio(low), ratio(high)))
+}
+
+/// Text that stands back, and may take two lines.
+fn soft(text: String) -> Cell {
+    Cell::shown(text.clone(), html! { span.soft { (text) } })
+}
+
+/// A shading's name; the default is marked.
+pub(super) fn name_of(shading: Shading) -> String {
+    format!("{shading}{}", if shading == Shading::default() { " (default)" } else { "" })
 }
 
 /// A share as a percentage.

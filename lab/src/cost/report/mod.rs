@@ -3,6 +3,8 @@
 //! | file | what |
 //! |---|---|
 //! | `summary` | two sentences |
+//! | `text` | the study in a terminal |
+//! | `table` | a table, for the page and for a terminal |
 //! | `figures` | numbers and ratios as text |
 //! | `chart`, `budget_chart`, `time_chart`, `labels` | error against time, time against budget, error against a time that is given |
 //! | `pictures` | frames and error maps as PNG inside the file |
@@ -20,8 +22,10 @@ mod page;
 mod pictures;
 mod shadings;
 mod summary;
+mod table;
 #[cfg(test)]
 mod tests;
+mod text;
 mod time_chart;
 mod times;
 
@@ -29,4 +33,5 @@ pub use budget_chart::budget_svg;
 pub use chart::chart_svg;
 pub use page::html;
 pub use summary::summary;
+pub use text::text;
 pub use time_chart::time_svg;

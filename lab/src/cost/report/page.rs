@@ -22,6 +22,11 @@ for (const chart of document.querySelectorAll("[data-points]")) {
 for (const pair of document.querySelectorAll(".pair")) divide(pair, pair.dataset.label);
 "#;
 
+/// What the names in the summary and the errors mean.
+pub(super) const NAMES: &str = "The old loop done right is gouraud-8.8-reseeded, the default; the printed one is gouraud-vintage; phong lights every \
+    pixel. A shade is 1/255 of full intensity. Errors are those of the light on a face, before texture, fog and dither: \
+    against gouraud, exact linear interpolation of exact vertex light, or against lit, the lighting model at every pixel.";
+
 /// The whole study as one HTML file that needs nothing else: pictures and charts are in it, and nothing is loaded.
 #[must_use]
 pub fn html(study: &Study) -> String {
@@ -45,11 +50,7 @@ pub fn html(study: &Study) -> String {
                         p.kicker { "mode13h cost" }
                         h1 { (title) }
                         p.summary { (first) " " (second) }
-                        p.unit {
-                            "A shade is 1/255 of full intensity. Errors are those of the light on a face, before texture, fog and dither: "
-                            "against " em { "gouraud" } ", exact linear interpolation of exact vertex light, which shows what arithmetic does, and "
-                            "against " em { "lit" } ", the lighting model at every pixel, which shows what the technique does."
-                        }
+                        p.unit { (NAMES) }
                     }
                     section {
                         h2 { "Error against time" }
@@ -74,7 +75,7 @@ pub fn html(study: &Study) -> String {
 fn error_chart(study: &Study) -> Markup {
     let description = "Error against lit and time for a frame of every shading and budget, both logarithmic; the table \
                        below has the figures";
-    let axes = ["time for a frame (better: left)", "error in shades, r.m.s. (better: down)"];
+    let axes = ["time for a frame", "error in shades, r.m.s."];
     markup! {
         (chart(description, axes, &points_json(study), &chart_svg(study)))
         p.key {

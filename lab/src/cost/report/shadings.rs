@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::figures::{at_most, count, interval, list, percent, ratio, shades, three_digits, time};
+use super::figures::{at_most, count, interval, list, name_of, percent, quartiles, ratio, shades, three_digits, time};
 use super::pictures;
+use super::table::{Cell, Column, Table};
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
-use crate::cost::{Errors, ShadingRow, Split, Study};
+use crate::cost::{Errors, ShadingRow, Split, Study, ties};
 use mode13h::render::Shading;
 
 /// A part of a frame's time: its name, its class in the style, and which it is.
@@ -19,126 +20,148 @@ const PARTS: [Part; 5] = [
     ("scan-out", "s4", |split| split.scan_out),
 ];
 
-/// Times and errors of every shading.
+/// Times and errors of every shading, for the page.
 pub(super) fn tables(study: &Study) -> Markup {
     html! {
         section {
             h2 { "The shadings" }
             @if study.shadings.is_empty() { p { "No shading was measured." } } @else {
-                (times(study))
-                (ties(study))
-                (errors(study))
+                h3 { "Time" }
+                (times(study).html())
+                p.key {
+                    @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
+                    span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
+                }
+                (ties_list(study))
+                h3 { "Error, in shades" }
+                (errors(study).html())
             }
         }
     }
 }
 
-fn times(study: &Study) -> Markup {
-    let counted = study.shadings.iter().any(|row| row.instructions.is_some());
-    html! {
-        h3 { "Time" }
-        div.wide { table {
-            thead { tr {
-                th { "shading" } th { "a frame" } th { "quartiles" } th { "a pixel" } th { "a triangle" }
-                th { "ratio to gouraud-8.8" } th { "95 % interval" }
-                @if counted { th { "instructions a frame" } }
-                th { "where it goes" }
-            } }
-            tbody { @for row in &study.shadings { tr {
-                th scope="row" { (row.shading) @if row.efficient { " " span.mark title="no shading is both as near to lit and told to be faster" { "★" } } }
-                td { (time(row.per_frame.median)) }
-                td.soft { (time(row.per_frame.lower_quartile)) " – " (time(row.per_frame.upper_quartile)) }
-                td { (three_digits(row.per_pixel)) " ns" }
-                td { (time(row.per_triangle)) }
-                td { (ratio(row.ratio)) }
-                td.soft { (interval(row.ratio_interval)) }
-                @if counted { td { (row.instructions.map_or("–".to_string(), count)) } }
-                td.bars { (bar(&row.split)) }
-            } } }
-        } }
-        p.key {
-            span { span.mark { "★" } " efficient: no shading is as near to lit (root mean square) and faster, as far as times can be told apart" }
-            @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
-            span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
-        }
-    }
+/// The times.
+pub(super) fn times(study: &Study) -> Table {
+    let columns = [
+        Column::text("shading").brief(),
+        Column::number("a frame").brief(),
+        Column::number("quartiles"),
+        Column::number("a pixel"),
+        Column::number("a triangle"),
+        Column::number("ratio to gouraud-8.8").brief(),
+        Column::number("95 % interval").brief(),
+        Column::number("instructions a frame").brief(),
+        Column::text("where it goes"),
+    ];
+    let row = |row: &ShadingRow| -> Vec<Cell> {
+        vec![
+            name(row, true),
+            time(row.per_frame.median).into(),
+            quartiles(&row.per_frame),
+            format!("{} ns", three_digits(row.per_pixel)).into(),
+            time(row.per_triangle).into(),
+            ratio(row.ratio).into(),
+            interval(row.ratio_interval),
+            row.instructions.map_or(String::new(), count).into(),
+            bar(&row.split),
+        ]
+    };
+    Table::new(&columns, study.shadings.iter().map(row).collect()).note(
+        "★ efficient: no shading is as near to lit (root mean square) and faster, as far as times can be told apart.",
+    )
+}
+
+/// A shading's name; the default is marked, and what is efficient if that is asked for.
+fn name(row: &ShadingRow, marks_efficient: bool) -> Cell {
+    let star = if marks_efficient && row.efficient { " ★" } else { "" };
+    let default = if row.shading == Shading::default() { " (default)" } else { "" };
+    let shown = html! { (row.shading) span.mark { (star) } span.default { (default) } };
+    Cell::shown(format!("{}{star}{default}", row.shading), shown)
 }
 
 /// The parts of the time as a stacked bar.
-fn bar(split: &Split) -> Markup {
+fn bar(split: &Split) -> Cell {
     let parts = PARTS.map(|(name, class, of)| (name, class, of(split)));
     let sum: f64 = parts.iter().map(|(.., ns)| ns).filter(|ns| ns.is_finite() && **ns > 0.0).sum();
-    let told = parts.map(|(name, _, ns)| format!("{name} {}", time(ns))).join(", ");
-    html! {
-        @if sum > 0.0 {
-            span.bar role="img" title=(told) aria-label=(told) {
-                @for (_, class, ns) in parts { @if ns.is_finite() && ns > 0.0 {
-                    i.(class) style=(format!("width:{:.2}%", ns / sum * 100.0)) {}
-                } }
-            }
-            span.told { (told) }
-        } @else { "–" }
+    if sum <= 0.0 {
+        return "".into();
     }
+    let told = parts.map(|(name, _, ns)| format!("{name} {}", time(ns))).join(", ");
+    let bar = html! {
+        span.bar role="img" title=(told) aria-label=(told) {
+            @for (_, class, ns) in parts { @if ns.is_finite() && ns > 0.0 {
+                i.(class) style=(format!("width:{:.2}%", ns / sum * 100.0)) {}
+            } }
+        }
+        span.told { (told) }
+    };
+    Cell::shown(told.clone(), bar)
 }
 
-/// Shadings that cannot be told apart, each pair once: with the first of the two in the table.
-fn ties(study: &Study) -> Markup {
-    let mut tied: Vec<(Shading, Vec<Shading>)> = Vec::new();
-    for row in &study.shadings {
-        let is_listed =
-            |other: &Shading| tied.iter().any(|(first, with)| first == other && with.contains(&row.shading));
-        let others: Vec<Shading> = row.as_fast_as.iter().copied().filter(|other| !is_listed(other)).collect();
-        if !others.is_empty() {
-            tied.push((row.shading, others));
-        }
-    }
+/// What is said of shadings whose times cannot be told apart, and the list of them.
+pub(super) fn tied(study: &Study) -> Option<(&'static str, Vec<String>)> {
+    let pairs = |(one, others): &(Shading, Vec<Shading>)| {
+        let each = if others.len() > 1 { "each of " } else { "" };
+        format!("{one} and {each}{}", list(others))
+    };
+    let tied: Vec<String> = ties(study).iter().map(pairs).collect();
+    let says =
+        "Cannot be told apart by their times, as the intervals of their ratios contain 1; their order means nothing:";
+    (!tied.is_empty()).then_some((says, tied))
+}
+
+fn ties_list(study: &Study) -> Markup {
     html! {
-        @if !tied.is_empty() {
-            div.warning {
-                p { strong { "Cannot be told apart by their times" } ", as the intervals of their ratios contain 1; their order means nothing:" }
-                ul { @for (shading, others) in &tied { li { (shading) " and " (list(others)) } } }
-            }
+        @if let Some((says, tied)) = tied(study) {
+            div.warning { p { (says) } ul { @for tied in tied { li { (tied) } } } }
         } @else if study.shadings.len() > 1 {
             p { "The times of all shadings can be told apart." }
         }
     }
 }
 
-fn errors(study: &Study) -> Markup {
-    html! {
-        h3 { "Error, in shades" }
-        div.wide { table {
-            thead {
-                tr {
-                    th rowspan="2" { "shading" }
-                    th.group colspan="5" { "against gouraud: the arithmetic" }
-                    th.group colspan="5" { "against lit: the technique" }
-                    th rowspan="2" { "palette adds" } th rowspan="2" { "swim" } th rowspan="2" { "cover errors, pixels" }
-                }
-                tr { @for _ in 0..2 { th.group { "largest" } th { "mean" } th { "r.m.s." } th { "r.m.s. of 4 × 4" } th { "off by ≥ 1" } } }
-            }
-            tbody { @for row in &study.shadings { tr {
-                th scope="row" { (row.shading) }
-                (figures(&row.error_gouraud))
-                (figures(&row.error_lit))
-                td { (shades(row.error_palette)) } td { (shades(row.swim)) } td { (count(row.cover_errors)) }
-            } } }
-        } }
-        p.key {
-            span { "½ is the best that rounding to 256 steps can do." }
-            span { "r.m.s. of 4 × 4: of the means over blocks, where dither earns its keep." }
-            span { "Palette adds: what the nearest entry of the scene’s ramp or palette is off by, at most." }
-            span { "Swim: how much errors change from a frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling." }
-            span { "Cover errors: pixels that show another face than they should, over all frames; in these no error of shade is taken." }
-        }
-    }
+/// The errors.
+pub(super) fn errors(study: &Study) -> Table {
+    let of = |group| {
+        [
+            Column::number("largest").brief(),
+            Column::number("mean"),
+            Column::number("r.m.s.").brief(),
+            Column::number("r.m.s. of 4 × 4"),
+            Column::number("off by ≥ 1"),
+        ]
+        .map(|column: Column| column.under(group))
+    };
+    let mut columns = vec![Column::text("shading").brief()];
+    columns.extend(of("against gouraud"));
+    columns.extend(of("against lit"));
+    columns.extend([
+        Column::number("palette adds"),
+        Column::number("swim").brief(),
+        Column::number("cover errors").brief(),
+        Column::number("not compared").brief(),
+    ]);
+    let row = |row: &ShadingRow| {
+        let mut cells = vec![name(row, false)];
+        cells.extend(figures(&row.error_gouraud));
+        cells.extend(figures(&row.error_lit));
+        let rest = [shades(row.error_palette), shades(row.swim), count(row.cover_errors), percent(row.not_compared)];
+        cells.extend(rest.map(Cell::from));
+        cells
+    };
+    Table::new(&columns, study.shadings.iter().map(row).collect())
+        .note("Against gouraud: what the arithmetic is off by. Against lit: what the technique is off by.")
+        .note("½ is the best that rounding to 256 steps can do.")
+        .page_note("R.m.s. of 4 × 4: of the means over blocks, where dither earns its keep.")
+        .page_note("Palette adds: what the nearest entry of the scene’s ramp or palette is off by, at most.")
+        .note("Swim: how much errors change from a frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling.")
+        .note("Cover errors: pixels over all frames that show another face than they should, vertices rounded alike.")
+        .note("Not compared: the share of covered pixels that show another face than lit does; no error is taken there.")
 }
 
-fn figures(errors: &Errors) -> Markup {
-    html! {
-        td.group { (shades(errors.max)) } td { (shades(errors.mean)) } td { (shades(errors.rms)) }
-        td { (shades(errors.rms_of_blocks)) } td { (percent(errors.off_by_one)) }
-    }
+fn figures(errors: &Errors) -> [Cell; 5] {
+    let Errors { max, mean, rms, off_by_one, rms_of_blocks } = *errors;
+    [shades(max), shades(mean), shades(rms), shades(rms_of_blocks), percent(off_by_one)].map(Cell::from)
 }
 
 /// Every shading's frame, and its error map under it.
@@ -175,7 +198,7 @@ fn pair(row: &ShadingRow) -> Markup {
                 _ => p.none { "no picture" },
             }
             figcaption {
-                strong { (row.shading) }
+                strong { (name_of(row.shading)) }
                 " off by " (at_most(row.error_lit.max)) " at most over all frames, " (shades(row.error_lit.rms)) " r.m.s.; "
                 (time(row.per_frame.median))
             }

@@ -7,59 +7,58 @@ use mode13h::render::Shading;
 /// Below this many shades a difference between two largest errors is none that anyone sees.
 const NOTHING: f64 = 0.05;
 
-/// Summary of a study in two sentences, whatever it found: the cost and the error of 8.8 arithmetic, and the part of
-/// the rest that light at every pixel removes. If there is no 8.8, the fastest and the nearest of the other shadings.
-/// Bounds are rounded up.
+/// A study in two sentences, whatever it found: how far the default loop is from exact and how fast it is beside the loop as
+/// printed, and what lighting every pixel gains and costs. Without the default or `gouraud-8.8` the fastest and the nearest of
+/// the other shadings. Bounds are rounded up.
 #[must_use]
 pub fn summary(study: &Study) -> [String; 2] {
     let find = |shading: Shading| study.shadings.iter().find(|row| row.shading == shading);
-    let Some(linear) = find(Shading::Gouraud88).or_else(|| find(Shading::Gouraud88Reseeded)) else {
+    let Some(linear) = find(Shading::default()).or_else(|| find(Shading::Gouraud88)) else {
         return of_others(study);
     };
     [arithmetic(&study.input, linear, find(Shading::GouraudVintage)), model(linear, find(Shading::Phong))]
 }
 
-/// The numeric error of linear shades, and their price against the loop of the period.
-fn arithmetic(input: &str, linear: &ShadingRow, period: Option<&ShadingRow>) -> String {
+/// The numeric error of the default loop, and its time beside the loop as printed.
+fn arithmetic(input: &str, linear: &ShadingRow, printed: Option<&ShadingRow>) -> String {
     let error = match linear.error_gouraud.max {
         error if !error.is_finite() => "has an error that is not known".to_string(),
         0.0 => "is exact".to_string(),
-        error => format!("is within {} of 255 shades of exact Gouraud shading", at_most(error)),
+        error => format!("is within {} of 255 shades of exact", at_most(error)),
     };
-    let price = match period {
-        Some(period) => takes(linear, period, "the loop as it was printed"),
+    let time = match printed {
+        Some(printed) => speed(linear, printed, "the printed one"),
         None if linear.per_frame.median.is_finite() => format!("takes {} a frame", time(linear.per_frame.median)),
         None => "takes a time that is not known".to_string(),
     };
-    let name = if linear.shading == Shading::Gouraud88 { "old loop, done right," } else { "old loop, reseeded," };
-    format!("On {input} the {name} {error} and {price}.")
+    let name = if linear.shading == Shading::default() { "the old loop, done right," } else { "the old loop" };
+    format!("On {input} {name} {error} and {time}.")
 }
 
-/// The error of the model, and what removing it costs.
+/// What lighting every pixel does to the error, and its price.
 fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let left = linear.error_lit.max;
     let Some(phong) = phong else {
         return match left {
-            left if left.is_finite() => format!("Against light at every pixel it is off by up to {}.", of_shades(left)),
+            left if left.is_finite() => {
+                format!("From light at every pixel it is off by up to {}.", counted_shades(&at_most(left)))
+            }
             _ => "How far it is from light at every pixel is not known.".to_string(),
         };
     };
     let rest = phong.error_lit.max;
-    let price = takes(phong, linear, "the old loop");
+    let price = match times(phong, linear) {
+        None => "as long, as far as can be told".to_string(),
+        Some(times) if times.is_finite() && times > 0.0 => format!("{} times as long", brief(times)),
+        Some(_) => "a time that is not known".to_string(),
+    };
     if !left.is_finite() || !rest.is_finite() {
-        format!("How far either is from light at every pixel is not known; lighting every pixel {price}.")
-    } else if left <= NOTHING {
-        format!("Lighting every pixel has no error to remove; it {price}.")
-    } else if rest >= left + NOTHING {
-        format!(
-            "Lighting every pixel is no nearer, off by up to {} against {}, and {price}.",
-            of_shades(rest),
-            at_most(left)
-        )
-    } else if rest > left - NOTHING {
-        format!("Lighting every pixel leaves the error at {} and {price}.", of_shades(left))
+        format!("What lighting every pixel gains is not known; it takes {price}.")
+    } else if (rest - left).abs() <= NOTHING {
+        format!("Lighting every pixel leaves the error at {} and takes {price}.", counted_shades(&at_most(rest)))
     } else {
-        format!("Lighting every pixel takes the error from {} to {} and {price}.", at_most(left), of_shades(rest))
+        let (from, to) = (at_most(left), counted_shades(&at_most(rest)));
+        format!("Lighting every pixel takes the error from {from} to {to} and {price}.")
     }
 }
 
@@ -86,22 +85,40 @@ fn of_others(study: &Study) -> [String; 2] {
             "The nearest is {}: off by at most {}; it {}.",
             nearest.shading,
             of_shades(nearest.error_lit.max),
-            takes(nearest, fastest, "that")
+            slowness(nearest, fastest, "that")
         )
     };
     [first, second]
 }
 
-/// Compares the time of `row` with that of `other`, called `name`.
-fn takes(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
-    let times = row.ratio / other.ratio;
-    if row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading) {
-        format!("takes as long as {name}, as far as can be told")
-    } else if !times.is_finite() || times <= 0.0 {
-        "takes a time that is not known".to_string()
-    } else {
-        format!("takes {} times as long as {name}", ratio(times))
+/// Ratio of the time of `row` to that of `other`; `None` if the two cannot be told apart.
+fn times(row: &ShadingRow, other: &ShadingRow) -> Option<f64> {
+    let tied = row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading);
+    (!tied).then_some(row.ratio / other.ratio)
+}
+
+/// How fast `row` is beside `other`, which is called `name`.
+fn speed(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
+    match times(row, other) {
+        None => format!("as fast as {name}, as far as can be told"),
+        Some(times) if times > 0.0 && times < 1.0 => format!("{} times as fast as {name}", brief(1.0 / times)),
+        Some(_) => slowness(row, other, name),
     }
+}
+
+/// How long `row` takes beside `other`, which is called `name`.
+fn slowness(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
+    match times(row, other) {
+        None => format!("takes as long as {name}, as far as can be told"),
+        Some(times) if times.is_finite() && times > 0.0 => format!("takes {} times as long as {name}", brief(times)),
+        Some(_) => "takes a time that is not known".to_string(),
+    }
+}
+
+/// A ratio without zeros at its end.
+fn brief(times: f64) -> String {
+    let text = ratio(times);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
 fn of_shades(error: f64) -> String {

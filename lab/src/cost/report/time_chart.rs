@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::chart::{Area, BUDGETS, FAINT, INK, IntoPair, LETTERS, along, name, range, svg, ticks};
+use super::chart::{Area, BETTER, BUDGETS, FAINT, INK, IntoPair, LETTERS, along, name, range, svg, ticks};
 use super::figures::{asked, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::Study;
@@ -35,7 +35,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>
         .label_style(("sans-serif", LETTERS).into_font().color(&INK))
         .x_label_formatter(&|ns| time_tick(*ns))
         .y_label_formatter(&|error| asked(*error))
-        .x_desc("time that is given for a frame (logarithmic)")
+        .x_desc(format!("time that is given for a frame (logarithmic); {BETTER}"))
         .y_desc("largest error against lit, in shades of 1/255 (logarithmic)")
         .draw()?;
     chart.draw_series(LineSeries::new(points.iter().copied(), BUDGETS.stroke_width(2)))?;

@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::figures::{count, percent, shades, time};
+use super::figures::{asked, count, percent, shades, time};
+use super::table::{Column, Table};
 use crate::cost::{Study, TimeRow};
 
-/// The table and its chart.
+/// The table and its chart, for the page.
 pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
     html! {
         @if !study.times.is_empty() { section {
@@ -15,19 +16,37 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
                 "The frames of the study follow each other round and round; those in which every error is tried are left out."
             }
             (chart())
-            div.wide { table {
-                thead { tr {
-                    th { "time" } th { "frames" } th { "within 1.05 times it" } th { "accepted error, mean" } th { "greatest" } th { "largest error" }
-                } }
-                tbody { @for row in &study.times { (line(row)) } }
-            } }
+            (table(study).html())
         } }
     }
 }
 
-fn line(row: &TimeRow) -> Markup {
-    html! { tr {
-        th scope="row" { (time(row.max_time)) }
-        td { (count(row.frames)) } td { (percent(row.within)) } td { (shades(row.mean_error)) } td { (shades(row.max_error)) } td { (shades(row.largest)) }
-    } }
+/// What each time led to.
+pub(super) fn table(study: &Study) -> Table {
+    let columns = [
+        Column::text("time given").brief(),
+        Column::number("a frame took").brief(),
+        Column::number("frames").brief(),
+        Column::number("within 1.05 times it").brief(),
+        Column::number("accepted error, mean").brief(),
+        Column::number("greatest").brief(),
+        Column::number("least budget that fits").brief(),
+        Column::number("largest error").brief(),
+    ];
+    let row = |row: &TimeRow| {
+        let fits = row.least_that_fits.map_or("none".to_string(), asked);
+        let cells = [
+            time(row.max_time),
+            time(row.mean_time),
+            count(row.frames),
+            percent(row.within),
+            shades(row.mean_error),
+            shades(row.max_error),
+            fits,
+            shades(row.largest),
+        ];
+        cells.map(Into::into).to_vec()
+    };
+    Table::new(&columns, study.times.iter().map(row).collect())
+        .note("Least budget that fits: by the times of the budgets above.")
 }

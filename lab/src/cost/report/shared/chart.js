@@ -65,6 +65,8 @@ function drawChart(element, points, { height = 260, description = "Error against
   make("text", { class: "chart-name", x: right, y: height - 6, "text-anchor": "end" }, svg, `${acrossName} →`);
   make("text", { class: "chart-name", x: 12, y: top + 2, transform: `rotate(-90 12 ${top + 2})`, "text-anchor": "end" }, svg, `${downName} →`);
 
+  make("text", { class: "chart-name", x: left, y: height - 6 }, svg, "↙ better: down and left");
+
   const around = (cx, cy, size) => ({ x0: cx - size, x1: cx + size, y0: cy - size, y1: cy + size });
   const taken = points.map((point) => around(x(point.ms), y(point.error), 5));
   const path = (joined, name) => {
@@ -93,19 +95,42 @@ function drawChart(element, points, { height = 260, description = "Error against
       group.addEventListener("click", point.choose);
     }
   }
-  // Names where they cover no point and no other name; otherwise a point has its title alone.
-  for (const point of [...points].sort((a, b) => order[b.kind] - order[a.kind])) {
+  // Every point has a name. Budgets at one place share it.
+  const named = [];
+  for (const point of [...points].sort((a, b) => order[b.kind] - order[a.kind] || Number(b.efficient ?? false) - Number(a.efficient ?? false))) {
     if (!point.name) continue;
-    const [at, size] = [{ x: x(point.ms), y: y(point.error) }, 6.4 * point.name.length];
+    const at = { x: x(point.ms), y: y(point.error) };
+    const other = point.kind === "budget" && named.find((other) => other.kind === "budget" && Math.abs(other.x - at.x) <= 8 && Math.abs(other.y - at.y) <= 8);
+    if (other) other.name += `, ${point.name.replace(/^≤ /, "")}`;
+    else named.push({ ...at, kind: point.kind, name: point.name });
+  }
+  for (const point of named) {
+    const size = 6.4 * point.name.length;
+    // Beside the point, and farther and farther off.
     const places = [[9, 4, "start"], [-9, 4, "end"], [0, -10, "middle"], [0, 19, "middle"], [8, -7, "start"], [8, 15, "start"], [-8, -7, "end"], [-8, 15, "end"]];
-    for (const [dx, dy, anchor] of places) {
-      const start = at.x + dx - { start: 0, middle: size / 2, end: size }[anchor];
-      const box = { x0: start, x1: start + size, y0: at.y + dy - 10, y1: at.y + dy + 2 };
-      if (box.x0 < left || box.x1 > right + 8 || box.y0 < top - 6 || box.y1 > bottom || taken.some((other) => meets(box, other))) continue;
-      taken.push(box);
-      make("text", { class: `chart-label ${point.kind}`, x: at.x + dx, y: at.y + dy, "text-anchor": anchor }, svg, point.name);
-      break;
+    for (let far = 24; far <= 240; far += 12) {
+      for (let turn = 0; turn < 16; turn++) {
+        const [dx, dy] = [Math.cos((turn * Math.PI) / 8) * far, Math.sin((turn * Math.PI) / 8) * far];
+        places.push([dx, dy + 4, Math.abs(dx) < 1 ? "middle" : dx > 0 ? "start" : "end"]);
+      }
     }
+    let best;
+    for (const [dx, dy, anchor] of places) {
+      const start = point.x + dx - { start: 0, middle: size / 2, end: size }[anchor];
+      const box = { x0: start - 3, x1: start + size + 3, y0: point.y + dy - 10, y1: point.y + dy + 2 };
+      if (box.x0 < left || box.x1 > right + 8 || box.y0 < top - 6 || box.y1 > bottom) continue;
+      const covered = taken.filter((other) => meets(box, other)).length;
+      if (!best || covered < best.covered) best = { covered, box, dx, dy, anchor };
+      if (covered === 0) break;
+    }
+    if (!best) continue;
+    const { box, dx, dy, anchor } = best;
+    const end = { x: Math.min(Math.max(point.x, box.x0), box.x1), y: Math.min(Math.max(point.y, box.y0 + 2), box.y1) };
+    if (Math.hypot(end.x - point.x, end.y - point.y) > 15) {
+      make("line", { class: `chart-leader ${point.kind}`, x1: point.x, y1: point.y, x2: end.x, y2: end.y }, svg);
+    }
+    taken.push(box);
+    make("text", { class: `chart-label ${point.kind}`, x: point.x + dx, y: point.y + dy, "text-anchor": anchor }, svg, point.name);
   }
   element.replaceChildren(svg);
 }

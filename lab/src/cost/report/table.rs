@@ -1,0 +1,215 @@
+//! A table of the report: made once, shown on the page and in a terminal.
+
+use maud::{Markup, html};
+
+use super::figures::DASH;
+
+/// A column: its heading, and where it stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column {
+    head: &'static str,
+    /// A heading over neighbours that have the same.
+    group: &'static str,
+    is_text: bool,
+    is_brief: bool,
+}
+
+impl Column {
+    /// A column of numbers, on the page.
+    pub(super) const fn number(head: &'static str) -> Self {
+        Self { head, group: "", is_text: false, is_brief: false }
+    }
+
+    /// A column of words, on the page.
+    pub(super) const fn text(head: &'static str) -> Self {
+        Self { is_text: true, ..Self::number(head) }
+    }
+
+    /// The column in a terminal, too.
+    pub(super) const fn brief(self) -> Self {
+        Self { is_brief: true, ..self }
+    }
+
+    /// The column under a heading that its neighbours share.
+    pub(super) const fn under(self, group: &'static str) -> Self {
+        Self { group, ..self }
+    }
+}
+
+/// What stands in a row and a column: text, and how the page shows it if that is more than text.
+#[derive(Clone, Debug)]
+pub(super) struct Cell {
+    text: String,
+    markup: Option<Markup>,
+}
+
+impl Cell {
+    /// Text, and how the page shows it.
+    pub(super) fn shown(text: impl Into<String>, markup: Markup) -> Self {
+        Self { text: text.into(), markup: Some(markup) }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.text.is_empty() || self.text == DASH
+    }
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self { text: text.into(), markup: None }
+    }
+}
+
+/// A table. Columns in which nothing stands are left out, and so is a table without rows.
+#[derive(Debug)]
+pub(super) struct Table {
+    columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+    /// What a heading means, or the table, and whether a terminal says it, too.
+    notes: Vec<(&'static str, bool)>,
+}
+
+impl Table {
+    /// A row has a cell for each column.
+    pub(super) fn new(columns: &[Column], mut rows: Vec<Vec<Cell>>) -> Self {
+        let is_kept = |column: usize| rows.iter().any(|row| !row[column].is_empty());
+        let kept: Vec<bool> = (0..columns.len()).map(is_kept).collect();
+        let mut columns = columns.to_vec();
+        let keep = |i: &mut usize| {
+            *i += 1;
+            kept[*i - 1]
+        };
+        let mut i = 0;
+        columns.retain(|_| keep(&mut i));
+        for row in &mut rows {
+            let mut i = 0;
+            row.retain(|_| keep(&mut i));
+        }
+        Self { columns, rows, notes: Vec::new() }
+    }
+
+    /// Says something below the table.
+    pub(super) fn note(mut self, note: &'static str) -> Self {
+        self.notes.push((note, true));
+        self
+    }
+
+    /// Says something of a column that stands on the page alone.
+    pub(super) fn page_note(mut self, note: &'static str) -> Self {
+        self.notes.push((note, false));
+        self
+    }
+
+    /// All columns, and all notes; nothing if there is no row.
+    pub(super) fn html(&self) -> Markup {
+        let has_groups = self.columns.iter().any(|column| !column.group.is_empty());
+        html! {
+            @if !self.rows.is_empty() {
+                div.wide { table {
+                    thead {
+                        @if has_groups { tr {
+                            @for (group, count) in self.groups() { th.group[!group.is_empty()] colspan=(count) { (group) } }
+                        } }
+                        tr { @for (i, column) in self.columns.iter().enumerate() {
+                            th.text[column.is_text] .group[self.begins_group(i)] { (column.head) }
+                        } }
+                    }
+                    tbody { @for row in &self.rows { tr { @for (i, cell) in row.iter().enumerate() {
+                        @if i == 0 { th scope="row" { (shown(cell)) } }
+                        @else { td.text[self.columns[i].is_text] .group[self.begins_group(i)] { (shown(cell)) } }
+                    } } } }
+                } }
+                @if !self.notes.is_empty() { p.key { @for (note, _) in &self.notes { span { (note) } } } }
+            }
+        }
+    }
+
+    fn begins_group(&self, column: usize) -> bool {
+        let group = |i: usize| self.columns[i].group;
+        !group(column).is_empty() && (column == 0 || group(column) != group(column - 1))
+    }
+
+    /// The headings over neighbours, with the count of their columns.
+    fn groups(&self) -> Vec<(&'static str, usize)> {
+        let mut groups: Vec<(&'static str, usize)> = Vec::new();
+        for column in &self.columns {
+            match groups.last_mut() {
+                Some((group, count)) if *group == column.group => *count += 1,
+                _ => groups.push((column.group, 1)),
+            }
+        }
+        groups
+    }
+
+    /// The brief columns, aligned, and the notes; nothing if there is no row.
+    pub(super) fn text(&self) -> String {
+        let brief: Vec<usize> = (0..self.columns.len()).filter(|i| self.columns[*i].is_brief).collect();
+        if self.rows.is_empty() || brief.is_empty() {
+            return String::new();
+        }
+        let mut lines: Vec<Vec<String>> = vec![brief.iter().map(|i| self.columns[*i].head.to_string()).collect()];
+        lines.extend(self.rows.iter().map(|row| brief.iter().map(|i| row[*i].text.clone()).collect()));
+        let length = |text: &str| text.chars().count();
+        let mut widths: Vec<usize> =
+            (0..brief.len()).map(|i| lines.iter().map(|line| length(&line[i])).max().unwrap_or(0)).collect();
+        // The headings over neighbours, each as wide as what stands below it at most.
+        let mut groups = String::new();
+        let mut i = 0;
+        while i < brief.len() {
+            let group = self.columns[brief[i]].group;
+            let end = (i..brief.len()).find(|j| self.columns[brief[*j]].group != group).unwrap_or(brief.len());
+            let width = widths[i..end].iter().map(|width| 2 + width).sum::<usize>() - 2;
+            let wider = length(group).saturating_sub(width);
+            widths[i] += wider;
+            groups += &format!("  {group:<width$}", width = width + wider);
+            i = end;
+        }
+        let groups = groups.trim_end();
+        let mut text = if groups.is_empty() { String::new() } else { format!("{groups}\n") };
+        for line in &lines {
+            let mut row = String::new();
+            for ((i, cell), width) in line.iter().enumerate().zip(&widths) {
+                let padding = " ".repeat(width - length(cell));
+                let is_left = i == 0 || self.columns[brief[i]].is_text;
+                row += &if is_left { format!("  {cell}{padding}") } else { format!("  {padding}{cell}") };
+            }
+            text += row.trim_end();
+            text.push('\n');
+        }
+        self.notes.iter().filter(|note| note.1).for_each(|(note, _)| text += &format!("  {note}\n"));
+        text
+    }
+}
+
+fn shown(cell: &Cell) -> Markup {
+    cell.markup.clone().unwrap_or_else(|| html! { (cell.text) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(rows: &[[&str; 3]]) -> Table {
+        let columns =
+            [Column::text("way").brief(), Column::number("time").brief().under("all"), Column::number("more")];
+        let rows = rows.iter().map(|row| row.map(Cell::from).to_vec()).collect();
+        Table::new(&columns, rows).note("A note.").page_note("Of more.")
+    }
+
+    #[test]
+    fn page_and_terminal_show_the_same_cells() {
+        let table = table(&[["flat", "1 µs", "<2>"], ["phong", "10 µs", "–"]]);
+        assert_eq!(table.text(), "         all\n  way     time\n  flat    1 µs\n  phong  10 µs\n  A note.\n");
+        let page = table.html().into_string();
+        for part in ["<th scope=\"row\">phong</th>", ">10 µs<", "&lt;2&gt;", "A note.", "Of more."] {
+            assert!(page.contains(part), "{part} in {page}");
+        }
+    }
+
+    #[test]
+    fn what_is_empty_is_left_out() {
+        assert_eq!((table(&[]).text(), table(&[]).html().into_string()), (String::new(), String::new()));
+        let page = table(&[["flat", "1 µs", "–"], ["phong", "2 µs", ""]]).html().into_string();
+        assert!(!page.contains(">more<") && page.contains(">time<"), "{page}");
+    }
+}

@@ -1,0 +1,51 @@
+//! A study in a terminal: the sentences and tables of the page, with fewer columns.
+
+use super::page::NAMES;
+use super::{budgets, choices, shadings, summary, times};
+use crate::cost::{Claim, Study};
+
+/// The study as text: what the page says, but for its pictures, and of its tables the columns that matter most.
+#[must_use]
+pub fn text(study: &Study) -> String {
+    let Study { input, host, kernel, frames, rounds, .. } = study;
+    let mut parts = vec![
+        format!("{}\n", summary(study).join("\n")),
+        wrapped(NAMES),
+        format!(
+            "{input}: {frames} frames, {rounds} rounds in shuffled order, kernel {kernel}\n{}; {}; {}\n",
+            host.processor, host.compiler, host.flags
+        ),
+        shadings::times(study).text(),
+    ];
+    if let Some((says, tied)) = shadings::tied(study) {
+        parts.push(format!("{says}\n  {}\n", tied.join("\n  ")));
+    }
+    parts.extend(
+        [shadings::errors(study), budgets::table(study), times::table(study), choices::table(study)]
+            .map(|table| table.text()),
+    );
+    for Claim { claim, measured, verdict } in &study.claims {
+        parts.push(format!("\"{claim}\" {}: {measured}\n", verdict.name()));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join("\n")
+}
+
+/// Lines of at most 100 letters.
+fn wrapped(text: &str) -> String {
+    let mut lines = String::new();
+    let mut length = 0;
+    for word in text.split_whitespace() {
+        let (space, letters) = (usize::from(length > 0), word.chars().count());
+        if length + space + letters > 100 {
+            lines.push('\n');
+            length = 0;
+        } else if length > 0 {
+            lines.push(' ');
+            length += 1;
+        }
+        lines += word;
+        length += letters;
+    }
+    lines + "\n"
+}
