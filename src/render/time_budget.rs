@@ -1,42 +1,38 @@
-//! The least error that fits in a time: the error budget of the next frame, from the times of the frames before it.
+//! The least error that fits in a time: the error budget of the next frames, from the times of the frames before them.
 //!
 //! The engine has no clock. The caller says how long each frame took, and the errors follow from these times alone.
-//! First each error is tried for some frames, from the greatest on, until one takes too long. Their times are kept as
-//! predictions; the time of every later frame scales all of them. A frame is drawn within the least error whose
-//! predicted time fits.
 //!
-//! The machine's noise has its room: the ratio of a frame's time to the usual one that one frame in a hundred exceeds is
-//! tracked, and what counts as fitting fits with that ratio. Three rules keep the error steady. One slow frame changes
-//! nothing: a greater error needs two slow frames of three, or a median that does not fit with the ratio. A smaller error
-//! must be predicted to leave a tenth of the time. It is chosen only after 32 frames without a change, so that no two
-//! errors alternate.
+//! Frames are taken in blocks of eight that are drawn within one error. A block's mean time is what its error takes, and it
+//! scales the times of the other errors, as a pose that takes longer at one error takes longer at each. First each error has a
+//! block of its own, from the greatest on. From then on each block is drawn within the least error whose time fits.
+//!
+//! A frame of twice the block's median or more counts as the median: another program ran. A block whose time is spent ends at
+//! once, so a load that comes suddenly is met within a few frames. An error that fits is kept as long as it takes no more than
+//! a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors alternate.
 
 use super::settings::MAX_ERROR;
 
 /// Errors that are chosen from, in shades.
 const ERRORS: [f32; 6] = [MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
 
-/// Frames that each error is tried for at first.
-const TRIAL: u32 = 4;
+/// Frames of a block.
+const BLOCK: usize = 8;
+
+/// Share of the time up to which an error that is drawn is kept. To be chosen anew it must fit.
+const TOLERANCE: f32 = 1.05;
+
+/// Ratio of a block's time to the one before it from which on that is no noise.
+const JUMP: f32 = 1.2;
+
+/// Ratio of a time to the median from which on another program is to blame.
+const OUTLIER: f32 = 2.0;
 
 /// Frames without a change before a smaller error is chosen.
-const HOLD: u32 = 32;
+const HOLD: usize = 32;
 
-/// Drawn frames without a change before a smaller error is tried, whatever its prediction: times of other poses may be
-/// others. Each trial that fails doubles it, up to 16 times this.
-const PATIENCE: u32 = 512;
-
-/// Times that are kept.
-const TIMES: usize = 8;
-
-/// Share of the time that a smaller error may be predicted to take.
-const COMFORT: f32 = 0.9;
-
-/// Step by which the ratio of a late frame follows what is seen: upwards once in a hundred frames, downwards otherwise.
-const STEP: f32 = 0.05;
-
-/// Ratio of a time to the usual one from which on another program is to blame.
-const OUTLIER: f32 = 2.0;
+/// Frames without a change before a smaller error is tried that did not fit: its time was that of other poses. Each trial
+/// that fails doubles it, up to 16 times this.
+const PATIENCE: usize = 128;
 
 /// Controller of the error that the next frame is drawn within.
 #[derive(Clone, Debug)]
@@ -45,20 +41,18 @@ pub(super) struct TimeBudget {
     max_time: f32,
     /// The greatest error. The smaller ones are those of [`ERRORS`].
     max_error: f32,
-    /// Predicted times; infinite where none is known.
+    /// What a frame takes within each error; infinite where nothing is known.
     costs: [f32; ERRORS.len() + 1],
-    /// Ratio of a time to the median that one frame in a hundred exceeds: what the machine's noise takes.
-    late: f32,
     at: usize,
-    is_calibrating: bool,
-    /// Times of frames since the last change, the newest at the end.
-    times: [f32; TIMES],
-    /// Drawn frames since the last change.
-    drawn: u32,
-    /// Frames since the last change, those among them that stayed as they were.
-    frames: u32,
-    patience: u32,
-    /// True if the error was tried against its prediction.
+    /// Times of the block's frames that were drawn.
+    times: [f32; BLOCK],
+    drawn: usize,
+    /// Frames of the block, those too that stayed as they were.
+    frames: usize,
+    /// Frames of the blocks since the last change.
+    held: usize,
+    patience: usize,
+    /// True if the error is tried against what is known of it.
     is_trial: bool,
 }
 
@@ -68,12 +62,11 @@ impl TimeBudget {
             max_time,
             max_error,
             costs: [f32::INFINITY; ERRORS.len() + 1],
-            late: 1.0,
             at: 0,
-            is_calibrating: true,
-            times: [0.0; TIMES],
+            times: [0.0; BLOCK],
             drawn: 0,
             frames: 0,
+            held: 0,
             patience: PATIENCE,
             is_trial: false,
         }
@@ -97,138 +90,85 @@ impl TimeBudget {
 
     /// Returns whether frames within this error fit, as far as is known.
     pub(super) fn fits(&self) -> bool {
-        self.at > 0 || self.drawn == 0 || self.typical() <= self.max_time
+        self.at > 0 || self.is_kept()
+    }
+
+    /// Returns whether the error may be drawn further.
+    fn is_kept(&self) -> bool {
+        let cost = self.costs[self.at];
+        cost.is_infinite() || cost <= TOLERANCE * self.max_time
     }
 
     /// Takes the time of the last frame in milliseconds; `None` for a frame that stayed as it was.
     pub(super) fn took(&mut self, time: Option<f32>) {
-        self.frames = self.frames.saturating_add(1);
         if let Some(time) = time {
             // A clock may stand still.
-            let time = time.max(1e-6);
-            let late = time / self.typical();
-            if late < OUTLIER {
-                self.late *= if late > self.late { 1.0 + STEP } else { 1.0 - STEP / 99.0 };
-                self.late = self.late.max(1.0);
-            }
-            self.drawn = self.drawn.saturating_add(1);
-            self.times.rotate_left(1);
-            self.times[TIMES - 1] = time;
+            self.times[self.drawn] = time.max(1e-6);
+            self.drawn += 1;
         }
-        let is_known = self.drawn > 0 && self.frames >= TRIAL;
-        if self.is_calibrating {
-            if is_known {
-                self.calibrate();
-            }
-            return;
-        }
-        // A frame that stays as it was changes no time.
-        let is_tight =
-            is_known && (time.is_some() || self.frames == TRIAL) && self.typical() * self.late > self.max_time;
-        if self.is_slow() || is_tight {
-            self.learn();
-            self.relax();
-        } else if is_known {
-            self.learn();
-            if self.frames >= HOLD {
-                self.tighten();
-            }
+        self.frames += 1;
+        let is_spent = self.drawn > 1 && self.sum() > BLOCK as f32 * TOLERANCE * self.max_time;
+        if self.frames == BLOCK || is_spent {
+            self.end_block();
         }
     }
 
-    /// The times that are kept, in their order of size.
-    fn sorted(&self) -> ([f32; TIMES], usize) {
-        let count = TIMES.min(self.drawn as usize);
-        let mut times = [f32::INFINITY; TIMES];
-        times[..count].copy_from_slice(&self.times[TIMES - count..]);
+    /// The sum of the block's times, what another program made late as long as the median.
+    fn sum(&self) -> f32 {
+        let mut times = self.times;
+        let times = &mut times[..self.drawn];
         times.sort_unstable_by(f32::total_cmp);
-        (times, count)
+        let median = times[(self.drawn - 1) / 2];
+        times.iter().map(|time| if *time < OUTLIER * median { *time } else { median }).sum()
     }
 
-    /// The median time; of an even number the lesser one in the middle.
-    fn typical(&self) -> f32 {
-        let (times, count) = self.sorted();
-        times[count.saturating_sub(1) / 2]
-    }
-
-    /// The second longest time of the last three frames; 0 of a single one.
-    fn last(&self) -> f32 {
-        let mut last = [0.0; 3];
-        let count = 3.min(self.drawn as usize);
-        last[..count].copy_from_slice(&self.times[TIMES - count..]);
-        last.sort_unstable_by(f32::total_cmp);
-        last[1]
-    }
-
-    /// Returns whether two of the last three frames took too long.
-    fn is_slow(&self) -> bool {
-        self.last() > self.max_time
-    }
-
-    /// Tries the next error, or ends with the least that fits.
-    fn calibrate(&mut self) {
-        self.costs[self.at] = self.typical();
-        if self.costs[self.at] * self.late > self.max_time || self.at == self.smaller().count() {
-            self.is_calibrating = false;
-            self.change(self.least_that_fits());
-        } else {
-            self.change(self.at + 1);
-        }
-    }
-
-    /// Predicts times from those of the last frames.
-    fn learn(&mut self) {
-        let now = if self.is_slow() { self.last() } else { self.typical() };
-        let known = self.costs[self.at];
-        // What was predicted of this error is compared with its own first times, and the others follow from then on.
-        if self.frames > TRIAL && known.is_finite() {
-            self.costs.iter_mut().for_each(|cost| *cost *= now / known);
-        }
-        self.costs[self.at] = now;
-        if self.is_trial && self.frames > HOLD {
-            (self.is_trial, self.patience) = (false, PATIENCE);
-        }
-    }
-
-    /// The place of the least error that is predicted to fit, late frames too; the greatest where none is.
-    fn least_that_fits(&self) -> usize {
-        (0..=self.smaller().count()).rev().find(|at| self.leaves_room(*at)).unwrap_or(0)
-    }
-
-    fn leaves_room(&self, at: usize) -> bool {
-        self.costs[at] * self.late <= COMFORT * self.max_time
-    }
-
-    /// Chooses a greater error.
-    fn relax(&mut self) {
-        if self.is_trial {
-            self.patience = (2 * self.patience).min(16 * PATIENCE);
-        }
-        let at = self.least_that_fits();
-        if at < self.at {
-            self.change(at);
-        } else if self.at > 0 {
-            // The prediction of a smaller error is older than what was seen.
-            self.change(self.at - 1);
-        }
-    }
-
-    /// Chooses a smaller error, if it is predicted to fit, or tries one now and then.
-    fn tighten(&mut self) {
-        let at = self.least_that_fits();
-        if at > self.at {
-            self.change(at);
-        } else if self.at < self.smaller().count() && self.leaves_room(self.at) {
-            let is_unknown = self.costs[self.at + 1].is_infinite();
-            if is_unknown || self.drawn >= self.patience {
-                self.change(self.at + 1);
-                self.is_trial = true;
+    fn end_block(&mut self) {
+        let moves = self.drawn > 0;
+        if moves {
+            let (cost, known) = (self.sum() / self.drawn as f32, self.costs[self.at]);
+            if self.held > 0 && known.is_finite() {
+                // Half of the way, so that noise changes little; all of it where the load is another.
+                let ratio = cost / known;
+                let ratio = if (1.0 / JUMP..JUMP).contains(&ratio) { 0.5 + 0.5 * ratio } else { ratio };
+                self.costs.iter_mut().for_each(|other| *other *= ratio);
+            } else {
+                // What was known of an error that is drawn anew may be old.
+                self.costs[self.at] = cost;
             }
         }
+        self.held = self.held.saturating_add(self.frames);
+        (self.drawn, self.frames) = (0, 0);
+        if self.is_trial {
+            self.patience = if self.is_kept() { PATIENCE } else { (2 * self.patience).min(16 * PATIENCE) };
+        }
+        let chosen = self.choose();
+        // What stands still would be tried in vain.
+        let tried =
+            self.to_be_tried().filter(|_| moves && chosen == self.at && self.is_kept() && self.held >= self.patience);
+        self.is_trial = tried.is_some();
+        let next = tried.unwrap_or(chosen);
+        if next != self.at {
+            (self.at, self.held) = (next, 0);
+        }
     }
 
-    fn change(&mut self, at: usize) {
-        (self.at, self.drawn, self.frames, self.is_trial) = (at, 0, 0, false);
+    /// The place of the least error that fits: a greater one at once if this one does not, a smaller one only after a while.
+    fn choose(&self) -> usize {
+        let costs = &self.costs[..=self.smaller().count()];
+        if let Some(untried) = costs.iter().position(|cost| cost.is_infinite()) {
+            return untried;
+        }
+        let least_that_fits = |costs: &[f32]| costs.iter().rposition(|cost| *cost <= self.max_time);
+        match least_that_fits(costs).filter(|at| *at > self.at && self.held >= HOLD) {
+            Some(smaller) => smaller,
+            None if self.is_kept() => self.at,
+            None => least_that_fits(&costs[..self.at]).unwrap_or(0),
+        }
+    }
+
+    /// The place of the cheapest of the smaller errors, if there is any.
+    fn to_be_tried(&self) -> Option<usize> {
+        (self.at + 1..=self.smaller().count()).min_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]))
     }
 }
 
@@ -240,6 +180,9 @@ mod tests {
     use proptest::prelude::*;
 
     const T: f32 = 4.0;
+
+    /// Frames in which each error is tried.
+    const TRIED: usize = BLOCK * ERRORS.len();
 
     /// Errors and times of so many frames, by a clock that says what `cost` says of a frame's number and error.
     fn run(budget: &mut TimeBudget, frames: usize, mut cost: impl FnMut(usize, f32) -> Option<f32>) -> Vec<(f32, f32)> {
@@ -262,30 +205,29 @@ mod tests {
         1.0 + deviation * sum
     }
 
-    /// The share of frames within 1.05 T.
-    fn share(frames: &[(f32, f32)]) -> f64 {
-        frames.iter().filter(|(_, time)| *time <= 1.05 * T).count() as f64 / frames.len() as f64
+    fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
+        let count = numbers.len() as f64;
+        numbers.map(f64::from).sum::<f64>() / count
     }
 
     /// Tests that changes to a smaller error lie at least [`HOLD`] frames after the change before, so that no two errors
     /// alternate, once all were tried.
     fn assert_steady(frames: &[(f32, f32)]) {
-        let tried = TRIAL as usize * (ERRORS.len() + 1);
         let mut changed = None;
         for (i, pair) in frames.windows(2).enumerate() {
             if pair[0].0 != pair[1].0 {
-                if pair[1].0 < pair[0].0 && i >= tried {
+                if pair[1].0 < pair[0].0 && i >= TRIED {
                     let held = changed.map_or(usize::MAX, |at| i - at);
-                    assert!(held >= HOLD as usize, "{} after {held} frames, frame {i}", pair[1].0);
+                    assert!(held >= HOLD, "{} after {held} frames, frame {i}", pair[1].0);
                 }
                 changed = Some(i);
             }
         }
     }
 
-    /// Times that a frame takes within each of six errors, of which some may be equal.
+    /// Times that a frame takes within each of six errors: mostly rising, some equal, some even falling.
     fn times() -> impl Strategy<Value = [f32; 6]> {
-        (0.3_f32..6.0, prop::array::uniform6(prop_oneof![Just(1.0_f32), 1.0_f32..1.6])).prop_map(|(first, ratios)| {
+        (0.3_f32..6.0, prop::array::uniform6(prop_oneof![Just(1.0_f32), 0.9_f32..1.6])).prop_map(|(first, ratios)| {
             let mut time = first;
             ratios.map(|ratio| {
                 time *= ratio;
@@ -298,17 +240,62 @@ mod tests {
         ERRORS.iter().position(|of| *of == error).expect("of the list")
     }
 
+    /// What a frame takes within each error, in milliseconds: on a duck, a football and a torus, as `mode13h cost` found it; and
+    /// where errors hardly change the time, where only the least does, and where the time does not always rise.
+    const MODELS: [[f32; 6]; 6] = [
+        [0.765, 0.838, 0.892, 1.006, 1.228, 1.226],
+        [0.443, 0.571, 0.686, 1.222, 1.504, 2.077],
+        [0.074, 0.131, 0.151, 0.412, 0.581, 0.577],
+        [1.42, 1.43, 1.45, 1.49, 1.56, 1.60],
+        [5.10, 5.10, 5.12, 5.15, 5.60, 7.90],
+        [2.00, 2.30, 3.10, 2.90, 3.60, 3.30],
+    ];
+
+    /// Eight poses all over a turn, one after the other, as the study draws them; each has its share of the time.
+    const POSES: [f32; 8] = [0.8, 1.0, 1.3, 1.1, 0.7, 0.9, 1.2, 1.0];
+
+    /// On every model, with a first frame that takes thrice as long and a machine whose frames are late by a few percent, and
+    /// one in fifty by far: the error falls as the time grows, and is no greater than the least whose time fits, but for trials
+    /// and noise, nor smaller than what fits within [`TOLERANCE`].
+    #[test]
+    fn the_error_falls_as_the_time_grows() {
+        for (model, deviation) in MODELS.iter().flat_map(|model| [0.0, 0.01, 0.03].map(|deviation| (model, deviation)))
+        {
+            let mut last = f64::INFINITY;
+            for step in 0..20_u8 {
+                let max_time = model[0] * (1.2 * model[5] / model[0]).powf(f32::from(step) / 19.0);
+                let mut chance = u64::from(step) + 1;
+                let mut budget = TimeBudget::new(max_time, MAX_ERROR);
+                let frames = run(&mut budget, 1232, |frame, error| {
+                    let late = if frame == 0 || frame % 50 == 49 { 3.0 } else { 1.0 };
+                    Some(model[place(error)] * POSES[frame % 8] * late * noise(&mut chance, deviation))
+                });
+                let frames = &frames[TRIED..];
+                let error = mean(frames.iter().map(|frame| frame.0));
+                let least =
+                    |time: f32| model.iter().rposition(|cost| *cost <= time).map_or(16.0, |at| ERRORS[at].into());
+                let (low, high): (f64, f64) = (least(TOLERANCE * 1.02 * max_time), least(max_time / 1.02));
+                let said = alloc::format!("{error} in {max_time} ms, {low} to {high} fit: {model:?} {deviation}");
+                assert!(error <= 1.3 * high && error * 1.3 >= low, "{said}");
+                assert!(error <= 1.1 * last, "{last}, then {said}");
+                last = error;
+            }
+        }
+    }
+
     proptest! {
         /// A scene that takes the same time again and again gets the least error that fits, or the greatest, which says
         /// so.
         #[test]
         fn a_steady_scene_gets_the_least_error_that_fits(times in times()) {
             let mut budget = TimeBudget::new(T, MAX_ERROR);
-            let frames = run(&mut budget, 400, |_, error| Some(times[place(error)]));
-            let fits = |time: &&f32| **time <= COMFORT * T;
-            let expected = times.iter().rev().find(fits).map_or(0, |least| times.iter().rposition(|time| time == least).unwrap_or(0));
-            prop_assert!(frames[30..].iter().all(|(error, _)| place(*error) == expected), "{times:?}: {frames:?}");
-            prop_assert_eq!(budget.fits(), times[0] <= T);
+            let frames = run(&mut budget, 600, |_, error| Some(times[place(error)]));
+            let chosen = place(frames[TRIED + HOLD].0);
+            // Sums of eight are rounded.
+            let fits = |at: usize, share: f32| times[at] <= share * T;
+            prop_assert!(fits(chosen, TOLERANCE * 1.000_01) || chosen == 0, "{times:?}: {frames:?}");
+            prop_assert!((chosen + 1..6).all(|at| !fits(at, 0.999_99)), "{times:?}: {frames:?}");
+            prop_assert_eq!(TimeBudget { at: 0, ..budget }.fits(), fits(0, TOLERANCE));
         }
 
         /// Whatever times there are, no two errors alternate, and the error is one of those that are accepted.
@@ -330,64 +317,38 @@ mod tests {
             assert_steady(&frames);
             prop_assert!(frames.iter().all(|(error, _)| *error == max_error || (*error < max_error && ERRORS.contains(error))));
         }
-
-        /// A load that comes at once makes at most two frames too long for each change that it takes.
-        #[test]
-        fn a_load_is_met_in_two_frames(times in times(), load in 1.0_f32..3.0) {
-            let mut budget = TimeBudget::new(T, MAX_ERROR);
-            let frames = run(&mut budget, 400, |frame, error| {
-                Some(times[place(error)] * if frame < 200 { 1.0 } else { load })
-            });
-            let fits = times[0] * load <= COMFORT * T;
-            let slow = frames[200..].iter().filter(|(_, time)| *time > T).count();
-            prop_assert!(!fits || slow <= 2, "{slow} frames: {times:?}, {:?}", &frames[200..240]);
-        }
     }
 
-    /// A machine that others use: of the frames within any error one in a hundred takes up to 1.3 times as long as usual, and
-    /// the scene turns. 99 % of all frames fit, no two errors alternate, and what the noise leaves is used.
+    /// A load that comes at once is met within the frames that the time of one block is enough for, and one block more: from
+    /// then on each block's frames fit in the mean.
     #[test]
-    fn late_frames_are_left_room_for() {
-        let times = [1.0, 1.3, 1.7, 2.2, 2.8, 3.6];
-        for (seed, deviation) in (0..30).flat_map(|seed| [0.02, 0.05, 0.11].map(|deviation| (seed, deviation))) {
-            let mut chance = seed;
-            let mut budget = TimeBudget::new(T, MAX_ERROR);
-            let frames = run(&mut budget, 2000, |frame, error| {
-                let load = 1.0 + 0.3 * libm::sinf(frame as f32 * 0.01);
-                Some(times[place(error)] * load * libm::expf(noise(&mut chance, deviation) - 1.0))
-            });
-            assert_steady(&frames);
-            assert!(share(&frames[70..]) >= 0.99, "seed {seed}, {deviation}: {}", share(&frames[70..]));
-            let mean = frames[70..].iter().map(|(_, time)| f64::from(*time)).sum::<f64>() / 1930.0;
-            let least = f64::from(T) * 0.5;
-            assert!(mean > least, "seed {seed}, {deviation}: {mean} ms of {T}");
+    fn a_sudden_load_is_met_within_two_blocks() {
+        for (load, model) in [1.1, 1.3, 2.0, 3.0].into_iter().flat_map(|load| MODELS.map(|model| (load, model))) {
+            let max_time = model[5];
+            let mut budget = TimeBudget::new(max_time, MAX_ERROR);
+            let frames =
+                run(&mut budget, 260, |frame, error| Some(model[place(error)] * if frame < 131 { 1.0 } else { load }));
+            let fits = model[0] * load <= max_time;
+            let late = frames[131..].iter().filter(|frame| frame.1 > TOLERANCE * max_time).count();
+            assert!(!fits || late <= 2 * BLOCK, "{late} frames at {load}: {model:?}");
         }
     }
 
-    /// Noise of 4 %, and one frame in 50 that takes three times as long as another program runs: 99 % of the others fit.
+    /// Frames that another program makes late change nothing, if there is one among eight: they take ten times as long.
     #[test]
-    fn noise_changes_little() {
-        let times = [1.0, 1.5, 2.2, 2.9, 3.8, 5.0];
-        for seed in 0..40 {
-            let mut chance = seed;
-            let mut budget = TimeBudget::new(T, MAX_ERROR);
-            let is_late = |frame: usize| frame % 50 == 17;
-            let frames = run(&mut budget, 4000, |frame, error| {
-                Some(times[place(error)] * noise(&mut chance, 0.04) * if is_late(frame) { 3.0 } else { 1.0 })
-            });
-            assert_steady(&frames);
-            let others: Vec<(f32, f32)> =
-                frames.iter().enumerate().skip(70).filter(|(i, _)| !is_late(*i)).map(|(_, frame)| *frame).collect();
-            assert!(share(&others) >= 0.99, "seed {seed}: {}", share(&others));
-            // 2 shades take 2.9 ms. 1 shade, which takes 3.8, is tried once in 512 frames. A tenth of its frames is late then,
-            // so two of three are with a chance of 0.028, which takes 36 frames in the mean: 7 % of all.
-            let at_best = others.iter().filter(|(error, _)| *error == 2.0).count();
-            assert!(at_best * 10 >= others.len() * 9, "seed {seed}: {at_best} of {}", others.len());
-        }
+    fn a_late_frame_changes_nothing() {
+        let times = [1.0, 1.5, 2.2, 2.9, 3.6, 5.0];
+        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let frames = run(&mut budget, 1000, |frame, error| {
+            Some(times[place(error)] * if frame % BLOCK == 5 { 10.0 } else { 1.0 })
+        });
+        let trials = frames[TRIED..].iter().filter(|(error, _)| *error != 1.0).count();
+        // A trial of half a shade after 128 frames, after 256 more, and after 512.
+        assert!(trials <= 3 * BLOCK, "{trials}: {:?}", &frames[TRIED..200]);
     }
 
-    /// A scene that turns: its times rise and fall by a half, slowly. 99 % of its frames fit, and most are drawn within
-    /// the least error that would.
+    /// A scene that turns: its times rise and fall by a half, slowly. Most frames are drawn within the least error that fits,
+    /// and no more than one of ten is late: the load grows by up to 4 % from a block to the next.
     #[test]
     fn a_turn_is_followed() {
         let times = [1.6, 2.0, 2.5, 3.1, 3.8, 4.5];
@@ -397,9 +358,10 @@ mod tests {
         let frames =
             run(&mut budget, 6000, |frame, error| Some(times[place(error)] * load(frame) * noise(&mut chance, 0.01)));
         assert_steady(&frames);
-        assert!(share(&frames[70..]) >= 0.99, "{}", share(&frames[70..]));
+        let late = frames[TRIED..].iter().filter(|(_, time)| *time > 1.05 * T).count();
+        assert!(late * 10 <= frames.len(), "{late}");
         let is_near = |(frame, (error, _)): (usize, &(f32, f32))| {
-            let best = (0..6).rev().find(|at| times[*at] * load(frame) <= 0.85 * T).unwrap_or(0);
+            let best = (0..6).rev().find(|at| times[*at] * load(frame) <= 0.9 * T).unwrap_or(0);
             place(*error) >= best
         };
         let near = frames.iter().enumerate().filter(|frame| is_near(*frame)).count();
@@ -411,23 +373,22 @@ mod tests {
     fn a_scene_whose_time_the_error_does_not_change_gets_the_least_error() {
         let mut budget = TimeBudget::new(T, MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(3.0));
-        assert!(frames[40..].iter().all(|(error, _)| *error == 0.5));
+        assert!(frames[TRIED..].iter().all(|(error, _)| *error == 0.5));
         let mut budget = TimeBudget::new(T, MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(5.0));
-        assert!(frames.iter().all(|(error, _)| *error == MAX_ERROR) && !budget.fits());
+        assert!(frames[TRIED..].iter().all(|(error, _)| *error == MAX_ERROR) && !budget.fits());
     }
 
-    /// A prediction that is wrong now, as the scene is another: it is tried again, seldom, until it fits.
+    /// What is known is wrong now, as the scene is another: smaller errors are tried again, seldom, until they fit.
     #[test]
-    fn old_predictions_are_tried_again() {
+    fn old_times_are_tried_again() {
         let mut budget = TimeBudget::new(T, MAX_ERROR);
         let early = |error: f32| if error < 4.0 { 9.0 } else { 2.0 };
-        run(&mut budget, 600, |_, error| Some(early(error)));
-        assert_eq!(budget.error(), 4.0);
         let frames = run(&mut budget, 4000, |_, error| Some(early(error)));
-        let tried = frames.iter().filter(|(error, _)| *error < 4.0).count();
+        assert_eq!(budget.error(), 4.0);
+        let tried = frames[TRIED..].iter().filter(|(error, _)| *error < 4.0).count();
         assert!((1..=24).contains(&tried), "{tried} frames");
-        run(&mut budget, 40_000, |_, _| Some(2.0));
+        run(&mut budget, 4000, |_, _| Some(2.0));
         assert_eq!(budget.error(), 0.5);
     }
 

@@ -13,7 +13,7 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
 /// Frames after which every error has been tried.
-const CALIBRATION: usize = 32;
+const CALIBRATION: usize = 48;
 
 /// Frames that are timed of one time, at least and at most.
 const FRAMES: (usize, usize) = (200, 20_000);
@@ -48,7 +48,7 @@ pub fn time_frame(
 pub fn calibrate(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga, clock: Clock) -> Result<Stats, RenderError> {
     // Every frame is drawn, though nothing moves.
     renderer.force(Effect::Transform, Some(true));
-    let mut frames = (0..CALIBRATION).map(|_| time_frame(renderer, scene, vga, clock));
+    let mut frames = (0..=CALIBRATION).map(|_| time_frame(renderer, scene, vga, clock));
     let last = frames.try_fold(None, |_, frame| frame.map(|(stats, _)| Some(stats)));
     renderer.force(Effect::Transform, None);
     match last? {
@@ -69,6 +69,9 @@ pub(super) fn timed_rows(
     let shortest = budgets.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
     let longest = 1.15 * budgets.iter().map(|(time, _)| *time).fold(0.0, f64::max);
     let mut rows = Vec::new();
+    if budgets.is_empty() {
+        return Ok(rows);
+    }
     for i in 0..TIMES {
         let share = f64::from(i) / f64::from(TIMES - 1);
         let max_time = shortest * (longest / shortest).powf(share);
@@ -92,7 +95,9 @@ fn timed_row(
 ) -> Result<Option<TimeRow>, CostError> {
     let mut vga = Vga::new();
     renderer.force(Effect::Transform, Some(true));
-    let mut row = TimeRow { max_time, ..TimeRow::default() };
+    let fits = BUDGETS.into_iter().zip(budgets).filter(|(_, (time, _))| *time <= max_time);
+    let least_that_fits = fits.map(|(error, _)| error).reduce(f64::min);
+    let mut row = TimeRow { max_time, least_that_fits, ..TimeRow::default() };
     let (mut within, mut sum, mut taken) = (0, 0.0, 0.0);
     for number in 0..CALIBRATION + FRAMES.1 {
         let place = number % frames.len();
@@ -105,6 +110,7 @@ fn timed_row(
         row.frames += 1;
         within += usize::from(milliseconds * 1e6 <= TOLERANCE * max_time);
         sum += error;
+        row.mean_time += milliseconds * 1e6;
         row.max_error = row.max_error.max(error);
         let bound = BUDGETS.iter().position(|budget| *budget == error);
         if let Some(worst) = bound.and_then(|bound| budgets.get(bound)?.1.worst.get(place)) {
@@ -116,5 +122,6 @@ fn timed_row(
     }
     row.within = within as f64 / row.frames as f64;
     row.mean_error = sum / row.frames as f64;
+    row.mean_time /= row.frames as f64;
     Ok(Some(row))
 }

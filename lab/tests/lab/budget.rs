@@ -41,6 +41,8 @@ fn check(tried: &mut Tried, name: &str, scene: &Scene, budgets: &[f32]) -> f64 {
         let errors = ErrorMap::new(&truth, &look(within(max_error), scene)).expect("of one size");
         let share = errors.share_within(f64::from(max_error));
         assert!(share >= 0.999, "{name}: {share} within {max_error}, {} at most", errors.figures().max);
+        let not_compared = errors.share_not_compared();
+        assert!(not_compared < 0.005, "{name}: {not_compared} not compared within {max_error}");
         tried.add(errors.figures().count);
         tried.worst("share beyond", 1.0 - share);
         most = most.max(errors.figures().max / f64::from(max_error));
@@ -55,6 +57,7 @@ fn every_scene_is_within_its_budget() {
     for (name, scene) in scenes::all() {
         check(&mut tried, &name, &scene, &BUDGETS);
     }
+    check(&mut tried, "parents", &scenes::parents(), &BUDGETS);
 }
 
 /// Bodies that reach behind the eye, lamps inside of them, and whatever else comes.
@@ -368,7 +371,7 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
     assert_eq!((fast[0], fast[59]), ((16.0, true), (0.5, true)));
     assert_eq!(errors_of(&mut scene, None, |_| 1_000), fast, "the times alone count");
     let slow = errors_of(&mut scene, None, |_| 9_000);
-    assert!(slow.iter().all(|(error, _)| *error == 16.0) && !slow[59].1);
+    assert_eq!(slow[59], (16.0, false));
     let mixed = errors_of(&mut scene, None, |error| if error < 4.0 { 9_000 } else { 2_000 });
     assert_eq!(mixed[59], (4.0, true));
     assert_eq!(errors_of(&mut scene, Some(3.0), |_| 9_000)[59], (3.0, false));
