@@ -127,6 +127,9 @@ impl Object {
         if !self.materials.iter().all(Material::is_finite) {
             return Err("the numbers of its materials must be finite");
         }
+        if !self.mesh.surfaces().iter().all(|surface| surface.opacity.is_finite()) {
+            return Err("the opacities of its mesh's surfaces must be finite");
+        }
         if self.materials.iter().any(|material| material.shininess < 0.0) {
             return Err("the shininess of its materials must not be negative");
         }

@@ -8,7 +8,7 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::hooks;
-use mode13h::light::{Light, Material};
+use mode13h::light::{Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
@@ -416,6 +416,10 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
     // A body without colour beside one that has one: both are on channels, as the light is coloured.
     scene.add(Object::new(shapes::cube()));
+    // The palette has no ramps: what names one would be dithered.
+    for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
+        material.ramp = RampChoice::Nearest;
+    }
     for shading in Shading::ALL {
         let (shown, mut vga) = (look(&scene, shading), Vga::new());
         let mut renderer = Renderer::new();

@@ -128,6 +128,7 @@ const FLOATS: &[Row] = &[
     ("Surface.diffuse", 3, |s, bad, i| surface(s, |surface| surface.diffuse[i] = bad), "object 0"),
     ("Surface.specular", 3, |s, bad, i| surface(s, |surface| surface.specular[i] = bad), "object 0"),
     ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
+    ("Surface.opacity", 1, |s, bad, _| surface(s, |surface| surface.opacity = bad), "object 0"),
     ("Preferences.max_error", 1, |s, bad, _| s.preferences.max_error = Some(bad), "preferences"),
     ("Preferences.max_time", 1, |s, bad, _| s.preferences.max_time = Some(bad), "preferences"),
     ("Preferences.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "preferences"),
