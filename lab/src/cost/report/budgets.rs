@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::figures::{DASH, asked, count, interval, name_of, percent, quartiles, ratio, shades, time};
-use super::table::{Cell, Column, Table};
+use super::figures::{DASH, asked, count, name_of, percent, ratio, shades, time};
+use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::{BudgetRow, Study};
 use mode13h::render::FaceShading;
 

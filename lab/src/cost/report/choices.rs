@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::figures::{count, interval, percent, quartiles, ratio, shades, time};
-use super::table::{Cell, Column, Table};
+use super::figures::{count, percent, ratio, shades, time};
+use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::{Claim, Study};
 
 /// The options, grouped by aspect, for the page.

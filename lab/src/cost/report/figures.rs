@@ -2,10 +2,6 @@
 
 use std::fmt::Display;
 
-use maud::html;
-
-use super::table::Cell;
-use crate::cost::Nanoseconds;
 use mode13h::render::Shading;
 
 pub(super) const DASH: &str = "–";
@@ -85,21 +81,6 @@ pub(super) fn ratio(ratio: f64) -> String {
     } else {
         three_digits(ratio)
     }
-}
-
-/// The quartiles of a time.
-pub(super) fn quartiles(of: &Nanoseconds) -> Cell {
-    soft(format!("{} – {}", time(of.lower_quartile), time(of.upper_quartile)))
-}
-
-/// An interval: from – to.
-pub(super) fn interval((low, high): (f64, f64)) -> Cell {
-    soft(format!("{} to {}", ratio(low), ratio(high)))
-}
-
-/// Text that stands back, and may take two lines.
-fn soft(text: String) -> Cell {
-    Cell::shown(text.clone(), html! { span.soft { (text) } })
 }
 
 /// A shading's name; the default is marked.

@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::figures::{at_most, count, interval, list, name_of, percent, quartiles, ratio, shades, three_digits, time};
+use super::figures::{at_most, count, list, name_of, percent, ratio, shades, three_digits, time};
 use super::pictures;
-use super::table::{Cell, Column, Table};
+use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study, ties};
 use mode13h::render::Shading;

@@ -2,7 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::figures::DASH;
+use super::figures::{DASH, ratio, time};
+use crate::cost::Nanoseconds;
 
 /// A column: its heading, and where it stands.
 #[derive(Clone, Copy, Debug)]
@@ -183,6 +184,21 @@ impl Table {
 
 fn shown(cell: &Cell) -> Markup {
     cell.markup.clone().unwrap_or_else(|| html! { (cell.text) })
+}
+
+/// The quartiles of a time.
+pub(super) fn quartiles(of: &Nanoseconds) -> Cell {
+    soft(format!("{} – {}", time(of.lower_quartile), time(of.upper_quartile)))
+}
+
+/// An interval: from – to.
+pub(super) fn interval((low, high): (f64, f64)) -> Cell {
+    soft(format!("{} to {}", ratio(low), ratio(high)))
+}
+
+/// Text that stands back, and may take two lines.
+fn soft(text: String) -> Cell {
+    Cell::shown(text.clone(), html! { span.soft { (text) } })
 }
 
 #[cfg(test)]
