@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::mesh::obj::{self, ObjError};
 use crate::render::RenderError;
 use crate::scene::{Object, Scene, Shared};
-use crate::texture::{self, LoadError, Texture};
+use crate::texture::{self, Texture};
 
 pub use studio::studio;
 
@@ -57,7 +57,7 @@ pub struct Model {
     pub warnings: Vec<String>,
 }
 
-/// Reads an OBJ file, its MTL files and its PNG textures.
+/// Reads an OBJ file, its MTL files and its textures.
 ///
 /// # Errors
 ///
@@ -66,33 +66,37 @@ pub struct Model {
 pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, ObjError> {
     let path = path.as_ref();
     let loaded = obj::load_with(path, options, |_, _| {})?;
-    let (textures, errors) = textures(&loaded.mesh);
+    let (textures, of_textures) = textures(&loaded.mesh);
     let mut warnings = loaded.warnings;
-    warnings.extend(errors.iter().map(|error| std::format!("{error}; drawn without it")));
+    warnings.extend(of_textures);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let object = with_textures(Object::new(loaded.mesh).named(name.to_string()), &textures);
     Ok(Model { object, warnings })
 }
 
 /// Reads the texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture
-/// coordinates. Returns an error for each file that cannot be read. A file that several surfaces name is read once.
+/// coordinates. Returns warnings, one line each: of files that cannot be read, and of what is left out of others. A file
+/// that several surfaces name is read once.
 #[must_use]
 #[doc(hidden)]
-pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<LoadError>) {
+pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<String>) {
     let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
-    let mut errors = Vec::new();
+    let mut warnings = Vec::new();
     let textures = mesh.surfaces().iter().map(|surface| {
         let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
-        let texture = read.entry(path).or_insert_with(|| match texture::load(path) {
-            Ok(texture) => Some(Shared::new(texture)),
+        let texture = read.entry(path).or_insert_with(|| match texture::load_decoded(path.as_ref()) {
+            Ok(decoded) => {
+                warnings.extend(decoded.warning(path.as_ref()));
+                Some(Shared::new(decoded.texture))
+            }
             Err(error) => {
-                errors.push(error);
+                warnings.push(std::format!("{error}; drawn without it"));
                 None
             }
         });
         texture.clone()
     });
-    (textures.collect(), errors)
+    (textures.collect(), warnings)
 }
 
 /// Gives an object's surfaces these textures, one for each surface.

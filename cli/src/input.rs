@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use flate2::bufread::MultiGzDecoder;
@@ -80,7 +81,7 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     let path = Path::new(words);
     let failed = |error: io::Error| Failure::file(format!("{}: {error}", path.display()));
     let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
-        (Box::new(io::stdin().lock()), PathBuf::from("standard input"))
+        (Box::new(standard_input().map_err(failed)?), PathBuf::from("standard input"))
     } else if has_extension(path, "gz") {
         (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.with_extension(""))
     } else {
@@ -105,6 +106,19 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
         read_files::add(path);
     }
     Ok(Some(Stream { bytes, path: name, is_scene }))
+}
+
+/// All of standard input, which is read when first asked for: a pipe gives its bytes once.
+fn standard_input() -> io::Result<&'static [u8]> {
+    static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
+    // Who holds the lock reads, and others find what was read.
+    let mut input = io::stdin().lock();
+    if BYTES.get().is_none() {
+        let mut bytes = Vec::new();
+        input.read_to_end(&mut bytes)?;
+        BYTES.get_or_init(|| bytes);
+    }
+    Ok(BYTES.get().map(Vec::as_slice).unwrap_or_default())
 }
 
 /// The bytes themselves, or what they hold if they begin as a packed file does.
@@ -219,11 +233,10 @@ fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn()
 }
 
 /// Reads the texture of each surface of a model, if it names one that can be read and the model says where it lies.
-/// For one that cannot, a warning goes to standard error, a line, and the surface is drawn without it. Files named by
-/// several surfaces are read once.
+/// Warnings go to standard error, a line each. Files named by several surfaces are read once.
 fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
-    let (textures, errors) = model::textures(mesh);
-    errors.iter().for_each(|error| warn(format!("{error}; drawn without it")));
+    let (textures, warnings) = model::textures(mesh);
+    warnings.iter().for_each(warn);
     textures
 }
 

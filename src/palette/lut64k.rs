@@ -46,11 +46,14 @@ impl Lut64K {
     }
 
     /// A table of shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to
-    /// `colors[texel]·shade/255`.
+    /// `colors[texel]·shade/255`; in full light it is the texel itself where the palette has the texel's colour there.
     #[must_use]
     pub fn shades(palette: &Palette, colors: &[Rgb; 256]) -> Self {
         let search = NearestColors::of_shown(palette);
-        Self::from_fn(|shade, texel| search.nearest(Rgb::BLACK.mix(colors[usize::from(texel)], shade)))
+        Self::from_fn(|shade, texel| match colors[usize::from(texel)] {
+            color if shade == 255 && color == palette[texel] => texel,
+            color => search.nearest(Rgb::BLACK.mix(color, shade)),
+        })
     }
 
     /// A table of fog. Row: the share of fog, 0 none and 255 nothing else; column: the byte without fog. The entry is

@@ -8,7 +8,7 @@ use std::string::{String, ToString};
 use std::vec;
 use std::vec::Vec;
 
-use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
 use super::{Texture, TextureError};
 use crate::palette::Rgb;
@@ -67,31 +67,65 @@ impl core::error::Error for LoadError {
     }
 }
 
+/// A texture as it was read.
+#[doc(hidden)]
+pub struct Decoded {
+    /// The texture.
+    pub texture: Texture,
+    /// Some pixel of the picture is not opaque; the texture is.
+    pub was_transparent: bool,
+}
+
+impl Decoded {
+    /// A line that says what was left out of this file, if anything was.
+    #[must_use]
+    pub fn warning(&self, path: &Path) -> Option<String> {
+        self.was_transparent.then(|| std::format!("{}: transparency left out", path.display()))
+    }
+}
+
 /// Reads a PNG, with the feature `images` also a JPEG, TGA, BMP, GIF or WebP, and makes a texture of it as
-/// [`Texture::from_rgb`] does. The kind is told by the contents, not by the name. Grey and indexed pictures become RGB, 16
-/// bits become 8, and transparency is left out.
+/// [`Texture::from_rgb`] does. The kind is told by the contents, not by the name. Grey becomes RGB, 16 bits become 8, and
+/// transparency is left out. An indexed PNG whose sides are powers of two up to 256 keeps its indices and colours.
 ///
 /// # Errors
 /// A file that cannot be read, that is no such picture or a broken one, or with a side above 4,096.
 pub fn load(path: impl AsRef<Path>) -> Result<Texture, LoadError> {
-    let path = path.as_ref();
+    load_decoded(path.as_ref()).map(|decoded| decoded.texture)
+}
+
+/// Reads a picture as [`load`] does, and says what was left out.
+///
+/// # Errors
+/// Those of [`load`].
+#[doc(hidden)]
+pub fn load_decoded(path: &Path) -> Result<Decoded, LoadError> {
     read(path).map_err(|kind| LoadError { path: path.to_owned(), kind })
 }
 
-fn read(path: &Path) -> Result<Texture, LoadErrorKind> {
+fn read(path: &Path) -> Result<Decoded, LoadErrorKind> {
     let file = File::open(path).map_err(LoadErrorKind::Read)?;
     // A model may name a device that never ends.
     if !file.metadata().map_err(LoadErrorKind::Read)?.is_file() {
         return Err(LoadErrorKind::NotAFile);
     }
-    decode(BufReader::new(file))
+    decode_all(BufReader::new(file))
 }
 
 /// Reads a picture that is in memory or comes from elsewhere, and makes a texture of it like [`load`].
 ///
 /// # Errors
 /// Those of [`load`].
-pub fn decode(mut file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+    decode_all(file).map(|decoded| decoded.texture)
+}
+
+/// Reads a picture as [`decode`] does, and says what was left out.
+///
+/// # Errors
+/// Those of [`load`].
+#[doc(hidden)]
+pub fn decode_all(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
     const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
     let head = file.fill_buf().map_err(LoadErrorKind::Read)?;
     if head.starts_with(PNG) {
@@ -110,34 +144,38 @@ mod others {
     use std::string::ToString;
     use std::vec::Vec;
 
-    use image::{ImageError, ImageFormat, ImageReader, Limits};
+    use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-    use super::{LoadErrorKind, MAX_BYTES, Rgb, Texture, TextureError};
+    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Texture, check_size};
 
-    pub(super) fn decode(mut file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+    pub(super) fn decode(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
         let is_tga = file.fill_buf().is_ok_and(is_tga);
         let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
         if reader.format().is_none() && is_tga {
             reader.set_format(ImageFormat::Tga);
         }
-        let most = Texture::MAX_PICTURE_SIDE;
         let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(1 << 16), Some(1 << 16));
-        limits.max_alloc = Some(2 * MAX_BYTES as u64);
+        limits.max_alloc = Some(MAX_BYTES as u64);
         reader.limits(limits);
-        let picture = reader.decode().map_err(|error| match error {
+        let decoder = reader.into_decoder().map_err(reason)?;
+        let (width, height) = decoder.dimensions();
+        // Before room is made for its pixels.
+        check_size(width, height)?;
+        let picture = DynamicImage::from_decoder(decoder).map_err(reason)?.into_rgba8();
+        let was_transparent = picture.pixels().any(|pixel| pixel[3] < 255);
+        let pixels: Vec<Rgb> = picture.pixels().map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect();
+        let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
+        Ok(Decoded { texture, was_transparent })
+    }
+
+    fn reason(error: ImageError) -> LoadErrorKind {
+        match error {
             ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
                 LoadErrorKind::Read(error)
             }
-            error => LoadErrorKind::Picture(error.to_string()),
-        })?;
-        let (width, height) = (picture.width(), picture.height());
-        if width.max(height) > most {
-            return Err(LoadErrorKind::Texture(TextureError::Size { width, height }));
+            // Some messages end in a line feed, or have one within.
+            error => LoadErrorKind::Picture(error.to_string().trim_end().replace(char::is_control, " ")),
         }
-        let pixels: Vec<Rgb> =
-            picture.into_rgb8().pixels().map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect();
-        Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)
     }
 
     /// Returns whether these may be the first bytes of a TGA, which has no signature: kind of colour map, kind of picture
@@ -147,35 +185,74 @@ mod others {
     }
 }
 
-fn decode_png(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+fn check_size(width: u32, height: u32) -> Result<(), LoadErrorKind> {
+    match width.max(height) > Texture::MAX_PICTURE_SIDE {
+        true => Err(LoadErrorKind::Texture(TextureError::Size { width, height })),
+        false => Ok(()),
+    }
+}
+
+fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
     // A row of the widest picture is 32 KiB; a chunk beside the pixels may hold no more than they do.
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });
-    decoder.set_transformations(Transformations::EXPAND);
+    let head = decoder.read_header_info().map_err(reason)?;
+    let (width, height) = (head.width, head.height);
+    check_size(width, height)?;
+    let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
+    let keeps_indices = head.color_type == ColorType::Indexed && is_side(width) && is_side(height);
+    decoder.set_transformations(match keeps_indices {
+        true => Transformations::IDENTITY,
+        false => Transformations::EXPAND,
+    });
     let mut reader = decoder.read_info().map_err(reason)?;
-    let (width, height) = (reader.info().width, reader.info().height);
-    if width.max(height) > Texture::MAX_PICTURE_SIDE {
-        return Err(LoadErrorKind::Texture(TextureError::Size { width, height }));
-    }
     let (color, depth) = reader.output_color_type();
     let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
     reader.next_frame(&mut bytes).map_err(reason)?;
+    if keeps_indices {
+        return indexed(reader.info(), &bytes);
+    }
     // Eight bits of each sample, the nearest to sixteen.
     let sample = |sample: &[u8]| match *sample {
         [high, low] => ((u32::from(high) * 256 + u32::from(low) + 128) / 257) as u8,
         _ => sample[0],
     };
     let each = if depth == BitDepth::Sixteen { 2 } else { 1 };
+    let mut was_transparent = false;
     let pixels: Vec<Rgb> = bytes
         .chunks_exact(color.samples() * each)
         .map(|pixel| {
             let of = |i: usize| sample(&pixel[i * each..][..each]);
+            match color {
+                ColorType::GrayscaleAlpha => was_transparent |= of(1) < 255,
+                ColorType::Rgba => was_transparent |= of(3) < 255,
+                _ => {}
+            }
             match color {
                 ColorType::Grayscale | ColorType::GrayscaleAlpha => Rgb::new(of(0), of(0), of(0)),
                 _ => Rgb::new(of(0), of(1), of(2)),
             }
         })
         .collect();
-    Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)
+    let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
+    Ok(Decoded { texture, was_transparent })
+}
+
+/// The texture of a picture's indices, of 1, 2, 4 or 8 bits each, its rows from the top down.
+fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
+    let (width, bits) = (info.width as usize, usize::from(info.bit_depth as u8));
+    let row_bytes = (width * bits).div_ceil(8);
+    let texels: Vec<u8> = rows
+        .chunks_exact(row_bytes)
+        .rev()
+        .flat_map(|row| (0..width).map(move |x| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xFF >> (8 - bits))))
+        .collect();
+    let mut colors = [Rgb::BLACK; 256];
+    let entries = info.palette.as_deref().unwrap_or_default().as_chunks::<3>().0;
+    colors.iter_mut().zip(entries).for_each(|(color, &[red, green, blue])| *color = Rgb::new(red, green, blue));
+    let opacities = info.trns.as_deref().unwrap_or_default();
+    let was_transparent = texels.iter().any(|&texel| opacities.get(usize::from(texel)).is_some_and(|&o| o < 255));
+    let texture = Texture::new(info.width, info.height, texels, colors).map_err(LoadErrorKind::Texture)?;
+    Ok(Decoded { texture, was_transparent })
 }
 
 fn reason(error: DecodingError) -> LoadErrorKind {

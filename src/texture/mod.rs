@@ -6,7 +6,7 @@
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
 //! | `name.parse::<Texture>()` | those that are compiled in: crate, checker, bricks, sky |
 //! | [`Mipmap`] | a texture's smaller copies, for where it is far away |
-//! | `load`, `decode` | from a PNG file (feature `image`) |
+//! | `load`, `decode` | from a PNG file (feature `png`); a JPEG, TGA, BMP, GIF or WebP (feature `images`) |
 //!
 //! A texel is shaded by a table that [`Lut64K::shades`](crate::palette::Lut64K::shades) makes from a
 //! palette and the texture's colours, so a texture knows nothing of any palette.
@@ -25,7 +25,7 @@ use core::ops::Index;
 use crate::palette::median_cut::MedianCut;
 use crate::palette::{NearestColors, Rgb};
 #[cfg(feature = "png")]
-pub use load::{LoadError, LoadErrorKind, decode, load};
+pub use load::{Decoded, LoadError, LoadErrorKind, decode, decode_all, load, load_decoded};
 pub use mipmap::Mipmap;
 
 /// The errors of texels, or pixels, that are no texture.

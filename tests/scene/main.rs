@@ -11,6 +11,8 @@ mod gif;
 mod mesh_normals;
 #[cfg(feature = "alloc")]
 mod mesh_shapes;
+#[cfg(all(feature = "obj", feature = "png"))]
+mod models;
 #[cfg(feature = "obj")]
 mod obj_files;
 #[cfg(feature = "alloc")]

@@ -22,6 +22,8 @@ fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
         ("folder/broken.obj", &b"v 0 0 0\nf 1 2 3\n"[..]),
         ("folder/with_texture.obj", b"mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n"),
         ("folder/bent.obj", b"v 0 0 0\nv 0 0 2\nv 2 0 0\nv 2 0 2\nv 2 2 0\nv 2 2 2\nf 1 2 4 3\nf 3 4 6 5\n"),
+        ("folder/far_west.obj", b"v 4500000.125 7 0\nv 4500001.125 7 0\nv 4500000.125 8 0\nf 1 2 3\n"),
+        ("folder/far_east.obj", b"v 4500003.375 7 0\nv 4500005.375 7 0\nv 4500003.375 9 0\nf 1 2 3\n"),
         ("folder/dull.obj", b"mtllib dull.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl dull\nf 1 2 3\n"),
         ("folder/dull.mtl", b"newmtl dull\nKs 1 1 1\n"),
         ("folder/two.mtl", b"newmtl tin\nnewmtl oak\n"),
@@ -54,6 +56,21 @@ fn scene(text: &str) -> Scene {
 
 /// A cube, for scenes whose objects are of no interest, in one line.
 const CUBE: &str = "objects = [{ shape = 'cube' }]\n";
+
+/// Two models of one map, which are read about their own middles: by one pivot they stand as the map has them.
+#[test]
+fn a_pivot_is_a_point_of_the_file_even_far_from_0() {
+    for (scale, factors) in [("1", Vec3::ONE), ("[1, 2, 3]", Vec3::new(1.0, 2.0, 3.0))] {
+        let text: String = ["west", "east"]
+            .map(|name| format!("[[objects]]\nmodel = 'far_{name}.obj'\npivot = [4500000, 7, 0]\nscale = {scale}\n"))
+            .concat();
+        let Loaded { scene, warnings, .. } = loaded(&text).expect("a scene");
+        assert_eq!(warnings.len(), 2, "{warnings:?}");
+        let corners = scene.objects().iter().map(|object| object.mesh().positions()[0] - object.pivot);
+        let right = [Vec3::new(0.125, 0.0, 0.0), Vec3::new(3.375, 0.0, 0.0)].map(|corner| corner * factors);
+        assert_eq!(corners.collect::<Vec<_>>(), right);
+    }
+}
 
 #[test]
 fn f3_broken_scenes_are_one_line_with_line_column_and_key() {

@@ -11,7 +11,7 @@ use mode13h::palette::{Lut64K, Palette, Rgb};
 use mode13h::render::{Mapping, Renderer};
 use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
-use mode13h::texture::{self, Mipmap, Texture, TextureError};
+use mode13h::texture::{self, LoadErrorKind, Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
 
 fn random_color(random: &mut Random) -> Rgb {
@@ -376,7 +376,7 @@ mod files {
     use std::fs;
     use std::path::Path;
 
-    use mode13h::texture::{LoadErrorKind, load};
+    use mode13h::texture::load;
     use png::{BitDepth, ColorType};
 
     use super::*;
@@ -418,6 +418,29 @@ mod files {
             write_png(&path, (2, 1), color, depth, palette, data);
             assert_eq!(picture(&load(&path).expect("a texture")), expected, "{color:?}, {depth:?}");
         }
+    }
+
+    /// Sides of powers of two up to 256: nothing is averaged, and two entries of one colour stay two. Palette animation
+    /// tells them apart.
+    #[test]
+    fn an_indexed_png_keeps_its_indices_and_a_palette_of_its_own_shows_them() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("texture.png");
+        let plte = [0, 0, 0, 8, 16, 24, 255, 0, 0, 8, 16, 24];
+        write_png(&path, (4, 2), ColorType::Indexed, BitDepth::Two, &plte, &[0b1110_0100, 0b0101_1010]);
+        let texture = load(&path).expect("a texture");
+        assert_eq!(texture.texels(), [1, 1, 2, 2, 3, 2, 1, 0]);
+        let colors: Vec<Rgb> = plte.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect();
+        assert_eq!(texture.colors()[..4], colors);
+        let mut own = [Rgb::WHITE; 256];
+        own[..4].copy_from_slice(&colors);
+        let table = Lut64K::shades(&Palette::from_colors(own), texture.colors());
+        assert_eq!([0, 1, 2, 3].map(|texel| table.get(255, texel)), [0, 1, 2, 3]);
+        // Another palette has its nearest, and other sides are averaged.
+        own.swap(1, 9);
+        assert_eq!(Lut64K::shades(&Palette::from_colors(own), texture.colors()).get(255, 1), 3);
+        write_png(&path, (3, 1), ColorType::Indexed, BitDepth::Eight, &plte, &[1, 3, 2]);
+        assert_eq!(load(&path).expect("a texture").width(), 4);
     }
 
     #[test]
@@ -484,6 +507,30 @@ fn every_kind_of_picture_is_read() {
     let share = off.iter().filter(|off| **off > 3 * 12 * 12).count() as f64 / off.len() as f64;
     assert!(share < 0.1, "{share} of the texels are off");
     for broken in [&b"GIF89a"[..], b"\xFF\xD8\xFF\xE0", b"RIFF....WEBP", b"BM", b"nothing", b"", &[0; 18]] {
-        assert!(texture::decode(Cursor::new(broken)).is_err(), "{broken:?}");
+        let error = texture::decode(Cursor::new(broken)).expect_err("no picture").to_string();
+        assert!(!error.contains(char::is_control), "{broken:?}: {error:?}");
+    }
+}
+
+/// No picture is decoded to find that it is too large.
+#[cfg(feature = "images")]
+#[test]
+fn a_picture_too_large_is_refused_by_its_head() {
+    use std::io::Cursor;
+
+    let mut tga = [0; 18];
+    (tga[2], tga[16]) = (2, 24);
+    tga[12..16].copy_from_slice(&[0xFF, 0xFF, 0xFF, 0xFF]);
+    let mut bmp = b"BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0".to_vec();
+    bmp.extend([5000_i32, 3].map(i32::to_le_bytes).concat());
+    bmp.extend([1, 0, 24, 0]);
+    bmp.resize(54, 0);
+    let gif = [&b"GIF89a\x88\x13\x03\0\0\0\0,\0\0\0\0\x88\x13\x03\0\0\x02"[..], &[0; 8]].concat();
+    for (name, bytes, size) in
+        [("TGA", tga.to_vec(), [65_535, 65_535]), ("BMP", bmp, [5000, 3]), ("GIF", gif, [5000, 3])]
+    {
+        let error = texture::decode(Cursor::new(bytes)).expect_err(name);
+        let expected = TextureError::Size { width: size[0], height: size[1] };
+        assert!(matches!(error, LoadErrorKind::Texture(error) if error == expected), "{name}: {error}");
     }
 }

@@ -813,6 +813,24 @@ fn input_comes_by_a_pipe_or_packed() {
     );
 }
 
+/// What came by a pipe is there for as long as the program runs: the window shows it again after another, and when a file
+/// that it names has changed.
+#[test]
+fn standard_input_is_read_once_and_shown_as_often_as_asked_for() {
+    use std::io::Write;
+
+    let directory = directory();
+    let mut child = program(&directory)
+        .args(["-", "torus", "/dev/stdin"])
+        .stdin(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("started");
+    child.stdin.take().expect("a pipe").write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("read");
+    assert!(child.wait().expect("ended").success());
+    assert!(read(&directory, "mode13h-0001.png") == read(&directory, "mode13h-0003.png"));
+}
+
 /// A program for DOS says what a scene loses in it.
 #[test]
 fn dos_says_what_is_left_out() {

@@ -18,7 +18,7 @@
 //! ([`Options::crease`]).
 //!
 //! Positions are read in f64. If their middle is more than 16 half extents from 0, as on maps, it is moved to 0 before they
-//! are rounded to f32, and a warning says by how much.
+//! are rounded to f32, and a warning says by how much ([`Loaded::origin`]).
 //!
 //! Two faults of scans are mended in a model that is closed, each with a warning. Pairs of triangles back to back, of the
 //! same three points, are left out where other faces go on at their edges; sheets with a rim of their own, as leaves, stay.
@@ -66,6 +66,8 @@ pub struct Loaded {
     /// The files that were read or looked for: the model's own if it was loaded from one, MTL files, and textures that
     /// the materials name. Some may not exist.
     pub files: Vec<PathBuf>,
+    /// The point of the file that is 0 in the mesh: the middle of a model far from 0, 0 of all others.
+    pub origin: [f64; 3],
 }
 
 /// The crease angle of models without one.
@@ -109,7 +111,7 @@ pub fn load_with(
         return Err(ObjError::of_file(path, ObjErrorKind::Directory));
     }
     let file = Counted::new(file, metadata.len(), progress);
-    let (mut mesh, mut warnings, libraries) =
+    let Parsed { mut mesh, mut warnings, libraries, origin } =
         read(BufReader::with_capacity(1 << 16, file), path, library_file, options)?;
     let files = [path.to_owned()].into_iter().chain(libraries).chain(textures(&mesh)).collect();
     for surface in &mut mesh.surfaces {
@@ -118,7 +120,7 @@ pub fn load_with(
             warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files, origin })
 }
 
 /// The textures that a model's materials name.
@@ -170,18 +172,26 @@ pub fn parse_with(
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
 ) -> Result<Loaded, ObjError> {
-    let (mesh, warnings, libraries) = read(reader, path.as_ref(), library, options)?;
+    let Parsed { mesh, warnings, libraries, origin } = read(reader, path.as_ref(), library, options)?;
     let files = libraries.into_iter().chain(textures(&mesh)).collect();
-    Ok(Loaded { mesh, warnings: warnings.into_lines(), files })
+    Ok(Loaded { mesh, warnings: warnings.into_lines(), files, origin })
 }
 
-/// The model, its warnings, and the paths that `library` was given.
+/// A model of which no texture was looked for.
+struct Parsed {
+    mesh: Mesh,
+    warnings: Warnings,
+    /// The paths that the caller was asked for.
+    libraries: Vec<PathBuf>,
+    origin: [f64; 3],
+}
+
 fn read(
     reader: impl BufRead,
     path: &Path,
     mut library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
-) -> Result<(Mesh, Warnings, Vec<PathBuf>), ObjError> {
+) -> Result<Parsed, ObjError> {
     let mut warnings = Warnings::default();
     let mut libraries = Vec::new();
     let library = |path: &Path| {
@@ -201,6 +211,7 @@ fn read(
     if model.colored > 0 {
         warnings.push(|| format!("{shown}:{}: colours of vertices left out", model.colored));
     }
+    let origin = model.middle.unwrap_or_default();
     if let Some([x, y, z]) = model.middle {
         warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));
     }
@@ -220,5 +231,5 @@ fn read(
         1 => warnings.push(|| format!("{path}: turned round a body that was inside out")),
         turned => warnings.push(|| format!("{path}: turned round {turned} bodies that were inside out")),
     }
-    Ok((mesh, warnings, libraries))
+    Ok(Parsed { mesh, warnings, libraries, origin })
 }

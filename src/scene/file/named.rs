@@ -20,12 +20,15 @@ use crate::texture::{self, LoadError, LoadErrorKind, Texture};
 /// The caller's function that opens a file.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
 
+/// A model's mesh, and the point of its file that lies at 0 in it.
+type Placed = (Shared<Mesh>, [f64; 3]);
+
 /// The files that a scene names, found from its folder.
 pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
-    /// The models, by the file and the bits of the requested crease angle.
-    models: BTreeMap<(PathBuf, Option<u64>), Shared<Mesh>>,
+    /// The models and their origins, by the file and the bits of the requested crease angle.
+    models: BTreeMap<(PathBuf, Option<u64>), Placed>,
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
@@ -42,8 +45,12 @@ impl<'a> Named<'a> {
         Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
     }
 
-    /// Loads a model, with a crease angle if one is requested.
-    pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<Angle>) -> Result<Shared<Mesh>, Fault> {
+    /// Loads a model, with a crease angle if one is requested. Returns it and the point of its file that is 0 in it.
+    pub(super) fn model(
+        &mut self,
+        name: &Spanned<FileName>,
+        crease: Option<Angle>,
+    ) -> Result<(Shared<Mesh>, [f64; 3]), Fault> {
         let path = self.folder.join(&name.get_ref().0);
         let key = (path.clone(), crease.map(|crease| crease.to_radians().to_bits()));
         if let Some(known) = self.models.get(&key) {
@@ -62,9 +69,9 @@ impl<'a> Named<'a> {
         let loaded = obj::parse_with(file, &path, library, &obj::Options { crease })
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
         self.warnings.extend(loaded.warnings);
-        let mesh = Shared::new(loaded.mesh);
-        self.models.insert(key, mesh.clone());
-        Ok(mesh)
+        let model = (Shared::new(loaded.mesh), loaded.origin);
+        self.models.insert(key, model.clone());
+        Ok(model)
     }
 
     /// A palette that is built in, or a file.
@@ -78,7 +85,7 @@ impl<'a> Named<'a> {
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Palette { path, error }))
     }
 
-    /// A texture that is built in, or a PNG file.
+    /// A texture that is built in, or the picture in a file.
     pub(super) fn texture(&mut self, name: &Spanned<FileName>) -> Result<Shared<Texture>, Fault> {
         let path = self.folder.join(&name.get_ref().0);
         if let Some(known) = self.textures.get(&path) {
@@ -88,9 +95,11 @@ impl<'a> Named<'a> {
             Ok(builtin) => builtin,
             Err(_) => {
                 let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
-                texture::decode(Cursor::new(bytes)).map_err(|kind| {
+                let decoded = texture::decode_all(Cursor::new(bytes)).map_err(|kind| {
                     Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }))
-                })?
+                })?;
+                self.warnings.extend(decoded.warning(&path));
+                decoded.texture
             }
         };
         let texture = Shared::new(texture);
@@ -107,10 +116,11 @@ impl<'a> Named<'a> {
         }
         let mut bytes = Vec::new();
         let read = (self.open)(&path).and_then(|file| file.take(LONGEST_TEXTURE).read_to_end(&mut bytes));
-        let decoded = read.map_err(LoadErrorKind::Read).and_then(|_| texture::decode(Cursor::new(bytes)));
+        let decoded = read.map_err(LoadErrorKind::Read).and_then(|_| texture::decode_all(Cursor::new(bytes)));
         match decoded {
-            Ok(texture) => {
-                let texture = Shared::new(texture);
+            Ok(decoded) => {
+                self.warnings.extend(decoded.warning(&path));
+                let texture = Shared::new(decoded.texture);
                 self.textures.insert(path, texture.clone());
                 Some(texture)
             }

@@ -83,17 +83,19 @@ impl Objects {
         if let (None, Some(crease)) = (&layout.model, &layout.crease) {
             return Err(Fault::value(crease.span(), "only a model has a crease angle"));
         }
-        let mesh = match (&layout.shape, &layout.model) {
-            (Some(_), None) => self.shape(layout, &span, change, positions.len())?,
+        let (mesh, origin) = match (&layout.shape, &layout.model) {
+            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3]),
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
-                let mesh = named.model(
+                let (mesh, origin) = named.model(
                     model,
                     layout.crease.as_ref().map(|crease| Angle::from_degrees(crease.get_ref().0.into())),
                 )?;
-                if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) }
+                let mesh =
+                    if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) };
+                (mesh, origin)
             }
             (Some(_), Some(model)) => {
                 return Err(Fault::value(model.span(), "beside a `shape`: an object is one of both"));
@@ -110,7 +112,9 @@ impl Objects {
         };
         object.scale = scale;
         if let Some(pivot) = layout.pivot {
-            object.pivot = pivot.vec3() * stretch;
+            // A point of the model's file, which may lie far from 0.
+            let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(pivot.vec3()[axis]) - origin[axis]) as f32);
+            object.pivot = Vec3::new(x, y, z) * stretch;
         }
         if let Some(up) = &layout.up_axis {
             object.up_axis = up.0.0;
