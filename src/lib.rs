@@ -87,6 +87,7 @@ pub mod vga;
 
 #[cfg(feature = "alloc")]
 mod angle;
+mod errors;
 mod names;
 mod shading;
 

@@ -19,7 +19,6 @@ use crate::texture::{self, Texture};
 pub use studio::studio;
 
 /// An error of a model file that gave no scene.
-#[derive(Debug)]
 #[non_exhaustive]
 pub enum ModelError {
     /// The file cannot be read, or holds no model.
@@ -36,6 +35,8 @@ impl fmt::Display for ModelError {
         }
     }
 }
+
+crate::errors::debug_as_display!(ModelError);
 
 impl Error for ModelError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {

@@ -6,7 +6,7 @@ use core::fmt;
 pub(crate) const KERNELS: usize = 10;
 
 /// An unknown name, or that of a kernel that this machine or build lacks. Its text lists those that there are.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct UnknownName(Unknown);
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -49,6 +49,8 @@ impl fmt::Display for UnknownName {
         }
     }
 }
+
+crate::errors::debug_as_display!(UnknownName);
 
 impl core::error::Error for UnknownName {}
 

@@ -25,7 +25,7 @@ pub(crate) struct Options {
     ///
     /// It says which triangle it shows and why, its span and its sums, the exact value, the truth, and the stages of its
     /// byte.
-    #[arg(long, value_name = "X,Y", value_parser = place)]
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pixel: Option<(u32, u32)>,
     /// The row, counted from 0 at the top
     ///
@@ -151,6 +151,8 @@ fn face_json(pixel: &Pixel, face: &FaceHere) -> Value {
         "object": pixel.objects.get(face.object),
         "object_index": face.object,
         "triangle": face.triangle,
+        "line": face.line,
+        "material": face.material,
         "is_part": face.is_part,
         "interpolation": face.interpolation.name(),
         "corners": corners.collect::<Vec<_>>(),

@@ -6,6 +6,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use flate2::bufread::MultiGzDecoder;
@@ -246,6 +247,7 @@ fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjErro
     let begun = Instant::now();
     let mut bar: Option<ProgressBar> = None;
     let loaded = obj::load_with(path, options, |read, total| {
+        PERCENT.store((100 * read).checked_div(total).map_or(UNKNOWN, |percent| percent.min(100)), Ordering::Relaxed);
         if begun.elapsed() < MOMENT {
             return;
         }
@@ -256,10 +258,21 @@ fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjErro
             bar.set_message(", making the mesh");
         }
     });
+    PERCENT.store(UNKNOWN, Ordering::Relaxed);
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
     loaded
+}
+
+/// How much has been read of the model that is being loaded, in percent.
+static PERCENT: AtomicU64 = AtomicU64::new(UNKNOWN);
+const UNKNOWN: u64 = u64::MAX;
+
+/// How much has been read of the model that is being loaded by any thread, in percent; `None` if none is, or if nobody
+/// knows how long it is. After 100 the mesh is made.
+pub(crate) fn percent_read() -> Option<u64> {
+    Some(PERCENT.load(Ordering::Relaxed)).filter(|percent| *percent != UNKNOWN)
 }
 
 /// A bar on standard error, if that is a terminal.
@@ -314,8 +327,13 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
     let shown = path.display();
     let bytes = read_at_most(path, LONGEST_PALETTE).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => {
-            let reason =
-                format!("{shown}: neither a file nor a built-in palette; those are {}", palette_names().join(", "));
+            let names = palette_names();
+            let near = words.to_str().and_then(|word| typo::nearest(word, names.iter().copied().chain([AUTO])));
+            let known = near.map_or_else(
+                || format!("those are {}", names.join(", ")),
+                |name| format!("did you mean {name}? (mode13h palette lists them)"),
+            );
+            let reason = format!("{shown}: neither a file nor a built-in palette; {known}");
             // A word without an extension is a name that there is not.
             if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
         }

@@ -204,7 +204,9 @@ impl Drawing {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let (mut stage, usual) = match input {
             Input::Model(model) => {
-                let stage = model.stage(self.up.map(UpAxis::from))?;
+                let name = model.name.clone();
+                let mut stage = model.stage(self.up.map(UpAxis::from))?;
+                stage.scene.objects_mut().iter_mut().for_each(|object| object.name.clone_from(&name));
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
@@ -326,6 +328,13 @@ fn background(words: &str) -> Result<Background, String> {
     if is_color && let Ok(color) = u32::from_str_radix(digits, 16) {
         let [_, r, g, b] = color.to_be_bytes();
         return Ok(Background::Color(Rgb::new(r, g, b)));
+    }
+    if let Some(short) = words.strip_prefix('#')
+        && short.len() == 3
+        && short.bytes().all(|digit| digit.is_ascii_hexdigit())
+    {
+        let long: String = short.chars().flat_map(|digit| [digit, digit]).collect();
+        return Err(format!("{words}: a colour has six digits: '#{long}'"));
     }
     let entry = words.parse().map(Background::Entry);
     entry.map_err(|_| "neither a colour such as '#203040' nor an entry of the palette, 0 to 255".to_string())

@@ -296,7 +296,15 @@ impl Out {
             let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::try_from).map_err(|error| wrong(&error))?;
             Ok(Out::Film(Film::new(kind, out, *frames, rate, *scale)))
         } else {
-            Err(wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"))
+            // What ffmpeg makes of a stream.
+            let films = ["mp4", "webm", "mkv", "mov", "avi", "webp"];
+            let shown = out.display();
+            Err(match films.into_iter().any(ends_in) {
+                true => wrong(&format!(
+                    "films are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p {shown}`"
+                )),
+                false => wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"),
+            })
         }
     }
 

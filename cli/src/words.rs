@@ -72,7 +72,14 @@ enum Command {
 /// All commands and options: what is parsed, and what help, completions and man pages are made from.
 pub(crate) fn command() -> clap::Command {
     let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::KEYS);
-    Words::command()
+    // What stands behind an option is its value, with a minus, too.
+    let takes_negative = |arg: clap::Arg| match arg.is_positional() || !arg.get_action().takes_values() {
+        true => arg,
+        false => arg.allow_negative_numbers(true),
+    };
+    let command = Words::command().mut_args(takes_negative);
+    command
+        .mut_subcommands(|command| command.mut_args(takes_negative))
         .max_term_width(WIDTH)
         .mut_subcommands(|command| match command.get_name() {
             "demo" => command.after_long_help(keys_and_status.clone()),
@@ -83,6 +90,9 @@ pub(crate) fn command() -> clap::Command {
 
 /// Parses what was typed; where that is help or a failure, returns what has become of it.
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
+    if let Some(word) = empty_word() {
+        return Err(Err(Failure::words(format!("{word}: an empty word names nothing ({} shows the options)", help()))));
+    }
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(&error.render().to_string()),
@@ -111,6 +121,20 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
         Some(Command::Verify(options)) => verify::run(options),
         Some(Command::Generate(options)) => generate::run(options, command()),
     }
+}
+
+/// Finds a word that is empty, and the option that it belongs to.
+fn empty_word() -> Option<String> {
+    let words: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let is_option = |word: &&OsString| word.as_encoded_bytes().starts_with(b"-");
+    let at = words.iter().position(|word| {
+        word.is_empty() || (word.as_encoded_bytes().starts_with(b"--") && word.as_encoded_bytes().ends_with(b"="))
+    })?;
+    if !words[at].is_empty() {
+        return Some(words[at].display().to_string());
+    }
+    let before = at.checked_sub(1).and_then(|before| words.get(before)).filter(is_option);
+    Some(before.map_or("''".into(), |option| format!("{} ''", option.display())))
 }
 
 /// Describes what is wrong with the words, as one sentence.

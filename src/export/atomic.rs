@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// An error of a file that was not written. The file that stood under its name before is untouched.
-#[derive(Debug)]
 #[non_exhaustive]
 pub struct ExportError {
     /// The file that was to be written.
@@ -109,6 +108,8 @@ impl fmt::Display for ExportError {
         }
     }
 }
+
+crate::errors::debug_as_display!(ExportError);
 
 impl Error for ExportError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {

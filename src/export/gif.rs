@@ -276,7 +276,6 @@ fn reason(error: EncodingError) -> io::Error {
 }
 
 /// An error of a film that was not written.
-#[derive(Debug)]
 #[non_exhaustive]
 #[doc(hidden)]
 pub enum GifError {
@@ -297,6 +296,8 @@ impl fmt::Display for GifError {
         }
     }
 }
+
+crate::errors::debug_as_display!(GifError);
 
 impl Error for GifError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {

@@ -79,7 +79,7 @@ impl<'a> Picture<'a> {
 }
 
 /// The errors of a picture that cannot be exported.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum PictureError {
     /// A side of no pixels or of more than 16,384, or a pixel of no size.
@@ -144,5 +144,7 @@ impl fmt::Display for PictureError {
         }
     }
 }
+
+crate::errors::debug_as_display!(PictureError);
 
 impl Error for PictureError {}

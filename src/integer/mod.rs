@@ -70,7 +70,7 @@ pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 
 /// The errors of the integer path: of a mesh, a camera, lights or paints.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum IntegerError {
     /// A picture with a side of 0 or above 4,096 pixels.
@@ -163,5 +163,7 @@ impl fmt::Display for IntegerError {
         }
     }
 }
+
+crate::errors::debug_as_display!(IntegerError);
 
 impl core::error::Error for IntegerError {}

@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// An error of a mesh that is refused. Vertices and triangles are counted from 0.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MeshError {
     /// There is nothing to draw.
@@ -71,5 +71,7 @@ impl fmt::Display for MeshError {
         }
     }
 }
+
+crate::errors::debug_as_display!(MeshError);
 
 impl core::error::Error for MeshError {}

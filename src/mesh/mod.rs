@@ -55,6 +55,7 @@ pub struct Mesh {
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
     surfaces: Vec<Surface>,
+    lines: Lines,
     bounds: Bounds,
     closed: bool,
     outward: bool,
@@ -62,6 +63,17 @@ pub struct Mesh {
     /// A bit for each triangle that lies back to back with another; empty if there is none.
     twins: Vec<u64>,
     facts: facts::Facts,
+}
+
+/// The line of each triangle in the file that a mesh was read from; empty if it comes from none. It is no part of what the
+/// mesh is: the same one may stand elsewhere in another file.
+#[derive(Clone, Debug, Default)]
+struct Lines(Vec<u32>);
+
+impl PartialEq for Lines {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Mesh {
@@ -181,6 +193,7 @@ impl Mesh {
             triangle_surfaces: vec![0; triangles.len()],
             triangles,
             surfaces: vec![Surface::default()],
+            lines: Lines::default(),
             bounds,
             closed,
             outward,
@@ -224,6 +237,13 @@ impl Mesh {
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// The line of a triangle's face in the model's file, counted from 1; `None` if the mesh was not read from one.
+    #[must_use]
+    #[doc(hidden)]
+    pub fn line(&self, triangle: usize) -> Option<u32> {
+        self.lines.0.get(triangle).copied()
     }
 
     /// The index of each vertex's point: vertices in one place share it.

@@ -31,6 +31,7 @@ impl Mesh {
         mesh.texcoords = self.texcoords.clone();
         mesh.surfaces = self.surfaces.clone();
         mesh.triangle_surfaces = self.triangle_surfaces.clone();
+        mesh.lines = self.lines.clone();
         Ok(mesh.with_facts())
     }
 }

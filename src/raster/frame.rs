@@ -58,7 +58,7 @@ impl Rect {
 }
 
 /// Error of bytes or depths that cannot serve as a frame or as its depth buffer.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FrameError {
     /// Width or height is 0 or above 4,096.
@@ -115,6 +115,8 @@ impl fmt::Display for FrameError {
         }
     }
 }
+
+crate::errors::debug_as_display!(FrameError);
 
 impl core::error::Error for FrameError {}
 

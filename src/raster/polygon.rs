@@ -52,7 +52,7 @@ pub struct TableRow {
 }
 
 /// Error of a polygon that was not drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PolygonError {
     /// It turns both ways, or more than once around: a row might cross it four times.
@@ -78,6 +78,8 @@ impl fmt::Display for PolygonError {
         }
     }
 }
+
+crate::errors::debug_as_display!(PolygonError);
 
 impl core::error::Error for PolygonError {}
 

@@ -15,7 +15,7 @@ pub struct Vertex {
 }
 
 /// Error of a vertex that was refused.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum VertexError {
     /// A coordinate lies outside the guard band of ±4,096 pixels.
@@ -47,6 +47,8 @@ impl fmt::Display for VertexError {
         }
     }
 }
+
+crate::errors::debug_as_display!(VertexError);
 
 impl core::error::Error for VertexError {}
 

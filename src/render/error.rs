@@ -5,7 +5,7 @@ use core::fmt;
 use crate::scene::Scene;
 
 /// Error of a scene that could not be drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The camera.
@@ -47,6 +47,8 @@ impl fmt::Display for RenderError {
         }
     }
 }
+
+crate::errors::debug_as_display!(RenderError);
 
 impl core::error::Error for RenderError {}
 

@@ -328,13 +328,21 @@ impl Default for Scene {
     }
 }
 
+/// Panics, at the place of the caller who indexed the scene.
+#[cold]
+#[track_caller]
+fn not_there(what: &str) -> ! {
+    panic!("this {what} was removed from the scene, or its id is another scene's")
+}
+
 impl Index<ObjectId> for Scene {
     type Output = Object;
 
     /// # Panics
     /// If the object was removed, or `id` is of another scene. [`get`](Scene::get) does not panic.
+    #[track_caller]
     fn index(&self, id: ObjectId) -> &Object {
-        self.get(id).expect("an object that is in the scene")
+        self.get(id).unwrap_or_else(|| not_there("object"))
     }
 }
 
@@ -343,23 +351,27 @@ impl Index<LightId> for Scene {
 
     /// # Panics
     /// If the light was removed, or `id` is of another scene.
+    #[track_caller]
     fn index(&self, id: LightId) -> &Light {
-        &self.lights[self.light_ids.binary_search(&id).expect("a light that is in the scene")]
+        let index = self.light_ids.binary_search(&id);
+        &self.lights[index.unwrap_or_else(|_| not_there("light"))]
     }
 }
 
 impl IndexMut<LightId> for Scene {
     /// # Panics
     /// If the light was removed, or `id` is of another scene.
+    #[track_caller]
     fn index_mut(&mut self, id: LightId) -> &mut Light {
-        self.light_mut(id).expect("a light that is in the scene")
+        self.light_mut(id).unwrap_or_else(|| not_there("light"))
     }
 }
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
     /// If the object was removed, or `id` is of another scene. [`get_mut`](Scene::get_mut) does not panic.
+    #[track_caller]
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
-        self.get_mut(id).expect("an object that is in the scene")
+        self.get_mut(id).unwrap_or_else(|| not_there("object"))
     }
 }

@@ -149,7 +149,7 @@ impl<'a> Levels<'a> {
 }
 
 /// Bytes are not a texture.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TexelsError {
     /// Wider or higher than 256 texels.
@@ -178,6 +178,8 @@ impl fmt::Display for TexelsError {
         }
     }
 }
+
+crate::errors::debug_as_display!(TexelsError);
 
 impl core::error::Error for TexelsError {}
 

@@ -11,13 +11,13 @@ use std::vec::Vec;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
 use super::{Texture, TextureError};
+use crate::errors::clause;
 use crate::palette::Rgb;
 
 /// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
 /// An error of a file that gave no texture.
-#[derive(Debug)]
 #[non_exhaustive]
 pub struct LoadError {
     /// The file.
@@ -56,6 +56,8 @@ impl fmt::Display for LoadErrorKind {
         }
     }
 }
+
+crate::errors::debug_as_display!(LoadError);
 
 impl core::error::Error for LoadError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
@@ -146,7 +148,7 @@ mod others {
 
     use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Texture, check_size};
+    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Texture, check_size, clause};
 
     pub(super) fn decode(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
         let is_tga = file.fill_buf().is_ok_and(is_tga);
@@ -173,8 +175,11 @@ mod others {
             ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
                 LoadErrorKind::Read(error)
             }
-            // Some messages end in a line feed, or have one within.
-            error => LoadErrorKind::Picture(error.to_string().trim_end().replace(char::is_control, " ")),
+            error => {
+                // What it says in front of its reason is that there is one.
+                let reason = core::error::Error::source(&error).map(ToString::to_string);
+                LoadErrorKind::Picture(clause(&reason.unwrap_or_else(|| error.to_string())))
+            }
         }
     }
 
@@ -258,6 +263,6 @@ fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
 fn reason(error: DecodingError) -> LoadErrorKind {
     match error {
         DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => LoadErrorKind::Read(error),
-        error => LoadErrorKind::Picture(error.to_string()),
+        error => LoadErrorKind::Picture(clause(&error.to_string())),
     }
 }

@@ -29,7 +29,7 @@ pub use load::{Decoded, LoadError, LoadErrorKind, decode, decode_all, load, load
 pub use mipmap::Mipmap;
 
 /// The errors of texels, or pixels, that are no texture.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TextureError {
     /// A side of an indexed texture is no power of two up to 256.
@@ -70,6 +70,8 @@ impl fmt::Display for TextureError {
         }
     }
 }
+
+crate::errors::debug_as_display!(TextureError);
 
 impl core::error::Error for TextureError {}
 

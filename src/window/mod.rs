@@ -19,6 +19,7 @@ pub use canvas::Canvas;
 pub use input::{Buttons, Input};
 pub use minifb::Key;
 
+use crate::errors::clause;
 use crate::vga::Vga;
 use fit::Picture;
 use input::Events;
@@ -272,7 +273,6 @@ fn printable(title: &str) -> String {
 }
 
 /// The error of a display that does not exist, or that went away.
-#[derive(Debug)]
 pub struct WindowError {
     reason: minifb::Error,
 }
@@ -285,8 +285,14 @@ impl WindowError {
 
 impl fmt::Display for WindowError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no display: {}", self.reason)
+        use minifb::Error::{MenuExists, UpdateFailed, WindowCreate};
+        match &self.reason {
+            WindowCreate(why) | UpdateFailed(why) | MenuExists(why) => write!(f, "no display: {}", clause(why)),
+            reason => write!(f, "no display: {}", clause(&reason.to_string())),
+        }
     }
 }
+
+crate::errors::debug_as_display!(WindowError);
 
 impl Error for WindowError {}

@@ -3,6 +3,8 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+#[cfg(feature = "alloc")]
+mod errors;
 #[cfg(feature = "png")]
 mod export;
 #[cfg(feature = "gif")]

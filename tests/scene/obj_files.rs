@@ -2,11 +2,13 @@
 
 use std::collections::HashMap;
 use std::fmt::Write;
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::support::property::property;
 use crate::support::tried::Tried;
+use crate::support::workspace;
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
@@ -1054,4 +1056,56 @@ fn token() -> impl Strategy<Value = String> {
         1 => any::<f32>().prop_map(|x| format!(" {x}")),
         1 => "\\PC{0,6}",
     ]
+}
+
+/// Each triangle knows the line of its face, also where faces were split, left out or turned round.
+#[test]
+fn every_triangle_knows_its_line() {
+    let mut tried = Tried::new("every_triangle_knows_its_line", 56);
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    // A cube that is inside out, and two faces back to back in it, which are left out.
+    let inside_out = format!(
+        "{cube}f 1 2 3 4\n# the top\nf 8 7 6 5\nv 9 0 0\nv 9 1 0\nv 9 0 1\nf 9 10 11\nf 9 11 10\nf 5 6 2 1\n\
+         f 6 7 \\\n3 2\nf 7 8 4 3\nf 8 5 1 4\n"
+    );
+    let data = workspace::root().join("tests/data");
+    let [house, chest] = ["house.obj", "chest.obj"].map(|name| fs::read_to_string(data.join(name)).expect("text"));
+    for text in [&inside_out, &house, &chest] {
+        let loaded = obj::parse(text.as_bytes(), "model.obj", no_library).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let points: Vec<Vec3> = lines
+            .iter()
+            .filter_map(|line| line.strip_prefix("v "))
+            .map(|line| {
+                let numbers: Vec<f32> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+                Vec3::from_slice(&numbers)
+            })
+            .collect();
+        let mesh = &loaded.mesh;
+        for (i, triangle) in mesh.triangles().iter().enumerate() {
+            let first = mesh.line(i).expect("a line") as usize - 1;
+            // A line that goes on counts by its beginning.
+            let mut face = lines[first].strip_prefix("f ").expect("a face").to_string();
+            if let Some(begun) = face.clone().strip_suffix('\\') {
+                face = format!("{begun} {}", lines[first + 1]);
+            }
+            let corners: Vec<Vec3> = face
+                .split_whitespace()
+                .map(|word| match word.split('/').next().unwrap().parse::<isize>().unwrap() {
+                    index @ 1.. => points[index as usize - 1],
+                    // Counted back from the last point above the face.
+                    index => {
+                        let above = lines[..first].iter().filter(|line| line.starts_with("v ")).count();
+                        points[above.checked_add_signed(index).unwrap()]
+                    }
+                })
+                .collect();
+            for &corner in triangle {
+                assert!(corners.contains(&mesh.positions()[corner as usize]), "triangle {i}: {face}");
+            }
+            tried.add(1);
+        }
+        assert_eq!(mesh.line(mesh.triangles().len()), None);
+    }
+    assert_eq!(shapes::cube().line(0), None);
 }

@@ -534,3 +534,38 @@ fn a_picture_too_large_is_refused_by_its_head() {
         assert!(matches!(error, LoadErrorKind::Texture(error) if error == expected), "{name}: {error}");
     }
 }
+
+/// What is wrong with a picture is one sentence, whatever its decoder says.
+#[cfg(feature = "images")]
+#[test]
+fn what_is_wrong_with_a_picture_is_one_sentence() {
+    use std::io::Cursor;
+
+    use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, WebP};
+
+    let mut tried = Tried::new("what_is_wrong_with_a_picture_is_one_sentence", 500);
+    let mut random = Random::new(1);
+    let picture = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([x as u8 * 16, y as u8 * 16, (x * y) as u8]));
+    for format in [Tga, Bmp, Gif, WebP, Jpeg, Png] {
+        let mut whole = Cursor::new(Vec::new());
+        picture.write_to(&mut whole, format).expect("written");
+        let whole = whole.into_inner();
+        for i in 0..600 {
+            let mut bytes = whole.clone();
+            if i % 3 == 0 {
+                bytes.truncate(random.within(0, whole.len() as i64 - 1) as usize);
+            } else {
+                // Most faults are told from the head.
+                let most = if i % 3 == 1 { 64.min(whole.len()) } else { whole.len() };
+                bytes[random.within(0, most as i64 - 1) as usize] = random.next_u64() as u8;
+            }
+            if let Err(error) = texture::decode(Cursor::new(bytes)) {
+                let said = error.to_string();
+                let is_sentence = !said.ends_with(['.', ':', ';', ',', '!', ' '])
+                    && !["  ", "\n", ". ", "; ", " {", "::", ": :"].iter().any(|wrong| said.contains(wrong));
+                assert!(is_sentence, "{format:?}: {said}");
+                tried.add(1);
+            }
+        }
+    }
+}

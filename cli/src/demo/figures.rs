@@ -116,6 +116,7 @@ mod tests {
     use clap::Parser;
     use mode13h::scene::shipped;
     use mode13h::span::Kernel;
+    use mode13h::window::Input;
 
     use super::*;
     use crate::demo::loader::{self, Inputs};
@@ -140,6 +141,23 @@ mod tests {
         demo.put_on(first).expect("a shipped scene");
         demo.draw().expect("a legal scene");
         demo
+    }
+
+    /// While something else is said, too.
+    #[test]
+    fn a_stopped_picture_says_so_as_long_as_it_is_stopped() {
+        let mut demo = demo("torus");
+        let says = |demo: &mut Demo, seconds| {
+            demo.follow(&Input::default(), seconds).expect("a legal scene");
+            demo.sheet((960, 720)).words().iter().any(|word| word.contains("stopped"))
+        };
+        assert!(!says(&mut demo, 0.0));
+        demo.motion.stop();
+        for seconds in [0.1, 1.5, 3600.0] {
+            assert!(says(&mut demo, seconds), "after {seconds} s");
+        }
+        demo.say("palette copper".to_string());
+        assert!(says(&mut demo, 3600.1));
     }
 
     /// Tests that in every scene, window and page, with one panel open or both, no letter is cut, missing from the

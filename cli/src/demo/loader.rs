@@ -1,5 +1,5 @@
-//! The inputs that the command line names, loaded in the background: when another is asked for, and when a file of the
-//! one that is shown has changed.
+//! The inputs that the command line names, loaded in the background: the first, another when it is asked for, and the one
+//! that is shown when a file of it has changed.
 
 use std::ffi::OsString;
 use std::fs;
@@ -76,12 +76,12 @@ pub(super) struct Loader {
 }
 
 impl Loader {
-    /// Begins to watch the files of what was loaded first.
-    pub(super) fn start(inputs: Arc<Inputs>, first: &Loading) -> Result<Loader, Failure> {
+    /// Begins to load the first input, and then to watch its files.
+    pub(super) fn start(inputs: Arc<Inputs>) -> Result<Loader, Failure> {
         let (wanted, asked) = channel();
         let (answers, loaded) = channel();
-        let (mut at, mut watch) = (first.at, first.watch.clone());
         let work = move || {
+            let (mut at, mut watch) = (0, Watch::new(Vec::new(), SystemTime::now()));
             loop {
                 let wanted = match asked.recv_timeout(PERIOD) {
                     // Those that were leafed through meanwhile are not loaded.
@@ -103,13 +103,20 @@ impl Loader {
             }
         };
         thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::from)?;
-        Ok(Loader { wanted, loaded })
+        let loader = Loader { wanted, loaded };
+        loader.ask(0);
+        Ok(loader)
     }
 
     /// Asks for the input at this place to be loaded.
     pub(super) fn ask(&self, at: usize) {
         // The thread ends after this.
         let _ = self.wanted.send(at);
+    }
+
+    /// Waits until an input has been loaded, for so long at most.
+    pub(super) fn wait(&self, most: Duration) -> Option<Loading> {
+        self.loaded.recv_timeout(most).ok()
     }
 
     /// Takes the input that was loaded since the last call.
@@ -162,7 +169,7 @@ impl Watch {
 mod tests {
     use super::*;
     use clap::Parser;
-    use std::time::Instant;
+    use std::process::Command;
 
     #[derive(Parser)]
     struct Words {
@@ -179,14 +186,7 @@ mod tests {
 
     /// The next that the loader gives, which takes a second or so.
     fn next(loader: &Loader) -> Loading {
-        let begun = Instant::now();
-        loop {
-            if let Some(loading) = loader.loaded() {
-                return loading;
-            }
-            assert!(begun.elapsed() < Duration::from_secs(60), "nothing was loaded");
-            thread::sleep(Duration::from_millis(10));
-        }
+        loader.wait(Duration::from_secs(60)).expect("nothing was loaded")
     }
 
     fn triangles(loading: &Loading) -> usize {
@@ -198,10 +198,13 @@ mod tests {
         loading.result.as_ref().err().map(ToString::to_string).unwrap_or_default()
     }
 
-    /// Loads an input of which no file has changed just now.
-    fn load_at_rest(inputs: &Inputs) -> Loading {
+    /// Loads the first input, of which no file has changed just now.
+    fn start_at_rest(inputs: &Arc<Inputs>) -> (Loader, Loading) {
         thread::sleep(2 * LAG);
-        load(inputs, 0, &[])
+        let loader = Loader::start(Arc::clone(inputs)).expect("a thread");
+        let first = next(&loader);
+        assert_eq!((first.at, first.is_again), (0, false));
+        (loader, first)
     }
 
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -212,9 +215,8 @@ mod tests {
         let model = folder.path().join("model.obj");
         fs::write(&model, TRIANGLE).expect("written");
         let inputs = inputs(&[&model]);
-        let first = load_at_rest(&inputs);
+        let (loader, first) = start_at_rest(&inputs);
         assert_eq!(triangles(&first), 1);
-        let loader = Loader::start(Arc::clone(&inputs), &first).expect("a thread");
 
         fs::write(&model, format!("{TRIANGLE}f 1 2 9\n")).expect("written");
         let wrong = next(&loader);
@@ -232,6 +234,19 @@ mod tests {
         assert!(back.result.is_ok(), "{}", reason(&back));
     }
 
+    /// A pipe is a model that takes as long as its writer does.
+    #[cfg(unix)]
+    #[test]
+    fn a_model_that_takes_long_is_waited_for_no_longer_than_said() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let model = folder.path().join("slow.obj");
+        assert!(Command::new("mkfifo").arg(&model).status().expect("started").success());
+        let loader = Loader::start(inputs(&[&model])).expect("a thread");
+        assert!(loader.wait(Duration::from_millis(50)).is_none() && loader.loaded().is_none());
+        fs::write(&model, TRIANGLE).expect("written");
+        assert_eq!(triangles(&next(&loader)), 1);
+    }
+
     #[test]
     fn a_scene_is_loaded_again_when_what_it_names_changes_or_comes() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -241,9 +256,8 @@ mod tests {
         let scene = in_folder("scene.toml");
         fs::write(&scene, "[[objects]]\nmodel = \"a.obj\"\n").expect("written");
         let inputs = inputs(&[&scene]);
-        let first = load_at_rest(&inputs);
+        let (loader, first) = start_at_rest(&inputs);
         assert_eq!(triangles(&first), 1);
-        let loader = Loader::start(Arc::clone(&inputs), &first).expect("a thread");
 
         let diffuse = |loading: &Loading| {
             let stage = loading.result.as_ref().expect("it was loaded");
@@ -266,7 +280,7 @@ mod tests {
         fs::write(&a, TRIANGLE).expect("written");
         fs::write(&c, format!("{TRIANGLE}f 1 3 2\n")).expect("written");
         let inputs = inputs(&[&a, &b, &c]);
-        let loader = Loader::start(Arc::clone(&inputs), &load_at_rest(&inputs)).expect("a thread");
+        let (loader, _) = start_at_rest(&inputs);
         loader.ask(1);
         let missing = next(&loader);
         assert_eq!((missing.at, missing.is_again), (1, false));

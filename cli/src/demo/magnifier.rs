@@ -5,12 +5,14 @@
 //! edges and pixels agree while things move. While one steps through a triangle (`step`), the lens follows, and the
 //! registers stand above the account.
 //!
-//! The lens stands beside the mouse and the account above or below both, so that what is magnified stays in sight:
+//! The lens stands in a corner beside the mouse and the account at the edge that is farther from both, no larger than its
+//! text, so that what is magnified stays in sight, and most of the picture with it:
 //!
 //! ```text
 //!   mouse: upper left     upper right        lower left          lower right
-//!   frame   lens         lens   frame       account account     account account
-//!   account account      account account    frame   lens        lens    frame
+//!   frame    lens        lens    frame       account             account
+//!   frame   frame        frame   frame       frame   frame       frame   frame
+//!   account              account             frame    lens       lens    frame
 //! ```
 
 use std::ops::Range;
@@ -30,11 +32,11 @@ use super::step::Traced;
 use crate::failure::Failure;
 use crate::overlay::{self, Letters, Sheet};
 
-/// Pixels that the lens is wide and high: half the frame's width, and what leaves room for the account.
-const COLUMNS: u16 = 10;
-const ROWS: u16 = 7;
+/// Pixels that the lens is wide and high: a seventh of the frame in all.
+const COLUMNS: u16 = 7;
+const ROWS: u16 = 5;
 /// The place in the lens of the pixel under the mouse.
-const MIDDLE: (i32, i32) = (5, 3);
+const MIDDLE: (i32, i32) = (3, 2);
 /// Paper under the account, and how much of 255 of it is seen.
 const PAPER: (Rgb, u8) = (Rgb::new(0x08, 0x08, 0x10), 224);
 /// Pixels of the window between the account and the picture's edge.
@@ -78,21 +80,25 @@ impl Pixel {
         (i32::from(self.x) - MIDDLE.0, i32::from(self.y) - MIDDLE.1)
     }
 
-    /// Places of lens and account, by their upper left corners.
+    /// The places of lens and account.
     fn places(self) -> Places {
         let left = i32::from(self.x) < WIDTH / 2;
         let upper = i32::from(self.y) < HEIGHT / 2;
         Places {
             lens: (if left { WIDTH - LENS.0 } else { 0 }, if upper { 0 } else { HEIGHT - LENS.1 }),
-            shade_trace: (0, if upper { LENS.1 } else { 0 }),
+            rows: if upper { HEIGHT / 2..HEIGHT } else { 0..HEIGHT / 2 },
+            at_bottom: upper,
         }
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 struct Places {
+    /// The lens's upper left corner.
     lens: (i32, i32),
-    shade_trace: (i32, i32),
+    /// The rows of the frame in which the account may stand, and whether it stands at their lower end.
+    rows: Range<i32>,
+    at_bottom: bool,
 }
 
 /// Question of the lens.
@@ -220,26 +226,30 @@ impl Magnifier {
         outline(vga, (left - 1, top - 1), (i32::from(COLUMNS) + 2, i32::from(ROWS) + 2), lens);
     }
 
-    /// Writes the account of a pixel below or above the lens, after lines that come first. In a small window what has no
-    /// room is left out, from the end.
+    /// Writes the account of a pixel at the lower or the upper edge, after lines that come first. In a small window what has
+    /// no room is left out, from the end.
     pub(super) fn write(&self, sheet: &mut Sheet, pixel: Pixel, byte: u8, first: Vec<String>) {
         let answer = self.last.as_ref().filter(|answer| answer.pixel == pixel);
         let waiting = [format!("({}, {}) byte {byte}", pixel.x, pixel.y), "computing".to_string()];
         let shade_trace = answer.map_or(&waiting[..], |answer| &answer.shade_trace);
         let picture = sheet.picture_area();
-        let Places { shade_trace: (_, top), .. } = pixel.places();
-        // Rows of the window.
+        let Places { rows, at_bottom, .. } = pixel.places();
+        // Rows of the window, above what is said at its lower edge.
         let row = |y: i32| picture.from_frame(0.0, y as f32).1 as usize;
-        let (top, bottom) = (row(top), row(top + HEIGHT - LENS.1));
-        let area = Area { left: picture.left, top, width: picture.width, height: bottom.saturating_sub(top) };
-        sheet.block(area, PAPER.0, PAPER.1);
+        let (top, bottom) = (row(rows.start), row(rows.end).min(sheet.free_bottom()));
+        let room = Area { left: picture.left, top, width: picture.width, height: bottom.saturating_sub(top) };
         let lines: Vec<&str> = first.iter().chain(shade_trace).map(String::as_str).collect();
         let letters = [sheet.letters(), Letters::Small]
             .into_iter()
-            .find(|&letters| laid_out(&lines, area, letters).1 == lines.len());
+            .find(|&letters| laid_out(&lines, room, letters).1 == lines.len());
         let letters = letters.unwrap_or(Letters::Small);
-        for (top, line) in (area.top..).step_by(letters.line()).zip(laid_out(&lines, area, letters).0) {
-            sheet.text((area.left + MARGIN, top), letters, overlay::TEXT, line);
+        let laid = laid_out(&lines, room, letters).0;
+        let widest = laid.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+        let (width, height) = (widest * letters.width() + 2 * MARGIN, laid.len() * letters.line());
+        let top = if at_bottom { bottom.saturating_sub(height) } else { room.top };
+        sheet.block(Area { left: room.left, top, width, height }, PAPER.0, PAPER.1);
+        for (top, line) in (top..).step_by(letters.line()).zip(laid) {
+            sheet.text((room.left + MARGIN, top), letters, overlay::TEXT, line);
         }
     }
 }
@@ -422,7 +432,7 @@ mod tests {
                 let pixel = Pixel { x, y };
                 let cells = Cells::about(pixel, &vga);
                 for (column, row, byte) in cells.each() {
-                    let (at_x, at_y) = (i32::from(x + column) - 5, i32::from(y + row) - 3);
+                    let (at_x, at_y) = (i32::from(x + column) - MIDDLE.0, i32::from(y + row) - MIDDLE.1);
                     let outside = !(0..=319).contains(&at_x) || !(0..=199).contains(&at_y);
                     let expected = (!outside).then(|| vga.pixels()[(at_y * 320 + at_x) as usize]);
                     assert_eq!(byte, expected, "{pixel:?}: {column}, {row}");
@@ -435,13 +445,51 @@ mod tests {
     fn what_is_magnified_stays_in_sight() {
         for y in 0..200 {
             for x in 0..320 {
-                let Places { lens, shade_trace } = Pixel { x, y }.places();
+                let Places { lens, rows, .. } = Pixel { x, y }.places();
                 let (x, y) = (i32::from(x), i32::from(y));
                 assert!(!(lens.0..lens.0 + LENS.0).contains(&x) || !(lens.1..lens.1 + LENS.1).contains(&y));
-                assert!(!(shade_trace.1..shade_trace.1 + HEIGHT - LENS.1).contains(&y));
+                assert!(!rows.contains(&y));
                 // Lens and account lie on the frame and not on each other.
                 assert!(lens.0 >= 0 && lens.0 + LENS.0 <= WIDTH && lens.1 >= 0 && lens.1 + LENS.1 <= HEIGHT);
-                assert!(lens.1 + LENS.1 <= shade_trace.1 || shade_trace.1 + HEIGHT - LENS.1 <= lens.1);
+                assert!(0 <= rows.start && rows.end <= HEIGHT);
+                assert!(lens.1 + LENS.1 <= rows.start || rows.end <= lens.1);
+            }
+        }
+    }
+
+    /// Lens and account cover at most half of the picture, in each window that there is room for the account in; nothing
+    /// is said below the account, or on it.
+    #[test]
+    fn most_of_the_picture_is_left() {
+        let scene = "crate"
+            .parse::<mode13h::scene::shipped::Shipped>()
+            .expect("a shipped scene")
+            .load()
+            .expect("a scene")
+            .scene;
+        for size in overlay::tests::WINDOWS {
+            for (x, y) in [(160, 90), (160, 110), (100, 99), (219, 100), (0, 0), (319, 199)] {
+                let pixel = Pixel { x, y };
+                let (lines, _) = shade_trace::lines(&mut Renderer::new(), &scene, pixel);
+                let last = Answer {
+                    number: 0,
+                    pixel,
+                    cells: Cells::about(pixel, &Vga::new()),
+                    edges: Vec::new(),
+                    shade_trace: lines,
+                    seen: None,
+                };
+                let magnifier = Magnifier { last: Some(last), ..Magnifier::default() };
+                let mut sheet = Sheet::new(size);
+                sheet.message(overlay::TEXT, "stopped");
+                magnifier.write(&mut sheet, pixel, 0, Vec::new());
+                assert_eq!(sheet.faults(), [""; 0], "{pixel:?} in {size:?}");
+                let picture = sheet.picture_area();
+                let whole = (picture.width * picture.height) as f64;
+                let lens = f64::from(LENS.0 * LENS.1) / f64::from(WIDTH * HEIGHT);
+                let covered =
+                    lens + sheet.blocks().last().map_or(0.0, |area| (area.width * area.height) as f64 / whole);
+                assert!(covered <= if size.0 < 640 { 0.65 } else { 0.5 }, "{covered} at {pixel:?} in {size:?}");
             }
         }
     }

@@ -51,7 +51,7 @@ use compare::Compare;
 use error_map::Map;
 use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier};
-use motion::Motion;
+use motion::{Motion, STOPPED};
 use pixel::Pixel;
 use shading::ShadingChoice;
 use step::Stepper;
@@ -108,6 +108,9 @@ const HINT_SECONDS: f64 = 3.0;
 const NOTICE: f64 = 1.0;
 const SAVED: f64 = 3.0;
 
+/// Time that the first input may take to load before a window opens that says so.
+const PATIENCE: Duration = Duration::from_millis(500);
+
 /// Time for which nothing changes in what stands still.
 const STILL: Duration = Duration::from_millis(500);
 /// Longest time in which nothing is done but wait for the user: where all stands still, and where something moves so
@@ -123,13 +126,21 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { inputs, drawing, shading } = options.clone();
     let inputs = Arc::new(Inputs { drawing, shading, words: inputs });
     let kernel = inputs.drawing.kernel()?;
-    let first = loader::load(&inputs, 0, &[]);
-    let loader = Loader::start(Arc::clone(&inputs), &first)?;
+    let loader = Loader::start(Arc::clone(&inputs))?;
     let mut demo = Demo::new(inputs, kernel);
-    demo.put_on(first)?;
+    // What is wrong with an input is soon found, most often, and then no window has to open.
+    if let Some(first) = loader.wait(PATIENCE) {
+        demo.put_on(first)?;
+    }
     let mut window = match Window::open(&demo.name) {
         Ok(window) => window,
-        Err(no_display) => return demo.save_each(&no_display),
+        Err(no_display) => {
+            while demo.is_loading {
+                let first = loader.wait(Duration::MAX).ok_or_else(|| Failure::file("the loader has ended"))?;
+                demo.put_on(first)?;
+            }
+            return demo.save_each(&no_display);
+        }
     };
     let (mut title, mut shown) = (String::new(), PixelPipeline::of(&Vga::new(), Sheet::new((0, 0))));
     // When what is shown last changed.
@@ -194,6 +205,8 @@ struct Demo {
     inputs: Arc<Inputs>,
     /// The place of the input that is shown or being loaded.
     at: usize,
+    /// True while it is being loaded.
+    is_loading: bool,
     /// Its name.
     name: String,
     triangles: usize,
@@ -252,6 +265,7 @@ impl Demo {
         let stage = Turntable::of_scene(Scene::new());
         Demo {
             at: 0,
+            is_loading: true,
             name: inputs.name(0),
             triangles: 0,
             wrong: None,
@@ -296,6 +310,7 @@ impl Demo {
         if at != self.at {
             return Ok(());
         }
+        self.is_loading = false;
         // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
         let checked = result.and_then(|stage| {
             let mut renderer = self.renderer.set_alike();
@@ -370,8 +385,7 @@ impl Demo {
             return None;
         }
         self.at = (self.at + if back { count - 1 } else { 1 }) % count;
-        self.notice =
-            Some((format!("{} of {count}: loading {}", self.at + 1, self.inputs.name(self.at)), f64::INFINITY));
+        (self.is_loading, self.notice) = (true, None);
         Some(self.at)
     }
 
@@ -557,8 +571,9 @@ impl Demo {
         if self.maps && !self.magnifies {
             self.map.corner(&mut sheet, self.number);
         }
-        if let Some((notice, _)) = &self.notice {
-            sheet.message(overlay::TEXT, notice);
+        let said = if self.is_loading { Some(self.loading()) } else { self.said() };
+        if let Some(said) = said {
+            sheet.message(overlay::TEXT, &said);
         }
         if let Some(wrong) = &self.wrong {
             sheet.message(overlay::WRONG, &wrong.to_string());
@@ -658,7 +673,32 @@ impl Demo {
     }
 
     fn title(&self) -> String {
+        if self.is_loading {
+            return format!("{} - mode13h", self.loading());
+        }
         format!("{} - {} - {} - mode13h", self.name, self.shading, self.drawn())
+    }
+
+    /// The words at the lower edge: a notice, and, as long as it lasts, that the time stands still.
+    fn said(&self) -> Option<String> {
+        let notice = self.notice.as_ref().map(|(notice, _)| notice.clone());
+        match (notice, self.motion.is_stopped()) {
+            (Some(notice), true) if notice != STOPPED => Some(format!("{notice} ({STOPPED})")),
+            (_, true) => Some(STOPPED.to_string()),
+            (notice, false) => notice,
+        }
+    }
+
+    /// Words on the input that is being loaded.
+    fn loading(&self) -> String {
+        let count = self.inputs.words.len();
+        let number = if count > 1 { format!("{} of {count}: ", self.at + 1) } else { String::new() };
+        let read = match input::percent_read() {
+            Some(100) => ", making the mesh".to_string(),
+            Some(percent) => format!(", {percent} % read"),
+            None => String::new(),
+        };
+        format!("{number}loading {}{read}", self.inputs.name(self.at))
     }
 
     /// Words on the time that the picture took to draw, and on how often it is drawn.

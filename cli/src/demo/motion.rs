@@ -7,6 +7,8 @@ use mode13h::window::{Input, Key};
 
 use crate::turntable::Pose;
 
+/// What is said as long as the time stands still.
+pub(super) const STOPPED: &str = "stopped";
 /// Speed of turning by the arrow keys, in radians a second.
 const ARROW_SPEED: f64 = 2.0;
 /// Angle by which one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
@@ -45,7 +47,7 @@ impl fmt::Display for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Pose { turn, tilt, zoom } = self.pose;
         match self.changed {
-            Changed::Clock => f.write_str(if self.change.is_some() { "goes on" } else { "stopped" }),
+            Changed::Clock => f.write_str(if self.is_stopped() { STOPPED } else { "goes on" }),
             // Of what is turned on and on, what it comes to.
             Changed::Turn => {
                 write!(f, "turned {:.0}°, tilted {:.0}°", turn.to_degrees() % 360.0, tilt.to_degrees() % 360.0)
@@ -108,6 +110,11 @@ impl Motion {
             return false;
         };
         true
+    }
+
+    /// Returns whether the clock is stopped.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.change.is_none()
     }
 
     /// Stops the clock.

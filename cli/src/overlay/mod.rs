@@ -94,6 +94,11 @@ impl Sheet {
         self.letters
     }
 
+    /// The first row at the lower edge that is taken by messages.
+    pub(crate) fn free_bottom(&self) -> usize {
+        self.free[0].1.min(self.free[1].1)
+    }
+
     /// Fills a rectangle; `share` of 255 of the colour is seen, the rest is what is below.
     pub(crate) fn block(&mut self, area: Area, color: Rgb, share: u8) {
         self.things.push(Thing::Block { area, color, share });
@@ -122,7 +127,7 @@ impl Sheet {
     pub(crate) fn message(&mut self, color: Rgb, text: &str) {
         let letters = self.letters;
         let columns = self.width.saturating_sub(4 * PADDING) / letters.width();
-        let bottom = self.free[0].1.min(self.free[1].1);
+        let bottom = self.free_bottom();
         let lines = wrapped(text, columns);
         let height = lines.len() * letters.line() + 2 * PADDING;
         if columns < MIN_SIZE.0 || height + PADDING > bottom {
@@ -250,6 +255,15 @@ pub(crate) mod tests {
     pub(crate) const WINDOWS: [(usize, usize); 5] = [(960, 720), (640, 480), (333, 251), (320, 240), (1920, 1080)];
 
     impl Sheet {
+        /// Its blocks.
+        pub(crate) fn blocks(&self) -> Vec<Area> {
+            let blocks = self.things.iter().filter_map(|thing| match thing {
+                Thing::Block { area, .. } => Some(*area),
+                _ => None,
+            });
+            blocks.collect()
+        }
+
         /// Every word that stands on it.
         pub(crate) fn words(&self) -> Vec<String> {
             let texts = self.things.iter().filter_map(|thing| match thing {

@@ -102,14 +102,19 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (model("binary.obj"), 2, "binary.obj"),
         (model("model.stl"), 2, "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
         (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h scenes lists the names)"),
-        (model(""), 2, ": neither a file nor a scene nor a shape"),
+        (model(""), 2, "mode13h: '': an empty word names nothing (mode13h render --help"),
+        (palette(""), 2, "mode13h: --palette '': an empty word names nothing"),
+        (vec![""], 2, "mode13h: '': an empty word names nothing"),
+        (vec!["scenes", "--copy", ""], 2, "mode13h: --copy '': an empty word names nothing"),
+        (vec!["render", "torus", "--palette="], 2, "mode13h: --palette=: an empty word names nothing"),
         (palette("broken.pal"), 2, "broken.pal: line 5"),
         (palette("short.vga"), 2, "short.vga: "),
         (palette("empty.gpl"), 2, "empty.gpl: "),
         (palette("none.pal"), 3, "none.pal: neither a file nor a built-in palette; those are grey"),
         (palette("."), 3, ".: is a directory"),
         (vec!["palette", "broken.pal"], 2, "broken.pal: line 5"),
-        (vec!["palette", "mauve"], 2, "mauve: neither a file nor a built-in palette"),
+        (vec!["palette", "mauve"], 2, "mauve: neither a file nor a built-in palette; those are grey"),
+        (palette("coper"), 2, "coper: neither a file nor a built-in palette; did you mean copper?"),
         (vec!["demo", "nan.obj"], 2, "nan.obj:2: "),
         (vec!["nan.obj"], 2, "nan.obj:2: "),
         (vec!["none.obj"], 3, "none.obj: No such file"),
@@ -135,6 +140,11 @@ fn wrong_words_end_with_2() {
         ),
         (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
         (vec!["render", "torus", "-o", "x"], "x: "),
+        (
+            vec!["render", "torus", "-o", "a.mp4"],
+            "a.mp4: films are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`",
+        ),
+        (vec!["render", "torus", "-o", "a.mp4", "--fps", "30"], "`-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`"),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
         (vec!["render", "torus", "-o", "x%d.png", "--frames", "0"], "--frames"),
         (vec!["render", "torus", "-o", "x%d.png", "--threads", "0"], "--threads"),
@@ -145,6 +155,12 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--time", "soon"], "--time"),
         (vec!["render", "torus", "-o", "x.png", "--zoom", "0"], "not a number from 0.001 to 1000"),
         (vec!["render", "torus", "-o", "x.png", "--zoom", "nan"], "not a number from 0.001 to 1000"),
+        (vec!["render", "torus", "-o", "x.png", "--zoom", "-1"], "'-1' for '--zoom <FACTOR>': not a number from"),
+        (vec!["render", "torus", "-o", "x.png", "--max-error", "-1"], "'-1' for '--max-error <E>': not a"),
+        (vec!["render", "torus", "-o", "x.png", "--frames", "-1"], "'-1' for '--frames <N>': -1 is not in 1.."),
+        (vec!["explain", "torus", "--pixel", "-1,2"], "'-1,2' for '--pixel <X,Y>': not two whole numbers"),
+        (vec!["render", "torus", "-o", "x.png", "--background", "#fff"], "#fff: a colour has six digits: '#ffffff'"),
+        (vec!["render", "torus", "-o", "x.png", "--background", "#a0G"], "neither a colour such as '#203040'"),
         (vec!["render", "torus", "-o", "x.png", "--camera", "1,2"], "\"1,2\" is no point: three numbers"),
         (vec!["render", "torus", "-o", "x.png", "--camera", "1,2,3:inf,0,0"], "\"inf,0,0\" is no point"),
         (vec!["render", "torus", "-o", "x.png", "--camera", "-1,2,3:-1,2,3"], "it looks at the point where it is"),
@@ -729,7 +745,8 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
     for name in ["house.obj", "house.mtl", "report.html", "Cargo.toml"] {
         fs::write(directory.path().join(name), "what stood there").expect("written");
     }
-    let cost = ["cost", "cube", "--frames", "1", "--seconds", "0", "-o"];
+    // Integers know no budget, so the status does not hang on the clock.
+    let cost = ["cost", "cube", "--frames", "1", "--seconds", "0", "--arithmetic", "fixed", "-o"];
     for (words, status, line) in [
         (vec!["dos", "cube", "-o", "house.obj"], 2, "house.obj: a program for DOS ends in .exe, a floppy in .img"),
         (vec!["dos", "cube", "-o", "house"], 2, "ends in .exe"),
@@ -923,6 +940,26 @@ fn printed<Word: AsRef<OsStr> + std::fmt::Debug>(directory: &TempDir, words: &[W
     let output = run(directory, words);
     assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {output:?}");
     String::from_utf8(output.stdout).expect("text")
+}
+
+/// The near distance that the plan names, as it is printed, is enough.
+#[test]
+fn the_near_distance_that_a_plan_names_is_enough() {
+    let directory = directory();
+    for distance in [2.0, 3.1, 5.7, 9.0, 47.0, 1234.5] {
+        let plan = |near: &str| {
+            let scene = format!(
+                "camera = {{ eye = [0, 0, {distance}], target = [0, 0, 0], near = {near} }}\n[[objects]]\nshape = 'torus'\n"
+            );
+            fs::write(directory.path().join("near.toml"), scene).expect("written");
+            let text = printed(&directory, &["plan", "near.toml"]);
+            let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            let (_, after) = text.split_once("take at least ")?;
+            Some(after.split(' ').next().expect("a number").to_string())
+        };
+        let needed = plan("1e-12").expect("it is told");
+        assert_eq!(plan(&needed), None, "from {distance}: {needed} is enough");
+    }
 }
 
 #[test]
@@ -1506,6 +1543,26 @@ fn explain_says_why_a_pixel_has_its_byte() {
         assert!(text.contains(&format!("cone, triangle {}", face["triangle"])), "{text}");
         assert!(face["edges"].as_array().expect("edges").iter().all(|edge| edge["value"].as_i64() >= Some(0)));
     }
+}
+
+/// What is seen is named as the model's author knows it: by object, material and line.
+#[test]
+fn explain_names_material_and_line() {
+    let directory = directory();
+    let model = "mtllib m.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n# a square\nf 1 2 3 4\n";
+    fs::write(directory.path().join("m.obj"), model).expect("written");
+    fs::write(directory.path().join("m.mtl"), "newmtl wall\nKd 1 0 0\n").expect("written");
+    let output = run(&directory, &["explain", "m.obj", "--pixel", "150,90"]);
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.contains("m, triangle 0 (line 8 of the model), material wall"), "{text}");
+    let output = run(&directory, &["explain", "m.obj", "--pixel", "150,90", "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let face = &json["faces"][0];
+    assert_eq!((&face["object"], &face["line"], &face["material"]), (&"m".into(), &8.into(), &"wall".into()));
+    // A shape has neither.
+    let output = run(&directory, &["explain", "cone", "--pixel", "150,100", "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&json["faces"][0]["line"], &json["faces"][0]["material"]), (&Value::Null, &Value::Null));
 }
 
 /// A row in characters, as JSON and as a chart.

@@ -1,5 +1,6 @@
 //! A triangle at a pixel: its corners, its edges, who owns a tie, and what became of it.
 
+use alloc::string::String;
 use core::fmt;
 
 use mode13h::raster::{Interpolation, Vertex};
@@ -7,13 +8,17 @@ use mode13h::raster::{Interpolation, Vertex};
 use super::trace::Fate;
 
 /// A triangle that covers the pixel, or whose edge runs through its centre.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct FaceHere {
     /// The object's place in the scene.
     pub object: usize,
     /// The triangle's place in the object's mesh; `None` where it could not be told.
     pub triangle: Option<usize>,
+    /// The line of that triangle in the model's file, if it comes from one.
+    pub line: Option<u32>,
+    /// The name of that triangle's material, if it has one.
+    pub material: Option<String>,
     /// True if it is only a part of that triangle, which was split.
     pub is_part: bool,
     /// Interpolation of its shades, where they come from its corners.

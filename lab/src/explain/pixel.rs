@@ -179,7 +179,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
     }
     let trace = trace(renderer, scene, screen, x, y).map_err(ExplainError::Scene)?;
     let truth = Truth::new(scene, screen).map_err(ExplainError::Truth)?;
-    let faces: Vec<FaceHere> = trace.met.iter().map(|met| here(renderer, &truth, met, x, y)).collect();
+    let faces: Vec<FaceHere> = trace.met.iter().map(|met| here(renderer, scene, &truth, met, x, y)).collect();
     let inputs = Inputs { scene, screen, truth: &truth, rows: &trace.rows, x, y };
     let seen = trace.met.iter().zip(&faces).enumerate();
     let seen = seen.filter_map(|(i, (met, face))| Some(inputs.seen(i, face, met, met.bytes.as_ref()?))).collect();
@@ -227,13 +227,18 @@ fn shading_why(settings: &Resolved) -> String {
 }
 
 /// A triangle, with its place in the mesh.
-fn here(renderer: &Renderer, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
+fn here(renderer: &Renderer, scene: &Scene, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
     let is_part = renderer.settings.vertex_path == VertexPath::Float
         && renderer.plan().objects()[met.object].is_on(Effect::Tessellation);
     let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
+    let object = &scene.objects()[met.object];
+    let surface = triangle.and_then(|triangle| object.mesh().triangle_surfaces().get(triangle));
+    let material = surface.and_then(|&surface| object.materials.get(usize::from(surface)));
     FaceHere {
         object: met.object,
         triangle,
+        line: triangle.and_then(|triangle| object.mesh().line(triangle)),
+        material: material.map(|material| material.name.clone()).filter(|name| !name.is_empty()),
         is_part,
         interpolation: met.interpolation,
         corners: clockwise(met.vertices),

@@ -71,14 +71,20 @@ impl Pixel {
         lines.iter().map(|line| line.chars().take(width).collect()).collect()
     }
 
-    /// An object and a triangle of it.
+    /// An object and a triangle of it, with its material and the line of the model's file.
     fn name(&self, face: &FaceHere) -> String {
-        let object = self.objects.get(face.object).map_or("", String::as_str);
-        match face.triangle {
-            Some(triangle) if face.is_part => format!("{object}, a part of triangle {triangle}"),
-            Some(triangle) => format!("{object}, triangle {triangle}"),
-            None => object.to_string(),
+        let mut name = self.objects.get(face.object).cloned().unwrap_or_default();
+        if let Some(triangle) = face.triangle {
+            let part = if face.is_part { "a part of " } else { "" };
+            name += &format!(", {part}triangle {triangle}");
         }
+        if let Some(line) = face.line {
+            name += &format!(" (line {line} of the model)");
+        }
+        if let Some(material) = &face.material {
+            name += &format!(", material {material}");
+        }
+        name
     }
 
     /// The technique that a face is shaded by, whatever was asked for.

@@ -165,7 +165,7 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
                     let pixel = explain(&mut renderer, &scene, x, y);
                     let what = format!("{name} by {way}, {path}, at ({x}, {y}):\n{pixel}");
                     assert_eq!(pixel.byte, bytes[y as usize * 320 + x as usize], "{what}");
-                    let front = pixel.seen.first().map(|seen| pixel.faces[seen.face]);
+                    let front = pixel.seen.first().map(|seen| &pixel.faces[seen.face]);
                     for loser in pixel.losers() {
                         losers += 1;
                         let tests =
@@ -217,7 +217,7 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
     for k in 0..32 {
         let pixel = explain(renderer, &scene, 100 + k, 60 + k);
         assert_eq!(pixel.faces.len(), 2, "{pixel}");
-        let (lower, upper) = (pixel.faces[0], pixel.faces[1]);
+        let (lower, upper) = (&pixel.faces[0], &pixel.faces[1]);
         assert_eq!((lower.triangle, lower.fate), (Some(0), Fate::NotItsEdge), "{pixel}");
         assert_eq!((upper.triangle, upper.fate), (Some(1), Fate::Seen), "{pixel}");
         // Clockwise from the upper left corner: to the right, down, and back along the diagonal.

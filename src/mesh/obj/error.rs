@@ -5,7 +5,6 @@ use std::string::String;
 use std::{error, fmt, io};
 
 /// An error of a model that is refused. Displayed as `path:line: what`, on one line.
-#[derive(Debug)]
 #[non_exhaustive]
 pub struct ObjError {
     /// The file, as the caller or `mtllib` named it.
@@ -91,6 +90,8 @@ impl fmt::Display for ObjErrorKind {
         }
     }
 }
+
+crate::errors::debug_as_display!(ObjError);
 
 impl error::Error for ObjError {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {

@@ -12,7 +12,7 @@ use crate::angle::Angle;
 use crate::mesh::normals::Together;
 use crate::mesh::shells::{self, InsideOut};
 use crate::mesh::topology::Edges;
-use crate::mesh::{Mesh, Surface, Weight, normals, topology, twins};
+use crate::mesh::{Lines, Mesh, Surface, Weight, normals, topology, twins};
 
 /// Counts of a model's faces that were wrong and were mended.
 #[derive(Default)]
@@ -32,7 +32,7 @@ pub(super) fn mesh(
     surfaces: Vec<Surface>,
     crease: Option<Angle>,
 ) -> Result<(Mesh, Mended), (Option<u64>, ObjErrorKind)> {
-    let Split { triangles, mut triangle_surfaces, mut groups, surfaces } = split(&model, surfaces)?;
+    let Split { triangles, mut triangle_surfaces, mut lines, mut groups, surfaces } = split(&model, surfaces)?;
     let Model { positions, texcoords, normals, corners, .. } = model;
     let (mut triples, mut triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
     drop(corners);
@@ -61,6 +61,7 @@ pub(super) fn mesh(
             pairs.as_flattened().iter().for_each(|&triangle| keep[triangle as usize] = false);
             retain(&mut triangles, &keep);
             retain(&mut triangle_surfaces, &keep);
+            retain(&mut lines, &keep);
             retain(&mut groups, &keep);
             edges = Edges::new(&triangles, &points);
         }
@@ -83,6 +84,7 @@ pub(super) fn mesh(
     }
     mesh.surfaces = surfaces;
     mesh.triangle_surfaces = triangle_surfaces;
+    mesh.lines = Lines(lines);
     if !complete {
         let together = match crease {
             Some(crease) => Together::new(crease, &[]),
@@ -153,6 +155,8 @@ struct Split {
     /// The triangles: three corners each, by their numbers in the file.
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
+    /// The line of each triangle's face.
+    lines: Vec<u32>,
     /// The smoothing group of each triangle; empty if the file has none.
     groups: Vec<u32>,
     /// The surfaces that are used.
@@ -163,6 +167,7 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, O
     let count = model.corners.len() - 2 * model.sizes.len();
     let mut triangles = Vec::with_capacity(count);
     let mut triangle_surfaces = Vec::with_capacity(count);
+    let mut lines = Vec::with_capacity(count);
     let mut groups = Vec::with_capacity(if model.smoothing.is_empty() { 0 } else { count });
     let mut changes = model.smoothing.iter().copied().peekable();
     let mut group = Together::NO_GROUP;
@@ -195,11 +200,12 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, O
             } else {
                 places.clear();
                 places.extend(face.iter().map(|corner| model.positions[corner.position as usize]));
-                let line = || model.large.iter().find(|large| large.0 == place).map(|large| large.1);
-                let pieces = splitter.split(&places).map_err(|kind| (line(), kind))?;
+                let line = u64::from(model.lines[place]);
+                let pieces = splitter.split(&places).map_err(|kind| (Some(line), kind))?;
                 triangles.extend(pieces.iter().map(|piece| piece.map(|corner| start + corner)));
             }
             triangle_surfaces.resize(triangles.len(), surface);
+            lines.resize(triangles.len(), model.lines[place]);
             if !model.smoothing.is_empty() {
                 while let Some((_, next)) = changes.next_if(|change| change.0 <= place) {
                     group = next;
@@ -209,7 +215,7 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, O
             first += size as usize;
         }
     }
-    Ok(Split { triangles, triangle_surfaces, groups, surfaces: used })
+    Ok(Split { triangles, triangle_surfaces, lines, groups, surfaces: used })
 }
 
 /// The different triples, in the order in which the triangles first use them, and the triangles with

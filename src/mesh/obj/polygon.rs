@@ -14,7 +14,7 @@ use crate::mesh::wide::{Wide, add, cross, sub, widen};
 /// their number if corners are spread unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the
 /// shape of many crossing pentagrams, and 64,000 already 10 s and more. So no corner of a file costs more than 20,000
 /// steps.
-pub(super) const MAX_CONCAVE: usize = 20_000;
+const MAX_CONCAVE: usize = 20_000;
 
 /// Buffers that one face after the other uses.
 pub(super) struct Splitter {

@@ -8,7 +8,6 @@ use std::vec::Vec;
 use glam::{Vec2, Vec3};
 
 use super::line::{Lines, keyword, name, number, numbers, shown, wide_numbers, words};
-use super::polygon::MAX_CONCAVE;
 use super::{Mesh, ObjError, ObjErrorKind};
 
 /// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
@@ -33,8 +32,8 @@ pub(super) struct Model {
     pub(super) corners: Vec<Corner>,
     /// The number of corners of each face, three or more.
     pub(super) sizes: Vec<u32>,
-    /// The place in `sizes` and the line of each face that is too large if it is neither convex nor monotone.
-    pub(super) large: Vec<(usize, u64)>,
+    /// The line of each face; of those beyond 2³² the last number that fits.
+    pub(super) lines: Vec<u32>,
     /// The first face of each run of one material, and the material's place in `names`.
     pub(super) runs: Vec<(usize, usize)>,
     /// The first face of each run of one smoothing group, and the group's number, or 0 for none. Before the first run
@@ -219,11 +218,9 @@ fn face(model: &mut Model, positions: usize, later: &mut Later, line: u64, rest:
     if model.corners.len() - 2 * model.sizes.len() > Mesh::MAX_COUNT + 2 {
         return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 triangles"));
     }
-    if size > MAX_CONCAVE {
-        model.large.push((model.sizes.len(), line));
-    }
     // Fits by the lines above.
     model.sizes.push(size as u32);
+    model.lines.push(u32::try_from(line).unwrap_or(u32::MAX));
     Ok(())
 }
 

@@ -6,7 +6,7 @@ use core::fmt;
 ///
 /// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to stand behind the file's
 /// name and a colon.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PaletteError {
     /// The kind of the error.
@@ -86,6 +86,8 @@ impl PaletteError {
         Self { kind, place: Place::Offset(offset) }
     }
 }
+
+crate::errors::debug_as_display!(PaletteError);
 
 impl core::error::Error for PaletteError {}
 

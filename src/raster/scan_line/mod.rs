@@ -94,7 +94,7 @@ impl Lists {
 }
 
 /// There is less memory than the faces need.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct ScratchError {
     /// Faces to be drawn.
     pub faces: usize,
@@ -107,6 +107,8 @@ impl fmt::Display for ScratchError {
         write!(f, "scan-line memory for {} faces given for a frame of {}", self.room, self.faces)
     }
 }
+
+crate::errors::debug_as_display!(ScratchError);
 
 impl core::error::Error for ScratchError {}
 

@@ -18,7 +18,6 @@ use crate::texture::LoadError;
 /// An error of a scene file. Nothing of the file is used.
 ///
 /// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
-#[derive(Debug)]
 #[non_exhaustive]
 pub struct SceneError {
     /// The file, as the caller named it.
@@ -210,6 +209,8 @@ impl fmt::Display for SceneErrorKind {
         }
     }
 }
+
+crate::errors::debug_as_display!(SceneError);
 
 impl error::Error for SceneError {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {

@@ -1,0 +1,77 @@
+//! What errors and panics of the library say.
+
+use std::error::Error;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use mode13h::light::Light;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::file;
+use mode13h::render::{Renderer, Shading};
+use mode13h::scene::{Object, Scene};
+use mode13h::texture::Texture;
+use mode13h::vga::Vga;
+
+use crate::support::workspace;
+
+/// A `main` that returns an error prints it by `Debug`.
+#[test]
+fn errors_print_what_they_display() {
+    let mut scene = Scene::showing(shapes::cube());
+    scene.camera.eye = scene.camera.target;
+    let errors: [Box<dyn Error>; 5] = [
+        Box::new(Mesh::new(Vec::new(), vec![[0, 1, 2]]).unwrap_err()),
+        Box::new(file::parse_named("a.gpl", b"nothing").unwrap_err()),
+        Box::new(Renderer::new().draw(&scene, &mut Vga::new()).unwrap_err()),
+        Box::new(Texture::from_rgb(0, 1, &[]).unwrap_err()),
+        Box::new("round".parse::<Shading>().unwrap_err()),
+    ];
+    for error in errors {
+        assert_eq!(format!("{error:?}"), error.to_string());
+    }
+    #[cfg(all(feature = "obj", feature = "png"))]
+    {
+        let error = Scene::from_model("none.obj").unwrap_err();
+        assert!(format!("{error:?}").starts_with("none.obj: "), "{error:?}");
+        assert_eq!(format!("{error:?}"), error.to_string());
+    }
+}
+
+/// Every error of the library does, by the one macro.
+#[test]
+fn every_error_prints_what_it_displays() {
+    let mut folders = vec![workspace::root().join("src")];
+    let mut errors = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("text");
+            for (_, rest) in text.match_indices("Error for ").map(|(at, start)| text.split_at(at + start.len())) {
+                let name = rest.split(|c: char| !c.is_alphanumeric()).next().expect("a name");
+                assert!(text.contains(&format!("debug_as_display!({name});")), "{}: {name}", path.display());
+                errors += 1;
+            }
+        }
+    }
+    assert!(errors >= 19, "{errors}");
+}
+
+#[test]
+fn an_id_that_was_removed_panics_in_plain_words() {
+    let mut scene = Scene::new();
+    let object = scene.add(Object::new(shapes::cube()));
+    let light = scene.add_light(Light::sun([0.0, 1.0, 0.0]));
+    assert!(scene.remove(object).is_some() && scene.remove_light(light).is_some());
+    let said = |index: &mut dyn FnMut()| {
+        let panic = catch_unwind(AssertUnwindSafe(index)).unwrap_err();
+        panic.downcast_ref::<String>().cloned().unwrap_or_default()
+    };
+    let words = |what: &str| format!("this {what} was removed from the scene, or its id is another scene's");
+    assert_eq!(said(&mut || scene[object].visible = false), words("object"));
+    assert_eq!(said(&mut || _ = &scene[object]), words("object"));
+    assert_eq!(said(&mut || scene[light] = Light::sun([0.0, 1.0, 0.0])), words("light"));
+    assert_eq!(said(&mut || _ = &scene[light]), words("light"));
+}
