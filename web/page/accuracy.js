@@ -150,7 +150,7 @@ class Accuracy {
       const name = state.maxError ? `≤ ${shadesText(state.maxError)}` : state.shading || "the scene’s";
       points.push({ ms: this.mean(), error: this.#judged.rms, kind: "now", name: `${name}, now` });
     }
-    drawChart(element("chart"), markEfficient(points), { height: 210 });
+    drawChart(element("chart"), markEfficient(points), { height: 250 });
   }
 
   /** Takes a measured point. Budgets between whole octaves have no name. */

@@ -56,7 +56,8 @@ function drawChart(element, points, { height = 260, description = "Error against
   const xTicks = logTicks(...across);
   for (const tick of xTicks) {
     make("line", { class: "chart-grid", x1: x(tick), x2: x(tick), y1: top, y2: bottom }, svg);
-    make("text", { class: "chart-tick", x: x(tick), y: bottom + 15, "text-anchor": "middle" }, svg, timeText(tick));
+    const isAtEnd = x(tick) + 20 > width;
+    make("text", { class: "chart-tick", x: isAtEnd ? width : x(tick), y: bottom + 15, "text-anchor": isAtEnd ? "end" : "middle" }, svg, timeText(tick));
   }
   for (const tick of logTicks(...down)) {
     make("line", { class: "chart-grid", x1: left, x2: right, y1: y(tick), y2: y(tick) }, svg);
@@ -82,6 +83,8 @@ function drawChart(element, points, { height = 260, description = "Error against
   path(points.filter((point) => point.kind === "budget").sort((a, b) => b.budget - a.budget), "chart-budgets");
   path(points.filter((point) => point.kind === "shading" && point.efficient).sort((a, b) => a.ms - b.ms), "chart-shadings");
 
+  // A name over a name is worst, over a point bad.
+  const cost = ({ isName, x0, x1 }) => (isName ? 100 : x1 - x0 > 2 ? 10 : 1);
   const meets = (a, b) => a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
   const order = { now: 3, second: 2, shading: 1, budget: 0 };
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
@@ -119,7 +122,7 @@ function drawChart(element, points, { height = 260, description = "Error against
       const start = point.x + dx - { start: 0, middle: size / 2, end: size }[anchor];
       const box = { x0: start - 3, x1: start + size + 3, y0: point.y + dy - 10, y1: point.y + dy + 2 };
       if (box.x0 < left || box.x1 > right + 8 || box.y0 < top - 6 || box.y1 > bottom) continue;
-      const covered = taken.filter((other) => meets(box, other)).length;
+      const covered = taken.filter((other) => meets(box, other)).reduce((sum, other) => sum + cost(other), 0);
       if (!best || covered < best.covered) best = { covered, box, dx, dy, anchor };
       if (covered === 0) break;
     }
@@ -129,7 +132,7 @@ function drawChart(element, points, { height = 260, description = "Error against
     if (Math.hypot(end.x - point.x, end.y - point.y) > 15) {
       make("line", { class: `chart-leader ${point.kind}`, x1: point.x, y1: point.y, x2: end.x, y2: end.y }, svg);
     }
-    taken.push(box);
+    taken.push({ ...box, isName: true });
     make("text", { class: `chart-label ${point.kind}`, x: point.x + dx, y: point.y + dy, "text-anchor": anchor }, svg, point.name);
   }
   element.replaceChildren(svg);
