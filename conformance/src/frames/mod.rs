@@ -1,0 +1,1 @@
+//! Whole frames by name, each with its hash.

@@ -1,0 +1,1 @@
+//! Every loop over pixels against its definition.

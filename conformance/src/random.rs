@@ -1,0 +1,88 @@
+//! Random numbers that are the same on every machine.
+//!
+//! With the feature `std` the seed of a run can be set: `MODE13H_SEED=123 cargo test`.
+
+use crate::hash::{START, fnv_1a};
+
+/// SplitMix64 (Steele, Lea, Flood 2014): one addition and a mix; any seed is as good as any other.
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+/// The seed, if nobody sets another.
+pub const SEED: u64 = 13;
+
+/// The seed of this run: `MODE13H_SEED`, or [`SEED`].
+///
+/// # Panics
+/// If `MODE13H_SEED` is not a number.
+#[must_use]
+pub fn seed() -> u64 {
+    #[cfg(feature = "std")]
+    if let Ok(text) = std::env::var("MODE13H_SEED") {
+        return text.parse().expect("MODE13H_SEED is a number");
+    }
+    SEED
+}
+
+impl Random {
+    /// A generator from the seed of this run, which is printed. Different streams give independent numbers.
+    #[must_use]
+    pub fn new(stream: u64) -> Self {
+        let seed = seed();
+        #[cfg(feature = "std")]
+        std::println!("MODE13H_SEED={seed}, stream {stream}");
+        Self(Self(seed).next_u64() ^ stream.wrapping_mul(0xD134_2543_DE82_EF95))
+    }
+
+    /// A generator from the seed of this run, for a stream that has a name.
+    #[must_use]
+    pub fn named(stream: &str) -> Self {
+        Self::new(fnv_1a(START, stream.as_bytes()))
+    }
+
+    /// A generator whose state is `state`, whatever the seed of this run.
+    #[must_use]
+    pub fn again(state: u64) -> Self {
+        Self(state)
+    }
+
+    /// The next 64 bits.
+    pub fn next_u64(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A number of 1 to 2^`bits` − 1: each power of two is equally likely, and so are the numbers from one to the next.
+    pub fn log_uniform(&mut self, bits: u32) -> usize {
+        let bit = self.next_u64() % u64::from(bits);
+        (1 << bit) + (self.next_u64() & ((1 << bit) - 1)) as usize
+    }
+
+    /// A number of `low` to `high`, both included, uniformly.
+    pub fn within(&mut self, low: i64, high: i64) -> i64 {
+        let span = (i128::from(high) - i128::from(low) + 1).max(1) as u128;
+        low + ((u128::from(self.next_u64()) * span) >> 64) as i64
+    }
+
+    /// A number of 0 to `end` − 1, uniformly; 0 if `end` is 0.
+    pub fn below(&mut self, end: usize) -> usize {
+        self.within(0, end as i64 - 1) as usize
+    }
+
+    /// A number of at least 0 and below 1, uniformly.
+    pub fn unit(&mut self) -> f64 {
+        (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A number of −`most` to `most`, uniformly.
+    pub fn around_zero(&mut self, most: f64) -> f64 {
+        (self.unit() * 2.0 - 1.0) * most
+    }
+
+    /// One of `of`, which must not be empty.
+    pub fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len())]
+    }
+}
