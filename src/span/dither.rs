@@ -55,8 +55,9 @@ const fn bayer() -> [[u8; 8]; 8] {
 #[inline(never)]
 pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    super::simd::sse2::fill_dithered(row, shade, step, thresholds, x);
-    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    if row.len() >= 16 {
+        return super::simd::sse2::fill_dithered(row, shade, step, thresholds, x);
+    }
     fill_dithered_portable(row, shade, step, thresholds, x);
 }
 

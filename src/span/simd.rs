@@ -83,7 +83,6 @@ pub(super) mod arrays {
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
-    use super::super::dither::fill_dithered_portable;
     use super::super::list::SpanList;
     use core::arch::x86_64::*;
 
@@ -207,6 +206,7 @@ pub(super) mod sse2 {
     }
 
     /// The span with dither, for any processor: see [`dither`](super::super::dither).
+    /// Rows of at least 16 pixels.
     pub(crate) fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
         // SAFETY: x86-64 includes SSE2.
         unsafe { dithered(row, shade, step, thresholds, x) }
@@ -215,9 +215,6 @@ pub(super) mod sse2 {
     #[target_feature(enable = "sse2")]
     fn dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
         let n = row.len();
-        if n < 16 {
-            return fill_dithered_portable(row, shade, step, thresholds, x);
-        }
         // Those of the pixels from `from` on: turned by its column mod 8 places.
         let thresholds = u64::from_le_bytes(*thresholds);
         let turned = |from: usize| thresholds.rotate_right(8 * (x.wrapping_add(from) % 8) as u32);
