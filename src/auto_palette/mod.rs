@@ -138,6 +138,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
+#[cfg(all(feature = "obj", feature = "png"))]
 pub(crate) fn colors_seen(scene: &Scene) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let plain = Surface::default();
     let own = scene.objects().iter().flat_map(|object| {
