@@ -2,7 +2,7 @@
 """Puts the page together: assemble.py OUT MODULE.wasm
 
 One HTML file that needs nothing else. The engine and the scripts are packed by LZMA, the rest stands as it is. Prints what
-takes the room, and fails beyond 800,000 bytes.
+takes the room.
 """
 
 import json
@@ -11,7 +11,6 @@ import pathlib
 import re
 import sys
 
-MOST = 800_000
 # Printable letters without <, which could end a script, & and \.
 LETTERS = "".join(letter for letter in map(chr, range(33, 127)) if letter not in "<&\\")
 
@@ -92,5 +91,3 @@ for name, part in packed.items():
 for name in ("style", "unpack"):
     print(f"{len(parts[name].encode()):9,}  {'':9}  {name}")
 print(f"{size:9,}  {'':9}  {out}")
-if size > MOST:
-    sys.exit(f"{out}: more than {MOST:,} bytes")

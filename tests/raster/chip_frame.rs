@@ -1,4 +1,4 @@
-//! The chip's scene on this machine: the bytes that `.ci/no_soft_float` gets from a Cortex-M0.
+//! The chip's scene on this machine: the bytes that `.ci/chip` gets from a Cortex-M0.
 
 #[path = "../support/chip_scene.rs"]
 mod scene;

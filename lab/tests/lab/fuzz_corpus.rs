@@ -1,7 +1,7 @@
 //! Hard case F5 in the normal run: all corpora, and every crash a fuzzer found, through the properties that the fuzz
 //! targets check; the same with each file cut short, repeated and damaged.
 //!
-//! The fuzzers themselves are run by `.ci/fuzz_long`.
+//! The fuzzers themselves are run by `.ci/fuzz`.
 
 mod counted;
 #[expect(unreachable_pub, reason = "the fuzz package shares it")]

@@ -3,7 +3,7 @@
 //! in shades, or a shading. A fifth one is another number of frames a second; the camera then goes round a scene that does
 //! not move.
 //!
-//!     cargo run --release --example frames -- fog 35 portable
+//!     cargo run --release -p frames -- fog 35 portable
 //!
 //! `.ci/off_is_free` counts the instructions of [`next_frame`] in builds with and without the effects that are off,
 //! and `.ci/instructions` holds them to what they were.
