@@ -63,6 +63,11 @@ pub(super) fn mesh(
             retain(&mut triangle_surfaces, &keep);
             retain(&mut lines, &keep);
             retain(&mut groups, &keep);
+            let keep = drop_unused(&mut triangles, triples.len());
+            retain(&mut triples, &keep);
+            retain(&mut known, &keep);
+            retain(&mut places, &keep);
+            points = topology::weld(&places);
             edges = Edges::new(&triangles, &points);
         }
         if let Some(inside_out) = shells::inside_out(&places, &triangles, &edges) {
@@ -99,6 +104,20 @@ pub(super) fn mesh(
 fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     list.retain(|_| keep.next().is_none_or(|&keep| keep));
+}
+
+/// Renumbers the vertices of triangles without those that no triangle uses. Returns for each vertex whether one uses it.
+fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
+    let mut used = vec![false; vertices];
+    triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
+    let mut before = 0;
+    let number = |&used| {
+        before += u32::from(used);
+        before.saturating_sub(1)
+    };
+    let numbers: Vec<u32> = used.iter().map(number).collect();
+    triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
+    used
 }
 
 /// Turns faces round that are inside out, and with them their given normals, if more of these then look inward than
