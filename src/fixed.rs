@@ -204,9 +204,9 @@ impl U8F8 {
     pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
         let mut shades = [Self(0); 8];
-        for (shade, &intensity) in shades.iter_mut().zip(intensities) {
+        for (lane, shade) in shades.iter_mut().enumerate() {
             #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
-            let clamped = intensity.max(0.0).min(1.0);
+            let clamped = intensities[lane].max(0.0).min(1.0);
             let sum = i32::from(first) * 256 + whole_part(f64::from(clamped) * units + 0.5);
             // Neither part is above 2¹⁶.
             *shade = Self(if sum > 0xFF00 { 0xFF00 } else { sum as u16 });

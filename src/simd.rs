@@ -43,7 +43,7 @@ pub(crate) use lanes::Lanes8;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
 #[cfg(feature = "alloc")]
-pub(crate) use singles::Singles8;
+pub(crate) use singles::{Light8, Singles8};
 
 #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
 pub(crate) const NEON: quarters::Quarters<neon::Neon> = quarters::Quarters(neon::Neon);
@@ -196,16 +196,16 @@ impl Avx512 {
 /// Where the portable form is another one; [`at_best_level`] is for one form.
 #[cfg(all(feature = "simd", feature = "alloc", target_arch = "x86_64"))]
 macro_rules! compiled_for_avx2 {
-    (fn $name:ident $(<const $constant:ident: bool>)? ($($argument:ident: $type:ty),*) -> $result:ty { $body:expr }) => {
+    (fn $name:ident $(<const $constant:ident: bool>)? ($lanes:ident: Avx2, $($argument:ident: $type:ty),*) -> $result:ty { $body:expr }) => {
         #[inline]
         #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-        fn $name $(<const $constant: bool>)? (_: crate::simd::Avx2, $($argument: $type),*) -> $result {
+        fn $name $(<const $constant: bool>)? ($lanes: crate::simd::Avx2, $($argument: $type),*) -> $result {
             #[target_feature(enable = "avx2")]
-            fn avx2 $(<const $constant: bool>)? ($($argument: $type),*) -> $result {
+            fn avx2 $(<const $constant: bool>)? ($lanes: crate::simd::Avx2, $($argument: $type),*) -> $result {
                 $body
             }
             // SAFETY: the processor has AVX2, says the token.
-            unsafe { avx2 $(::<$constant>)? ($($argument),*) }
+            unsafe { avx2 $(::<$constant>)? ($lanes, $($argument),*) }
         }
     };
 }

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::power::Shininess;
+use crate::lanes::three;
 use crate::mesh::Bounds;
 
 pub(super) type Wide = [f64; 3];
@@ -100,7 +101,7 @@ impl<const N: usize> Side<N> {
     const DARK: Self = Self { diffuse: [0.0; N], specular: [0.0; N] };
 
     fn add(&mut self, light: [f64; N], cosine: f64, highlight: f64) {
-        for (i, intensity) in light.into_iter().enumerate() {
+        for (i, intensity) in light.iter().enumerate() {
             self.diffuse[i] += intensity * cosine;
             self.specular[i] += intensity * highlight;
         }
@@ -108,8 +109,12 @@ impl<const N: usize> Side<N> {
 
     /// The light that the body gives back, and its highlight.
     fn answer(&self, answer: &Reflectance) -> ([f64; N], [f64; N]) {
-        let body = self.diffuse.map(|light| answer.ambient + answer.diffuse * light);
-        (body, self.specular.map(|light| answer.specular * light))
+        let (mut body, mut highlight) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            body[i] = answer.ambient + answer.diffuse * self.diffuse[i];
+            highlight[i] = answer.specular * self.specular[i];
+        }
+        (body, highlight)
     }
 }
 
@@ -121,25 +126,25 @@ impl Lights<'_> {
     pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
         let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
-        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
-        let [front, back] = sides.map(|side| {
+        let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
+        let of_side = |side: Side<1>| {
             let ([body], [highlight]) = side.answer(answer);
             body + highlight
-        });
-        (front, back)
+        };
+        (of_side(front), of_side(back))
     }
 
     /// Sums all light on three channels: red, green, blue. Otherwise like [`one_channel`](Self::one_channel).
     #[inline(never)]
     pub(crate) fn three_channels(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
-        let of_sun = |sun: &Beam| sun.channels.map(f64::from);
-        let of_lamp = |lamp: &LampBeam| lamp.channels.map(f64::from);
-        let sides = self.sum(answer, position, normal, of_sun, of_lamp);
-        let [front, back] = sides.map(|side| {
+        let of_sun = |sun: &Beam| three(sun.channels, f64::from);
+        let of_lamp = |lamp: &LampBeam| three(lamp.channels, f64::from);
+        let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
+        let of_side = |side: Side<3>| {
             let (body, highlight) = side.answer(answer);
-            core::array::from_fn(|i| body[i] * answer.color[i] + highlight[i] * answer.highlight[i])
-        });
-        (front, back)
+            three([0, 1, 2], |i| body[i] * answer.color[i] + highlight[i] * answer.highlight[i])
+        };
+        (of_side(front), of_side(back))
     }
 
     /// Sums the light that falls on the front and on the back.
@@ -197,7 +202,8 @@ impl Lights<'_> {
             let cosine = dot(wide_normal, towards);
             let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);
             let fall_off = (1.0 - square) * (1.0 - square);
-            let light = of_lamp(lamp).map(|intensity| intensity * fall_off);
+            let mut light = of_lamp(lamp);
+            light.iter_mut().for_each(|intensity| *intensity *= fall_off);
             if cosine > 0.0 {
                 front.add(light, cosine, highlight);
             } else if cosine < 0.0 {
@@ -234,5 +240,5 @@ fn dot(a: Wide, b: Wide) -> f64 {
 fn unit(v: Wide) -> Option<Wide> {
     let length = libm::sqrt(dot(v, v));
     let part = 1.0 / length;
-    (length > 0.0).then(|| v.map(|c| c * part))
+    (length > 0.0).then(|| three(v, |c| c * part))
 }

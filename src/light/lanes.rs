@@ -1,75 +1,96 @@
-//! The sum of all light at eight points of a surface at a time, in plain arrays that the compiler vectorises.
+//! The sum of all light at eight points of a surface at a time.
 //!
 //! Each point gets the numbers that [`Lights::one_channel`] and [`Lights::three_channels`] give: the operations and
 //! their order are the same, and each of them (sum, product, quotient, square root) rounds alike in a vector and alone.
 //! If a point has no part in a light, zero is added, which changes no sum: none is −0, as each begins at +0.
+//!
+//! Lanes stay in vectors ([`Light8`]): of index loops over arrays the compiler once made some vectors and some single
+//! numbers, and three coloured lamps took a sixth longer. Other levels than AVX2 have the arrays.
 
 use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
+use super::{Beam, LampBeam};
 use crate::lanes::{LANES, Lanes, Points};
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use crate::simd::compiled_for_avx2;
+use crate::simd::{Lanes8, Light8, Portable};
 use crate::span::Kernel;
 
 type Wides = Lanes<f64>;
 
 /// x, y and z.
-type Vectors = [Wides; 3];
-
-const ZERO: Wides = [0.0; LANES];
+type Vectors<L> = [<L as Lanes8>::F64; 3];
 
 /// The light that falls on the points, for each channel.
-struct Front<const N: usize> {
-    diffuse: [Wides; N],
-    specular: [Wides; N],
+struct Front<L: Lanes8, const N: usize> {
+    diffuse: [L::F64; N],
+    specular: [L::F64; N],
 }
 
-impl<const N: usize> Front<N> {
+impl<L: Lanes8, const N: usize> Front<L, N> {
     #[inline(always)]
-    fn add(&mut self, light: [f64; N], fall_off: Option<&Wides>, cosines: &Wides, highlights: Option<&Wides>) {
-        for (channel, intensity) in light.into_iter().enumerate() {
-            let mut lights = [intensity; LANES];
+    fn add(&mut self, l: L, light: [f64; N], fall_off: Option<L::F64>, cosines: L::F64, highlights: Option<L::F64>) {
+        let mut channel = 0;
+        while channel < N {
+            let mut lights = l.all_f64(light[channel]);
             if let Some(fall_off) = fall_off {
-                for (light, fall_off) in lights.iter_mut().zip(fall_off) {
-                    *light *= fall_off;
-                }
+                lights = l.mul(lights, fall_off);
             }
-            for (sum, (light, cosine)) in self.diffuse[channel].iter_mut().zip(lights.iter().zip(cosines)) {
-                *sum += light * cosine;
+            self.diffuse[channel] = l.add(self.diffuse[channel], l.mul(lights, cosines));
+            if let Some(highlights) = highlights {
+                self.specular[channel] = l.add(self.specular[channel], l.mul(lights, highlights));
             }
-            let Some(highlights) = highlights else { continue };
-            for (sum, (light, highlight)) in self.specular[channel].iter_mut().zip(lights.iter().zip(highlights)) {
-                *sum += light * highlight;
-            }
+            channel += 1;
         }
     }
 }
 
-/// The normals at the points, as they are or made unit.
+/// The normals at the points: as they are if they are `UNIT`, or made unit and rounded to f32; 0 for those that vanish
+/// because their ends cancel.
 #[inline(always)]
-fn normals_of<const UNIT: bool>(points: &Points) -> [Lanes<f32>; 3] {
-    if UNIT { [points[0], points[1], points[2]] } else { unit_normals(points) }
+fn normals_of<L: Light8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3] {
+    let [x, y, z] = [l.f32s(&points[0]), l.f32s(&points[1]), l.f32s(&points[2])];
+    if UNIT {
+        return [x, y, z];
+    }
+    let wide = [l.widen(x), l.widen(y), l.widen(z)];
+    let lengths = l.sqrt(dot(l, &wide, &wide));
+    let parts = l.if_less(lengths, l.all_f64(f64::INFINITY), l.div(l.all_f64(1.0), lengths));
+    let parts = l.if_less(l.all_f64(0.0), lengths, parts);
+    // Of −0 too, as where one normal is made unit.
+    let zero = l.all_f32(0.0);
+    [
+        l.add_f32(l.narrow(l.mul(wide[0], parts)), zero),
+        l.add_f32(l.narrow(l.mul(wide[1], parts)), zero),
+        l.add_f32(l.narrow(l.mul(wide[2], parts)), zero),
+    ]
 }
 
-/// The normals at the points, made unit and rounded to f32; 0 for those that vanish because their ends cancel.
-#[inline(always)]
-fn unit_normals(points: &Points) -> [Lanes<f32>; 3] {
-    let wide = [0, 1, 2].map(|axis| widen(&points[axis]));
-    let squares = dot(&wide, &wide);
-    let mut parts = ZERO;
-    for (part, square) in parts.iter_mut().zip(&squares) {
-        let length = square_root(*square);
-        *part = if length > 0.0 && length < f64::INFINITY { 1.0 / length } else { 0.0 };
-    }
-    let mut normals = [[0.0; LANES]; 3];
-    for (values, wide) in normals.iter_mut().zip(&wide) {
-        for (value, (wide, part)) in values.iter_mut().zip(wide.iter().zip(&parts)) {
-            // Of −0 too, as where one normal is made unit.
-            *value = (wide * part) as f32 + 0.0;
-        }
-    }
-    normals
+/// The intensities of a light on `N` channels.
+trait Intensities<const N: usize> {
+    fn intensities(&self) -> [f64; N];
 }
+
+macro_rules! intensities {
+    ($light:ty) => {
+        impl Intensities<1> for $light {
+            #[inline(always)]
+            fn intensities(&self) -> [f64; 1] {
+                [f64::from(self.intensity)]
+            }
+        }
+
+        impl Intensities<3> for $light {
+            #[inline(always)]
+            fn intensities(&self) -> [f64; 3] {
+                let [r, g, b] = self.channels;
+                [f64::from(r), f64::from(g), f64::from(b)]
+            }
+        }
+    };
+}
+intensities!(Beam);
+intensities!(LampBeam);
 
 impl Lights<'_> {
     /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of any length, point away
@@ -123,125 +144,126 @@ impl Lights<'_> {
 
     #[inline(never)]
     fn one_channel_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> Wides {
-        self.one_channel_of_eight::<UNIT, true>(answer, points)
+        self.one_channel_of_eight::<_, UNIT, true>(Portable, answer, points)
     }
 
     #[inline(never)]
     fn three_channels_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> [Wides; 3] {
-        self.three_channels_of_eight::<UNIT, true>(answer, points)
+        self.three_channels_of_eight::<_, UNIT, true>(Portable, answer, points)
     }
 
     /// Inlined, with all that it calls, into code that is compiled for a processor; but with highlights `APART`.
     #[inline(always)]
-    fn one_channel_of_eight<const UNIT: bool, const APART: bool>(
+    fn one_channel_of_eight<L: Light8, const UNIT: bool, const APART: bool>(
         &self,
+        l: L,
         answer: &Reflectance,
         points: &Points,
     ) -> Wides {
-        let of_sun = |sun: &super::Beam| [f64::from(sun.intensity)];
-        let of_lamp = |lamp: &super::LampBeam| [f64::from(lamp.intensity)];
-        let normals = normals_of::<UNIT>(points);
-        if !answer.shines() {
-            let [mut body] = self.front::<1, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
+        let normals = normals_of::<L, UNIT>(l, points);
+        let (ambient, diffuse) = (l.all_f64(answer.ambient), l.all_f64(answer.diffuse));
+        let sum = if answer.shines() {
+            let Front { diffuse: [body], specular: [highlight] } =
+                self.front::<L, 1, APART, true>(l, answer, &normals, points);
+            l.add(l.add(ambient, l.mul(diffuse, body)), l.mul(l.all_f64(answer.specular), highlight))
+        } else {
+            let [body] = self.front::<L, 1, APART, false>(l, answer, &normals, points).diffuse;
             // Zero is the highlight: −0 becomes 0, as with one.
-            body.iter_mut().for_each(|body| *body = (answer.ambient + answer.diffuse * *body) + 0.0);
-            return body;
-        }
-        let front = self.front::<1, APART, true>(answer, &normals, points, of_sun, of_lamp);
-        let [mut body] = front.diffuse;
-        for (body, highlight) in body.iter_mut().zip(&front.specular[0]) {
-            *body = (answer.ambient + answer.diffuse * *body) + answer.specular * highlight;
-        }
-        body
+            l.add(l.add(ambient, l.mul(diffuse, body)), l.all_f64(0.0))
+        };
+        let mut lanes = [0.0; LANES];
+        l.put_f64s(sum, &mut lanes);
+        lanes
     }
 
     #[inline(always)]
-    fn three_channels_of_eight<const UNIT: bool, const APART: bool>(
+    fn three_channels_of_eight<L: Light8, const UNIT: bool, const APART: bool>(
         &self,
+        l: L,
         answer: &Reflectance,
         points: &Points,
     ) -> [Wides; 3] {
-        let of_sun = |sun: &super::Beam| sun.channels.map(f64::from);
-        let of_lamp = |lamp: &super::LampBeam| lamp.channels.map(f64::from);
-        let normals = normals_of::<UNIT>(points);
-        if !answer.shines() {
-            let mut channels = self.front::<3, APART, false>(answer, &normals, points, of_sun, of_lamp).diffuse;
-            for (channel, color) in channels.iter_mut().zip(answer.color) {
+        let normals = normals_of::<L, UNIT>(l, points);
+        let (ambient, diffuse) = (l.all_f64(answer.ambient), l.all_f64(answer.diffuse));
+        let mut lanes = [[0.0; LANES]; 3];
+        let mut i = 0;
+        if answer.shines() {
+            let front = self.front::<L, 3, APART, true>(l, answer, &normals, points);
+            while i < 3 {
+                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.all_f64(answer.color[i]));
+                let mirrored = l.mul(l.all_f64(answer.specular), front.specular[i]);
+                l.put_f64s(l.add(own, l.mul(mirrored, l.all_f64(answer.highlight[i]))), &mut lanes[i]);
+                i += 1;
+            }
+        } else {
+            let front = self.front::<L, 3, APART, false>(l, answer, &normals, points);
+            while i < 3 {
+                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.all_f64(answer.color[i]));
                 // As on one channel.
-                channel.iter_mut().for_each(|body| *body = (answer.ambient + answer.diffuse * *body) * color + 0.0);
-            }
-            return channels;
-        }
-        let front = self.front::<3, APART, true>(answer, &normals, points, of_sun, of_lamp);
-        let mut channels = front.diffuse;
-        for (i, channel) in channels.iter_mut().enumerate() {
-            for (body, highlight) in channel.iter_mut().zip(&front.specular[i]) {
-                let (own, mirrored) = (answer.ambient + answer.diffuse * *body, answer.specular * highlight);
-                *body = own * answer.color[i] + mirrored * answer.highlight[i];
+                l.put_f64s(l.add(own, l.all_f64(0.0)), &mut lanes[i]);
+                i += 1;
             }
         }
-        channels
+        lanes
     }
 
     /// Sums the light that falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is
     /// specular.
     #[inline(always)]
-    fn front<const N: usize, const APART: bool, const SHINES: bool>(
+    fn front<L: Light8, const N: usize, const APART: bool, const SHINES: bool>(
         &self,
+        l: L,
         answer: &Reflectance,
-        narrow: &[Lanes<f32>; 3],
+        narrow: &[L::F32; 3],
         points: &Points,
-        of_sun: impl Fn(&super::Beam) -> [f64; N],
-        of_lamp: impl Fn(&super::LampBeam) -> [f64; N],
-    ) -> Front<N> {
-        let mut front = Front { diffuse: [ZERO; N], specular: [ZERO; N] };
-        // Suns alone ask for neither.
-        let wide = || (narrow.each_ref().map(widen), [3, 4, 5].map(|axis| widen(&points[axis])));
+    ) -> Front<L, N>
+    where
+        Beam: Intensities<N>,
+        LampBeam: Intensities<N>,
+    {
+        let (zero, one) = (l.all_f64(0.0), l.all_f64(1.0));
+        let mut front = Front { diffuse: [zero; N], specular: [zero; N] };
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(answer.shininess);
-        let eye = SHINES.then(|| {
-            let (normals, places) = wide();
-            Eye::new(unit(&from(&self.eye, &places)), &normals)
-        });
+        // Suns alone ask for neither.
+        let (mut normals, mut places) = ([zero; 3], [zero; 3]);
+        if SHINES || !lamps.is_empty() {
+            normals = [l.widen(narrow[0]), l.widen(narrow[1]), l.widen(narrow[2])];
+            places = [l.widen(l.f32s(&points[3])), l.widen(l.f32s(&points[4])), l.widen(l.f32s(&points[5]))];
+        }
+        let eye = if SHINES { Some(Eye::new(l, unit(l, &from(l, &self.eye, &places)), &normals)) } else { None };
         for sun in self.suns {
-            let towards = sun.towards.to_array();
-            let mut cosines = ZERO;
-            for (lane, cosine) in cosines.iter_mut().enumerate() {
-                let [x, y, z] = [0, 1, 2].map(|axis| narrow[axis][lane] * towards[axis]);
-                *cosine = f64::from((x + y) + z);
-            }
-            let cosines = positive(&cosines);
-            if cosines == ZERO {
+            let [x, y, z] = sun.towards.to_array();
+            let sum = l.add_f32(l.mul_f32(narrow[0], l.all_f32(x)), l.mul_f32(narrow[1], l.all_f32(y)));
+            let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.all_f32(z)))));
+            // What is added is zero then. Only highlights are worth a branch.
+            if SHINES && l.is_zero(cosines) {
                 continue;
             }
-            let highlights = eye.as_ref().map(|eye| {
-                let towards = towards.map(|c| [f64::from(c); LANES]);
-                eye.highlights_by::<APART>(&towards, &cosines, shininess)
-            });
-            front.add(of_sun(sun), None, &cosines, highlights.as_ref());
+            let mut highlights = None;
+            if let Some(eye) = &eye {
+                let towards = [l.all_f64(x.into()), l.all_f64(y.into()), l.all_f64(z.into())];
+                highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
+            }
+            front.add(l, sun.intensities(), None, cosines, highlights);
         }
-        if lamps.is_empty() {
-            return front;
-        }
-        let (normals, places) = wide();
         for lamp in lamps {
-            let to_lamp = from(&lamp.position, &places);
-            let squares = dot(&to_lamp, &to_lamp).map(|square| square * lamp.inverse_square);
-            let towards = unit(&to_lamp);
-            let mut cosines = positive(&dot(&normals, &towards));
-            let mut fall_off = ZERO;
-            for (cosine, (fall_off, square)) in cosines.iter_mut().zip(fall_off.iter_mut().zip(&squares)) {
-                // NaN, of what is too far to be squared, fails it too.
-                let is_in_range = *square < 1.0;
-                *fall_off = if is_in_range { (1.0 - square) * (1.0 - square) } else { 0.0 };
-                *cosine = if is_in_range { *cosine } else { 0.0 };
-            }
-            if cosines == ZERO {
+            let to_lamp = from(l, &lamp.position, &places);
+            let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.all_f64(lamp.inverse_square));
+            let towards = unit(l, &to_lamp);
+            // NaN, of what is too far to be squared, is out of range too.
+            let cosines = l.if_less(squares, one, positive(l, dot(l, &normals, &towards)));
+            if SHINES && l.is_zero(cosines) {
                 continue;
             }
-            let highlights = eye.as_ref().map(|eye| eye.highlights_by::<APART>(&towards, &cosines, shininess));
-            front.add(of_lamp(lamp), Some(&fall_off), &cosines, highlights.as_ref());
+            let left = l.sub(one, squares);
+            let fall_off = l.if_less(squares, one, l.mul(left, left));
+            let mut highlights = None;
+            if let Some(eye) = &eye {
+                highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
+            }
+            front.add(l, lamp.intensities(), Some(fall_off), cosines, highlights);
         }
         front
     }
@@ -250,133 +272,94 @@ impl Lights<'_> {
 // Frames lit at every pixel: `teapot` and `phong` 8 % sooner than by SSE2, the torus, whose rows are of four pixels, no sooner.
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 compiled_for_avx2! {
-    fn one_channel_avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> Wides {
-        lights.one_channel_of_eight::<UNIT, false>(answer, points)
+    fn one_channel_avx2<const UNIT: bool>(
+        l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
+    ) -> Wides {
+        lights.one_channel_of_eight::<_, UNIT, false>(l, answer, points)
     }
 }
 
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 compiled_for_avx2! {
-    fn three_channels_avx2<const UNIT: bool>(lights: &Lights<'_>, answer: &Reflectance, points: &Points) -> [Wides; 3] {
-        lights.three_channels_of_eight::<UNIT, false>(answer, points)
+    fn three_channels_avx2<const UNIT: bool>(
+        l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
+    ) -> [Wides; 3] {
+        lights.three_channels_of_eight::<_, UNIT, false>(l, answer, points)
     }
 }
 
 /// The eye, for highlights.
-struct Eye {
+struct Eye<L: Lanes8> {
     /// The unit direction towards the eye; not a number if the eye is at the point itself.
-    towards: Vectors,
+    towards: Vectors<L>,
     /// Its cosine with the normal.
-    cosines: Wides,
+    cosines: L::F64,
 }
 
-impl Eye {
+impl<L: Light8> Eye<L> {
     #[inline(always)]
-    fn new(towards: Vectors, normals: &Vectors) -> Self {
-        Self { towards, cosines: dot(normals, &towards) }
+    fn new(l: L, towards: Vectors<L>, normals: &Vectors<L>) -> Self {
+        Self { towards, cosines: dot(l, normals, &towards) }
     }
 
     #[inline(always)]
-    fn highlights_by<const APART: bool>(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
+    fn highlights_by<const APART: bool>(
+        &self,
+        l: L,
+        towards: &Vectors<L>,
+        cosines: L::F64,
+        shininess: Shininess,
+    ) -> L::F64 {
         if APART {
-            self.highlights_apart(towards, cosines, shininess)
+            self.highlights_apart(l, towards, &cosines, shininess)
         } else {
-            self.highlights(towards, cosines, shininess)
+            self.highlights(l, towards, cosines, shininess)
         }
     }
 
     // A function of its own, so that `.ci/off_is_free` can see where it is entered.
     #[inline(never)]
-    fn highlights_apart(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
-        self.highlights(towards, cosines, shininess)
+    fn highlights_apart(&self, l: L, towards: &Vectors<L>, cosines: &L::F64, shininess: Shininess) -> L::F64 {
+        self.highlights(l, towards, *cosines, shininess)
     }
 
     /// max(0, r·v)^s; 0 if the light's own cosine is.
     #[inline(always)]
-    fn highlights(&self, towards: &Vectors, cosines: &Wides, shininess: Shininess) -> Wides {
-        let mut along = dot(towards, &self.towards);
-        for (along, (cosine, eye)) in along.iter_mut().zip(cosines.iter().zip(&self.cosines)) {
-            let mirrored = 2.0 * cosine * eye - *along;
-            *along = if *cosine > 0.0 { mirrored } else { 0.0 };
-        }
-        let along = positive(&along);
-        if along == ZERO { ZERO } else { shininess.of_lanes(&along) }
+    fn highlights(&self, l: L, towards: &Vectors<L>, cosines: L::F64, shininess: Shininess) -> L::F64 {
+        let mirrored = l.mul(l.mul(l.all_f64(2.0), cosines), self.cosines);
+        let mirrored = l.sub(mirrored, dot(l, towards, &self.towards));
+        let along = positive(l, l.if_less(l.all_f64(0.0), cosines, mirrored));
+        if l.is_zero(along) { along } else { shininess.of_lanes(l, along) }
     }
 }
 
 /// Replaces values that are not above 0, or not numbers, by zero.
 #[inline(always)]
-fn positive(values: &Wides) -> Wides {
-    let mut positive = ZERO;
-    for (positive, value) in positive.iter_mut().zip(values) {
-        *positive = if *value > 0.0 { *value } else { 0.0 };
-    }
-    positive
-}
-
-#[inline(always)]
-fn widen(values: &Lanes<f32>) -> Wides {
-    let mut wide = ZERO;
-    for (wide, value) in wide.iter_mut().zip(values) {
-        *wide = f64::from(*value);
-    }
-    wide
+fn positive<L: Light8>(l: L, values: L::F64) -> L::F64 {
+    l.if_less(l.all_f64(0.0), values, values)
 }
 
 /// The vectors from the points to `to`.
 #[inline(always)]
-fn from(to: &Wide, points: &Vectors) -> Vectors {
-    let mut vectors = *points;
-    for (values, to) in vectors.iter_mut().zip(to) {
-        for value in values {
-            *value = to - *value;
-        }
-    }
-    vectors
+fn from<L: Lanes8>(l: L, to: &Wide, points: &Vectors<L>) -> Vectors<L> {
+    let [x, y, z] = *points;
+    [l.sub(l.all_f64(to[0]), x), l.sub(l.all_f64(to[1]), y), l.sub(l.all_f64(to[2]), z)]
 }
 
 #[inline(always)]
-fn dot(a: &Vectors, b: &Vectors) -> Wides {
-    let mut sums = ZERO;
-    for (lane, sum) in sums.iter_mut().enumerate() {
-        *sum = a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane];
-    }
-    sums
+fn dot<L: Lanes8>(l: L, a: &Vectors<L>, b: &Vectors<L>) -> L::F64 {
+    l.add(l.add(l.mul(a[0], b[0]), l.mul(a[1], b[1])), l.mul(a[2], b[2]))
 }
 
 /// The vectors made unit; not a number if there is no direction.
 #[inline(always)]
-fn unit(vectors: &Vectors) -> Vectors {
-    let squares = dot(vectors, vectors);
-    let mut parts = ZERO;
-    for (part, square) in parts.iter_mut().zip(&squares) {
-        *part = 1.0 / square_root(*square);
-    }
-    let mut units = *vectors;
-    for values in &mut units {
-        for (value, part) in values.iter_mut().zip(&parts) {
-            *value *= part;
-        }
-    }
-    units
-}
-
-/// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.
-#[inline(always)]
-fn square_root(square: f64) -> f64 {
-    #[cfg(feature = "std")]
-    {
-        square.sqrt()
-    }
-    #[cfg(not(feature = "std"))]
-    {
-        libm::sqrt(square)
-    }
+fn unit<L: Light8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
+    let parts = l.div(l.all_f64(1.0), l.sqrt(dot(l, vectors, vectors)));
+    [l.mul(vectors[0], parts), l.mul(vectors[1], parts), l.mul(vectors[2], parts)]
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Beam, LampBeam};
     use super::*;
     use crate::mesh::normals;
     use glam::Vec3;

@@ -1,6 +1,7 @@
 //! The power of a highlight.
 
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::LANES;
+use crate::simd::Light8;
 
 /// The max whole shininess that is raised to by products.
 const MAX_EXPONENT: f64 = 1_024.0;
@@ -33,44 +34,52 @@ impl Shininess {
     /// base ^ exponent for a base above 0; 0 for any other.
     #[inline(never)]
     pub(crate) fn of(self, base: f64) -> f64 {
-        if base > 0.0 { self.raise([base])[0] } else { 0.0 }
-    }
-
-    /// base ^ exponent of each base above 0; 0 of any other.
-    #[inline(always)]
-    pub(crate) fn of_lanes(self, bases: &Lanes<f64>) -> Lanes<f64> {
-        let mut positive = [0.0; LANES];
-        for (positive, base) in positive.iter_mut().zip(bases) {
-            // NaN becomes 0, too.
-            *positive = if *base > 0.0 { *base } else { 0.0 };
+        if base <= 0.0 || base.is_nan() {
+            return 0.0;
         }
-        let mut powers = self.raise(positive);
-        for (power, base) in powers.iter_mut().zip(&positive) {
-            *power = if *base > 0.0 { *power } else { 0.0 };
-        }
-        powers
-    }
-
-    #[inline(always)]
-    fn raise<const N: usize>(self, bases: [f64; N]) -> [f64; N] {
         let mut bits = match self {
             Self::Whole(exponent) => exponent,
-            Self::Other(exponent) => return bases.map(|base| if base > 0.0 { libm::pow(base, exponent) } else { 0.0 }),
+            Self::Other(exponent) => return libm::pow(base, exponent),
         };
-        let (mut result, mut square) = ([1.0; N], bases);
+        let (mut result, mut square) = (1.0, base);
         loop {
             if bits & 1 == 1 {
-                for (result, square) in result.iter_mut().zip(&square) {
-                    *result *= square;
-                }
+                result *= square;
             }
             bits >>= 1;
             if bits == 0 {
                 return result;
             }
-            for square in &mut square {
-                *square *= *square;
+            square *= square;
+        }
+    }
+
+    /// base ^ exponent of each base above 0; 0 of any other. Bit by bit what [`of`](Self::of) gives.
+    #[inline(always)]
+    pub(crate) fn of_lanes<L: Light8>(self, lanes: L, bases: L::F64) -> L::F64 {
+        let zero = lanes.all_f64(0.0);
+        let mut bits = match self {
+            Self::Whole(exponent) => exponent,
+            Self::Other(exponent) => {
+                let (mut powers, mut i) = ([0.0; LANES], 0);
+                lanes.put_f64s(bases, &mut powers);
+                while i < LANES {
+                    powers[i] = if powers[i] > 0.0 { libm::pow(powers[i], exponent) } else { 0.0 };
+                    i += 1;
+                }
+                return lanes.f64s(&powers);
             }
+        };
+        let (mut result, mut square) = (lanes.all_f64(1.0), bases);
+        loop {
+            if bits & 1 == 1 {
+                result = lanes.mul(result, square);
+            }
+            bits >>= 1;
+            if bits == 0 {
+                return lanes.if_less(zero, bases, result);
+            }
+            square = lanes.mul(square, square);
         }
     }
 }
@@ -78,6 +87,7 @@ impl Shininess {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::Portable;
 
     /// By products within s parts in 2⁵³ of `pow`, which is right to one; all lanes alike.
     #[test]
@@ -101,7 +111,7 @@ mod tests {
         let bases = [0.9, 0.0, -1.0, f64::NAN, 1.0, 0.001, 1.5, -0.0];
         for exponent in [0.0, 1.0, 2.0, 7.0, 30.0, 2.5, 5_000.0] {
             let shininess = Shininess::new(exponent);
-            assert_eq!(shininess.of_lanes(&bases), bases.map(|base| shininess.of(base)), "{exponent}");
+            assert_eq!(shininess.of_lanes(Portable, bases), bases.map(|base| shininess.of(base)), "{exponent}");
         }
     }
 }

@@ -25,6 +25,7 @@ use super::sets::Sets;
 use super::wide::{Wide, add, cross, dot, length, narrow, scale, sub, widen};
 use super::{Mesh, topology};
 use crate::angle::Angle;
+use crate::lanes::three;
 
 /// The weight of each face in the normal of a vertex.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq, Default)]
@@ -71,11 +72,11 @@ struct Face {
 
 impl Face {
     fn new(corners: [Vec3; 3]) -> Self {
-        let p = corners.map(widen);
+        let p = three(corners, widen);
         // The formula holds for the corners in any cyclic order. With p1 opposite the longest edge
         // the product is that of the two shorter ones and the sine of the largest angle, which is
         // small only if the face really is a line, however far away one corner may be.
-        let opposite = [sub(p[1], p[2]), sub(p[2], p[0]), sub(p[0], p[1])].map(|edge| dot(edge, edge));
+        let opposite = three([sub(p[1], p[2]), sub(p[2], p[0]), sub(p[0], p[1])], |edge| dot(edge, edge));
         let first = (0..3).fold(0, |best, i| if opposite[i] > opposite[best] { i } else { best });
         let (p1, p2, p3) = (p[first], p[(first + 1) % 3], p[(first + 2) % 3]);
         let (e2, e3) = (sub(p1, p2), sub(p1, p3));

@@ -22,6 +22,7 @@ use super::cover::SortedTriangle;
 use super::frame::Rect;
 use super::frame::{Frame, FrameError};
 use super::quotient::Divisor;
+use crate::lanes::three;
 pub use crate::span::depth::Cell;
 
 /// The depth plane of a triangle.
@@ -40,7 +41,7 @@ impl DepthPlane {
     #[inline]
     pub fn new(triangle: &SortedTriangle) -> Self {
         let area = Divisor::new(triangle.area());
-        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth()));
+        let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth()));
         // At most 2⁵⁴ both.
         let (gx, gy) = triangle.gradient(depths);
         let (gx, gy) = (gradient(gx, &area), gradient(gy, &area));
@@ -56,7 +57,7 @@ impl DepthPlane {
     #[inline]
     pub(super) fn of_corners(corners: [(i32, i32, u32); 3]) -> Self {
         let [(x0, y0, d0), (x1, y1, d1), (x2, y2, d2)] =
-            corners.map(|(x, y, depth)| (i64::from(x), i64::from(y), i64::from(depth)));
+            three(corners, |(x, y, depth)| (i64::from(x), i64::from(y), i64::from(depth)));
         let (dx1, dy1, dx2, dy2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
         let signed = dx1 * dy2 - dx2 * dy1;
         // −1 or 0: with it the sign of a number is turned, or not.

@@ -38,6 +38,7 @@
 
 use super::cover::{Row, SortedTriangle};
 use super::weights::Weights;
+use crate::lanes::three;
 
 /// The shades of a triangle in f32.
 #[derive(Clone, Copy, Debug)]
@@ -65,19 +66,19 @@ impl FloatPlane {
     /// The plane of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
     /// The shades are in the order of its vertices. A depth of 0 counts as 1.
     pub(super) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
-        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
+        let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
         let weights = Weights::new(triangle);
         let step = |products: [i128; 3]| {
             // Differences of areas: whole numbers within 2³⁰.
-            let [a, b, c] = weights.per_column().map(|change| i128::from(change as i64));
+            let [a, b, c] = three(weights.per_column(), |change| i128::from(change as i64));
             a * products[0] + b * products[1] + c * products[2]
         };
         // In 1/256 shade; at most 2⁸⁰, which f32 has.
-        let dn = step([0, 1, 2].map(|i| i128::from(depths[i]) * i128::from(shades[i]))) as f32 / 256.0;
-        let dd = step(depths.map(i128::from)) as f32;
+        let dn = step(three([0, 1, 2], |i| i128::from(depths[i]) * i128::from(shades[i]))) as f32 / 256.0;
+        let dd = step(three(depths, i128::from)) as f32;
         // 48 bits and 32.
-        let values = [0, 1, 2].map(|i| [(depths[i] * shades[i]) as f64 / 256.0, depths[i] as f64]);
-        let [a, b, c] = shades.map(|shade| shade as f32 / 256.0);
+        let values = three([0, 1, 2], |i| [(depths[i] * shades[i]) as f64 / 256.0, depths[i] as f64]);
+        let [a, b, c] = three(shades, |shade| shade as f32 / 256.0);
         Self { weights, values, steps: [dn, dd], range: [a.min(b).min(c), a.max(b).max(c)] }
     }
 

@@ -17,6 +17,7 @@
 use super::cover::SortedTriangle;
 use super::weights::WholeWeights;
 use crate::fixed::HAS_F64;
+use crate::lanes::three;
 use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
 
 /// The perspective-correct shades of a triangle.
@@ -33,7 +34,7 @@ impl HyperbolicPlane {
     /// The values are in the order of its vertices. A depth of 0 counts as 1.
     #[must_use]
     pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
-        let depths = triangle.vertices.each_ref().map(|v| i64::from(v.depth().max(1)));
+        let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
         Self { weights: WholeWeights::new(triangle), depths, shades }
     }
 
@@ -41,10 +42,10 @@ impl HyperbolicPlane {
     /// depth. Depth times shade is below 2⁴⁹.
     fn sums(&self, weights: [i64; 3], more: i64) -> (i128, i128) {
         let sum = |value: [i64; 3]| {
-            let [a, b, c] = [0, 1, 2].map(|i| i128::from(weights[i]) * i128::from(value[i]));
+            let [a, b, c] = three([0, 1, 2], |i| i128::from(weights[i]) * i128::from(value[i]));
             a + b + c
         };
-        (sum([0, 1, 2].map(|i| self.depths[i] * (self.shades[i] + more))), sum(self.depths))
+        (sum(three([0, 1, 2], |i| self.depths[i] * (self.shades[i] + more))), sum(self.depths))
     }
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
@@ -98,10 +99,10 @@ impl HyperbolicPlane {
             return false;
         }
         // Exact: 32 bits, and 49 of them times a power of two.
-        let depths = self.depths.map(|depth| depth as f64);
-        let values = [0, 1, 2].map(|i| (self.depths[i] * (self.shades[i] + 128)) as f64 * 256.0);
+        let depths = three(self.depths, |depth| depth as f64);
+        let values = three([0, 1, 2], |i| (self.depths[i] * (self.shades[i] + 128)) as f64 * 256.0);
         let sums = |weights: [i64; 3]| {
-            let [a, b, c] = weights.map(|weight| weight as f64);
+            let [a, b, c] = three(weights, |weight| weight as f64);
             (a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2])
         };
         let ((n, d), (dn, dd)) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));

@@ -15,6 +15,8 @@ use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::vintage::{Ramp, VintageTriangle};
 #[cfg(feature = "alloc")]
+use crate::lanes::{LANES, Lanes, each};
+#[cfg(feature = "alloc")]
 use crate::span::dither::fill_dithered;
 use crate::span::fixed16::fill_16_16;
 #[cfg(feature = "alloc")]
@@ -213,15 +215,16 @@ impl RowShader {
                 }
             }
             Self::Hyperbolic(plane) => {
-                for (shade, x) in shades.iter_mut().zip(x..) {
-                    let (n, d) = plane.shade(x, row.y);
+                for (i, shade) in shades.iter_mut().enumerate() {
+                    // A column is below 4,096.
+                    let (n, d) = plane.shade(x + i as i32, row.y);
                     *shade = hyperbolic::floor_quotient(n, d) as u16;
                 }
             }
             Self::Float(plane) => {
                 let at = plane.row(row);
-                for (shade, k) in shades.iter_mut().zip(x - at.start..) {
-                    *shade = (float::quotient(k, at.n, at.d, at.range) * 256.0) as u16;
+                for (i, shade) in shades.iter_mut().enumerate() {
+                    *shade = (float::quotient(x - at.start + i as i32, at.n, at.d, at.range) * 256.0) as u16;
                 }
             }
             Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
@@ -233,12 +236,17 @@ impl RowShader {
 #[cfg(feature = "alloc")]
 pub(super) fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, bytes: &mut [u8]) {
     // Eight by eight, so that the compiler makes vectors of it.
-    let from_column: [u8; 8] = core::array::from_fn(|k| thresholds[(column + k) & 7]);
-    for (bytes, shades) in bytes.chunks_mut(8).zip(shades.chunks(8)) {
-        for (byte, (shade, threshold)) in bytes.iter_mut().zip(shades.iter().zip(from_column)) {
-            // A shade is at most 0xFF00.
-            *byte = (shade.wrapping_add(u16::from(threshold)) >> 8) as u8;
-        }
+    let from_column: Lanes<u16> = each!(k => u16::from(thresholds[(column + k) & 7]));
+    // A shade is at most 0xFF00.
+    let byte = |shade: u16, k: usize| (shade.wrapping_add(from_column[k]) >> 8) as u8;
+    let n = bytes.len().min(shades.len());
+    let (eights, rest) = bytes[..n].as_chunks_mut::<LANES>();
+    let (shades, rest_shades) = shades[..n].as_chunks::<LANES>();
+    for (i, bytes) in eights.iter_mut().enumerate() {
+        *bytes = each!(k => byte(shades[i][k], k));
+    }
+    for (k, to) in rest.iter_mut().enumerate() {
+        *to = byte(rest_shades[k], k);
     }
 }
 

@@ -6,6 +6,8 @@
 //! values above 0 cancels nothing, and is right to a few parts in 2⁵³ however thin the triangle.
 
 use super::cover::SortedTriangle;
+#[cfg(feature = "alloc")]
+use crate::lanes::three;
 
 /// The weights of the three corners, as whole numbers.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +65,7 @@ impl Weights {
     /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
     pub(super) fn new(triangle: &SortedTriangle) -> Self {
         let whole = WholeWeights::new(triangle);
-        let exact = |weights: [i64; 3]| weights.map(|weight| weight as f64);
+        let exact = |weights: [i64; 3]| three(weights, |weight| weight as f64);
         Self { origin: exact(whole.origin), per_column: exact(whole.per_column), per_row: exact(whole.per_row) }
     }
 

@@ -108,7 +108,7 @@ impl Renderer {
             } else if let Some(faces) = self.states[object].faces(of_scene, &self.plan.objects[object]) {
                 let triangle_surfaces = faces.geometry.triangle_surfaces;
                 let mut visitor = Visitor { pipelines, object, triangle_surfaces, visit: &mut *visit };
-                faces.draw(self.states[object].budget(), &mut stats, &mut visitor);
+                faces.draw(self.states[object].budget(), &mut stats, &mut (&mut visitor as &mut dyn Sink));
             }
         }
         Ok(stats)

@@ -15,6 +15,7 @@ use super::paint::SurfaceMaterial;
 use super::stats::Shares;
 use super::vertex::Geometry;
 use crate::fixed::U8F8;
+use crate::lanes::three;
 use crate::light::both_sides;
 use crate::mesh::normals::face_normal;
 use crate::plan::FaceShading;
@@ -49,6 +50,40 @@ pub(super) trait Sink {
     }
     /// Faces without effects, none of which needs clipping, by their numbers and sides.
     fn indexed(&mut self, _: &IndexedTriangles<'_>, _: &[u32], _: Interpolation) {}
+}
+
+/// Where speed does not count, the stages are compiled once for all sinks.
+impl Sink for &mut dyn Sink {
+    fn plain(&mut self, face: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
+        (**self).plain(face, vertices, interpolation);
+    }
+
+    fn with_effects(
+        &mut self,
+        face: u32,
+        vertices: &[Vertex; 3],
+        attributes: &[Attributes; 3],
+        surface: u16,
+        shading: FaceShading,
+    ) {
+        (**self).with_effects(face, vertices, attributes, surface, shading);
+    }
+
+    fn after_effects(&mut self) {
+        (**self).after_effects();
+    }
+
+    fn culler(&self) -> Option<Culler> {
+        (**self).culler()
+    }
+
+    fn takes_numbers(&self, interpolation: Interpolation) -> bool {
+        (**self).takes_numbers(interpolation)
+    }
+
+    fn indexed(&mut self, from: &IndexedTriangles<'_>, numbers: &[u32], interpolation: Interpolation) {
+        (**self).indexed(from, numbers, interpolation);
+    }
 }
 
 impl Faces<'_> {
@@ -137,17 +172,14 @@ impl Faces<'_> {
                 let index = (chunk * cull::CHUNK + at) as u32;
                 let face = Face { index, indices, surface, back_facing };
                 if is(masks.clipped) {
-                    let corners = indices.map(|i| self.lit.get(i as usize));
-                    if CULLS || !is(self.twins_of(chunk)) {
-                        self.clipped::<CULLS, EFFECTS>(face, &corners, stats, sink);
-                    } else {
-                        self.clipped::<true, EFFECTS>(face, &corners, stats, sink);
-                    }
+                    let corners = three(indices, |i| self.lit.get(i as usize));
+                    let culls = CULLS || is(self.twins_of(chunk));
+                    self.clipped((culls, EFFECTS), face, &corners, stats, sink);
                     continue;
                 }
-                let vertices = indices.map(|i| self.lit.vertex(i as usize, back_facing));
+                let vertices = three(indices, |i| self.lit.vertex(i as usize, back_facing));
                 if EFFECTS && self.paints[usize::from(surface)].has_effects {
-                    let attributes = indices.map(|i| self.extras[i as usize].side(back_facing));
+                    let attributes = three(indices, |i| self.extras[i as usize].side(back_facing));
                     self.hand_on(face, (vertices, attributes), stats, sink);
                 } else {
                     let interpolation = self.interpolation(face, stats);
@@ -177,43 +209,47 @@ impl Faces<'_> {
         (takes && fits).then_some((FaceQueue::new(), IndexedTriangles { places, depths, shades, triangles }))
     }
 
-    /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare.
+    /// A face that reaches beyond the near plane or the guard band. Kept apart: it is rare, and compiled once for all
+    /// loops.
     #[cold]
     #[inline(never)]
-    fn clipped<const CULLS: bool, const EFFECTS: bool>(
+    fn clipped(
         &self,
+        (culls, effects): (bool, bool),
         face: Face,
         corners: &[LitVertex; 3],
         stats: &mut Stats,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) {
         let Face { indices, surface, .. } = face;
-        let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
-        let back_facing = !CULLS && is_turned_away(&at);
+        let at = three(indices, |i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        let back_facing = !culls && is_turned_away(&at);
         let face = Face { back_facing, ..face };
         let sides = |interpolation| (interpolation, back_facing);
-        if EFFECTS && self.paints[usize::from(surface)].has_effects {
+        if effects && self.paints[usize::from(surface)].has_effects {
             let attributes = |i: u32| self.extras[i as usize].side(back_facing);
-            let carried = indices.map(|i| WithEffects { attributes: attributes(i), affine: self.affine });
+            let carried = three(indices, |i| WithEffects { attributes: attributes(i), affine: self.affine });
             let interpolation = self.shading.interpolation();
-            self.parts::<CULLS, _>(at, corners, carried, sides(interpolation), stats, |vertices, carried, stats| {
-                let attributes = carried.map(|carried| carried.attributes);
+            self.parts(culls, at, corners, carried, sides(interpolation), stats, |vertices, carried, stats| {
+                let attributes = three(carried, |carried| carried.attributes);
                 self.hand_on(face, (vertices, attributes), stats, sink);
             });
         } else {
             let interpolation = self.interpolation(face, stats);
-            if EFFECTS {
+            if effects {
                 sink.after_effects();
             }
-            self.parts::<CULLS, _>(at, corners, [(); 3], sides(interpolation), stats, |vertices, _, _| {
+            self.parts(culls, at, corners, [(); 3], sides(interpolation), stats, |vertices, _, _| {
                 sink.plain(face.index, &vertices, interpolation)
             });
         }
     }
 
     /// The triangles that clipping leaves.
-    pub(super) fn parts<const CULLS: bool, C: Carried>(
+    #[expect(clippy::too_many_arguments, reason = "what a face is, and what its parts go to")]
+    pub(super) fn parts<C: Carried>(
         &self,
+        culls: bool,
         at: [Homogeneous; 3],
         corners: &[LitVertex; 3],
         carried: [C; 3],
@@ -231,7 +267,7 @@ impl Faces<'_> {
             return;
         };
         let area = polygon.doubled_area();
-        if area == 0 || (CULLS && area > 0) {
+        if area == 0 || (culls && area > 0) {
             stats.culled += 1;
             return;
         }
@@ -247,7 +283,7 @@ impl Faces<'_> {
         face: Face,
         (mut vertices, mut attributes): ([Vertex; 3], [Attributes; 3]),
         stats: &mut Stats,
-        sink: &mut impl Sink,
+        sink: &mut (impl Sink + ?Sized),
     ) {
         if self.lit_by_face {
             stats.lit += 1;
@@ -256,11 +292,11 @@ impl Faces<'_> {
                 let paint = &self.paints[usize::from(face.surface)];
                 let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
                 let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
-                let channels = channels.map(|channel| paint.respond_on_channel(channel));
+                let channels = three(channels, |channel| paint.respond_on_channel(channel));
                 attributes.iter_mut().for_each(|corner| corner.channels = channels);
             } else {
                 let shade = self.face_shade(face);
-                vertices = vertices.map(|vertex| vertex.with_shade(shade));
+                vertices = three(vertices, |vertex| vertex.with_shade(shade));
             }
         }
         sink.with_effects(face.index, &vertices, &attributes, face.surface, self.shading.into());
@@ -295,7 +331,7 @@ impl Faces<'_> {
 
     /// The middle of a face, and its normal.
     fn middle(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
-        let [a, b, c] = indices.map(|i| self.geometry.positions[i as usize]);
+        let [a, b, c] = three(indices, |i| self.geometry.positions[i as usize]);
         // A face without area has no normal; rounded, it may still cover a pixel.
         let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);
         // Each third by itself: the sum of three might overflow.

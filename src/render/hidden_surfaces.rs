@@ -3,6 +3,7 @@
 use core::mem;
 
 use super::cull::Culler;
+use super::face::Sink;
 use super::object::ObjectState;
 use super::pipelines::Pipelines;
 use super::sinks::{Batched, BatchedEffects, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
@@ -59,7 +60,7 @@ impl Renderer {
                 kernel: self.settings.kernel,
             };
             if self.settings.vertex_path == VertexPath::Integer {
-                let mut batched = Batched::<true> { raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
+                let mut batched = Batched { clips: true, raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
                 let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
                 self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
                 batched.draw();
@@ -67,17 +68,10 @@ impl Renderer {
                 let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
                 let effects = BatchedEffects::new(&mut self.effects, &pipelines, object);
                 let transparent = &mut self.transparent;
-                if plan.is_on(Effect::ScreenClipping) {
-                    let batched = Batched::<true> { raster, batch, drawn };
-                    let mut sink = ImmediateSink::new(batched, effects, transparent);
-                    counts = faces.draw(self.states[object].budget(), stats, &mut sink);
-                    sink.finish();
-                } else {
-                    let batched = Batched::<false> { raster, batch, drawn };
-                    let mut sink = ImmediateSink::new(batched, effects, transparent);
-                    counts = faces.draw(self.states[object].budget(), stats, &mut sink);
-                    sink.finish();
-                }
+                let batched = Batched { clips: plan.is_on(Effect::ScreenClipping), raster, batch, drawn };
+                let mut sink = ImmediateSink::new(batched, effects, transparent);
+                counts = faces.draw(self.states[object].budget(), stats, &mut sink);
+                sink.finish();
             }
             self.states[object].counts = counts;
             stats.raster += drawn;
@@ -107,24 +101,25 @@ impl Renderer {
             let DeferredFace { vertices, attributes, of } = &self.transparent[place];
             batched.push((vertices, attributes, *of), raster, &mut stats.raster);
         }
-        batched.draw::<true>(raster, &mut stats.raster);
+        batched.draw(true, raster, &mut stats.raster);
         self.transparent.clear();
     }
 
-    /// Hands every face to `sink`.
+    /// Hands every face to `triangle`.
     pub(super) fn faces(
         &mut self,
         scene: &Scene,
         stats: &mut Stats,
-        sink: &mut ForEachSink<impl FnMut(&[Vertex; 3], Interpolation)>,
+        triangle: &mut dyn FnMut(&[Vertex; 3], Interpolation),
     ) {
         for &object in &self.plan.order {
             let mut counts = Shares::default();
             if self.settings.vertex_path == VertexPath::Integer {
-                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut sink.0);
+                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, triangle);
             } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
             {
-                counts = faces.draw(self.states[object].budget(), stats, sink);
+                let mut sink = ForEachSink(&mut *triangle);
+                counts = faces.draw(self.states[object].budget(), stats, &mut (&mut sink as &mut dyn Sink));
             }
             self.states[object].counts = counts;
         }
@@ -166,7 +161,7 @@ impl Renderer {
                     object,
                     culler,
                 };
-                counts = faces.draw(self.states[object].budget(), stats, &mut sink);
+                counts = faces.draw(self.states[object].budget(), stats, &mut (&mut sink as &mut dyn Sink));
             }
             self.states[object].counts = counts;
         }
@@ -193,13 +188,13 @@ impl Renderer {
         self.far_to_near.reserve(self.triangles.capacity());
         far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
         let mut batch = Batch::of_culled();
-        let mut batched = Batched::<true> { raster, batch: &mut batch, drawn: &mut stats.raster };
+        let mut batched = Batched { clips: true, raster, batch: &mut batch, drawn: &mut stats.raster };
         let mut effects = BatchedEffects::new(&mut self.effects, &pipelines, 0);
         for &(_, i) in &self.far_to_near {
             let (vertices, interpolation) = &self.triangles[i];
             // One of both is always empty: faces are drawn in this order.
             let Some(place) = self.kept_places[i] else {
-                effects.draw::<true>(batched.raster, batched.drawn);
+                effects.draw(true, batched.raster, batched.drawn);
                 batched.triangle(vertices, *interpolation);
                 continue;
             };
@@ -208,7 +203,7 @@ impl Renderer {
             effects.push((vertices, &face.attributes, face.of), batched.raster, batched.drawn);
         }
         batched.draw();
-        effects.draw::<true>(batched.raster, batched.drawn);
+        effects.draw(true, batched.raster, batched.drawn);
     }
 
     /// All at once, each pixel once.

@@ -263,7 +263,7 @@ impl IntegerPath {
         shading: Shading,
         (index, object): (usize, &scene::Object),
         stats: &mut Stats,
-        triangle: &mut impl FnMut(&[Vertex; 3], Interpolation),
+        triangle: &mut dyn FnMut(&[Vertex; 3], Interpolation),
     ) {
         let (Some(view), Some(prepared)) = (&self.view, self.objects.get(index)) else { return };
         let mesh = fixed_mesh(&self.meshes, prepared, object);

@@ -52,7 +52,7 @@ use core::time::Duration;
 
 use self::integer::IntegerPath;
 use self::object::ObjectState;
-use self::sinks::{DeferredFace, ForEachSink};
+use self::sinks::DeferredFace;
 use self::tables::Tables;
 use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
@@ -359,11 +359,11 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         screen: Screen,
-        triangle: impl FnMut(&[Vertex; 3], Interpolation),
+        mut triangle: impl FnMut(&[Vertex; 3], Interpolation),
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        self.faces(scene, &mut stats, &mut ForEachSink(triangle));
+        self.faces(scene, &mut stats, &mut triangle);
         Ok(stats)
     }
 

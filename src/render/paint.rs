@@ -1,6 +1,7 @@
 //! A material in its scene: what its shades are made with.
 
 use crate::fixed::U8F8;
+use crate::lanes::{each, three};
 use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
 use crate::plan::stages::LitAt;
@@ -83,13 +84,19 @@ impl SurfaceMaterial {
     /// The shades of eight intensities.
     #[inline(always)]
     pub(super) fn shade_of_eight(&self, intensities: &[f64; 8]) -> [U8F8; 8] {
-        U8F8::from_eight_intensities(&intensities.map(|i| i as f32), self.ramp.first(), self.ramp.entries())
+        U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), self.ramp.first(), self.ramp.entries())
     }
 
     /// One channel of eight.
     #[inline(always)]
-    pub(super) fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
-        U8F8::from_eight_intensities(&intensities.map(|i| i as f32), 0, Ramp::WHOLE.entries())
+    fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
+        U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), 0, Ramp::WHOLE.entries())
+    }
+
+    /// Each of three channels of eight.
+    #[inline(always)]
+    pub(super) fn channels_of_eight([red, green, blue]: &[[f64; 8]; 3]) -> [[U8F8; 8]; 3] {
+        [Self::channel_of_eight(red), Self::channel_of_eight(green), Self::channel_of_eight(blue)]
     }
 
     /// The shade without any light but the ambient.
@@ -99,7 +106,7 @@ impl SurfaceMaterial {
 
     /// The channels of an intensity on each; 0 to 255.
     pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
-        intensities.map(|intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
+        three(intensities, |intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }
 }
 

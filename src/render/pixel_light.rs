@@ -2,7 +2,7 @@
 
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, Lanes, Points};
+use crate::lanes::{LANES, Lanes, Points, each, three};
 use crate::light::Lights;
 use crate::palette::Lut64K;
 use crate::raster::effects::Lighting;
@@ -24,19 +24,20 @@ impl Lighting for PixelLight<'_> {
         let intensities = self.lights.front_of_one_channel(&self.paint.answer, points, self.kernel);
         let shades = self.paint.shade_of_eight(&intensities);
         if self.paint.response.is_some() {
-            return shades.map(|shade| self.paint.respond(shade).to_bits());
+            return each!(lane => self.paint.respond(shades[lane]).to_bits());
         }
-        shades.map(U8F8::to_bits)
+        each!(lane => shades[lane].to_bits())
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let channels = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
-        let channels = channels.map(|channel| SurfaceMaterial::channel_of_eight(&channel));
+        let channels = SurfaceMaterial::channels_of_eight(&channels);
         if self.paint.response.is_some() {
-            return channels.map(|channel| channel.map(|shade| self.paint.respond_on_channel(shade).to_bits()));
+            let answered = |shade: U8F8| self.paint.respond_on_channel(shade).to_bits();
+            return three(channels, |channel| each!(lane => answered(channel[lane])));
         }
-        channels.map(|channel| channel.map(U8F8::to_bits))
+        three(channels, |channel| each!(lane => channel[lane].to_bits()))
     }
 }
 

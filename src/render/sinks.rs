@@ -30,9 +30,9 @@ pub(super) fn depth_of(vertices: &[Vertex; 3]) -> u64 {
 }
 
 /// Faces without what effects need.
-pub(super) struct ForEachSink<F>(pub(super) F);
+pub(super) struct ForEachSink<'a>(pub(super) &'a mut dyn FnMut(&[Vertex; 3], Interpolation));
 
-impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
+impl Sink for ForEachSink<'_> {
     fn plain(&mut self, _: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
         (self.0)(vertices, interpolation);
     }
@@ -43,18 +43,18 @@ impl<F: FnMut(&[Vertex; 3], Interpolation)> Sink for ForEachSink<F> {
 }
 
 /// Draws faces as they come, many at a time; keeps those that shine through.
-pub(super) struct ImmediateSink<'a, 'b, const CLIPS: bool> {
-    batched: Batched<'a, 'b, CLIPS>,
+pub(super) struct ImmediateSink<'a, 'b> {
+    batched: Batched<'a, 'b>,
     effects: BatchedEffects<'a>,
     transparent: &'a mut Vec<DeferredFace>,
     /// True if the surface of the last face with effects shines through.
     is_transparent: bool,
 }
 
-impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
+impl<'a, 'b> ImmediateSink<'a, 'b> {
     /// Makes one for the faces of one object.
     pub(super) fn new(
-        batched: Batched<'a, 'b, CLIPS>,
+        batched: Batched<'a, 'b>,
         effects: BatchedEffects<'a>,
         transparent: &'a mut Vec<DeferredFace>,
     ) -> Self {
@@ -68,8 +68,8 @@ impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
 
     fn draw(&mut self) {
         self.batched.draw();
-        let Batched { raster, drawn, .. } = &mut self.batched;
-        self.effects.draw::<CLIPS>(raster, drawn);
+        let Batched { clips, raster, drawn, .. } = &mut self.batched;
+        self.effects.draw(*clips, raster, drawn);
     }
 
     /// Begins with faces of another surface or shading, after what waits is drawn: faces are drawn in the order in which
@@ -82,7 +82,7 @@ impl<'a, 'b, const CLIPS: bool> ImmediateSink<'a, 'b, CLIPS> {
     }
 }
 
-impl<const CLIPS: bool> Sink for ImmediateSink<'_, '_, CLIPS> {
+impl Sink for ImmediateSink<'_, '_> {
     fn culler(&self) -> Option<Culler> {
         let raster = &self.batched.raster;
         Some(Culler { clip: raster.clip(), kernel: raster.kernel() })
@@ -158,20 +158,20 @@ impl<'a> BatchedEffects<'a> {
         drawn: &mut DrawStats,
     ) {
         if self.of != Some(of) || self.batch.is_full() {
-            self.draw::<true>(raster, drawn);
+            self.draw(true, raster, drawn);
             self.of = Some(of);
         }
         self.batch.push(vertices, attributes);
     }
 
-    /// Draws those that wait.
-    pub(super) fn draw<const CLIPS: bool>(&mut self, raster: &mut Raster<'_>, drawn: &mut DrawStats) {
+    /// Draws those that wait. `clips` is false where all lie inside the frame.
+    pub(super) fn draw(&mut self, clips: bool, raster: &mut Raster<'_>, drawn: &mut DrawStats) {
         let Some(of) = self.of.take() else { return };
         if self.batch.is_empty() {
             return;
         }
         *drawn += self.pipelines.with(of, |pipeline| {
-            if CLIPS {
+            if clips {
                 raster.batch_with_effects(self.batch, pipeline)
             } else {
                 raster.batch_with_effects_inside(self.batch, pipeline)
@@ -181,13 +181,15 @@ impl<'a> BatchedEffects<'a> {
 }
 
 /// Draws faces without effects, many at a time.
-pub(super) struct Batched<'a, 'b, const CLIPS: bool> {
+pub(super) struct Batched<'a, 'b> {
+    /// False where all lie inside the frame.
+    pub(super) clips: bool,
     pub(super) raster: &'a mut Raster<'b>,
     pub(super) batch: &'a mut Batch,
     pub(super) drawn: &'a mut DrawStats,
 }
 
-impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
+impl Batched<'_, '_> {
     #[inline]
     pub(super) fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) {
         if !self.batch.push(vertices, interpolation) {
@@ -201,7 +203,7 @@ impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
     fn past_the_batch(&mut self, vertices: [Vertex; 3], interpolation: Interpolation) {
         self.draw();
         if !self.batch.push(&vertices, interpolation) {
-            *self.drawn += if CLIPS {
+            *self.drawn += if self.clips {
                 self.raster.triangle(&vertices, interpolation)
             } else {
                 self.raster.triangle_inside(&vertices, interpolation)
@@ -212,7 +214,8 @@ impl<const CLIPS: bool> Batched<'_, '_, CLIPS> {
     /// Draws those that are waiting.
     pub(super) fn draw(&mut self) {
         if !self.batch.is_empty() {
-            *self.drawn += if CLIPS { self.raster.batch(self.batch) } else { self.raster.batch_inside(self.batch) };
+            *self.drawn +=
+                if self.clips { self.raster.batch(self.batch) } else { self.raster.batch_inside(self.batch) };
             self.batch.clear();
         }
     }

@@ -8,6 +8,7 @@ use super::face::{Sink, is_turned_away};
 use super::faces::Faces;
 use super::lit::Face;
 use super::vertex::Geometry;
+use crate::lanes::three;
 use crate::plan::FaceShading;
 use crate::raster::effects::Attributes;
 use crate::render::stats::Shares;
@@ -56,9 +57,9 @@ impl Faces<'_> {
                 let is = |bits: u64| bits >> at & 1 == 1;
                 let turned = !CULLS && is(masks.back);
                 if is(classes.linear) {
-                    let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+                    let vertices = three(indices, |i| self.lit.vertex(i as usize, turned));
                     if EFFECTS && self.paints[usize::from(surface)].has_effects {
-                        let attributes = indices.map(|i| self.extras[i as usize].side(turned));
+                        let attributes = three(indices, |i| self.extras[i as usize].side(turned));
                         sink.with_effects((first + at) as u32, &vertices, &attributes, surface, LINEAR);
                     } else {
                         // With a budget a face may be lit at its pixels in any object.
@@ -70,10 +71,9 @@ impl Faces<'_> {
                 }
                 // Fewer than 2³² faces.
                 let face = Face { index: (first + at) as u32, indices, surface, back_facing: turned };
-                let shading = if is(masks.clipped) && (CULLS || !is(self.twins_of(chunk))) {
-                    self.clipped_within::<CULLS, EFFECTS>(face, budget, stats, sink)
-                } else if is(masks.clipped) {
-                    self.clipped_within::<true, EFFECTS>(face, budget, stats, sink)
+                let shading = if is(masks.clipped) {
+                    let culls = CULLS || is(self.twins_of(chunk));
+                    self.clipped_within((culls, EFFECTS), face, budget, stats, sink)
                 } else {
                     let error = (!is(classes.float)).then_some(classes.errors[at]);
                     self.one_within::<EFFECTS>(face, (budget, error), stats, sink)
@@ -99,12 +99,12 @@ impl Faces<'_> {
         sink: &mut impl Sink,
     ) -> FaceShading {
         let Face { index, indices, surface, back_facing: turned } = face;
-        let vertices = indices.map(|i| self.lit.vertex(i as usize, turned));
+        let vertices = three(indices, |i| self.lit.vertex(i as usize, turned));
         let fit = error.map_or(Fit::of(FLOAT), |error| self.fit(budget, (face, error), &vertices));
         let shading = fit.shading;
         stats.shares.add(shading, 1);
         if (EFFECTS && self.paints[usize::from(surface)].has_effects) || shading.lights_pixels() {
-            let mut attributes = self.attributes::<EFFECTS>(indices, turned, shading);
+            let mut attributes = self.attributes(EFFECTS, indices, turned, shading);
             if shading == FaceShading::Quadratic {
                 self.put_curve(&mut attributes, surface, &fit.nodes);
             }
@@ -119,30 +119,31 @@ impl Faces<'_> {
     /// A face that reaches beyond the near plane or the guard band. Otherwise like [`clipped`](Self::clipped).
     #[cold]
     #[inline(never)]
-    fn clipped_within<const CULLS: bool, const EFFECTS: bool>(
+    fn clipped_within(
         &self,
+        (culls, effects): (bool, bool),
         face: Face,
         budget: &Budget,
         stats: &mut Stats,
-        sink: &mut impl Sink,
+        sink: &mut dyn Sink,
     ) -> FaceShading {
         let Face { indices, surface, .. } = face;
-        let corners = &indices.map(|i| self.lit.get(i as usize));
-        let at = indices.map(|i| self.view.homogeneous(self.geometry.positions[i as usize]));
-        let turned = !CULLS && is_turned_away(&at);
+        let corners = &three(indices, |i| self.lit.get(i as usize));
+        let at = three(indices, |i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        let turned = !culls && is_turned_away(&at);
         let face = Face { back_facing: turned, ..face };
         let (shading, before) = (self.decide_clipped(budget, face), stats.drawn);
         let interpolation = shading.interpolation();
-        if (EFFECTS && self.paints[usize::from(surface)].has_effects) || shading.lights_pixels() {
-            let attributes = self.attributes::<EFFECTS>(indices, turned, shading);
-            let carried = attributes.map(|attributes| WithEffects { attributes, affine: self.affine });
-            self.parts::<CULLS, _>(at, corners, carried, (interpolation, turned), stats, |vertices, carried, _| {
-                let attributes = carried.map(|carried| carried.attributes);
+        if (effects && self.paints[usize::from(surface)].has_effects) || shading.lights_pixels() {
+            let attributes = self.attributes(effects, indices, turned, shading);
+            let carried = three(attributes, |attributes| WithEffects { attributes, affine: self.affine });
+            self.parts(culls, at, corners, carried, (interpolation, turned), stats, |vertices, carried, _| {
+                let attributes = three(carried, |carried| carried.attributes);
                 sink.with_effects(face.index, &vertices, &attributes, surface, shading);
             });
         } else {
             sink.after_effects();
-            self.parts::<CULLS, _>(at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
+            self.parts(culls, at, corners, [(); 3], (interpolation, turned), stats, |vertices, _, _| {
                 sink.plain(face.index, &vertices, interpolation);
             });
         }
@@ -152,14 +153,9 @@ impl Faces<'_> {
 
     /// Attributes of the corners of a face that is shaded by choice.
     #[inline]
-    fn attributes<const EFFECTS: bool>(
-        &self,
-        indices: [u32; 3],
-        turned: bool,
-        shading: FaceShading,
-    ) -> [Attributes; 3] {
-        indices.map(|i| {
-            let mut attributes = if EFFECTS { self.extras[i as usize].side(turned) } else { Attributes::default() };
+    fn attributes(&self, effects: bool, indices: [u32; 3], turned: bool, shading: FaceShading) -> [Attributes; 3] {
+        three(indices, |i| {
+            let mut attributes = if effects { self.extras[i as usize].side(turned) } else { Attributes::default() };
             if shading.lights_pixels() {
                 let (normal, position) = (self.geometry.normals[i as usize], self.geometry.positions[i as usize]);
                 let normal = if turned { -normal } else { normal };

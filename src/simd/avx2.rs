@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::singles::{Singles8, singles_of_256_bits};
+use super::singles::{Light8, Singles8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -221,10 +221,10 @@ impl Lanes8 for Avx2 {
     fn compact_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         // Eight bits.
         let set = SET_LANES[self.mask_bits(mask) as usize % 256].cast_signed();
-        for (from, to) in from.into_iter().zip(to) {
+        for (i, to) in to.into_iter().enumerate() {
             // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
             unsafe {
-                let front = _mm256_permutevar8x32_epi32(from, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set)));
+                let front = _mm256_permutevar8x32_epi32(from[i], _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set)));
                 _mm256_storeu_si256(to.as_mut_ptr().cast(), front);
             }
         }
@@ -232,16 +232,16 @@ impl Lanes8 for Avx2 {
     #[inline(always)]
     fn compact_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [i64; 8]; N]) {
         let bits = self.mask_bits(mask) as usize;
-        let set = [bits % 16, bits / 16 % 16].map(|half| SET_PAIRS[half].cast_signed());
+        let set = [SET_PAIRS[bits % 16].cast_signed(), SET_PAIRS[bits / 16 % 16].cast_signed()];
         let low = (bits % 16).count_ones() as usize;
-        for (from, to) in from.into_iter().zip(to) {
+        for (i, to) in to.into_iter().enumerate() {
             // SAFETY: the processor has the instructions, says `self`. The first store goes to the first four of eight, the
             // second to the four that begin behind up to four of them.
             unsafe {
                 let to = to.as_mut_ptr();
                 for (half, to) in [to, to.add(low)].into_iter().enumerate() {
                     let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set[half]));
-                    _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(from[half], lanes));
+                    _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(from[i][half], lanes));
                 }
             }
         }
@@ -257,5 +257,20 @@ impl Singles8 for Avx2 {
         }
         fn narrow(from: F64) -> __m256 { _mm256_set_m128(_mm256_cvtpd_ps(from[1]), _mm256_cvtpd_ps(from[0])) }
         fn whole(from: F64) -> __m256i { _mm256_set_m128i(_mm256_cvttpd_epi32(from[1]), _mm256_cvttpd_epi32(from[0])) }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Light8 for Avx2 {
+    lanes! {
+        fn f32s(from: &[f32; 8]) -> __m256 { _mm256_loadu_ps(from.as_ptr()) }
+        fn sqrt(of: F64) -> F64 { halves!(h => _mm256_sqrt_pd(of[h])) }
+        fn if_less(a: F64, b: F64, value: F64) -> F64 {
+            halves!(h => _mm256_and_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a[h], b[h]), value[h]))
+        }
+        fn is_zero(values: F64) -> bool {
+            let bits = _mm256_castpd_si256(_mm256_or_pd(values[0], values[1]));
+            _mm256_testz_si256(bits, bits) == 1
+        }
     }
 }

@@ -116,17 +116,17 @@ impl Lanes8 for Avx512 {
 
     #[inline(always)]
     fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
-        for (from, to) in from.into_iter().zip(to) {
+        for (i, to) in to.into_iter().enumerate() {
             // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array. (`vpcompressd` to
             // memory is slow on Zen 4.)
-            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, from)) }
+            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, from[i])) }
         }
     }
     #[inline(always)]
     fn compact_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
-        for (from, to) in from.into_iter().zip(to) {
+        for (i, to) in to.into_iter().enumerate() {
             // SAFETY: likewise.
-            unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from)) }
+            unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from[i])) }
         }
     }
 }

@@ -94,9 +94,10 @@ pub(crate) trait Lanes8: Copy {
     fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [Self::I64; 3] {
         let mut lanes = [[0; 8]; 3];
         for (lane, row) in rows.iter().enumerate() {
-            for (lanes, &index) in lanes.iter_mut().zip(row) {
-                lanes[lane] = from[index as usize].into().cast_signed();
-            }
+            let [a, b, c] = *row;
+            lanes[0][lane] = from[a as usize].into().cast_signed();
+            lanes[1][lane] = from[b as usize].into().cast_signed();
+            lanes[2][lane] = from[c as usize].into().cast_signed();
         }
         let [a, b, c] = &lanes;
         [self.i64s(a), self.i64s(b), self.i64s(c)]

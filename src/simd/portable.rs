@@ -1,6 +1,7 @@
 //! [`Lanes8`] by plain arrays, for every processor.
 
 use super::Lanes8;
+use crate::lanes::each;
 
 /// The level that every processor has.
 #[derive(Clone, Copy, Debug)]
@@ -9,18 +10,6 @@ pub(crate) struct Portable;
 type F64 = [f64; 8];
 type I32 = [i32; 8];
 type I64 = [i64; 8];
-
-macro_rules! each {
-    ($lane:ident => $value:expr) => {{
-        let mut to = [Default::default(); 8];
-        for ($lane, to) in to.iter_mut().enumerate() {
-            *to = $value;
-        }
-        to
-    }};
-}
-#[cfg(feature = "alloc")]
-pub(super) use each;
 
 impl Lanes8 for Portable {
     type F64 = F64;
@@ -247,9 +236,9 @@ impl Lanes8 for Portable {
     fn compact_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [u32; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
-            for (from, to) in from.iter().zip(&mut to) {
+            for (i, to) in to.iter_mut().enumerate() {
                 // Fewer than eight come before it.
-                to[count % 8] = from[lane].cast_unsigned();
+                to[count % 8] = from[i][lane].cast_unsigned();
             }
             count += (set & 1) as usize;
         }
@@ -258,8 +247,8 @@ impl Lanes8 for Portable {
     fn compact_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [i64; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
-            for (from, to) in from.iter().zip(&mut to) {
-                to[count % 8] = from[lane];
+            for (i, to) in to.iter_mut().enumerate() {
+                to[count % 8] = from[i][lane];
             }
             count += (set & 1) as usize;
         }

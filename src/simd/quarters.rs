@@ -405,31 +405,33 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
         // There is no such instruction for all of these levels: lane by lane out of arrays.
         let bits = self.mask_bits(mask);
         let mut lanes = [[0; 8]; N];
-        for (from, lanes) in from.into_iter().zip(&mut lanes) {
-            self.put_i32s(from, lanes);
+        for (i, lanes) in lanes.iter_mut().enumerate() {
+            self.put_i32s(from[i], lanes);
         }
-        let mut count = 0;
-        for lane in 0..8 {
-            for (lanes, to) in lanes.iter().zip(&mut to) {
+        let (mut count, mut lane) = (0, 0);
+        while lane < 8 {
+            for (i, to) in to.iter_mut().enumerate() {
                 // Fewer than eight come before it.
-                to[count % 8] = lanes[lane].cast_unsigned();
+                to[count % 8] = lanes[i][lane].cast_unsigned();
             }
             count += (bits >> lane & 1) as usize;
+            lane += 1;
         }
     }
     #[inline(always)]
     fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], mut to: [&mut [i64; 8]; N]) {
         let bits = self.mask_bits(mask);
         let mut lanes = [[0; 8]; N];
-        for (from, lanes) in from.into_iter().zip(&mut lanes) {
-            self.put_i64s(from, lanes);
+        for (i, lanes) in lanes.iter_mut().enumerate() {
+            self.put_i64s(from[i], lanes);
         }
-        let mut count = 0;
-        for lane in 0..8 {
-            for (lanes, to) in lanes.iter().zip(&mut to) {
-                to[count % 8] = lanes[lane];
+        let (mut count, mut lane) = (0, 0);
+        while lane < 8 {
+            for (i, to) in to.iter_mut().enumerate() {
+                to[count % 8] = lanes[i][lane];
             }
             count += (bits >> lane & 1) as usize;
+            lane += 1;
         }
     }
 }

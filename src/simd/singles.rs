@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::portable::each;
 use super::{Lanes8, Portable};
 use crate::fixed::whole_part;
+use crate::lanes::each;
 
 /// Operations on eight lanes of f32. Each rounds once, like the operation on one number.
 pub(crate) trait Singles8: Lanes8 {
@@ -30,6 +30,45 @@ pub(crate) trait Singles8: Lanes8 {
     fn narrow(self, from: Self::F64) -> Self::F32;
     /// The whole parts of values of at least 0 and below 2³¹; of others some number.
     fn whole(self, from: Self::F64) -> Self::I32;
+}
+
+/// What light at points needs beside them.
+pub(crate) trait Light8: Singles8 {
+    fn f32s(self, from: &[f32; 8]) -> Self::F32;
+    /// The number nearest to the root.
+    fn sqrt(self, of: Self::F64) -> Self::F64;
+    /// `value` where `a` is less than `b`, otherwise 0: also where one is NaN.
+    fn if_less(self, a: Self::F64, b: Self::F64, value: Self::F64) -> Self::F64;
+    /// Returns whether all are 0, of values of which none is −0.
+    fn is_zero(self, values: Self::F64) -> bool;
+}
+
+impl Light8 for Portable {
+    #[inline(always)]
+    fn f32s(self, from: &[f32; 8]) -> [f32; 8] {
+        *from
+    }
+    #[inline(always)]
+    fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
+        // Both give the same number. The compiler makes vectors of the first.
+        #[cfg(feature = "std")]
+        return each!(i => of[i].sqrt());
+        #[cfg(not(feature = "std"))]
+        return each!(i => libm::sqrt(of[i]));
+    }
+    #[inline(always)]
+    fn if_less(self, a: [f64; 8], b: [f64; 8], value: [f64; 8]) -> [f64; 8] {
+        each!(i => if a[i] < b[i] { value[i] } else { 0.0 })
+    }
+    #[inline(always)]
+    fn is_zero(self, values: [f64; 8]) -> bool {
+        let (mut bits, mut i) = (0, 0);
+        while i < 8 {
+            bits |= values[i].to_bits();
+            i += 1;
+        }
+        bits == 0
+    }
 }
 
 impl Singles8 for Portable {

@@ -234,6 +234,31 @@ fn check_singles<S: Singles8>(s: S, name: &'static str) {
     }
 }
 
+#[cfg(all(feature = "alloc", feature = "simd", target_arch = "x86_64"))]
+fn check_light<S: Light8>(s: S, name: &'static str) {
+    let c = Checker { s, name };
+    let p = Portable;
+    let mut random = Random(33);
+    for _ in 0..2_000 {
+        let a = random.f32s();
+        c.f32s("f32s", s.f32s(&a), a);
+        let numbers = a.map(f64::from);
+        let others: [f64; 8] = core::array::from_fn(|i| numbers[i * 3 % 8]);
+        let (found, other) = (s.f64s(&numbers), s.f64s(&others));
+        let squares = numbers.map(f64::abs);
+        c.f64s("sqrt", s.sqrt(s.f64s(&squares)), p.sqrt(squares));
+        let [x, y] = [numbers, others].map(|lanes| lanes.map(|x| if x.is_nan() { 2.0 } else { x }));
+        c.f64s("if_less", s.if_less(found, other, s.f64s(&x)), p.if_less(numbers, others, x));
+        c.f64s("if_less, equal", s.if_less(found, found, s.f64s(&y)), [0.0; 8]);
+    }
+    for lane in 0..8 {
+        let mut one = [0.0; 8];
+        assert!(s.is_zero(s.f64s(&one)) && p.is_zero(one), "is_zero of {name}");
+        one[lane] = f64::from_bits(1);
+        assert!(!s.is_zero(s.f64s(&one)) && !p.is_zero(one), "is_zero of {name}, lane {lane}");
+    }
+}
+
 #[cfg(not(feature = "alloc"))]
 fn check_singles<S: Lanes8>(_: S, _: &'static str) {}
 
@@ -243,6 +268,10 @@ fn every_level_has_the_operations_of_plain_arrays() {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     {
         check(SSE2, "SSE2");
+        #[cfg(feature = "alloc")]
+        if let Some(s) = Avx2::find() {
+            check_light(s, "AVX2");
+        }
         let tried = [Avx2::find().map(|s| check(s, "AVX2")), Avx512::find().map(|s| check(s, "AVX-512"))];
         for (name, tried) in ["AVX2", "AVX-512"].into_iter().zip(tried) {
             if tried.is_none() {

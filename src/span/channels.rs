@@ -70,14 +70,16 @@ pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], threshold
 
 /// The specification of [`mix_cube`].
 pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
-    for (k, (((pixel, red), green), blue)) in row.iter_mut().zip(red).zip(green).zip(blue).enumerate() {
+    let n = row.len().min(red.len()).min(green.len()).min(blue.len());
+    let (row, red, green, blue) = (&mut row[..n], &red[..n], &green[..n], &blue[..n]);
+    for (k, pixel) in row.iter_mut().enumerate() {
         let threshold = thresholds[x.wrapping_add(k) % 8];
         let level = |value: u8| {
             let between = BETWEEN[usize::from(value)];
             between.level + u8::from(threshold < between.next_below)
         };
         // At most 36·5 + 6·5 + 5 = 215.
-        *pixel = 36 * level(*red) + 6 * level(*green) + level(*blue);
+        *pixel = 36 * level(red[k]) + 6 * level(green[k]) + level(blue[k]);
     }
 }
 
@@ -160,11 +162,13 @@ pub fn mix_nearest(
     spread: u8,
     map: &[u8; 32_768],
 ) {
-    for (k, (((pixel, red), green), blue)) in row.iter_mut().zip(red).zip(green).zip(blue).enumerate() {
+    let n = row.len().min(red.len()).min(green.len()).min(blue.len());
+    let (row, red, green, blue) = (&mut row[..n], &red[..n], &green[..n], &blue[..n]);
+    for (k, pixel) in row.iter_mut().enumerate() {
         let threshold = i32::from(thresholds[x.wrapping_add(k) % 8]);
         let offset = ((threshold * i32::from(spread)) >> 8) - i32::from(spread / 2);
         // 0 to 31.
         let five_bits = |value: u8| ((i32::from(value) + offset).clamp(0, 255) >> 3) as usize;
-        *pixel = map[five_bits(*red) << 10 | five_bits(*green) << 5 | five_bits(*blue)];
+        *pixel = map[five_bits(red[k]) << 10 | five_bits(green[k]) << 5 | five_bits(blue[k])];
     }
 }

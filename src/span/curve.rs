@@ -25,14 +25,17 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
     // With 2²³ added the last bit of an f32 is worth 1, and so the sum is rounded to the nearest whole number.
     const WHOLE: f32 = 8_388_608.0;
     let (least, most) = (f32::from(least), f32::from(most));
-    for (k, shade) in (0_i32..).zip(shades) {
-        let k = k as f32;
+    // An index loop, as in `light::lanes`.
+    let mut pixel = 0;
+    while pixel < shades.len() {
+        let k = pixel as i32 as f32;
         let value = a + k * (b + k * c);
         // In this form not a number is `least`, and each is one instruction.
         let value = if value > least { value } else { least };
         let value = if value < most { value } else { most };
         // The lower half of the bits: the number itself.
-        *shade = (value + WHOLE).to_bits() as u16;
+        shades[pixel] = (value + WHOLE).to_bits() as u16;
+        pixel += 1;
     }
 }
 

@@ -72,16 +72,19 @@ impl Cell for u16 {
 #[inline]
 pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u16, z: i64, dz: i64) -> u32 {
     let (mut ax, mut z, mut written) = (shade, z, 0);
-    for (pixel, nearest) in row.iter_mut().zip(depth) {
+    let n = row.len().min(depth.len());
+    let (row, depth, mut i) = (&mut row[..n], &mut depth[..n], 0);
+    while i < n {
         // Depths are u32: what lies above bit 56 is not there within a triangle.
         let d = D::of_depth((z >> 24) as u32);
-        if d > *nearest {
-            *nearest = d;
-            *pixel = (ax >> 8) as u8;
+        if d > depth[i] {
+            depth[i] = d;
+            row[i] = (ax >> 8) as u8;
             written += 1;
         }
         ax = ax.wrapping_add(step);
         z = z.wrapping_add(dz);
+        i += 1;
     }
     written
 }
@@ -89,10 +92,12 @@ pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u
 /// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, and keeps the greater depth.
 #[inline]
 pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i64, dz: i64) -> u32 {
-    copy_where(row, depth, bytes, z, dz, |nearest, d: D| {
-        let nearer = d > *nearest;
+    let n = row.len().min(depth.len()).min(bytes.len());
+    let depth = &mut depth[..n];
+    copy_where(&mut row[..n], &bytes[..n], z, dz, |i, d| {
+        let nearer = d > depth[i];
         if nearer {
-            *nearest = d;
+            depth[i] = d;
         }
         nearer
     })
@@ -103,26 +108,22 @@ pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i6
 /// This is for faces that one sees through, of which many may lie before one another.
 #[inline]
 pub fn copy_before<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
-    copy_where(row, depth, bytes, z, dz, |nearest, d: D| d > *nearest)
+    let n = row.len().min(depth.len()).min(bytes.len());
+    let depth = &depth[..n];
+    copy_where(&mut row[..n], &bytes[..n], z, dz, |i, d: D| d > depth[i])
 }
 
-/// Copies `bytes` where `nearer` says so of the cell and the depth.
+/// Copies as many bytes as there are pixels where `nearer` says so of a pixel's index and depth.
 #[inline]
-fn copy_where<C, D: Cell>(
-    row: &mut [u8],
-    depth: impl IntoIterator<Item = C>,
-    bytes: &[u8],
-    z: i64,
-    dz: i64,
-    mut nearer: impl FnMut(C, D) -> bool,
-) -> u32 {
-    let (mut z, mut written) = (z, 0);
-    for ((pixel, cell), byte) in row.iter_mut().zip(depth).zip(bytes) {
-        if nearer(cell, D::of_depth((z >> 24) as u32)) {
-            *pixel = *byte;
+fn copy_where<D: Cell>(row: &mut [u8], bytes: &[u8], z: i64, dz: i64, mut nearer: impl FnMut(usize, D) -> bool) -> u32 {
+    let (n, mut i, mut z, mut written) = (row.len().min(bytes.len()), 0, z, 0);
+    while i < n {
+        if nearer(i, D::of_depth((z >> 24) as u32)) {
+            row[i] = bytes[i];
             written += 1;
         }
         z = z.wrapping_add(dz);
+        i += 1;
     }
     written
 }

@@ -215,6 +215,7 @@ impl SpanList {
 
     /// At most `CAPACITY`.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[inline(always)]
     pub(super) fn len(&self) -> usize {
         self.count.min(CAPACITY)
     }
@@ -222,8 +223,8 @@ impl SpanList {
     /// The spans, in order.
     #[inline(always)]
     pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
-        let all = self.at.iter().zip(&self.length).zip(&self.paint).take(self.count);
-        all.map(|((&at, &length), &paint)| Span { at, length, paint })
+        let Self { at, length, paint, count, .. } = self;
+        (0..(*count).min(CAPACITY)).map(|k| Span { at: at[k], length: length[k], paint: paint[k] })
     }
 
     /// Offsets of the spans' first cells.
@@ -235,8 +236,10 @@ impl SpanList {
     /// The spans, in order, with their depths.
     #[inline(always)]
     pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
-        let depths = self.cell().iter().zip(&self.z).zip(&self.dz);
-        self.spans().zip(depths.map(|((&cell, &z), &dz)| SpanDepth { cell, z, dz }))
+        let (Self { at, length, paint, z, dz, count, .. }, cell) = (self, self.cell());
+        (0..(*count).min(CAPACITY)).map(|k| {
+            (Span { at: at[k], length: length[k], paint: paint[k] }, SpanDepth { cell: cell[k], z: z[k], dz: dz[k] })
+        })
     }
 
     /// Span `k`, which is below `len`.

@@ -1,7 +1,7 @@
 //! Normal and position at every pixel, perspective-correct, for light. The pass writes no pixel.
 
 use super::Kernel;
-use crate::lanes::{LANES, Lanes, Points};
+use crate::lanes::{LANES, Lanes, Points, each};
 use crate::simd::at_best_level;
 
 /// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
@@ -39,15 +39,13 @@ pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
 
 #[inline(always)]
 fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-    let mut reciprocals = [0.0; LANES];
-    for (place, reciprocal) in places.iter().zip(&mut reciprocals) {
-        *reciprocal = 1.0 / (d + *place * dd);
-    }
+    let reciprocals: Lanes<f64> = each!(lane => 1.0 / (d + places[lane] * dd));
     let mut points = [[0.0; LANES]; 6];
-    for (values, (a, da)) in points.iter_mut().zip(a.iter().zip(da)) {
-        for (value, (place, reciprocal)) in values.iter_mut().zip(places.iter().zip(&reciprocals)) {
-            *value = ((a + place * da) * reciprocal) as f32;
-        }
+    // Index loops, as in `light::lanes`.
+    let mut i = 0;
+    while i < 6 {
+        points[i] = each!(lane => ((a[i] + places[lane] * da[i]) * reciprocals[lane]) as f32);
+        i += 1;
     }
     points
 }
@@ -67,11 +65,12 @@ pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: 
 #[inline(always)]
 fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
     let mut numerators = [[0.0; LANES]; 7];
-    for (values, (a, da)) in numerators.iter_mut().zip(a.iter().zip(da).chain([(&d, &dd)])) {
-        for (value, place) in values.iter_mut().zip(places) {
-            *value = a + place * da;
-        }
+    let mut i = 0;
+    while i < 6 {
+        numerators[i] = each!(lane => a[i] + places[lane] * da[i]);
+        i += 1;
     }
+    numerators[6] = each!(lane => d + places[lane] * dd);
     numerators
 }
 
@@ -84,18 +83,15 @@ pub fn divide(numerators: &Numerators) -> Points {
 }
 
 #[inline(always)]
-fn divide_inlined([a, b, c, d, e, f, denominators]: &Numerators) -> Points {
-    let mut reciprocals = [0.0; LANES];
-    for (reciprocal, denominator) in reciprocals.iter_mut().zip(denominators) {
-        *reciprocal = 1.0 / denominator;
+fn divide_inlined(numerators: &Numerators) -> Points {
+    let reciprocals: Lanes<f64> = each!(lane => 1.0 / numerators[6][lane]);
+    let mut points = [[0.0; LANES]; 6];
+    let mut i = 0;
+    while i < 6 {
+        points[i] = each!(lane => (numerators[i][lane] * reciprocals[lane]) as f32);
+        i += 1;
     }
-    [a, b, c, d, e, f].map(|numerators| {
-        let mut values = [0.0; LANES];
-        for (value, (numerator, reciprocal)) in values.iter_mut().zip(numerators.iter().zip(&reciprocals)) {
-            *value = (numerator * reciprocal) as f32;
-        }
-        values
-    })
+    points
 }
 
 impl Kernel {

@@ -19,7 +19,9 @@
 /// takes 29 and 6, and processors patched against gather data sampling are said to be much slower at it.
 #[inline(never)]
 pub fn lookup(row: &mut [u8], high: &[u8], table: &[u8; 65_536]) {
-    for (pixel, high) in row.iter_mut().zip(high) {
-        *pixel = table[usize::from(u16::from_be_bytes([*high, *pixel]))];
+    let n = row.len().min(high.len());
+    let high = &high[..n];
+    for (k, pixel) in row[..n].iter_mut().enumerate() {
+        *pixel = table[usize::from(u16::from_be_bytes([high[k], *pixel]))];
     }
 }

@@ -236,9 +236,11 @@ pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places
         return;
     }
     let last = texels.bytes.len() - 1;
-    for (pixel, &place) in row.iter_mut().zip(places) {
+    let n = row.len().min(places.len());
+    let places = &places[..n];
+    for (k, pixel) in row[..n].iter_mut().enumerate() {
         // Not negative.
-        shown.show(pixel, texels.bytes[place as usize & last]);
+        shown.show(pixel, texels.bytes[places[k] as usize & last]);
     }
 }
 
@@ -289,7 +291,7 @@ impl<S: Lanes8> AffineLines<S> {
     #[inline(always)]
     pub(crate) fn new(s: S, texels: Texels<'_>, [du, dv]: [u32; 2]) -> Self {
         let places = PlaceLanes::new(s, texels);
-        let [du, dv] = [du, dv << texels.ubits].map(u32::cast_signed);
+        let (du, dv) = (du.cast_signed(), (dv << texels.ubits).cast_signed());
         let numbers = s.i32s(&NUMBERS);
         Self {
             places,

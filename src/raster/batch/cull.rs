@@ -31,8 +31,9 @@ pub(crate) const TINY_SIDE: i32 = 2;
 #[inline(always)]
 fn cull_by<S: Lanes8>(s: S, batch: &Batch, clip: Rect, kept: &mut Survivors) {
     // Whole vectors of eight; what stands in the last after the batch's own triangles is not kept.
-    let [x0, x1, x2] = batch.x.each_ref().map(|x| x.as_chunks::<LANES>().0);
-    let [y0, y1, y2] = batch.y.each_ref().map(|y| y.as_chunks::<LANES>().0);
+    let ([x0, x1, x2], [y0, y1, y2]) = (&batch.x, &batch.y);
+    let [x0, x1, x2] = [x0.as_chunks::<LANES>().0, x1.as_chunks::<LANES>().0, x2.as_chunks::<LANES>().0];
+    let [y0, y1, y2] = [y0.as_chunks::<LANES>().0, y1.as_chunks::<LANES>().0, y2.as_chunks::<LANES>().0];
     for at in 0..batch.count.div_ceil(LANES).min(Batch::CAPACITY / LANES) {
         let (x, y) =
             ([s.i32s(&x0[at]), s.i32s(&x1[at]), s.i32s(&x2[at])], [s.i32s(&y0[at]), s.i32s(&y1[at]), s.i32s(&y2[at])]);

@@ -199,8 +199,8 @@ fn find_rows_by<S: Lanes8>(s: S, batch: &Batch, wanted: Wanted<'_>, triangles: &
     };
     if let Some((coordinates, of_corners)) = wanted.texture {
         let mut numbers = [0; LANES];
-        for (number, &triangle) in numbers.iter_mut().zip(triangles) {
-            *number = index(triangle);
+        for (lane, &triangle) in triangles.iter().take(LANES).enumerate() {
+            numbers[lane] = index(triangle);
         }
         let of_corners = of_corners.gather(&numbers);
         match coordinates {
@@ -208,25 +208,30 @@ fn find_rows_by<S: Lanes8>(s: S, batch: &Batch, wanted: Wanted<'_>, triangles: &
             Coordinates::Perspective => perspective.set_up(s, &basis, &corners, &of_corners),
         }
     }
-    let count = setup.rows.iter().take(triangles.len()).fold(0, |most, &rows| most.max(rows)).min(MAX_ROWS);
+    let mut count = 0;
+    for &rows in setup.rows.iter().take(triangles.len()) {
+        count = if rows > count { rows } else { count };
+    }
+    let count = count.min(MAX_ROWS);
     for number in 0..count {
         let j = s.all_f64(f64::from(number));
         let (ends, row) = find_row(s, setup, number);
         let number = number as usize;
-        for (to, of_row) in rows[number].iter_mut().zip(row) {
-            s.put_i32s(of_row, to);
+        for (i, to) in rows[number].iter_mut().enumerate() {
+            s.put_i32s(row[i], to);
         }
         match wanted.texture {
             None => {}
             Some((Coordinates::Affine, _)) => {
-                for (to, start) in affine_starts[number].iter_mut().zip(affine.start(s, j, &ends)) {
-                    s.put_i32s(start, to);
-                }
+                let [u, v] = affine.start(s, j, &ends);
+                s.put_i32s(u, &mut affine_starts[number][0]);
+                s.put_i32s(v, &mut affine_starts[number][1]);
             }
             Some((Coordinates::Perspective, _)) => {
-                for (to, start) in perspective_starts[number].iter_mut().zip(perspective.start(s, j, &ends)) {
-                    s.put_f64s(start, to);
-                }
+                let [u, v, d] = perspective.start(s, j, &ends);
+                s.put_f64s(u, &mut perspective_starts[number][0]);
+                s.put_f64s(v, &mut perspective_starts[number][1]);
+                s.put_f64s(d, &mut perspective_starts[number][2]);
             }
         }
     }

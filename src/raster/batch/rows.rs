@@ -180,8 +180,8 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
     let fourth = cursor.row::<DEPTHS>(s, setup, list, 3);
     let even = first.zip::<DEPTHS>(s, &third, list);
     let odd = second.zip::<DEPTHS>(s, &fourth, list);
-    for (half, (even, odd)) in even.iter().zip(&odd).enumerate() {
-        for (quarter, spans) in even.zip::<DEPTHS>(s, odd, list).iter().enumerate() {
+    for (half, even) in even.iter().enumerate() {
+        for (quarter, spans) in even.zip::<DEPTHS>(s, &odd[half], list).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
             let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
             list.append::<S, DEPTHS>(s, spans, dz);

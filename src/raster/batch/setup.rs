@@ -38,6 +38,7 @@
 use super::class::ClassedIndex;
 use super::triangles::{Batch, FrameLayout, LANES};
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::each;
 use crate::raster::depth::DepthPlane;
 use crate::simd::Lanes8;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -67,17 +68,18 @@ impl Corners8 {
             && ClassedIndex(*last).index() == ClassedIndex(*first).index() + LANES - 1
         {
             let first = ClassedIndex(*first).index().min(Batch::CAPACITY - LANES);
-            let eight = first..first + LANES;
             for corner in 0..3 {
-                self.x[corner].copy_from_slice(&batch.x[corner][eight.clone()]);
-                self.y[corner].copy_from_slice(&batch.y[corner][eight.clone()]);
-                for (to, &shade) in self.shade[corner].iter_mut().zip(&batch.shade[corner][eight.clone()]) {
-                    *to = i32::from(shade);
+                if let Some(x) = batch.x[corner][first..].first_chunk() {
+                    self.x[corner] = *x;
                 }
-                if DEPTHS {
-                    for (to, depth) in self.depth[corner].iter_mut().zip(&batch.depth[corner][eight.clone()]) {
-                        *to = depth.cast_signed();
-                    }
+                if let Some(y) = batch.y[corner][first..].first_chunk() {
+                    self.y[corner] = *y;
+                }
+                if let Some(shades) = batch.shade[corner][first..].first_chunk::<LANES>() {
+                    self.shade[corner] = each!(lane => i32::from(shades[lane]));
+                }
+                if DEPTHS && let Some(depths) = batch.depth[corner][first..].first_chunk::<LANES>() {
+                    self.depth[corner] = each!(lane => depths[lane].cast_signed());
                 }
             }
             return;

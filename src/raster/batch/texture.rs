@@ -12,6 +12,7 @@ use super::rows::RowEnds;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use super::triangles::LANES;
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::each;
 use crate::simd::Lanes8;
 
 /// Texture coordinates of the corners of many triangles, in texels with 16 fraction bits.
@@ -40,9 +41,10 @@ impl<const N: usize> TextureCorners<N> {
     #[inline(always)]
     pub(super) fn gather(&self, triangles: &[usize; LANES]) -> [[Ints; 3]; 2] {
         let mut gathered = [[[0; LANES]; 3]; 2];
-        for (to, from) in gathered.as_flattened_mut().iter_mut().zip(self.of.as_flattened()) {
-            for (to, &triangle) in to.iter_mut().zip(triangles) {
-                *to = from[triangle % N];
+        for (i, to) in gathered.iter_mut().enumerate() {
+            for (corner, to) in to.iter_mut().enumerate() {
+                let from = &self.of[i][corner];
+                *to = each!(lane => from[triangles[lane] % N]);
             }
         }
         gathered
@@ -152,11 +154,10 @@ impl PerspectivePlanes8 {
         coordinates: &[[Ints; 3]; 2],
     ) {
         let [u, v] = coordinates;
-        let mut sorted = [[s.all_i32(0); 3]; 3];
-        for (sorted, [a, b, c]) in sorted.iter_mut().zip([u, v, &corners.depth]) {
-            *sorted = basis.order.sort(s, [s.i32s(a), s.i32s(b), s.i32s(c)]);
-        }
-        let [u, v, depth] = sorted;
+        let [depth_a, depth_b, depth_c] = &corners.depth;
+        let u = basis.order.sort(s, [s.i32s(&u[0]), s.i32s(&u[1]), s.i32s(&u[2])]);
+        let v = basis.order.sort(s, [s.i32s(&v[0]), s.i32s(&v[1]), s.i32s(&v[2])]);
+        let depth = basis.order.sort(s, [s.i32s(depth_a), s.i32s(depth_b), s.i32s(depth_c)]);
         let ([x, y], pixel, zero) = (basis.first, s.all_f64(256.0), s.all_f64(0.0));
         let one = s.all_f64(1.0);
         let mut sums = [zero; 3];
@@ -174,13 +175,13 @@ impl PerspectivePlanes8 {
             // A depth counts as 1 at least.
             let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
             let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
-            for (i, value) in values.into_iter().enumerate() {
-                s.put_f64s(value, &mut self.values[corner][i]);
-                sums[i] = s.mul_add(per_column, value, sums[i]);
+            for i in 0..3 {
+                s.put_f64s(values[i], &mut self.values[corner][i]);
+                sums[i] = s.mul_add(per_column, values[i], sums[i]);
             }
         }
-        for (step, sum) in self.step.iter_mut().zip(sums) {
-            s.put_f64s(sum, step);
+        for (i, step) in self.step.iter_mut().enumerate() {
+            s.put_f64s(sums[i], step);
         }
     }
 
@@ -189,11 +190,11 @@ impl PerspectivePlanes8 {
     pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::F64; 3] {
         let columns = s.sub(ends.left, s.all_f64(ROUND_MAGIC));
         let mut sums = [s.all_f64(0.0); 3];
-        for (weights, values) in self.weights.iter().zip(&self.values) {
+        for (corner, weights) in self.weights.iter().enumerate() {
             let weight = s.mul_add(s.f64s(&weights[1]), j, s.f64s(&weights[0]));
             let weight = s.mul_add(s.f64s(&weights[2]), columns, weight);
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum = s.mul_add(weight, s.f64s(value), *sum);
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum = s.mul_add(weight, s.f64s(&self.values[corner][i]), *sum);
             }
         }
         sums

@@ -1,6 +1,7 @@
 //! The triangles of a batch, as a structure of arrays, and what bounds them.
 
 use crate::fixed::{I24F8, U8F8};
+use crate::lanes::three;
 use crate::raster::Interpolation;
 use crate::raster::depth::DepthPlane;
 use crate::raster::shade::RESEED;
@@ -130,15 +131,18 @@ impl Batch {
 
     pub(super) fn depth_plane(&self, at: usize) -> DepthPlane {
         let at = at % Self::CAPACITY;
-        DepthPlane::of_corners([0, 1, 2].map(|corner| (self.x[corner][at], self.y[corner][at], self.depth[corner][at])))
+        DepthPlane::of_corners(three([0, 1, 2], |corner| {
+            (self.x[corner][at], self.y[corner][at], self.depth[corner][at])
+        }))
     }
 
     /// The most pieces that start anew in a row of a large triangle.
+    #[inline(always)]
     pub(super) fn pieces(&self, at: usize) -> usize {
         if self.interpolation[at] != Interpolation::GouraudReseeded {
             return 1;
         }
-        let [a, b, c] = self.x.each_ref().map(|x| x[at]);
+        let [a, b, c] = three(self.x.each_ref(), |x| x[at]);
         // As in `culler`; at most 1,024 pixels.
         let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
         ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)

@@ -17,6 +17,7 @@
 
 use super::{Attributes, Limits};
 use crate::fixed::U8F8;
+use crate::lanes::three;
 use crate::raster::cover::SortedTriangle;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
@@ -40,8 +41,8 @@ impl Curve {
         // Not a number is the least.
         #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
         let shade = |value: f32| f64::from(value.max(-GREATEST).min(GREATEST));
-        let [fa, fb, fc] = corners.map(|corner| shade(corner.lit[channel]));
-        let [ma, mb, mc] = corners.map(|corner| shade(corner.lit[channel + 3]));
+        let [fa, fb, fc] = three(corners, |corner| shade(corner.lit[channel]));
+        let [ma, mb, mc] = three(corners, |corner| shade(corner.lit[channel + 3]));
         let bend = |from: f64, middle: f64, to: f64| 2.0 * (from - 2.0 * middle + to);
         let [da, db, dc] = [bend(fb, ma, fc), bend(fc, mb, fa), bend(fa, mc, fb)];
         Self {
@@ -83,19 +84,19 @@ impl CurvePlane {
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;
-        let steps = weights.per_column().map(|step| step * share);
+        let steps = three(weights.per_column(), |step| step * share);
         let mut curves = [Curve::default(); 3];
         for (channel, curve) in curves.iter_mut().enumerate().take(channels) {
             *curve = Curve::new(corners, channel, steps);
         }
         let shown = |of: Limits| Limits { most: of.most.min(U8F8::MAX_VERTEX), least: of.least.min(U8F8::MAX_VERTEX) };
-        Self { weights, share, steps, curves, limits: limits.map(shown) }
+        Self { weights, share, steps, curves, limits: three(limits, shown) }
     }
 
     /// The shades of a channel from pixel (`x`, `y`) on, whose centre lies in the triangle.
     #[inline]
     pub(super) fn fill(&self, (x, y): (i32, i32), channel: usize, shades: &mut [u16], kernel: Kernel) {
-        let weights = self.weights.at(x, y).map(|weight| weight * self.share);
+        let weights = three(self.weights.at(x, y), |weight| weight * self.share);
         let Limits { least, most } = self.limits[channel];
         let parabola = self.curves[channel].parabola(weights, self.steps);
         kernel.curve(shades, parabola, least.to_bits(), most.to_bits());

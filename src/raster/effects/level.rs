@@ -43,7 +43,7 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
 /// The level of a face whose coordinates are linear on the screen. They change by these from one pixel of a row, and of a
 /// column, to the next, times the area.
 pub(super) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
-    let [across, down] = [across, down].map(doubled);
+    let (across, down) = (doubled(across), doubled(down));
     // Coordinates have 16 fraction bits. The area is at most 2⁴².
     choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
 }
@@ -78,7 +78,7 @@ impl LevelPlane {
     /// Twice the length of the sums at a row or a column, of which the corners have `times`.
     fn doubled_at(&self, pixel: i32, times: &[i128; 2]) -> u128 {
         let centre = i128::from(pixel) * 256 + 128;
-        doubled([0, 1].map(|of| self.sums[of] * centre - times[of]))
+        doubled([self.sums[0] * centre - times[0], self.sums[1] * centre - times[1]])
     }
 
     /// Returns the part of [`at`](Self::at) that is a row's: twice the length of a step along it.

@@ -2,7 +2,7 @@
 
 use super::pieces::{Face, PIECE, Piece, Pieces};
 use super::pipeline::{Attributes, Lighting, SampleSpacing};
-use crate::lanes::{LANES, Lanes, Points};
+use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::cover::SortedTriangle;
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;
@@ -43,11 +43,14 @@ pub(super) struct LitPlane {
 
 impl LitPlane {
     pub(super) fn new(triangle: &SortedTriangle, corners: [&Attributes; 3]) -> Self {
-        let values = [0, 1, 2].map(|k| {
+        let mut values = [[0.0; 7]; 3];
+        for (k, values) in values.iter_mut().enumerate() {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
-            let [a, b, c, d, e, f] = corners[k].lit.map(|value| f64::from(value) * depth);
-            [a, b, c, d, e, f, depth]
-        });
+            for (i, value) in corners[k].lit.iter().enumerate() {
+                values[i] = f64::from(*value) * depth;
+            }
+            values[6] = depth;
+        }
         let weights = Weights::new(triangle);
         Self { weights, values, step: Self::sum(&values, weights.per_column()) }
     }
@@ -55,8 +58,11 @@ impl LitPlane {
     /// The sum over the corners, in their order from top to bottom, of the values with these weights.
     #[inline]
     fn sum([va, vb, vc]: &[[f64; 7]; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
-        let value = |i: usize| wa * va[i] + wb * vb[i] + wc * vc[i];
-        (core::array::from_fn(value), value(6))
+        let mut sums = [0.0; 6];
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum = wa * va[i] + wb * vb[i] + wc * vc[i];
+        }
+        (sums, wa * va[6] + wb * vb[6] + wc * vc[6])
     }
 
     /// Numerators and denominator of the values at a pixel.
@@ -70,7 +76,7 @@ impl LitPlane {
 #[inline]
 fn places(first: usize) -> Lanes<f64> {
     // At most 64.
-    core::array::from_fn(|lane| (first + lane) as f64)
+    each!(lane => (first + lane) as f64)
 }
 
 /// Pixels of several rows that wait until eight of them are lit together.
@@ -92,8 +98,10 @@ impl Waiting {
     /// Puts up to seven pixels, from `first` on, behind those that wait.
     #[inline]
     fn push(&mut self, numerators: &Numerators, pixels: core::ops::Range<usize>) {
-        for (waiting, new) in self.numerators.iter_mut().zip(numerators) {
-            waiting[self.count..self.count + LANES].copy_from_slice(new);
+        for (i, waiting) in self.numerators.iter_mut().enumerate() {
+            if let Some(to) = waiting[self.count..].first_chunk_mut() {
+                *to = numerators[i];
+            }
         }
         for pixel in pixels {
             self.places[self.count] = pixel;
@@ -105,13 +113,13 @@ impl Waiting {
     #[inline]
     fn light<const N: usize>(&mut self, kernel: Kernel, light: &impl Lit<N>, out: &mut [&mut [u16]; N]) {
         let mut numerators = [[0.0; LANES]; 7];
-        for (eight, waiting) in numerators.iter_mut().zip(&self.numerators) {
-            eight.copy_from_slice(&waiting[..LANES]);
+        for (i, eight) in numerators.iter_mut().enumerate() {
+            *eight = each!(lane => self.numerators[i][lane]);
         }
         let lit = light.at(&kernel.divide(&numerators));
         for (lane, &pixel) in self.places[..self.count.min(LANES)].iter().enumerate() {
-            for (out, lit) in out.iter_mut().zip(&lit) {
-                out[pixel] = lit[lane];
+            for (i, out) in out.iter_mut().enumerate() {
+                out[pixel] = lit[i][lane];
             }
         }
     }
@@ -120,9 +128,13 @@ impl Waiting {
     #[inline]
     fn advance(&mut self) {
         for waiting in &mut self.numerators {
-            waiting.copy_within(LANES.., 0);
+            for lane in 0..LANES {
+                waiting[lane] = waiting[LANES + lane];
+            }
         }
-        self.places.copy_within(LANES.., 0);
+        for lane in 0..LANES {
+            self.places[lane] = self.places[LANES + lane];
+        }
         self.count -= LANES;
     }
 }
@@ -146,8 +158,10 @@ impl Pieces {
             let mut first = 0;
             while length - first >= LANES {
                 let lit = light.at(&kernel.interpolate_at(&places(first), &a, da, d, *dd));
-                for (out, lit) in out.iter_mut().zip(&lit) {
-                    out[piece.first() + first..piece.first() + first + LANES].copy_from_slice(lit);
+                for (i, out) in out.iter_mut().enumerate() {
+                    if let Some(to) = out[piece.first() + first..].first_chunk_mut() {
+                        *to = lit[i];
+                    }
                 }
                 first += LANES;
             }
@@ -180,8 +194,11 @@ impl Pieces {
             let knots = Knots::new(piece, spacing);
             let mut lit = [[0; KNOTS]; N];
             knots.light(plane, piece, kernel, |first, points| {
-                for (lit, shades) in lit.iter_mut().zip(light.at(points)) {
-                    lit[first..first + LANES].copy_from_slice(&shades);
+                let shades = light.at(points);
+                for (i, lit) in lit.iter_mut().enumerate() {
+                    if let Some(to) = lit[first..].first_chunk_mut() {
+                        *to = shades[i];
+                    }
                 }
             });
             for (lit, out) in lit.iter().zip(&mut out) {
@@ -219,8 +236,8 @@ impl Knots {
         let ((a, d), (da, dd)) = (plane.at(piece.place()), &plane.step);
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
             let mut places = [0.0; LANES];
-            for (to, place) in places.iter_mut().zip(eight) {
-                *to = f64::from(*place);
+            for (lane, place) in eight.iter().enumerate() {
+                places[lane] = f64::from(*place);
             }
             light(first * LANES, &kernel.interpolate_at(&places, &a, da, d, *dd));
         }
@@ -236,11 +253,8 @@ impl Knots {
             for (eight, bytes) in piece.chunks_mut(LANES).enumerate() {
                 // Below 16.
                 let first = (eight * LANES) as i32;
-                let mut shades: Lanes<u16> = [0; LANES];
-                for (k, shade) in (first..).zip(&mut shades) {
-                    // Beyond the knot anything, which is not used.
-                    *shade = (from + ((step * k) >> 8)) as u16;
-                }
+                // Beyond the knot anything, which is not used.
+                let shades: Lanes<u16> = each!(lane => (from + ((step * (first + lane as i32)) >> 8)) as u16);
                 to_bytes(&shades, thresholds, column + i * self.spacing + eight * LANES, bytes);
             }
         }

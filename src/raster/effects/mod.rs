@@ -48,6 +48,7 @@ use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::triangle::Raster;
 use super::vertex::Vertex;
+use crate::lanes::three;
 use crate::simd::at_best_level;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
@@ -176,7 +177,7 @@ impl EffectBatch {
         let Some(face) = self.faces.get_mut(number) else { return false };
         face.vertices = *vertices;
         face.attributes = *attributes;
-        self.texture.put(number, attributes.each_ref().map(|corner| corner.texture));
+        self.texture.put(number, three(attributes.each_ref(), |corner| corner.texture));
         self.corners.push(vertices, Interpolation::GouraudReseeded)
     }
 
@@ -379,7 +380,7 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
         pieces.shade(faces, buffers, pipeline, *kernel);
         if let Some(table) = pipeline.fog() {
             let plane = |triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]| {
-                ShadePlane::of_values(triangle, [a, b, c].map(|corner| i64::from(corner.fog.to_bits())))
+                ShadePlane::of_values(triangle, three([a, b, c], |corner| i64::from(corner.fog.to_bits())))
             };
             let Buffers { bytes, other: levels, .. } = &mut **buffers;
             pieces.each(faces, levels, plane, |plane, piece, levels| {
@@ -465,13 +466,21 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
     for covered in pieces.triangles() {
         let range = first..covered.end;
         first = covered.end;
-        let plane = covered.setup.is_none().then(|| DepthPlane::new(&covered.triangle(faces).0));
-        let dz = plane.map_or(covered.setup.map_or(0, |setup| setup.depth), |plane| plane.step());
-        for (piece, start) in pieces.with_starts(range) {
+        let plane = if covered.setup.is_none() { Some(DepthPlane::new(&covered.triangle(faces).0)) } else { None };
+        let dz = match (&plane, &covered.setup) {
+            (Some(plane), _) => plane.step(),
+            (None, Some(setup)) => setup.depth,
+            (None, None) => 0,
+        };
+        let (of_face, starts) = pieces.with_starts(range);
+        for (i, piece) in of_face.iter().enumerate() {
             let Some((pixels, bytes)) = visible(rows, piece, bytes, blend.filter(|_| BLENDS)) else { continue };
             let Some(depths) = depth.starting_at(piece.range().start, piece.row.y as u32) else { continue };
             let n = piece.visible();
-            let z = plane.map_or(start.depth, |plane| plane.fixed_at(piece.x, piece.row.y));
+            let z = match &plane {
+                Some(plane) => plane.fixed_at(piece.x, piece.row.y),
+                None => starts[i].depth,
+            };
             drawn.spans += 1;
             // At most 64.
             drawn.tested += n as u32;
@@ -495,8 +504,10 @@ fn visible<'a>(
     let bytes = &mut bytes[piece.first_visible()..];
     if let Some(table) = blend {
         // The table's row is the face's own index.
-        for (byte, &there) in bytes.iter_mut().zip(pixels) {
-            table.show(byte, there);
+        let n = bytes.len().min(pixels.len());
+        let there = &pixels[..n];
+        for (i, byte) in bytes[..n].iter_mut().enumerate() {
+            table.show(byte, there[i]);
         }
     }
     Some((row, bytes))
@@ -534,8 +545,8 @@ fn copy(pixels: &mut [u8], bytes: &mut [u8], n: usize, blend: Option<&[u8; 65_53
 #[inline(always)]
 fn blended<const N: usize>(mut bytes: [u8; N], there: [u8; N], table: Option<&[u8; 65_536]>) -> [u8; N] {
     if let Some(table) = table {
-        for (byte, there) in bytes.iter_mut().zip(there) {
-            table.show(byte, there);
+        for (i, byte) in bytes.iter_mut().enumerate() {
+            table.show(byte, there[i]);
         }
     }
     bytes

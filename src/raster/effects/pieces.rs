@@ -266,9 +266,9 @@ impl Pieces {
     }
 
     /// Pieces of faces that are set up, each with its start.
-    #[inline]
-    pub(super) fn with_starts(&self, range: core::ops::Range<usize>) -> impl Iterator<Item = (&Piece, &PieceStart)> {
-        self.pieces[range.clone()].iter().zip(&self.starts[range])
+    #[inline(always)]
+    pub(super) fn with_starts(&self, range: core::ops::Range<usize>) -> (&[Piece], &[PieceStart]) {
+        (&self.pieces[range.clone()], &self.starts[range])
     }
 
     /// The pieces.

@@ -5,6 +5,7 @@ use super::pieces::{Face, Pieces};
 use super::pipeline::{Attributes, Mix, PixelPipeline, ShadeSource};
 use super::{Buffers, HALVES};
 use crate::fixed::U8F8;
+use crate::lanes::three;
 use crate::raster::cover::SortedTriangle;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{RowShader, to_bytes};
@@ -15,7 +16,7 @@ use crate::span::{Kernel, lookup};
 
 /// A value of the three corners, as planes take them.
 fn values(corners: [&Attributes; 3], value: impl Fn(&Attributes) -> U8F8) -> [i64; 3] {
-    corners.map(|corner| i64::from(value(corner).to_bits()))
+    three(corners, |corner| i64::from(value(corner).to_bits()))
 }
 
 impl Pieces {
@@ -38,8 +39,8 @@ impl Pieces {
             let Buffers { other, channels, places, .. } = &mut *buffers;
             self.texels((), faces, image, (&mut other[..n], places), kernel);
             for (channel, table) in channels.iter_mut().zip(stage.tables) {
-                for (byte, &texel) in channel[..n].iter_mut().zip(&*other) {
-                    table.show(byte, texel);
+                for (i, byte) in channel[..n].iter_mut().enumerate() {
+                    table.show(byte, other[i]);
                 }
             }
             return self.mix(buffers, mix, pipeline.dither());
@@ -172,7 +173,9 @@ impl Pieces {
         }
         for piece in self.pieces() {
             let bytes = &mut bytes[piece.pixels()];
-            let [red, green, blue] = channels.each_ref().map(|channel| &channel[piece.pixels()]);
+            let [red, green, blue] = &*channels;
+            let pixels = piece.pixels();
+            let (red, green, blue) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels]);
             let (thresholds, column) = (piece.thresholds(pattern), piece.column());
             match mix {
                 Mix::Nearest { map, spread } => {

@@ -110,8 +110,9 @@ fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texel
         first = covered.end;
         if let Some(FaceSetup { affine: Some(steps), .. }) = covered.setup {
             let lines = AffineLines::new(s, image, steps);
-            for (piece, start) in pieces.with_starts(range) {
-                lines.places(&mut places[piece.first()..], piece.len(), start.affine);
+            let (of_face, starts) = pieces.with_starts(range);
+            for (i, piece) in of_face.iter().enumerate() {
+                lines.places(&mut places[piece.first()..], piece.len(), starts[i].affine);
             }
             continue;
         }
@@ -148,8 +149,9 @@ fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: 
             }
             continue;
         };
-        for (piece, start) in pieces.with_starts(range) {
-            let (places, n, [u, v, d]) = (&mut places[piece.first()..], piece.len(), start.perspective);
+        let (of_face, starts) = pieces.with_starts(range);
+        for (i, piece) in of_face.iter().enumerate() {
+            let (places, n, [u, v, d]) = (&mut places[piece.first()..], piece.len(), starts[i].perspective);
             if !perspective_places(s, places, n, image, [[u, du], [v, dv]], [d, dd]) {
                 let plane = perspective_texture(covered, faces);
                 plane.in_integers((image, 0), plane.weights.at(piece.seed, piece.row.y), &mut places[..n]);

@@ -4,8 +4,8 @@
 //! A patch is a face, or many faces of which no figure exceeds the patch's. Eight patches are bounded at a time in plain
 //! arrays that the compiler vectorises.
 
-use super::ranges::{HUGE, Patches, Sight, each, greater, lesser, square_root};
-use crate::lanes::{LANES, Lanes};
+use super::ranges::{HUGE, Patches, Sight, greater, lesser, square_root};
+use crate::lanes::{LANES, Lanes, each};
 use crate::light::{Lights, Reflectance};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
@@ -257,7 +257,10 @@ struct Sums<const N: usize> {
 impl<const N: usize> Sums<N> {
     #[inline(always)]
     fn add(&mut self, strengths: &[f32; N], terms: &Terms) {
-        for (sums, &strength) in self.of.iter_mut().zip(strengths) {
+        // Index loops, here and below, as in `light::lanes`.
+        let mut channel = 0;
+        while channel < N {
+            let (sums, strength) = (&mut self.of[channel], strengths[channel]);
             let size = strength.abs();
             let (above, below) = (strength.max(0.0), strength.min(0.0));
             for lane in 0..LANES {
@@ -267,6 +270,7 @@ impl<const N: usize> Sums<N> {
                 sums[2][lane] += above * most + below * least + size * ROUNDING;
                 sums[3][lane] += above * least + below * most - size * ROUNDING;
             }
+            channel += 1;
         }
     }
 
@@ -284,15 +288,15 @@ impl<const N: usize> Sums<N> {
         let facing = patches.facing(directions);
         let [most, least] = weighted.unwrap_or(facing);
         // Loops, as closures are not inlined eight times.
-        let mut bodies = Terms::default();
+        let mut bodies = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             put(&mut bodies, lane, body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
         }
         self.add(&strength.body, &bodies);
         let Some(Eye { lobe, sight, turn }) = eye else { return };
-        let turns = each(|lane| turn[lane] + falls[lane].turn);
+        let turns = each!(lane => turn[lane] + falls[lane].turn);
         let along = patches.mirrored(directions, &sight.directions, &turns);
-        let mut highlights = Terms::default();
+        let mut highlights = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             let (along, facing) =
                 ((along[0][lane], along[1][lane], along[2][lane]), (facing[0][lane], facing[1][lane]));
@@ -356,7 +360,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     incident: &Incident<'_>,
 ) -> Bounds {
     let Lights { suns, lamps, eye } = incident.lights;
-    let narrow = |at: [f64; 3]| at.map(|c| c as f32);
+    let narrow = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32];
     // Coordinates of f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
     let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
     // Beyond that nothing is said, and below nothing overflows.
@@ -371,14 +375,15 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         *normals = Normals { spread, deficit, part: shapes.part[lane] };
     }
     let ambient = incident.answer.ambient as f32;
-    let of = core::array::from_fn(|channel| {
+    let mut of = [[[0.0; LANES]; 4]; N];
+    for (channel, of) in of.iter_mut().enumerate() {
         let ambient = if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 };
-        [[0.0; LANES], [0.0; LANES], [ambient; LANES], [ambient; LANES]]
-    });
+        (of[2], of[3]) = ([ambient; LANES], [ambient; LANES]);
+    }
     let mut sums = Sums::<N> { of, normals, below: incident.below };
     let eye = if incident.answer.specular != 0.0 {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
-        let turn = each(|lane| lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
+        let turn = each!(lane => lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
         Some(Eye { lobe: Lobe::new(incident.answer.shininess), sight, turn })
     } else {
         None
@@ -396,7 +401,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         for (lane, fall) in falls.iter_mut().enumerate() {
             *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
         }
-        let ends = [each(|lane| falls[lane].most), each(|lane| falls[lane].least)];
+        let ends = [each!(lane => falls[lane].most), each!(lane => falls[lane].least)];
         let weighted = patches.weighted(&sight, &ends, inverse_range);
         let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
         sums.add_light::<WHOLE, P>(patches, &sight.directions, (Some(weighted), &falls), eye.as_ref(), &strength);

@@ -2,9 +2,9 @@
 
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
-use super::ranges::{EightClusters, EightFaces, Patches, ZERO, dot, each, greater, lesser};
+use super::ranges::{EightClusters, EightFaces, Patches, ZERO, dot, greater, lesser, splat};
 use super::{Budget, EXACT_ROUNDING, FLOAT, LINEAR_ROUNDING, PHONG};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes, each};
 use crate::plan::FaceShading;
 use crate::render::cull;
 use crate::render::faces::Faces;
@@ -27,9 +27,9 @@ pub(in crate::render) struct Classes {
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
     let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
-    let middle = dot(&clusters.centres, &row.map(|c| [c; LANES]));
-    let half = dot(&clusters.halves, &row.map(|c| [c.abs(); LANES]));
-    each(|lane| {
+    let middle = dot(&clusters.centres, &splat(row));
+    let half = dot(&clusters.halves, &splat([row[0].abs(), row[1].abs(), row[2].abs()]));
+    each!(lane => {
         let slack = 1e-5 * (middle[lane].abs() + half[lane] + offset.abs());
         let near = greater(middle[lane] + offset - half[lane] - slack, view.near());
         lesser(edge[lane] * scale / (2.0 * near), 1.0)
@@ -40,8 +40,9 @@ fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f3
 #[inline(always)]
 fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
     let (row, offset) = view.along_view();
-    let [a, b, c] = faces.positions.each_ref().map(|at| dot(at, &row.map(|c| [c; LANES])));
-    each(|lane| {
+    let ([a, b, c], row) = (&faces.positions, splat(row));
+    let [a, b, c] = [dot(a, &row), dot(b, &row), dot(c, &row)];
+    each!(lane => {
         let (most, least) = (greater(a[lane], greater(b[lane], c[lane])), lesser(a[lane], lesser(b[lane], c[lane])));
         let slack = 1e-6 * (most.abs() + least.abs() + offset.abs());
         let near = greater(least + offset - slack, view.near());

@@ -5,14 +5,11 @@
 //!
 //! The light of a matt face in one source goes on below the horizon, less than none by as much as the other side has more.
 
-use core::array;
-
 use glam::Vec3;
 
-use super::ranges::each;
 use super::{Budget, EXACT_ROUNDING, PHONG};
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, Lanes, Points};
+use crate::lanes::{LANES, Lanes, Points, each, three};
 use crate::light::Reflectance;
 use crate::plan::FaceShading;
 use crate::raster::Vertex;
@@ -98,7 +95,7 @@ pub(in crate::render) struct Fit {
 impl Fit {
     /// A shading that is not quadratic.
     pub(in crate::render) fn of(shading: FaceShading) -> Self {
-        Self { shading, nodes: Nodes::default() }
+        Self { shading, nodes: [[0.0; LANES]; 3] }
     }
 }
 
@@ -116,14 +113,22 @@ impl OnScreen<'_> {
     /// Normals, of any length, and positions.
     #[inline]
     fn points(&self, weights: &Weights, turned: bool) -> Points {
-        let on_face: Weights = array::from_fn(|corner| weights[corner].map(|weight| weight * self.depths[corner]));
-        let [wa, wb, wc] = &on_face;
-        let shares = each(|lane| 1.0 / (wa[lane] + wb[lane] + wc[lane]));
-        let between = |[a, b, c]: [f32; 3]| each(|lane| (a * wa[lane] + b * wb[lane] + c * wc[lane]) * shares[lane]);
+        let ([a, b, c], [da, db, dc]) = (weights, self.depths);
+        let wa: Lanes<f32> = each!(lane => a[lane] * da);
+        let wb: Lanes<f32> = each!(lane => b[lane] * db);
+        let wc: Lanes<f32> = each!(lane => c[lane] * dc);
+        let shares: Lanes<f32> = each!(lane => 1.0 / (wa[lane] + wb[lane] + wc[lane]));
         let side = if turned { -1.0 } else { 1.0 };
-        let normal = |axis: usize| between(self.normals.map(|normal| side * normal[axis]));
-        let position = |axis: usize| between(self.positions.map(|position| position[axis]));
-        [normal(0), normal(1), normal(2), position(0), position(1), position(2)]
+        let mut points = [[0.0; LANES]; 6];
+        for axis in 0..3 {
+            let [a, b, c] = self.normals;
+            let (a, b, c) = (side * a[axis], side * b[axis], side * c[axis]);
+            points[axis] = each!(lane => (a * wa[lane] + b * wb[lane] + c * wc[lane]) * shares[lane]);
+            let [a, b, c] = self.positions;
+            let (a, b, c) = (a[axis], b[axis], c[axis]);
+            points[3 + axis] = each!(lane => (a * wa[lane] + b * wb[lane] + c * wc[lane]) * shares[lane]);
+        }
+        points
     }
 }
 
@@ -146,7 +151,7 @@ impl Quadratic {
     #[inline(always)]
     fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
-        greatest(each(|lane| {
+        greatest(each!(lane => {
             let (a, b, c) = (a[lane], b[lane], c[lane]);
             let q = (fa * a + fb * b + fc * c) - (da * (b * c) + db * (c * a) + dc * (a * b));
             (q - values[lane]).abs()
@@ -157,7 +162,7 @@ impl Quadratic {
     #[inline]
     fn between(&self, n: f32) -> f32 {
         // D is half of the greatest bend.
-        greatest(self.bends.map(f32::abs)) / 3.0 / (n * n)
+        greatest(three(self.bends, f32::abs)) / 3.0 / (n * n)
     }
 }
 
@@ -168,31 +173,43 @@ at_best_level! {
 }
 
 /// Returns the greatest value; not a number if one of them is not.
+#[inline(always)]
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
-    values.into_iter().fold(0.0, |most, value| if value <= most { most } else { value })
+    let (mut most, mut i) = (0.0, 0);
+    while i < N {
+        most = if values[i] <= most { most } else { values[i] };
+        i += 1;
+    }
+    most
+}
+
+/// Beyond f32 infinite.
+#[inline(always)]
+fn narrow(wide: &Lanes<f64>) -> Lanes<f32> {
+    each!(lane => wide[lane] as f32)
 }
 
 impl Faces<'_> {
     /// A face whose light may go on below the horizon.
     fn on_screen(&self, Face { indices, surface, back_facing, .. }: Face, depths: [u32; 3]) -> OnScreen<'_> {
-        let normals = indices.map(|i| self.geometry.normals[i as usize]);
-        let positions = indices.map(|i| self.geometry.positions[i as usize]);
+        let normals = three(indices, |i| self.geometry.normals[i as usize]);
+        let positions = three(indices, |i| self.geometry.positions[i as usize]);
         let answer = &self.paints[usize::from(surface)].answer;
         let mixed = |cosines: [f32; 3]| cosines.iter().any(|c| *c > 0.0) && cosines.iter().any(|c| *c < 0.0);
         let below = answer.specular == 0.0
             && match (self.lights.suns, self.lights.lamps) {
-                ([sun], []) => mixed(normals.map(|normal| normal.dot(sun.towards))),
+                ([sun], []) => mixed(three(normals, |normal| normal.dot(sun.towards))),
                 ([], [lamp]) => {
                     let at = Vec3::from_array(lamp.position.map(|c| c as f32));
-                    mixed([0, 1, 2].map(|i| normals[i].dot(at - positions[i])))
+                    mixed(three([0, 1, 2], |i| normals[i].dot(at - positions[i])))
                 }
                 _ => false,
             };
         OnScreen {
-            normals: if back_facing { normals.map(|normal| -normal) } else { normals },
+            normals: if back_facing { three(normals, |normal| -normal) } else { normals },
             positions,
             // Rounded to 24 bits.
-            depths: depths.map(|depth| depth as f32),
+            depths: three(depths, |depth| depth as f32),
             answer,
             below,
         }
@@ -207,20 +224,23 @@ impl Faces<'_> {
         }
         // One side has the light, the other what is there without it, which is the lesser.
         let back = self.front(face, weights, true);
-        let both = |front: f32, back: f32| front - back + front.min(back);
-        array::from_fn(|channel| each(|lane| both(front[channel][lane], back[channel][lane])))
+        let mut both = [[0.0; LANES]; 3];
+        for channel in 0..3 {
+            let (front, back) = (&front[channel], &back[channel]);
+            both[channel] = each!(lane => front[lane] - back[lane] + front[lane].min(back[lane]));
+        }
+        both
     }
 
     #[inline]
     fn front(&self, face: &OnScreen<'_>, weights: &Weights, turned: bool) -> [Lanes<f32>; 3] {
         let points = face.points(weights, turned);
-        // Beyond f32 infinite.
-        let narrow = |wide: [f64; LANES]| wide.map(|intensity| intensity as f32);
         if self.channels {
-            self.lights.front_of_three_channels(face.answer, &points, self.kernel).map(narrow)
+            let [r, g, b] = self.lights.front_of_three_channels(face.answer, &points, self.kernel);
+            [narrow(&r), narrow(&g), narrow(&b)]
         } else {
-            let one = narrow(self.lights.front_of_one_channel(face.answer, &points, self.kernel));
-            [one, [0.0; LANES], [0.0; LANES]]
+            let one = self.lights.front_of_one_channel(face.answer, &points, self.kernel);
+            [narrow(&one), [0.0; LANES], [0.0; LANES]]
         }
     }
 
@@ -228,7 +248,7 @@ impl Faces<'_> {
     /// that of shades that are linear on the face.
     #[inline(never)]
     pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
-        let (depths, spare) = (vertices.each_ref().map(Vertex::depth), budget.spare(EXACT_ROUNDING));
+        let (depths, spare) = (three(vertices.each_ref(), Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
         let (ratio, (pixels, width)) = (near as f32 / far as f32, size_of(vertices));
         // Where rounding takes all that is allowed, nothing fits.
@@ -263,7 +283,7 @@ impl Faces<'_> {
         let bounds = |below: bool| self.bounds_of_parts(budget, face, (part, bend), below).on_screen;
         let of_light = bounds(false);
         let smooth = if on_screen.below { bounds(true) } else { of_light };
-        let left = each(|lane| if part[lane] < 1.0 { spare - smooth[lane] } else { 0.0 });
+        let left = each!(lane => if part[lane] < 1.0 { spare - smooth[lane] } else { 0.0 });
         if budget.adds
             && let Some(nodes) = self.quadratic(&on_screen, &GRIDS[..grids], (spare, &left))
         {
@@ -289,8 +309,8 @@ impl Faces<'_> {
                 continue;
             }
             let nodes: &Nodes = known.get_or_insert_with(|| self.light_at(face, &NODES));
-            let curves = nodes.each_ref().map(Quadratic::new);
-            let between = greatest(curves.map(|curve| curve.between(*n)));
+            let curves = three(nodes.each_ref(), Quadratic::new);
+            let between = greatest(three(curves, |curve| curve.between(*n)));
             let fits = |weights: &Weights| {
                 let light = self.light_at(face, weights);
                 let off = |channel: usize| off_at_best(self.kernel, &curves[channel], weights, &light[channel]);
@@ -320,7 +340,7 @@ impl Faces<'_> {
 fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
     // In 1/256 pixel, and twice.
     let area = doubled_area(vertices).unsigned_abs() as f32 / 131_072.0;
-    let [a, b, c] = vertices.each_ref().map(|vertex| vertex.y().to_bits());
+    let [a, b, c] = three(vertices.each_ref(), |vertex| vertex.y().to_bits());
     let height = a.max(b).max(c) - a.min(b).min(c);
     (area, if height == 0 { 0.0 } else { 512.0 * area / height as f32 })
 }

@@ -1,7 +1,7 @@
 //! Ranges of the cosines and distances that light on a patch depends on: from the three corners of each of eight faces,
 //! or from the boxes and cones of eight clusters.
 
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, Lanes, each};
 
 /// x, y and z.
 pub(super) type Vectors = [Lanes<f32>; 3];
@@ -13,6 +13,19 @@ const ROUNDING: f32 = 4e-6;
 
 /// Greatest number that is told from any other, as distance or as bound: its square is still finite.
 pub(super) const HUGE: f32 = 1e15;
+
+/// Eight vectors, by axis and lane.
+macro_rules! vectors {
+    ($axis:ident, $lane:ident => $value:expr) => {{
+        let mut vectors = [ZERO; 3];
+        let mut $axis = 0;
+        while $axis < 3 {
+            vectors[$axis] = each!($lane => $value);
+            $axis += 1;
+        }
+        vectors
+    }};
+}
 
 /// A point, seen from eight patches.
 pub(super) struct Sight<D> {
@@ -61,54 +74,62 @@ impl Patches for EightFaces {
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromCorners {
-        FromCorners { directions: [towards.map(|c| [c; LANES]); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
+        FromCorners { directions: [splat(towards); 3], distances: [ZERO; 3], off: [ROUNDING; LANES] }
     }
 
     #[inline(always)]
     fn point(&self, at: [f32; 3], blur: f32, edge: &Lanes<f32>) -> Sight<FromCorners> {
         let (mut directions, mut distances) = ([[ZERO; 3]; 3], [ZERO; 3]);
         for corner in 0..3 {
-            let ways = vectors(|axis, lane| at[axis] - self.positions[corner][axis][lane]);
+            let ways = vectors!(axis, lane => at[axis] - self.positions[corner][axis][lane]);
             (directions[corner], distances[corner]) = units(&ways);
         }
         let [a, b, c] = &distances;
-        let least = each(|lane| lesser(a[lane], lesser(b[lane], c[lane])) * (1.0 - ROUNDING) - blur);
+        let least = each!(lane => lesser(a[lane], lesser(b[lane], c[lane])) * (1.0 - ROUNDING) - blur);
         // Lemma 1, of the squares of distances.
-        let near = each(|lane| {
+        let near = each!(lane => {
             let square = least[lane] * least[lane] - edge[lane] * edge[lane];
             if least[lane] > 0.0 { square_root(greater(square, 0.0)) } else { 0.0 }
         });
-        let far = each(|lane| lesser(greater(a[lane], greater(b[lane], c[lane])) * (1.0 + ROUNDING) + blur, HUGE));
-        let off = each(|lane| ROUNDING + lesser(4.0 * blur / least[lane].abs(), 2.0));
+        let far = each!(lane => lesser(greater(a[lane], greater(b[lane], c[lane])) * (1.0 + ROUNDING) + blur, HUGE));
+        let off = each!(lane => ROUNDING + lesser(4.0 * blur / least[lane].abs(), 2.0));
         Sight { directions: FromCorners { directions, distances, off }, near, far }
     }
 
     #[inline(always)]
     fn facing(&self, to: &FromCorners) -> [Lanes<f32>; 2] {
-        ends(&[0, 1, 2].map(|corner| dot(&self.normals[corner], &to.directions[corner])), &to.off)
+        let [a, b, c] = &self.normals;
+        let [to_a, to_b, to_c] = &to.directions;
+        ends(&[dot(a, to_a), dot(b, to_b), dot(c, to_c)], &to.off)
     }
 
     #[inline(always)]
     fn weighted(&self, sight: &Sight<FromCorners>, _: &[Lanes<f32>; 2], inverse_range: f32) -> [Lanes<f32>; 2] {
         let to = &sight.directions;
-        let cosines = [0, 1, 2].map(|corner| {
+        let mut weighted = [ZERO; 3];
+        let mut corner = 0;
+        while corner < 3 {
             let cosines = dot(&self.normals[corner], &to.directions[corner]);
-            each(|lane| {
+            weighted[corner] = each!(lane => {
                 let away = to.distances[corner][lane] * inverse_range;
                 let left = greater(1.0 - away * away, 0.0);
                 cosines[lane] * (left * left)
-            })
-        });
-        ends(&cosines, &to.off)
+            });
+            corner += 1;
+        }
+        ends(&weighted, &to.off)
     }
 
     #[inline(always)]
     fn mirrored(&self, light: &FromCorners, eye: &FromCorners, turns: &Lanes<f32>) -> [Lanes<f32>; 3] {
-        let off = each(|lane| 3.0 * (light.off[lane] + eye.off[lane]));
-        let cosines = [0, 1, 2].map(|corner| {
+        let off = each!(lane => 3.0 * (light.off[lane] + eye.off[lane]));
+        let mut cosines = [ZERO; 3];
+        let mut corner = 0;
+        while corner < 3 {
             let (light, eye, normals) = (&light.directions[corner], &eye.directions[corner], &self.normals[corner]);
-            mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye))
-        });
+            cosines[corner] = mirror(&dot(normals, light), &dot(normals, eye), &dot(light, eye));
+            corner += 1;
+        }
         let [most, least] = ends(&cosines, &off);
         [most, least, self.highest(light, eye, &off, turns)]
     }
@@ -119,15 +140,20 @@ impl EightFaces {
     /// 11): what the normals have across h is a flat triangle, which lies no nearer to 0 than in any one direction.
     #[inline(always)]
     fn highest(&self, light: &FromCorners, eye: &FromCorners, off: &Lanes<f32>, turns: &Lanes<f32>) -> Lanes<f32> {
-        let sums = vectors(|axis, lane| light.directions[0][axis][lane] + eye.directions[0][axis][lane]);
+        let sums = vectors!(axis, lane => light.directions[0][axis][lane] + eye.directions[0][axis][lane]);
         let (squares, (half_way, _)) = (dot(&sums, &sums), units(&sums));
-        let across = self.normals.each_ref().map(|normals| {
+        let mut across = self.normals;
+        let mut corner = 0;
+        while corner < 3 {
+            let normals = &self.normals[corner];
             let along = dot(normals, &half_way);
-            vectors(|axis, lane| normals[axis][lane] - along[lane] * half_way[axis][lane])
-        });
-        let sum = vectors(|axis, lane| across[0][axis][lane] + across[1][axis][lane] + across[2][axis][lane]);
-        let (lengths, [a, b, c]) = (dot(&sum, &sum), across.each_ref().map(|across| dot(across, &sum)));
-        each(|lane| {
+            across[corner] = vectors!(axis, lane => normals[axis][lane] - along[lane] * half_way[axis][lane]);
+            corner += 1;
+        }
+        let sum = vectors!(axis, lane => across[0][axis][lane] + across[1][axis][lane] + across[2][axis][lane]);
+        let lengths = dot(&sum, &sum);
+        let [a, b, c] = [dot(&across[0], &sum), dot(&across[1], &sum), dot(&across[2], &sum)];
+        each!(lane => {
             let least = lesser(a[lane], lesser(b[lane], c[lane])) / square_root(lengths[lane]) - off[lane];
             let sine = greater(least, 0.0);
             // |l + v|²/2 is 1 + l·v.
@@ -162,41 +188,42 @@ impl Patches for EightClusters {
 
     #[inline(always)]
     fn sun(&self, towards: [f32; 3]) -> FromBoxes {
-        FromBoxes { directions: towards.map(|c| [c; LANES]), turns: ZERO }
+        FromBoxes { directions: splat(towards), turns: ZERO }
     }
 
     #[inline(always)]
     fn point(&self, at: [f32; 3], blur: f32, _: &Lanes<f32>) -> Sight<FromBoxes> {
-        let ways = vectors(|axis, lane| at[axis] - self.centres[axis][lane]);
-        let half = |axis: usize, lane: usize| self.halves[axis][lane] + blur;
-        let nearest = vectors(|axis, lane| greater(ways[axis][lane].abs() - half(axis, lane), 0.0));
-        let farthest = vectors(|axis, lane| ways[axis][lane].abs() + half(axis, lane));
+        let ways = vectors!(axis, lane => at[axis] - self.centres[axis][lane]);
+        let halves = vectors!(axis, lane => self.halves[axis][lane] + blur);
+        let nearest = vectors!(axis, lane => greater(ways[axis][lane].abs() - halves[axis][lane], 0.0));
+        let farthest = vectors!(axis, lane => ways[axis][lane].abs() + halves[axis][lane]);
         let (near, far) = (dot(&nearest, &nearest), dot(&farthest, &farthest));
         let (away, radius) = (dot(&ways, &ways), dot(&self.halves, &self.halves));
         // The sine of the greatest turn is the box's radius over the distance, and no more than its tangent.
-        let turns = each(|lane| {
+        let turns = each!(lane => {
             let radius = square_root(radius[lane]) + blur;
             let square = away[lane] * (1.0 - ROUNDING) - radius * radius;
             lesser(radius / square_root(greater(square, 0.0)), 4.0)
         });
         Sight {
             directions: FromBoxes { directions: units(&ways).0, turns },
-            near: each(|lane| square_root(near[lane]) * (1.0 - ROUNDING)),
-            far: each(|lane| lesser(square_root(far[lane]) * (1.0 + ROUNDING), HUGE)),
+            near: each!(lane => square_root(near[lane]) * (1.0 - ROUNDING)),
+            far: each!(lane => lesser(square_root(far[lane]) * (1.0 + ROUNDING), HUGE)),
         }
     }
 
     #[inline(always)]
     fn facing(&self, to: &FromBoxes) -> [Lanes<f32>; 2] {
-        turned(&dot(&self.axes, &to.directions), |lane| self.angles[lane] + to.turns[lane])
+        let turns = each!(lane => self.angles[lane] + to.turns[lane]);
+        turned(&dot(&self.axes, &to.directions), &turns)
     }
 
     #[inline(always)]
     fn weighted(&self, sight: &Sight<FromBoxes>, [most, least]: &[Lanes<f32>; 2], _: f32) -> [Lanes<f32>; 2] {
         let [above, below] = self.facing(&sight.directions);
         [
-            each(|lane| above[lane] * if above[lane] > 0.0 { most[lane] } else { least[lane] }),
-            each(|lane| below[lane] * if below[lane] > 0.0 { least[lane] } else { most[lane] }),
+            each!(lane => above[lane] * if above[lane] > 0.0 { most[lane] } else { least[lane] }),
+            each!(lane => below[lane] * if below[lane] > 0.0 { least[lane] } else { most[lane] }),
         ]
     }
 
@@ -204,71 +231,62 @@ impl Patches for EightClusters {
     fn mirrored(&self, light: &FromBoxes, eye: &FromBoxes, _: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let (of_light, of_eye) = (dot(&self.axes, &light.directions), dot(&self.axes, &eye.directions));
         let along = mirror(&of_light, &of_eye, &dot(&light.directions, &eye.directions));
-        let [most, least] = turned(&along, |lane| 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane]);
+        let turns = each!(lane => 2.0 * self.angles[lane] + light.turns[lane] + eye.turns[lane]);
+        let [most, least] = turned(&along, &turns);
         [most, least, most]
     }
 }
 
+/// One vector eight times.
+#[inline(always)]
+pub(super) fn splat([x, y, z]: [f32; 3]) -> Vectors {
+    [[x; LANES], [y; LANES], [z; LANES]]
+}
+
 /// Range of cosines of angles that are so far from these.
 #[inline(always)]
-fn turned(cosines: &Lanes<f32>, turn: impl Fn(usize) -> f32) -> [Lanes<f32>; 2] {
-    let sine = each(|lane| square_root(greater(1.0 - cosines[lane] * cosines[lane], 0.0)));
+fn turned(cosines: &Lanes<f32>, turns: &Lanes<f32>) -> [Lanes<f32>; 2] {
+    let sine: Lanes<f32> = each!(lane => square_root(greater(1.0 - cosines[lane] * cosines[lane], 0.0)));
     // cos(μ ∓ t) by Taylor's series; the second term has the sign of a cosine between both.
-    let half = each(|lane| 0.5 * turn(lane) * turn(lane));
+    let half = each!(lane => 0.5 * turns[lane] * turns[lane]);
     [
-        each(|lane| {
-            let most = cosines[lane] + turn(lane) * sine[lane] + half[lane] * greater(-cosines[lane], 0.0) + ROUNDING;
+        each!(lane => {
+            let most = cosines[lane] + turns[lane] * sine[lane] + half[lane] * greater(-cosines[lane], 0.0) + ROUNDING;
             lesser(most, 1.0)
         }),
-        each(|lane| {
-            let least = cosines[lane] - turn(lane) * sine[lane] - half[lane] * greater(cosines[lane], 0.0) - ROUNDING;
+        each!(lane => {
+            let least = cosines[lane] - turns[lane] * sine[lane] - half[lane] * greater(cosines[lane], 0.0) - ROUNDING;
             greater(least, -1.0)
         }),
     ]
-}
-
-/// Eight numbers, by lane.
-#[inline(always)]
-pub(super) fn each(value: impl Fn(usize) -> f32) -> Lanes<f32> {
-    let mut lanes = ZERO;
-    for (lane, of_lane) in lanes.iter_mut().enumerate() {
-        *of_lane = value(lane);
-    }
-    lanes
-}
-
-/// Eight vectors, by axis and lane.
-#[inline(always)]
-fn vectors(value: impl Fn(usize, usize) -> f32) -> Vectors {
-    [each(|lane| value(0, lane)), each(|lane| value(1, lane)), each(|lane| value(2, lane))]
 }
 
 /// Unit vectors of these directions, and the lengths that they had.
 #[inline(always)]
 fn units(of: &Vectors) -> (Vectors, Lanes<f32>) {
     let squares = dot(of, of);
-    let lengths = each(|lane| square_root(squares[lane]));
-    (vectors(|axis, lane| of[axis][lane] / lengths[lane]), lengths)
+    let lengths = each!(lane => square_root(squares[lane]));
+    (vectors!(axis, lane => of[axis][lane] / lengths[lane]), lengths)
 }
 
 /// r·v of n·l, n·v and l·v.
 #[inline(always)]
 fn mirror(light: &Lanes<f32>, eye: &Lanes<f32>, between: &Lanes<f32>) -> Lanes<f32> {
-    each(|lane| 2.0 * light[lane] * eye[lane] - between[lane])
+    each!(lane => 2.0 * light[lane] * eye[lane] - between[lane])
 }
 
 /// The greatest and the least of three cosines, each off by no more than `off`. What is not a number may be any.
 #[inline(always)]
 fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
-    let mut ends = [[-1.0; LANES], [1.0; LANES]];
-    for cosines in cosines {
-        for lane in 0..LANES {
-            let (most, least) = (cosines[lane] + off[lane], cosines[lane] - off[lane]);
-            ends[0][lane] = greater(lesser(most, 1.0), ends[0][lane]);
-            ends[1][lane] = lesser(greater(least, -1.0), ends[1][lane]);
-        }
+    let (mut most, mut least) = ([-1.0; LANES], [1.0; LANES]);
+    let mut corner = 0;
+    while corner < 3 {
+        let cosines = &cosines[corner];
+        most = each!(lane => greater(lesser(cosines[lane] + off[lane], 1.0), most[lane]));
+        least = each!(lane => lesser(greater(cosines[lane] - off[lane], -1.0), least[lane]));
+        corner += 1;
     }
-    ends
+    [most, least]
 }
 
 /// The greater one; the second where one is not a number. In this form it is one instruction.
@@ -285,7 +303,7 @@ pub(super) fn lesser(a: f32, b: f32) -> f32 {
 
 #[inline(always)]
 pub(super) fn dot(a: &Vectors, b: &Vectors) -> Lanes<f32> {
-    each(|lane| a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
+    each!(lane => a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }
 
 /// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.

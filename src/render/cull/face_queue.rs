@@ -52,8 +52,9 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn add_by<S: Lanes8>(s: S, numbers: &mut Numbers, first: u32, turned: u64, chosen: u64) {
-    let parts = chosen.to_le_bytes().into_iter().zip(turned.to_le_bytes());
-    for (part, (chosen, turned)) in (0_u32..).zip(parts) {
+    for part in 0..8 {
+        // The low bytes.
+        let (chosen, turned) = ((chosen >> (8 * part)) as u8, (turned >> (8 * part)) as u8);
         if chosen == 0 {
             continue;
         }

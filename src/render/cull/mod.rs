@@ -108,10 +108,11 @@ impl CullMasks {
     /// Puts in bits of up to eight faces, from number `first` on.
     #[inline(always)]
     fn add(&mut self, first: usize, are_faces: u64, found: [u32; 4]) {
-        let all = [&mut self.clipped, &mut self.front, &mut self.back, &mut self.covers];
-        for (all, bits) in all.into_iter().zip(found) {
-            *all |= (u64::from(bits) & are_faces) << first;
-        }
+        let [clipped, front, back, covers] = found;
+        self.clipped |= (u64::from(clipped) & are_faces) << first;
+        self.front |= (u64::from(front) & are_faces) << first;
+        self.back |= (u64::from(back) & are_faces) << first;
+        self.covers |= (u64::from(covers) & are_faces) << first;
     }
 }
 

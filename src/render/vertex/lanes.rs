@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::Geometry;
 use crate::fixed::U8F8;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
 use crate::render::lit::{ScreenPos, ShadedVertices};
 use crate::render::paint::SurfaceMaterial;
@@ -36,8 +36,10 @@ fn project_by<S: Singles8, const TESTED: bool>(
     let (eights, rest) = positions.as_chunks::<LANES>();
     let (places, _) = lit.places.as_chunks_mut::<LANES>();
     let (depths, _) = lit.depths.as_chunks_mut::<LANES>();
-    for ((points, places), depths) in eights.iter().zip(places).zip(depths) {
-        project_eight(s, narrow, points, places, depths);
+    let n = eights.len().min(places.len()).min(depths.len());
+    let (places, depths) = (&mut places[..n], &mut depths[..n]);
+    for (i, points) in eights[..n].iter().enumerate() {
+        project_eight(s, narrow, points, &mut places[i], &mut depths[i]);
     }
     // Those that are left; or, of an object that is said to lie inside and does not, all.
     let whole = positions.len() - rest.len();
@@ -71,12 +73,13 @@ fn project_eight<S: Singles8>(
     let [low, high] = s.zip_i32(x, y);
     s.put_i32s(low, &mut pairs[0]);
     s.put_i32s(high, &mut pairs[1]);
-    for (&[x, y], place) in pairs.as_flattened().as_chunks::<2>().0.iter().zip(places) {
-        *place = ScreenPos::new(x, y);
+    for (lane, place) in places.iter_mut().enumerate() {
+        let (half, at) = (lane / 4, 2 * (lane % 4));
+        *place = ScreenPos::new(pairs[half][at], pairs[half][at + 1]);
     }
     let mut numbers = [0; LANES];
     s.put_i32s(s.select_i32(within, depth, nothing), &mut numbers);
-    *depths = numbers.map(i32::cast_unsigned);
+    *depths = each!(lane => numbers[lane].cast_unsigned());
 }
 
 /// Coordinate `k` of points seen from the eye. As glam has it: column by column.
@@ -152,7 +155,10 @@ fn light_suns_by<S: Singles8, const BOTH: bool>(
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
     let (shades, rest_shades) = lit.shades.as_chunks_mut::<LANES>();
     let (surfaces, rest_surfaces) = geometry.vertex_surfaces.as_chunks::<LANES>();
-    for ((normals, shades), surfaces) in eights.iter().zip(shades).zip(surfaces) {
+    let n = eights.len().min(shades.len()).min(surfaces.len());
+    let (shades, surfaces) = (&mut shades[..n], &surfaces[..n]);
+    for (i, normals) in eights[..n].iter().enumerate() {
+        let (shades, surfaces) = (&mut shades[i], &surfaces[i]);
         if *surfaces == [surfaces[0]; LANES] {
             light_eight::<S, BOTH>(s, &paints[usize::from(surfaces[0])], lights, normals, shades);
         } else {
@@ -207,7 +213,9 @@ fn light_eight<S: Singles8, const BOTH: bool>(
     let mut pairs = [0; LANES];
     s.put_i32s(both, &mut pairs);
     // The front's shade in the lower half.
-    *shades = pairs.map(|both| [both as u16, (both >> 16) as u16].map(U8F8::from_bits));
+    for (lane, shades) in shades.iter_mut().enumerate() {
+        *shades = [U8F8::from_bits(pairs[lane] as u16), U8F8::from_bits((pairs[lane] >> 16) as u16)];
+    }
 }
 
 /// [`SurfaceMaterial::shade`] of these sums of light.

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use super::lit::{ScreenPos, ShadedVertices};
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, Points};
+use crate::lanes::{LANES, Points, each};
 use crate::light::Lights;
 use crate::palette::Ramp;
 use crate::raster::effects::Attributes;
@@ -165,15 +165,15 @@ pub(super) fn light_channels(
         let paint = &paints[surface];
         let extras = &mut extras[vertices];
         let fronts = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
-        let fronts = fronts.each_ref().map(SurfaceMaterial::channel_of_eight);
+        let [red, green, blue] = SurfaceMaterial::channels_of_eight(&fronts);
         for (lane, extra) in extras.iter_mut().enumerate() {
-            extra.front.channels = fronts.each_ref().map(|channel| channel[lane]);
+            extra.front.channels = [red[lane], green[lane], blue[lane]];
         }
         if both {
             let backs = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
-            let backs = backs.each_ref().map(SurfaceMaterial::channel_of_eight);
+            let [red, green, blue] = SurfaceMaterial::channels_of_eight(&backs);
             for (lane, extra) in extras.iter_mut().enumerate() {
-                extra.back_channels = backs.each_ref().map(|channel| channel[lane]);
+                extra.back_channels = [red[lane], green[lane], blue[lane]];
             }
         }
     });
@@ -187,11 +187,10 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
         for part in alike.chunks(LANES) {
             let vertices = first..first + part.len();
             let mut points = [[0.0; LANES]; 6];
-            let both = geometry.normals[vertices.clone()].iter().zip(&geometry.positions[vertices.clone()]);
-            for (lane, (normal, position)) in both.enumerate() {
-                for (axis, (n, p)) in normal.to_array().into_iter().zip(position.to_array()).enumerate() {
-                    (points[axis][lane], points[axis + 3][lane]) = (n, p);
-                }
+            let [nx, ny, nz, px, py, pz] = &mut points;
+            for (lane, vertex) in vertices.clone().enumerate() {
+                (nx[lane], ny[lane], nz[lane]) = geometry.normals[vertex].into();
+                (px[lane], py[lane], pz[lane]) = geometry.positions[vertex].into();
             }
             first = vertices.end;
             eight(vertices, usize::from(part[0]), &points);
@@ -201,8 +200,8 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
 
 /// Points with their normals reversed.
 fn from_behind(points: &Points) -> Points {
-    let [x, y, z, ..] = points.map(|values| values.map(|value| -value));
-    [x, y, z, points[3], points[4], points[5]]
+    let [x, y, z, ..] = points;
+    [each!(lane => -x[lane]), each!(lane => -y[lane]), each!(lane => -z[lane]), points[3], points[4], points[5]]
 }
 
 /// Texture coordinates in texels, for surfaces that have an image.

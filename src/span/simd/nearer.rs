@@ -101,7 +101,8 @@ fn copy_four<const KEEPS: bool>(
     let stay = four_stay::<KEEPS>(cells, z, dz, length as i32);
     // The lowest byte of each, and zeros.
     let stays = _mm_shuffle_epi8(stay, _mm_setr_epi32(0x0C08_0400, -1, -1, -1));
-    let [before, after] = [*row, *bytes].map(|bytes| _mm_cvtsi32_si128(i32::from_le_bytes(bytes)));
+    let before = _mm_cvtsi32_si128(i32::from_le_bytes(*row));
+    let after = _mm_cvtsi32_si128(i32::from_le_bytes(*bytes));
     *row = _mm_cvtsi128_si32(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
     FOUR as u32 - ones(stays)
 }
@@ -119,14 +120,17 @@ fn copy_eights<const KEEPS: bool>(
     // Below 2³¹, as that many pixels are there.
     let mut depths = Depths::new(z, dz, length as i32);
     let mut written = 0;
-    let turns = row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0);
-    for ((row, cells), bytes) in turns.zip(bytes.as_chunks::<EIGHT>().0) {
-        let stay = depths.stay::<KEEPS>(cells);
+    let (rows, cells, bytes) =
+        (row.as_chunks_mut::<EIGHT>().0, cells.as_chunks_mut::<EIGHT>().0, bytes.as_chunks::<EIGHT>().0);
+    let n = rows.len().min(cells.len()).min(bytes.len());
+    let (cells, bytes) = (&mut cells[..n], &bytes[..n]);
+    for (i, row) in rows[..n].iter_mut().enumerate() {
+        let stay = depths.stay::<KEEPS>(&mut cells[i]);
         // The lowest byte of each.
         let stays = _mm256_shuffle_epi8(stay, _mm256_set1_epi32(0x0C08_0400));
         let stays = _mm_unpacklo_epi32(_mm256_castsi256_si128(stays), _mm256_extracti128_si256(stays, 1));
         let before = _mm_cvtsi64_si128(i64::from_le_bytes(*row));
-        let after = _mm_cvtsi64_si128(i64::from_le_bytes(*bytes));
+        let after = _mm_cvtsi64_si128(i64::from_le_bytes(bytes[i]));
         *row = _mm_cvtsi128_si64(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
         written += EIGHT as u32 - ones(stays);
     }
@@ -219,8 +223,11 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __
     let mut shades = _mm256_madd_epi16(_mm256_set1_epi32(span.paint.cast_signed()), numbered);
     let next_shade = _mm256_set1_epi32((span.paint >> 16 << 3).cast_signed());
     let mut stayed = _mm256_setzero_si256();
-    for (pixels, cells) in row.as_chunks_mut::<EIGHT>().0.iter_mut().zip(cells.as_chunks_mut::<EIGHT>().0) {
-        let stay = depths.stay::<true>(cells);
+    let (pixels, cells) = (row.as_chunks_mut::<EIGHT>().0, cells.as_chunks_mut::<EIGHT>().0);
+    let n = pixels.len().min(cells.len());
+    let cells = &mut cells[..n];
+    for (i, pixels) in pixels[..n].iter_mut().enumerate() {
+        let stay = depths.stay::<true>(&mut cells[i]);
         // SAFETY: eight bytes; the load asks for no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let bytes = _mm256_blendv_epi8(_mm256_srli_epi32(shades, 8), bytes, stay);
