@@ -20,6 +20,7 @@ use mode13h::mesh::{obj, shapes};
 use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// What loads.
 type Loader = (&'static str, fn(&Path));
@@ -81,11 +82,10 @@ fn main() {
 fn made(name: &str, stacks: u32, normals: bool) -> PathBuf {
     let mesh = shapes::sphere(2 * stacks, stacks + 1);
     let mut text = String::new();
-    let mut random = 1_u64;
+    let mut random = Random::again(1);
     for position in mesh.positions() {
-        // Knuth's generator for MMIX, and of it the upper bits: within half an edge.
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let [x, y, z] = (*position * (1.0 + (random >> 40) as f32 / 16_777_216.0 / stacks as f32)).to_array();
+        // Within half an edge.
+        let [x, y, z] = (*position * (1.0 + random.unit() as f32 / stacks as f32)).to_array();
         writeln!(text, "v {x:.6} {y:.6} {z:.6}").expect("written");
     }
     if normals {

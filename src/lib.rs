@@ -123,3 +123,13 @@ pub mod export;
 pub mod model;
 #[cfg(feature = "window")]
 pub mod window;
+
+// The random generator of all tests, by its file: unit tests that linked the crate would have the assembly twice.
+#[path = "../conformance/src/hash.rs"]
+#[cfg(test)]
+#[expect(unreachable_pub, reason = "public in a crate of its own")]
+mod hash;
+#[path = "../conformance/src/random.rs"]
+#[cfg(test)]
+#[expect(dead_code, unreachable_pub, reason = "public in a crate of its own, of which unit tests use a part")]
+mod random;

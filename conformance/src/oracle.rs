@@ -1,5 +1,5 @@
-//! The naive oracles of the raster: what DESIGN says, in i128, with no thought for speed. They share
-//! nothing with the raster but the vertices.
+//! The definitions of the raster, pixel by pixel in 128-bit integers, with no thought for speed. They share nothing with
+//! the raster but the vertices.
 
 use alloc::vec::Vec;
 
@@ -8,6 +8,7 @@ use mode13h::raster::{Interpolation, Vertex};
 /// Vertex position in 1/256 pixel.
 pub type Point = (i128, i128);
 
+/// The position of a vertex.
 pub fn point(v: &Vertex) -> Point {
     (i128::from(v.x().to_bits()), i128::from(v.y().to_bits()))
 }
@@ -59,20 +60,28 @@ pub fn polygon_covers(polygon: &[Point], p: Point) -> bool {
 /// An exact value n / d, d positive.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
+    /// The dividend.
     pub n: i128,
+    /// The divisor.
     pub d: i128,
 }
 
 impl Ratio {
+    /// The nearest whole number not above it.
     pub fn floor(self) -> i128 {
         self.n.div_euclid(self.d)
     }
+
+    /// The nearest whole number not below it.
     pub fn ceil(self) -> i128 {
         -(-self.n).div_euclid(self.d)
     }
+
+    /// The whole number towards zero.
     pub fn truncate(self) -> i128 {
         self.n / self.d
     }
+
     /// |self − whole| · d ≤ bound · d, with bound = bound_n / bound_d.
     pub fn is_within(self, whole: i128, bound_n: i128, bound_d: i128) -> bool {
         (self.n - whole * self.d).abs() * bound_d <= bound_n * self.d
@@ -96,8 +105,11 @@ pub fn per_pixel(triangle: [Point; 3], values: [i128; 3]) -> Ratio {
 /// A pixel that a triangle draws.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Pixel {
+    /// The column.
     pub x: i32,
+    /// The row.
     pub y: i32,
+    /// What is drawn there.
     pub byte: u8,
 }
 
@@ -145,6 +157,7 @@ pub struct Shades {
 }
 
 impl Shades {
+    /// The shades of these vertices.
     pub fn of_vertices(vertices: &[Vertex; 3], interpolation: Interpolation) -> Self {
         Self::new(vertices, vertices.each_ref().map(|v| v.shade().to_bits()), interpolation)
     }
@@ -326,6 +339,7 @@ pub struct Depths {
 }
 
 impl Depths {
+    /// The depths of these vertices.
     pub fn of_vertices(vertices: &[Vertex; 3]) -> Self {
         let mut order = *vertices;
         order.sort_by_key(|v| (v.y(), v.x()));

@@ -31,13 +31,23 @@ impl Random {
         let seed = seed();
         #[cfg(feature = "std")]
         std::println!("MODE13H_SEED={seed}, stream {stream}");
-        Self(Self(seed).next_u64() ^ stream.wrapping_mul(0xD134_2543_DE82_EF95))
+        Self::of_stream(seed, stream)
     }
 
     /// A generator from the seed of this run, for a stream that has a name.
     #[must_use]
     pub fn named(stream: &str) -> Self {
         Self::new(fnv_1a(START, stream.as_bytes()))
+    }
+
+    /// A generator from a seed, for a stream that has a name: [`named`](Self::named) for programs, which print no seed.
+    #[must_use]
+    pub fn seeded(seed: u64, stream: &str) -> Self {
+        Self::of_stream(seed, fnv_1a(START, stream.as_bytes()))
+    }
+
+    fn of_stream(seed: u64, stream: u64) -> Self {
+        Self(Self(seed).next_u64() ^ stream.wrapping_mul(0xD134_2543_DE82_EF95))
     }
 
     /// A generator whose state is `state`, whatever the seed of this run.
@@ -79,6 +89,13 @@ impl Random {
     /// A number of −`most` to `most`, uniformly.
     pub fn around_zero(&mut self, most: f64) -> f64 {
         (self.unit() * 2.0 - 1.0) * most
+    }
+
+    /// Puts a list in random order (Fisher and Yates).
+    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.below(last + 1));
+        }
     }
 
     /// One of `of`, which must not be empty.

@@ -366,6 +366,7 @@ impl Camera {
 mod tests {
     use super::*;
     use crate::mesh::{Mesh, shapes};
+    use crate::random::Random;
     use crate::scene::{Scene, UpAxis};
     use core::f64::consts::TAU;
 
@@ -376,20 +377,6 @@ mod tests {
     /// are f32, of 2⁻²⁴ each.
     const MIN: f64 = FILL - 2e-5;
     const MAX: f64 = FILL + 2e-6;
-
-    struct Random(u64);
-
-    impl Random {
-        /// 0 to 1.
-        fn unit(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
-            (self.0 >> 11) as f64 / 9_007_199_254_740_992.0
-        }
-
-        fn within(&mut self, reach: f64) -> f64 {
-            (2.0 * self.unit() - 1.0) * reach
-        }
-    }
 
     /// The parts of the picture that are reached over a turn, −1 to 1 from edge to edge, the slow way: every vertex at every
     /// angle. To the left, right, below and above.
@@ -431,16 +418,16 @@ mod tests {
 
     /// So many corners in a box about a middle.
     fn mesh(random: &mut Random, corners: u32, sizes: [f64; 3], middle: [f64; 3]) -> Mesh {
-        let place = |i: usize, random: &mut Random| (middle[i] + random.within(sizes[i])) as f32;
+        let place = |i: usize, random: &mut Random| (middle[i] + random.around_zero(sizes[i])) as f32;
         let positions = (0..corners).map(|_| Vec3::from_array(core::array::from_fn(|i| place(i, random)))).collect();
         Mesh::new(positions, (2..corners).map(|i| [0, i - 1, i]).collect()).expect("a mesh")
     }
 
     #[test]
     fn a_turning_mesh_fills_nine_tenths_of_the_picture() {
-        let mut random = Random(1);
+        let mut random = Random::again(1);
         for number in 0..120 {
-            let size = libm::pow(10.0, random.within(6.0));
+            let size = libm::pow(10.0, random.around_zero(6.0));
             let mut sizes = [(); 3].map(|()| size * (0.05 + random.unit()));
             match number % 6 {
                 // Flat.
@@ -449,7 +436,7 @@ mod tests {
                 2 => (sizes[number / 6 % 3], sizes[(number / 6 + 1) % 3]) = (size * 1e-4, size * 1e-4),
                 _ => {}
             }
-            let middle = if number % 6 == 3 { [(); 3].map(|()| random.within(1000.0 * size)) } else { [0.0; 3] };
+            let middle = if number % 6 == 3 { [(); 3].map(|()| random.around_zero(1000.0 * size)) } else { [0.0; 3] };
             let corners = 3 + (random.unit() * 30.0) as u32;
             let mut object = Object::new(mesh(&mut random, corners, sizes, middle));
             object.up_axis = if number % 2 == 0 { UpAxis::Y } else { UpAxis::Z };
@@ -457,9 +444,9 @@ mod tests {
             check(&alloc::format!("mesh {number}"), &scene.objects()[0], &scene.camera);
             // About another point, tilted otherwise, elsewhere and of another size.
             object.pivot = object.mesh().bounds().centre + Vec3::splat(size as f32 * 0.5);
-            object.position = Vec3::new(random.within(size) as f32, size as f32, 0.0);
+            object.position = Vec3::new(random.around_zero(size) as f32, size as f32, 0.0);
             object.scale = 2.5;
-            object.angles = [random.within(1.2), 1.0, random.within(3.0)].map(Angle::from_radians);
+            object.angles = [random.around_zero(1.2), 1.0, random.around_zero(3.0)].map(Angle::from_radians);
             check(&alloc::format!("object {number}"), &object, &Camera::framing_turn(&object));
         }
         for name in shapes::NAMES {
@@ -532,11 +519,11 @@ mod tests {
     /// along paths, too.
     #[test]
     fn everything_is_in_the_picture_wherever_it_moves() {
-        let mut random = Random(2);
+        let mut random = Random::again(2);
         let mut fullest = [1.0_f64; 3];
         for number in 0..60 {
             let turning = [Turning::Still, Turning::Upright, Turning::Anyhow][number % 3];
-            let mut point = || Vec3::from_array([(); 3].map(|()| random.within(2.0) as f32));
+            let mut point = || Vec3::from_array([(); 3].map(|()| random.around_zero(2.0) as f32));
             let (direction, up, from, towards, centre, target) = (point(), point(), point(), point(), point(), point());
             let path = match number / 3 % 3 {
                 0 => None,
@@ -553,8 +540,8 @@ mod tests {
                 object.position = path.map_or(Vec3::ZERO, |path| path.at(f64::from(step) / 100.0));
                 object.angles = match turning {
                     Turning::Still => [0.3, 1.0, 2.0],
-                    Turning::Upright => [0.3, random.within(7.0), 2.0],
-                    Turning::Anyhow => [(); 3].map(|()| random.within(7.0)),
+                    Turning::Upright => [0.3, random.around_zero(7.0), 2.0],
+                    Turning::Anyhow => [(); 3].map(|()| random.around_zero(7.0)),
                 }
                 .map(Angle::from_radians);
                 let view = crate::view::View::new(&camera, crate::view::Screen::MODE_13H).expect("a view");

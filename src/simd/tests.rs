@@ -1,6 +1,7 @@
 //! Every level's operations against those of plain arrays, lane by lane and bit by bit.
 
 use super::*;
+use crate::random::Random;
 
 #[cfg(not(feature = "alloc"))]
 use Lanes8 as Eights;
@@ -8,14 +9,11 @@ use Lanes8 as Eights;
 use Singles8 as Eights;
 
 /// Numbers of all sizes, signs and bit patterns.
-struct Random(u64);
+struct Numbers(Random);
 
-impl Random {
+impl Numbers {
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     fn i64s(&mut self) -> [i64; 8] {
@@ -73,7 +71,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
     check_singles(s, name);
     let c = Checker { s, name };
     let p = Portable;
-    let mut random = Random(15);
+    let mut random = Numbers(Random::again(15));
     for round in 0..2_000 {
         let (a, b, d) = (random.f64s(), random.f64s(), random.f64s());
         let (fa, fb, fd) = (s.f64s(&a), s.f64s(&b), s.f64s(&d));
@@ -172,7 +170,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
 
 /// f32 of all kinds: NaN, infinities, zeros of both signs, denormals.
 #[cfg(feature = "alloc")]
-impl Random {
+impl Numbers {
     fn f32s(&mut self) -> [f32; 8] {
         let odd = [0.0, -0.0, 0.5, -1.5, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e-40];
         [(); 8].map(|()| match self.bits() % 4 {
@@ -203,7 +201,7 @@ fn check_singles<S: Singles8>(s: S, name: &'static str) {
 
     let c = Checker { s, name };
     let p = Portable;
-    let mut random = Random(32);
+    let mut random = Numbers(Random::again(32));
     let apart = |of: [f32; 8]| s.vectors(&of.map(Vec3::splat))[0];
     for _ in 0..2_000 {
         let (a, b) = (random.f32s(), random.f32s());

@@ -6,17 +6,15 @@
 //! cargo test --release --test span_kernels -- --ignored --nocapture
 //! ```
 
-use crate::support::naive_span::naive_span;
 use crate::support::random::Random;
 use crate::support::tried::Tried;
 #[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
 use crate::support::tried::is_here;
 use mode13h::span::Kernel;
-use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::list::{self, Listed, ListedDepths};
+use mode13h_conformance::loops::canvas::{Canvas, Shape};
+use mode13h_conformance::loops::spans::{check_span, naive_span};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use std::fmt;
 
 /// Bytes before and behind the row that have to stay as they were.
 const GUARD: usize = 64;
@@ -32,68 +30,12 @@ struct Case {
     step: u16,
 }
 
-/// Memory to draw in, reused from case to case.
-struct Canvas {
-    bytes: Vec<u8>,
-}
-
-/// What the guard bytes are: no constant, so that bytes moved or copied show too.
-fn guard_byte(i: usize) -> u8 {
-    0xA5 ^ (i as u8)
-}
-
-impl Canvas {
-    fn new(longest: usize) -> Self {
-        Self { bytes: (0..longest + 64 + 63 + 2 * GUARD).map(guard_byte).collect() }
-    }
-
-    /// The property: the row's bytes are `expected`, and no other byte has changed.
-    fn check(&mut self, kernel: Kernel, case: Case, expected: &[u8]) -> Result<(), Failure> {
-        let address = self.bytes.as_ptr().addr();
-        let start = address.next_multiple_of(64) - address + GUARD + case.alignment;
-        let end = start + case.length;
-        kernel.fill(&mut self.bytes[start..end], case.shade, case.step);
-        let row_differs = self.bytes[start..end].iter().zip(expected).position(|(a, b)| a != b);
-        let guards = (start - GUARD..start).chain(end..end + GUARD);
-        let guard_differs = guards.clone().find(|&i| self.bytes[i] != guard_byte(i));
-        let failure = match (row_differs, guard_differs) {
-            (Some(k), _) => Some((k as isize, self.bytes[start + k], expected[k])),
-            (None, Some(i)) => Some((i as isize - start as isize, self.bytes[i], guard_byte(i))),
-            (None, None) => None,
-        };
-        for (i, byte) in self.bytes[start - GUARD..end + GUARD].iter_mut().enumerate() {
-            *byte = guard_byte(start - GUARD + i);
-        }
-        match failure {
-            Some((pixel, is, should)) => Err(Failure { kernel, case, pixel, is, should }),
-            None => Ok(()),
-        }
-    }
-
-    fn check_naively(&mut self, kernel: Kernel, case: Case) -> Result<(), Failure> {
-        self.check(kernel, case, &naive_span(case.length, case.shade, case.step))
-    }
-}
-
-/// The first wrong byte of a span.
-#[derive(Debug)]
-struct Failure {
-    kernel: Kernel,
-    case: Case,
-    /// Counted from the row's first; below 0 or beyond the length it is a guard byte.
-    pixel: isize,
-    is: u8,
-    should: u8,
-}
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Case { length, alignment, shade, step } = self.case;
-        write!(
-            f,
-            "{}: shade {shade:#06x} step {step:#06x} length {length} alignment {alignment}: pixel {} is {:#04x}, not {:#04x}",
-            self.kernel, self.pixel, self.is, self.should
-        )
+impl Case {
+    /// The property: the row's bytes are the definition's, and no other byte has changed.
+    fn check(self, canvas: &mut Canvas, kernel: Kernel) -> Result<(), String> {
+        let Self { length, alignment, shade, step } = self;
+        check_span(canvas, Shape { length, alignment }, (shade, step), |row, shade, step| kernel.fill(row, shade, step))
+            .map_err(|wrong| format!("{kernel}: {wrong}"))
     }
 }
 
@@ -106,8 +48,8 @@ fn try_all(test: &str, kernel: Kernel, cases: impl Iterator<Item = Case>) {
     let mut tried = Tried::new(format!("{test} {}", kernel.name()), 1);
     let mut canvas = Canvas::new(131_073);
     for case in cases {
-        if let Err(failure) = canvas.check_naively(kernel, case) {
-            panic!("{failure}");
+        if let Err(wrong) = case.check(&mut canvas, kernel) {
+            panic!("{wrong}");
         }
         tried.add(1);
     }
@@ -132,8 +74,8 @@ fn s2_one_pixel(kernel: Kernel) {
     for step in EDGES {
         for shade in 0..=u16::MAX {
             let case = Case { length: 1, alignment: usize::from(shade % 64), shade, step };
-            if let Err(failure) = canvas.check(kernel, case, &[(shade >> 8) as u8]) {
-                panic!("{failure}");
+            if let Err(wrong) = case.check(&mut canvas, kernel) {
+                panic!("{wrong}");
             }
             tried.add(1);
         }
@@ -151,8 +93,9 @@ fn s3_two_pixels(kernel: Kernel) {
             let step = i32::from(second) * 256 - shade; // −65,280 to 65,280: 17 bits
             assert!((0..65_536).contains(&(shade + step)), "no wrap");
             let case = Case { length: 2, alignment: 63, shade: shade as u16, step: step as u16 };
-            if let Err(failure) = canvas.check(kernel, case, &[first, second]) {
-                panic!("{failure}");
+            assert_eq!(naive_span(2, case.shade, case.step), [first, second]);
+            if let Err(wrong) = case.check(&mut canvas, kernel) {
+                panic!("{wrong}");
             }
             tried.add(1);
         }
@@ -272,7 +215,7 @@ fn any_span(kernel: Kernel) {
     let mut tried = Tried::new(format!("any_span {}", kernel.name()), 2_000);
     let result = runner.run(&spans, |(length, alignment, shade, step)| {
         let case = Case { length, alignment, shade, step };
-        Canvas::new(length).check_naively(kernel, case).map_err(|failure| TestCaseError::fail(failure.to_string()))
+        case.check(&mut Canvas::new(length), kernel).map_err(TestCaseError::fail)
     });
     if let Err(error) = result {
         panic!("{error}");
@@ -395,46 +338,6 @@ fn kernels_are_chosen_by_name() {
     }
 }
 
-/// Numerators one beside a multiple of the divisor, where f64 cannot tell the quotient from the whole number.
-#[test]
-fn c5_quotients_beside_whole_numbers() {
-    let mut tried = Tried::new("c5_quotients_beside_whole_numbers", 200_000);
-    let mut random = Random::named("c5 quotients");
-    while tried.more() {
-        let wide = |random: &mut Random, bits: u32| {
-            let number = u128::from(random.next_u64()) << 64 | u128::from(random.next_u64());
-            // Below 2¹¹⁷.
-            (number >> (128 - bits)) as i128
-        };
-        let bits = random.within(1, 116) as u32;
-        let (d, dd) = (wide(&mut random, bits).max(1), wide(&mut random, bits) >> 2);
-        let quotient = i128::from(random.within(0, 255));
-        let beside = random.one_of(&[-1, 0, 1, d / 2, d - 1]).clamp(-quotient * d, d - 1);
-        let mut row = [0; 5];
-        fill_quotients(&mut row, quotient * d + beside, quotient * dd, d, dd);
-        for (k, byte) in (0..).zip(row) {
-            let (n, d) = (quotient * (d + k * dd) + beside, d + k * dd);
-            assert_eq!(i128::from(byte), n.div_euclid(d), "{n} / {d}");
-        }
-    }
-}
-
-/// A kernel that is wrong in one byte, or writes one beyond, is found out: the property can fail.
-#[test]
-fn a_wrong_byte_is_caught() {
-    let case = Case { length: 20, alignment: 3, shade: 0x1000, step: 0x0100 };
-    let mut canvas = Canvas::new(20);
-    let mut expected = naive_span(20, case.shade, case.step);
-    expected[19] ^= 1;
-    let failure = canvas.check(Kernel::PORTABLE, case, &expected).expect_err("a wrong byte");
-    assert_eq!((failure.pixel, failure.is, failure.should), (19, 0x23, 0x22));
-    // A row of 20 seen as one of 19: its last byte lies on the guard.
-    let start = canvas.bytes.as_ptr().addr().next_multiple_of(64) - canvas.bytes.as_ptr().addr() + GUARD + 3;
-    canvas.bytes[start + 19] ^= 1;
-    let short = Case { length: 19, ..case };
-    assert_eq!(canvas.check_naively(Kernel::PORTABLE, short).expect_err("a lost guard").pixel, 19);
-}
-
 /// The long run, on as many threads as the machine has.
 mod long {
     use super::*;
@@ -481,9 +384,12 @@ mod long {
     }
 
     fn failure(kernel: Kernel, shade: u16, step: u16, row: &[u8], expected: &[u8]) -> String {
-        let case = Case { length: row.len(), alignment: 0, shade, step };
         let pixel = row.iter().zip(expected).position(|(a, b)| a != b).unwrap_or(0);
-        Failure { kernel, case, pixel: pixel as isize, is: row[pixel], should: expected[pixel] }.to_string()
+        let (is, should) = (row[pixel], expected[pixel]);
+        format!(
+            "{kernel}: shade {shade:#06x} step {step:#06x} length {}: pixel {pixel} is {is:#04x}, not {should:#04x}",
+            row.len()
+        )
     }
 
     /// All 2³² starts and steps at 191 pixels: `portable` against the definition, the others against it.
@@ -569,78 +475,6 @@ mod long {
         println!("{} kernels, {:.0?}", kernels.len(), started.elapsed());
         tried.done();
     }
-}
-
-/// Lists of spans, with a depth test and without, by every kernel: the bytes, depths and counts are those of a loop over
-/// pixels, and whatever lies before, between and behind the spans stays, up to the last byte and cell there are. Of spans
-/// that reach beyond these nothing is drawn.
-#[test]
-fn lists_are_filled_as_pixel_by_pixel() {
-    const PIXELS: usize = 300;
-    let mut random = Random::named("lists of spans");
-    let (mut written, mut hidden, mut beyond) = (0, 0, 0);
-    for round in 0..20_000 {
-        let most = random.one_of(&[4, 9, 17, 90]);
-        let count = random.within(0, 12) as usize;
-        // Equal depths, too: then the first that was drawn stays.
-        let level = random.one_of(&[1_i64 << 30, 5, 1 << 32]);
-        let mut spans = Vec::new();
-        let mut depths = Vec::new();
-        for _ in 0..count {
-            let length = random.within(0, most);
-            // One in four at the very end, or beyond it.
-            let last = PIXELS as i64 - length;
-            let (anywhere, elsewhere) = (random.within(0, last + 3), random.within(0, last + 3));
-            let at = random.one_of(&[anywhere, anywhere, anywhere, last]);
-            let cell = random.one_of(&[at, at, at, elsewhere]);
-            let (shade, step) = (random.next_u64() as u16, random.next_u64() as u16);
-            spans.push(Listed { at: at as u32, length: length as u32, shade, step });
-            let slope = random.next_u64() as i64 >> random.within(0, 63);
-            let z = random.within(0, level - 1) << 24;
-            depths.push(match random.within(0, 3) {
-                0 => ListedDepths { at: cell as u32, z: random.next_u64() as i64, dz: slope },
-                1 => ListedDepths { at: cell as u32, z, dz: 0 },
-                _ => ListedDepths { at: cell as u32, z, dz: slope >> 30 },
-            });
-        }
-        let bytes: Vec<u8> = (0..PIXELS).map(guard_byte).collect();
-        let cells: Vec<u32> = (0..PIXELS).map(|_| random.one_of(&[0, 3, 1 << 29, u32::MAX])).collect();
-        let (mut flat, mut deep, mut nearest) = (bytes.clone(), bytes.clone(), cells.clone());
-        let mut nearer = 0;
-        for (span, depth) in spans.iter().zip(&depths) {
-            let (at, cell, length) = (span.at as usize, depth.at as usize, span.length as usize);
-            let inside = at + length <= PIXELS;
-            beyond += usize::from(!inside);
-            for k in 0..length {
-                let byte = (span.shade.wrapping_add(span.step.wrapping_mul(k as u16)) >> 8) as u8;
-                if inside {
-                    flat[at + k] = byte;
-                }
-                if inside && cell + length <= PIXELS {
-                    let d = (depth.z.wrapping_add(depth.dz.wrapping_mul(k as i64)) >> 24) as u32;
-                    if d > nearest[cell + k] {
-                        (deep[at + k], nearest[cell + k]) = (byte, d);
-                        nearer += 1;
-                    } else {
-                        hidden += 1;
-                    }
-                }
-            }
-        }
-        written += nearer;
-        for kernel in Kernel::available() {
-            let mut drawn = bytes.clone();
-            list::fill(kernel, &mut drawn, &spans);
-            assert_eq!(drawn, flat, "{kernel}, round {round}: {spans:?}");
-            let (mut drawn, mut kept) = (bytes.clone(), cells.clone());
-            let count = list::fill_where_nearer(kernel, &mut drawn, &mut kept, &spans, &depths);
-            assert!(
-                (&drawn, &kept, count) == (&deep, &nearest, nearer),
-                "{kernel}, round {round}: {spans:?}, {depths:?}"
-            );
-        }
-    }
-    assert!(written > 100_000 && hidden > 100_000 && beyond > 500, "{written}, {hidden}, {beyond}");
 }
 
 /// Levels that this machine lacks are tried by no test; the line of `.ci/not_tried` names them.

@@ -97,11 +97,3 @@ pub(crate) fn draw(degrees: i32, mut band: impl FnMut(usize, &[u8])) -> Option<(
     }
     Some(())
 }
-
-/// FNV-1a over the bytes, from the hash of those before.
-pub(crate) fn hash(before: u64, bytes: &[u8]) -> u64 {
-    bytes.iter().fold(before, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3))
-}
-
-/// The hash of no bytes.
-pub(crate) const EMPTY: u64 = 0xCBF2_9CE4_8422_2325;

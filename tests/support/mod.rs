@@ -8,14 +8,11 @@ pub mod film;
 pub mod golden;
 #[cfg(feature = "alloc")]
 pub mod judged;
-pub mod naive_span;
 #[cfg(feature = "alloc")]
 pub mod near_plane;
 #[cfg(feature = "alloc")]
 pub mod odd_views;
-pub mod oracle;
 pub mod property;
-pub mod random;
 #[cfg(feature = "alloc")]
 pub mod scenes;
 #[cfg(feature = "scene-files")]
@@ -29,3 +26,4 @@ pub mod shipped {
 pub mod triangles;
 pub mod tried;
 pub mod workspace;
+pub use mode13h_conformance::{oracle, random};

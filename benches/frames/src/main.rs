@@ -20,6 +20,7 @@ use mode13h::render::{Accuracy, RenderError, Renderer, Shading};
 use mode13h::scene::{Motion, Object, Scene, shipped};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_conformance::hash::{START, fnv_1a};
 
 /// Kept apart, so that a profiler can tell it from the rest: what is made once is made here.
 #[inline(never)]
@@ -32,11 +33,6 @@ fn first_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<
 #[inline(never)]
 fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
     renderer.draw(scene, vga).map(|_| ())
-}
-
-/// FNV-1a, 64 bits.
-fn hash(hash: u64, bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 /// Half of its faces cover no pixel, as those of a scanned model.
@@ -71,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Err(_) => accuracy.parse::<Shading>()?.into(),
         });
     }
-    let (mut all, mut on) = (0xcbf2_9ce4_8422_2325, BTreeSet::new());
+    let (mut all, mut on) = (START, BTreeSet::new());
     for frame in 0..frames.parse::<u32>()? {
         scene.set_time(f64::from(frame) / rate.unwrap_or(35.0));
         if rate.is_some() && scene.motions.is_empty() {
@@ -80,8 +76,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let draw = if frame == 0 { first_frame } else { next_frame };
         draw(&mut renderer, &scene, &mut vga)?;
-        all = hash(all, vga.pixels().iter().copied());
-        all = hash(all, vga.palette().colors().iter().flat_map(|color| [color.r, color.g, color.b]));
+        all = fnv_1a(all, vga.pixels());
+        for color in vga.palette().colors() {
+            all = fnv_1a(all, &[color.r, color.g, color.b]);
+        }
         on.extend(Effect::ALL.into_iter().filter(|effect| renderer.plan().is_on_anywhere(*effect)));
     }
     println!("hash {all:016x}");

@@ -2,6 +2,8 @@
 
 use std::ffi::{c_int, c_long};
 
+use mode13h_conformance::Random;
+
 /// `struct timespec` of 64-bit Linux.
 #[repr(C)]
 struct Timespec {
@@ -73,26 +75,19 @@ impl Median {
     }
 }
 
-/// Orders of turns: SplitMix64 and the shuffle of Fisher and Yates.
+/// Orders of turns, each shuffled anew.
 pub struct Turns {
-    state: u64,
+    random: Random,
     order: Vec<usize>,
 }
 
 impl Turns {
     pub fn of(candidates: usize) -> Self {
-        Self { state: 13, order: (0..candidates).collect() }
+        Self { random: Random::again(13), order: (0..candidates).collect() }
     }
 
     pub fn shuffled(&mut self) -> &[usize] {
-        for last in (1..self.order.len()).rev() {
-            self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut z = self.state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            z ^= z >> 31;
-            self.order.swap(last, (z % (last as u64 + 1)) as usize);
-        }
+        self.random.shuffle(&mut self.order);
         &self.order
     }
 }

@@ -18,9 +18,10 @@ use mode13h::hooks;
 use mode13h::palette::{BIOS, Palette};
 use mode13h::plan::Effect;
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
+use mode13h_conformance::hash::{START, fnv_1a};
 
 use self::pack::pack;
-use self::player::{EMPTY, Film, PIXELS, Player, hash};
+use self::player::{Film, PIXELS, Player};
 use self::unpack::unpack;
 use crate::failure::Failure;
 use crate::input;
@@ -220,12 +221,12 @@ fn hash_of(film: &[u8]) -> Option<u64> {
     let film = Film::read(film)?;
     let mut player = Player::new(&film, mode13h::span::Kernel::PORTABLE)?;
     let mut pixels = vec![0; PIXELS];
-    let mut sum = EMPTY;
+    let mut sum = START;
     for number in 0..film.frames() {
         player.draw(number, &mut pixels)?;
-        sum = hash(sum, &pixels);
+        sum = fnv_1a(sum, &pixels);
     }
-    Some(hash(sum, film.dac))
+    Some(fnv_1a(sum, film.dac))
 }
 
 #[cfg(test)]
@@ -306,7 +307,7 @@ mod tests {
             Player::new(&read, mode13h::span::Kernel::PORTABLE).unwrap().draw(0, &mut pixels).unwrap();
             renderer.draw(&stage.scene, &mut vga).unwrap();
             assert!(pixels == *vga.pixels(), "{shading}");
-            hashes.push(hash(EMPTY, &pixels));
+            hashes.push(fnv_1a(START, &pixels));
         }
         // On this torus, spans are too short for 8.8 to drift and to be started anew.
         hashes.dedup();

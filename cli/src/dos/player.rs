@@ -245,11 +245,3 @@ impl<'a> Player<'a> {
 fn angle(input: &mut Input<'_>) -> Option<BinaryAngle> {
     u16::try_from(input.word()?).ok().map(BinaryAngle::from)
 }
-
-/// FNV-1a, 64 bits, of bytes that follow those of `before`.
-pub(crate) fn hash(before: u64, bytes: &[u8]) -> u64 {
-    bytes.iter().fold(before, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3))
-}
-
-/// The hash of no bytes.
-pub(crate) const EMPTY: u64 = 0xCBF2_9CE4_8422_2325;

@@ -3,8 +3,6 @@
 
 #[path = "../../../tests/support/film.rs"]
 pub mod film;
-#[path = "../../../tests/support/random.rs"]
-pub mod random;
 #[path = "../../../tests/support/tried.rs"]
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]

@@ -1,1 +1,185 @@
 //! Every loop over pixels against its definition.
+//!
+//! A check is given a loop as a function, in any of its forms, and draws a row of each length and alignment with it: every
+//! byte is the definition's, and no byte beside the row has changed. Tests give the same checks loops that are wrong on
+//! purpose, and see that they are caught.
+//!
+//! | module | loops |
+//! |---|---|
+//! | [`spans`] | `fill`, `fill_16_16`, `fill_quotients`, `fill_float`, `fill_dithered` |
+//! | [`texels`] | `fill_affine`, `fill_perspective`, `lookup` |
+//! | [`channels`] | `mix_cube`, `mix_nearest` |
+//! | [`depth`] | `fill_nearer`, `copy_nearer`, `copy_before`, lists of spans; cells of 32 and of 16 bits |
+//! | [`light`] | `interpolate`, `numerators` and `divide`, `curve`: these write no pixels |
+//!
+//! ```
+//! use mode13h_conformance::loops::{self, Cases};
+//!
+//! for outcome in loops::all(Cases::quick(13)).take(3) {
+//!     assert_eq!(outcome.wrong, None);
+//! }
+//! ```
+
+pub mod canvas;
+pub mod channels;
+pub mod depth;
+pub mod light;
+pub mod spans;
+pub mod texels;
+
+use alloc::string::String;
+use core::fmt;
+
+use mode13h::span::Kernel;
+use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::span::curve::curve;
+use mode13h::span::depth::{copy_before, copy_nearer, fill_nearer};
+use mode13h::span::dither::{fill_dithered, fill_dithered_portable};
+use mode13h::span::fixed16::fill_16_16;
+use mode13h::span::float::fill_float;
+use mode13h::span::hyperbolic::fill_quotients;
+use mode13h::span::list;
+use mode13h::span::lit::interpolate;
+use mode13h::span::lookup;
+use mode13h::span::texture::{fill_affine, fill_perspective, fill_perspective_portable};
+
+use crate::Random;
+
+/// Which cases a loop is given: the same seed makes the same cases on every machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Cases {
+    seed: u64,
+    is_full: bool,
+}
+
+/// What became of a check: how many cases there were, or what was wrong with the first that failed.
+pub type Checked = Result<u64, String>;
+
+type Check = fn(Cases) -> Checked;
+type CheckKernel = fn(Cases, Kernel) -> Checked;
+
+impl Cases {
+    /// A tenth of all: every length of a screen row, at a few alignments. All loops by all kernels take about a second.
+    #[must_use]
+    pub const fn quick(seed: u64) -> Self {
+        Self { seed, is_full: false }
+    }
+
+    /// Every length of a screen row at every alignment, and 2,000 longer ones.
+    #[must_use]
+    pub const fn full(seed: u64) -> Self {
+        Self { seed, is_full: true }
+    }
+
+    /// Returns the number of cases, of so many or so many.
+    const fn of(self, quick: usize, full: usize) -> usize {
+        if self.is_full { full } else { quick }
+    }
+
+    /// The generator of a stream.
+    fn random(self, stream: &str) -> Random {
+        Random::seeded(self.seed, stream)
+    }
+}
+
+/// A loop in one of its forms, and what became of its check.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Outcome {
+    /// The loop, such as `fill_dithered`.
+    pub name: &'static str,
+    /// The kernel that drew, if the loop has a form for each.
+    pub kernel: Option<Kernel>,
+    /// Number of cases; 0 if one was wrong.
+    pub cases: u64,
+    /// The first case that was wrong, and how, in a line.
+    pub wrong: Option<String>,
+}
+
+/// The loop and the kernel.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)?;
+        self.kernel.map_or(Ok(()), |kernel| write!(f, " by {kernel}"))
+    }
+}
+
+/// Loops that are the same for every kernel, in each of their forms: the specification, and what this build draws with.
+const LOOPS: [(&str, Check); 17] = [
+    ("fill_16_16", |cases| spans::check_16_16(cases, fill_16_16)),
+    ("fill_quotients", |cases| spans::check_quotients(cases, fill_quotients)),
+    ("fill_float", |cases| spans::check_float(cases, fill_float)),
+    ("fill_dithered_portable", |cases| spans::check_dithered(cases, fill_dithered_portable)),
+    ("fill_dithered", |cases| spans::check_dithered(cases, fill_dithered)),
+    ("fill_affine", |cases| texels::check_affine(cases, fill_affine)),
+    ("fill_perspective_portable", |cases| texels::check_perspective(cases, fill_perspective_portable)),
+    ("fill_perspective", |cases| texels::check_perspective(cases, fill_perspective)),
+    ("lookup", |cases| texels::check_lookup(cases, lookup)),
+    ("mix_cube_portable", |cases| channels::check_cube(cases, mix_cube_portable)),
+    ("mix_cube", |cases| channels::check_cube(cases, mix_cube)),
+    ("mix_nearest", |cases| channels::check_nearest(cases, mix_nearest)),
+    ("fill_nearer, u32", |cases| depth::check_fill::<u32>(cases, fill_nearer)),
+    ("fill_nearer, u16", |cases| depth::check_fill::<u16>(cases, fill_nearer)),
+    ("copy_nearer and copy_before, u32", check_copies::<u32>),
+    ("copy_nearer and copy_before, u16", check_copies::<u16>),
+    ("interpolate and curve", |cases| {
+        Ok(light::check_interpolate(cases, interpolate)? + light::check_curve(cases, curve)?)
+    }),
+];
+
+fn check_copies<D: depth::NaiveCell>(cases: Cases) -> Checked {
+    let kept = depth::check_copy::<D>(cases, true, |length, row, cells, bytes, z, dz| {
+        copy_nearer(row, cells, &bytes[..length.min(bytes.len())], z, dz)
+    })?;
+    let stay = depth::check_copy::<D>(cases, false, |length, row, cells, bytes, z, dz| {
+        copy_before(row, cells, &bytes[..length.min(bytes.len())], z, dz)
+    })?;
+    Ok(kept + stay)
+}
+
+/// Loops of which each kernel has its own form.
+const BY_KERNEL: [(&str, CheckKernel); 11] = [
+    ("fill", |cases, kernel| spans::check_fill(cases, |row, shade, step| kernel.fill(row, shade, step))),
+    ("copy_where_nearer, u32, depths are kept", copy::<u32, true>),
+    ("copy_where_nearer, u32, depths stay", copy::<u32, false>),
+    ("copy_where_nearer, u16, depths are kept", copy::<u16, true>),
+    ("copy_where_nearer, u16, depths stay", copy::<u16, false>),
+    ("list::fill", |cases, kernel| depth::check_list(cases, |pixels, spans| list::fill(kernel, pixels, spans))),
+    ("list::fill_where_nearer, u32", list_nearer::<u32>),
+    ("list::fill_where_nearer, u16", list_nearer::<u16>),
+    ("interpolate_at", |cases, kernel| {
+        light::check_interpolate_at(cases, |places, a, da, d, dd| kernel.interpolate_at(places, a, da, d, dd))
+    }),
+    ("numerators and divide", |cases, kernel| {
+        light::check_interpolate_at(cases, |places, a, da, d, dd| {
+            kernel.divide(&kernel.numerators(places, a, da, d, dd))
+        })
+    }),
+    ("curve", |cases, kernel| {
+        light::check_curve(cases, |shades, parabola, least, most| kernel.curve(shades, parabola, least, most))
+    }),
+];
+
+fn copy<D: depth::NaiveCell, const KEEPS: bool>(cases: Cases, kernel: Kernel) -> Checked {
+    depth::check_copy::<D>(cases, KEEPS, |length, row, cells, bytes, z, dz| {
+        kernel.copy_where_nearer::<D, KEEPS>(length, row, cells, bytes, z, dz)
+    })
+}
+
+fn list_nearer<D: depth::NaiveCell>(cases: Cases, kernel: Kernel) -> Checked {
+    depth::check_list_nearer::<D>(cases, |pixels, cells, spans, depths| {
+        list::fill_where_nearer(kernel, pixels, cells, spans, depths)
+    })
+}
+
+/// Checks every loop, in the form that this machine draws with and by each of its kernels, one with each step of the
+/// iterator.
+pub fn all(cases: Cases) -> impl Iterator<Item = Outcome> {
+    let loops = LOOPS.into_iter().map(move |(name, check)| (name, None, check(cases)));
+    let by_kernels = Kernel::available().flat_map(move |kernel| {
+        BY_KERNEL.into_iter().map(move |(name, check)| (name, Some(kernel), check(cases, kernel)))
+    });
+    loops.chain(by_kernels).map(|(name, kernel, checked)| match checked {
+        Ok(cases) => Outcome { name, kernel, cases, wrong: None },
+        Err(wrong) => Outcome { name, kernel, cases: 0, wrong: Some(wrong) },
+    })
+}

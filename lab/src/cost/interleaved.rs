@@ -18,11 +18,12 @@ use std::time::Instant;
 
 use super::clock::Clock;
 use super::configuration::{Configuration, Kind};
-use super::statistics::{Ratio, Rng};
+use super::statistics::Ratio;
 use mode13h::plan::Effect;
 use mode13h::render::{FaceShading, RenderError, Renderer, Shares};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// The fewest rounds, where time allows that at all, the fewest of all, and the most.
 const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
@@ -175,7 +176,7 @@ pub(super) fn run_interleaved(
     spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Outcome, RenderError> {
-    let mut chance = Rng::new(spent.seed);
+    let mut chance = Random::again(spent.seed);
     let seconds = spent.seconds;
     // One machine for all, so that none has its memory in a better place.
     let mut vga = Vga::new();
@@ -235,7 +236,7 @@ pub(super) fn run_interleaved(
 
 /// Returns whether all ratios that are asked for are known well enough.
 fn is_narrow(ways: &[(&Configuration<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
-    let mut chance = Rng::new(seed);
+    let mut chance = Random::again(seed);
     let first = samples.of(0);
     ways.iter().enumerate().all(|(i, (way, _))| {
         matches!(way.kind, Kind::Choice(_)) || Ratio::new(&samples.of(i), &first, &mut chance).spread() <= NARROW

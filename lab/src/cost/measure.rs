@@ -10,12 +10,13 @@ use super::configuration::{BUDGETS, Configuration, Kind, REFERENCE};
 use super::interleaved::{Outcome, Samples, Spent, run_interleaved};
 use super::promises::PROMISE;
 use super::split::split;
-use super::statistics::{Ratio, Rng, quartiles};
+use super::statistics::{Ratio, quartiles};
 use super::timed::timed_rows;
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
 use mode13h::render::{FaceShading, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::Scene;
+use mode13h_conformance::Random;
 
 /// Subject of a study.
 pub struct Subject<'a> {
@@ -211,7 +212,7 @@ struct Rows<'a> {
 
 impl Rows<'_> {
     fn ratio(&self, way: usize, to: usize) -> Ratio {
-        Ratio::new(&self.times[way], &self.times[to], &mut Rng::new(self.seed))
+        Ratio::new(&self.times[way], &self.times[to], &mut Random::again(self.seed))
     }
 
     /// The shadings' places and names.
@@ -381,7 +382,7 @@ mod tests {
     /// Compares two shadings, one of which takes `slower` times as long as the other: their ratio, its interval, and
     /// whether they can be told apart. Each of its rounds is one of those recorded, and in it the shadings take the
     /// times of two of the six, chosen by chance: the noise that there is, and no difference but the planted one.
-    fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Rng) -> (f64, (f64, f64), bool) {
+    fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Random) -> (f64, (f64, f64), bool) {
         let mut times = alloc::vec![Vec::new(), Vec::new()];
         for _ in 0..ROUNDS {
             let round = &recorded[chance.below(recorded.len())];
@@ -420,7 +421,7 @@ mod tests {
     /// √(100 · 0.95 · 0.05) = 2.2, so at least 88 do, three of them off.
     #[test]
     fn a_slowdown_of_a_twentieth_is_found() {
-        let (recorded, mut chance) = (recorded(), Rng::new(13));
+        let (recorded, mut chance) = (recorded(), Random::again(13));
         let (mut found, mut held) = (0, 0);
         for _ in 0..100 {
             let (ratio, (low, high), told) = told(&recorded, 1.05, &mut chance);
@@ -434,7 +435,7 @@ mod tests {
     /// of √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
     #[test]
     fn what_takes_the_same_time_is_said_to_be_slower_as_seldom_as_is_promised() {
-        let (recorded, mut chance) = (recorded(), Rng::new(14));
+        let (recorded, mut chance) = (recorded(), Random::again(14));
         let tied = (0..1000).filter(|_| !told(&recorded, 1.0, &mut chance).2).count();
         assert!((929..=971).contains(&tied), "in {tied} of 1000 studies");
     }

@@ -23,12 +23,13 @@ use super::Split;
 use super::clock::Clock;
 use super::configuration::Configuration;
 use super::interleaved::{Spent, always_drawing};
-use super::statistics::{Rng, median};
+use super::statistics::median;
 use mode13h::hooks;
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// [`Screen::MODE_13H`] with each pixel cut in two.
 const WIDE: Screen = Screen { width: 640, height: 200, pixel_aspect: (5, 12) };
@@ -72,7 +73,7 @@ pub(super) fn split(
     spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Split>, RenderError> {
-    let mut chance = Rng::new(spent.seed);
+    let mut chance = Random::again(spent.seed);
     let frames: Vec<&Scene> = frames.iter().step_by(frames.len().div_ceil(FRAMES)).collect();
     let mut renderers: Vec<[Renderer; 4]> =
         ways.iter().map(|way| PARTS.map(|_| always_drawing(way.apply(base())))).collect();

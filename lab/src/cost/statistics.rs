@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use mode13h_conformance::Random;
+
 use super::Nanoseconds;
 
 /// Resamples that an interval is made from.
@@ -9,37 +11,6 @@ const RESAMPLES: usize = 1000;
 
 /// The share of resamples beyond each end of an interval: it holds 95 %.
 const TAIL: f64 = 0.025;
-
-/// Numbers by chance: splitmix64 (Steele, Lea and Flood 2014), the same from the same seed.
-#[derive(Clone, Debug)]
-pub(super) struct Rng(u64);
-
-impl Rng {
-    pub(super) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// A whole number below `limit`, which is above 0; each as likely as any to one part in 2⁶⁴ / `limit`.
-    pub(super) fn below(&mut self, limit: usize) -> usize {
-        // The product's upper half is below `limit`.
-        ((u128::from(self.next()) * limit as u128) >> 64) as usize
-    }
-
-    /// Puts a list in an order by chance (Fisher and Yates).
-    pub(super) fn shuffle<T>(&mut self, list: &mut [T]) {
-        for last in (1..list.len()).rev() {
-            list.swap(last, self.below(last + 1));
-        }
-    }
-}
 
 /// The value that a share of sorted numbers lies below, linear between two of them; 0 of none.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
@@ -87,7 +58,7 @@ impl Ratio {
     ///
     /// The interval is the percentile bootstrap's (Efron 1979): as many rounds as there are, drawn from them with
     /// replacement, a thousand times.
-    pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Rng) -> Self {
+    pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Random) -> Self {
         let ratios: Vec<f64> = times.iter().zip(others).map(|(time, other)| time / other).collect();
         let ratios = sorted(&ratios);
         let count = ratios.len();
@@ -139,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_shuffle_loses_nothing_and_leaves_no_order_out() {
-        let mut chance = Rng::new(1);
+        let mut chance = Random::again(1);
         let mut seen = alloc::collections::BTreeMap::<[u8; 3], u32>::new();
         for _ in 0..6000 {
             let mut list = [1, 2, 3];
@@ -159,7 +130,7 @@ mod tests {
         let times: Vec<f64> = (0..401).map(|i| 1000.0 + f64::from(i)).collect();
         let (mut low, mut high) = (0.0, 0.0);
         for seed in 0..40 {
-            let ratio = Ratio::new(&times, &[1000.0; 401], &mut Rng::new(seed));
+            let ratio = Ratio::new(&times, &[1000.0; 401], &mut Random::again(seed));
             assert!(close(ratio.median, 1.2));
             // As places.
             low += (ratio.interval.0 - 1.0) * 1000.0 / 40.0;
@@ -173,30 +144,30 @@ mod tests {
         // Rounds that are ten times as slow as others, the second always half of the first.
         let times = [10.0, 100.0, 12.0, 90.0, 11.0];
         let halves = times.map(|time| time / 2.0);
-        let ratio = Ratio::new(&times, &halves, &mut Rng::new(3));
+        let ratio = Ratio::new(&times, &halves, &mut Random::again(3));
         assert_eq!(ratio, Ratio { median: 2.0, interval: (2.0, 2.0) });
         assert!(!ratio.cannot_be_told() && close(ratio.spread(), 0.0));
         let sat_out = [20.0, f64::NAN, 36.0, f64::NAN, f64::NAN];
-        assert!(close(Ratio::new(&sat_out, &times, &mut Rng::new(3)).median, 2.5), "2 and 3");
+        assert!(close(Ratio::new(&sat_out, &times, &mut Random::again(3)).median, 2.5), "2 and 3");
         assert!(close(quartiles(&sat_out).median, 28.0));
     }
 
     #[test]
     fn what_differs_by_chance_cannot_be_told_apart() {
-        let mut chance = Rng::new(4);
+        let mut chance = Random::again(4);
         let mut noise =
             |mean: f64| -> Vec<f64> { (0..101).map(|_| mean + chance.below(1000) as f64 / 100.0).collect() };
         let (a, b, slower) = (noise(100.0), noise(100.0), noise(110.0));
-        assert!(Ratio::new(&a, &b, &mut Rng::new(5)).cannot_be_told());
-        assert!(!Ratio::new(&slower, &a, &mut Rng::new(5)).cannot_be_told());
-        assert!(Ratio::new(&[], &[], &mut Rng::new(5)).cannot_be_told());
+        assert!(Ratio::new(&a, &b, &mut Random::again(5)).cannot_be_told());
+        assert!(!Ratio::new(&slower, &a, &mut Random::again(5)).cannot_be_told());
+        assert!(Ratio::new(&[], &[], &mut Random::again(5)).cannot_be_told());
     }
 
     /// The interval holds 1 in about 95 of a hundred pairs that are alike: at least 88, three standard deviations
     /// below.
     #[test]
     fn the_interval_holds_the_truth_as_often_as_it_says() {
-        let mut chance = Rng::new(6);
+        let mut chance = Random::again(6);
         let mut held = 0;
         for _ in 0..100 {
             let mut times = || -> Vec<f64> { (0..41).map(|_| 1000.0 + chance.below(1000) as f64).collect() };

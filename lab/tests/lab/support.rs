@@ -1,12 +1,8 @@
 //! What several test files share.
 #![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
 
-#[path = "../../../tests/support/oracle.rs"]
-pub mod oracle;
 #[path = "../../../tests/support/property.rs"]
 pub mod property;
-#[path = "../../../tests/support/random.rs"]
-pub mod random;
 #[path = "../../../tests/support/scenes.rs"]
 pub mod scenes;
 #[path = "../../../tests/support/shipped.rs"]
@@ -17,3 +13,4 @@ pub mod triangles;
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
+pub use mode13h_conformance::{oracle, random};

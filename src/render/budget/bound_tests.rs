@@ -12,17 +12,15 @@ use super::ranges::{EightFaces, ZERO};
 use crate::lanes::LANES;
 use crate::light::{Beam, LampBeam, Lights, Reflectance};
 use crate::mesh::normals::unit;
+use crate::random::Random;
 use crate::render::vertex::Geometry;
 
-/// SplitMix64.
-struct Random(u64);
+/// What faces and light are made of.
+struct Chance(Random);
 
-impl Random {
+impl Chance {
     fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.unit()
     }
 
     fn log(&mut self, low: f64, high: f64) -> f64 {
@@ -60,7 +58,7 @@ struct Case {
 }
 
 impl Case {
-    fn new(random: &mut Random) -> Self {
+    fn new(random: &mut Chance) -> Self {
         let spread = random.log(0.003, 2.0) as f32;
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         let apart = random.log(0.01, 3.0) as f32;
@@ -73,14 +71,14 @@ impl Case {
             }
         }
         let wide = |v: Vec3| [v.x, v.y, v.z].map(f64::from);
-        let on = |random: &mut Random| positions[0] * random.unit() as f32 + positions[1] * random.unit() as f32;
+        let on = |random: &mut Chance| positions[0] * random.unit() as f32 + positions[1] * random.unit() as f32;
         let eye_at = on(random) + (Vec3::Z + random.vector()) * random.log(1e-2, 100.0) as f32;
         let mirrored = |at: Vec3| {
             let to_eye = unit(eye_at - at).unwrap_or(Vec3::Z);
             Vec3::new(-to_eye.x, -to_eye.y, to_eye.z)
         };
         let intensity =
-            |random: &mut Random| random.log(1e-2, 10.0) as f32 * if random.chance(0.25) { -1.0 } else { 1.0 };
+            |random: &mut Chance| random.log(1e-2, 10.0) as f32 * if random.chance(0.25) { -1.0 } else { 1.0 };
         let (mut suns, mut lamps) = (Vec::new(), Vec::new());
         for _ in 0..1 + (3.0 * random.unit()) as usize {
             if random.chance(0.5) {
@@ -122,7 +120,7 @@ impl Case {
 
     /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one's least of all, and what is
     /// between may be dark. A highlight is at its greatest there, and ends at once.
-    fn grazing(random: &mut Random) -> Self {
+    fn grazing(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
         let spread = random.log(0.01, 0.5) as f32;
         for normal in &mut case.normals {
@@ -144,7 +142,7 @@ impl Case {
     }
 
     /// A faint exponent: where r·v passes 0 the highlight is a step, nearly, and it is flat elsewhere.
-    fn stepped(random: &mut Random) -> Self {
+    fn stepped(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
         case.answer.shininess = if random.chance(0.1) { 0.0 } else { random.log(1e-30, 1.0) };
         case.answer.specular = random.log(1e-2, 10.0);
@@ -277,7 +275,7 @@ impl Case {
     }
 
     /// The corners of a part of its size.
-    fn part(&self, random: &mut Random) -> [[f64; 3]; 3] {
+    fn part(&self, random: &mut Chance) -> [[f64; 3]; 3] {
         let whole = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let part = f64::from(self.part);
         let turned = random.chance(0.5) && part < 0.5;
@@ -295,7 +293,7 @@ impl Case {
 const ROUNDING: f64 = 4e-7;
 
 /// Tries one case; returns bound over error of each face where there is an error to speak of.
-fn try_case(case: &Case, random: &mut Random, points: u32) -> Vec<f64> {
+fn try_case(case: &Case, random: &mut Chance, points: u32) -> Vec<f64> {
     let (whole, parts, clusters) = case.bounds();
     let mut ratios = Vec::new();
     for lane in 0..LANES {
@@ -328,7 +326,7 @@ fn try_case(case: &Case, random: &mut Random, points: u32) -> Vec<f64> {
 
 #[test]
 fn no_sampled_error_is_beyond_its_bound() {
-    let mut random = Random(13);
+    let mut random = Chance(Random::again(13));
     let mut ratios = Vec::new();
     for _ in 0..4_000 {
         let case = Case::new(&mut random);
@@ -350,7 +348,7 @@ fn no_sampled_error_is_beyond_its_bound() {
 #[test]
 #[ignore = "the long run: 3,200,000 faces"]
 fn bound_of_many_more_patches() {
-    let mut random = Random(14);
+    let mut random = Chance(Random::again(14));
     for _ in 0..400_000 {
         let case = match random.unit() {
             kind if kind < 0.1 => Case::grazing(&mut random),
@@ -365,7 +363,7 @@ fn bound_of_many_more_patches() {
 #[test]
 fn bounds_do_not_depend_on_the_kernel() {
     use crate::span::Kernel;
-    let mut random = Random(15);
+    let mut random = Chance(Random::again(15));
     for _ in 0..200 {
         let case = Case::new(&mut random);
         let clusters = case.clusters();

@@ -20,11 +20,12 @@ use self::scenes::SLICES;
 use super::accuracy::{against, between};
 use super::configuration::Configuration;
 use super::interleaved::{Outcome, Spent, run_interleaved};
-use super::statistics::{Ratio, Rng, quartiles};
+use super::statistics::{Ratio, quartiles};
 use super::{Claim, CostError};
 use crate::truth::Standard;
 use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
+use mode13h_conformance::Random;
 
 /// Scenes, and the shadings that draw them.
 struct Entrants {
@@ -71,7 +72,7 @@ impl Times {
 
     fn ratio(&self, shading: Shading, to: Shading, scene: usize) -> f64 {
         let (one, other) = (self.place(shading, scene), self.place(to, scene));
-        Ratio::new(&self.times[one], &self.times[other], &mut Rng::new(self.seed)).median
+        Ratio::new(&self.times[one], &self.times[other], &mut Random::again(self.seed)).median
     }
 
     fn median(&self, shading: Shading, scene: usize) -> f64 {

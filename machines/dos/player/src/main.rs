@@ -15,13 +15,16 @@ extern crate alloc;
 
 #[path = "../../../../cli/src/dos/player.rs"]
 mod film;
+#[path = "../../../../conformance/src/hash.rs"]
+mod hash;
 mod machine;
 #[path = "../../../../cli/src/dos/unpack.rs"]
 mod unpack;
 
 use alloc::format;
 use alloc::vec;
-use film::{EMPTY, Film, PIXELS, Player, hash};
+use film::{Film, PIXELS, Player};
+use hash::{START, fnv_1a};
 use machine::{Machine, Parameters};
 use mode13h::span::Kernel;
 use unpack::unpack;
@@ -75,12 +78,12 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
         ("/H" | "/h" | "/B" | "/b", None) => {
             machine.set_mode(Machine::MODE_13H);
             machine.set_dac(film.dac, 64);
-            let mut sum = EMPTY;
+            let mut sum = START;
             for number in 0..film.frames() {
                 player.draw(number, &mut pixels).ok_or(BROKEN)?;
-                sum = hash(sum, &pixels);
+                sum = fnv_1a(sum, &pixels);
             }
-            sum = hash(sum, film.dac);
+            sum = fnv_1a(sum, film.dac);
             let said = format!("{} frames, {sum:016x}", film.frames());
             if word.eq_ignore_ascii_case("/H") {
                 machine.set_mode(Machine::TEXT);

@@ -1,0 +1,277 @@
+//! Rows with a depth test, and lists of spans.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::Debug;
+
+use mode13h::span::depth::Cell;
+use mode13h::span::list::{Listed, ListedDepths};
+
+use super::canvas::{any_u16, bytes, on_every_shape, other_row};
+use super::spans::naive_span;
+use super::{Cases, Checked};
+use crate::Random;
+
+/// A cell of a depth buffer by its definition.
+pub trait NaiveCell: Cell + Debug {
+    /// What it holds of a depth.
+    fn naive(depth: u32) -> Self;
+    /// Any value.
+    fn any(random: &mut Random) -> Self;
+}
+
+impl NaiveCell for u32 {
+    fn naive(depth: u32) -> Self {
+        depth
+    }
+    fn any(random: &mut Random) -> Self {
+        random.next_u64() as u32 >> random.below(9)
+    }
+}
+
+impl NaiveCell for u16 {
+    fn naive(depth: u32) -> Self {
+        u16::try_from(u64::from(depth).div_ceil(1 << 14)).unwrap_or(u16::MAX)
+    }
+    fn any(random: &mut Random) -> Self {
+        random.next_u64() as u16
+    }
+}
+
+/// The depth of a pixel, by definition: modulo 2³².
+fn depth_at(z: i64, dz: i64, k: usize) -> u32 {
+    ((i128::from(z) + k as i128 * i128::from(dz)) >> 24) as u32
+}
+
+/// Depths along a row, and the cells before it is drawn: in one of eight cells the depth that is drawn is there already.
+fn any_depths<D: NaiveCell>(random: &mut Random, cells: usize) -> (i64, i64, Vec<D>) {
+    let z = random.within(0, 1 << 56);
+    let dz = random.within(-(1 << 50), 1 << 50) >> random.below(51);
+    let held = |k| if random.below(8) == 0 { D::naive(depth_at(z, dz, k)) } else { D::any(random) };
+    (z, dz, (0..cells).map(held).collect())
+}
+
+/// Draws `shown` into `pixels` where the depths are nearer. With `keeps` the cells keep these. Returns the pixels written.
+fn naive_nearer<D: NaiveCell>(
+    pixels: &mut [u8],
+    cells: &mut [D],
+    shown: &[u8],
+    (z, dz): (i64, i64),
+    keeps: bool,
+) -> u32 {
+    let mut written = 0;
+    for (k, ((pixel, cell), byte)) in pixels.iter_mut().zip(cells).zip(shown).enumerate() {
+        let depth = D::naive(depth_at(z, dz, k));
+        if depth > *cell {
+            *pixel = *byte;
+            written += 1;
+            if keeps {
+                *cell = depth;
+            }
+        }
+    }
+    written
+}
+
+/// Says which of the counts and cells differ.
+fn compare<D: NaiveCell>((is, cells): (u32, &[D]), (should, nearest): (u32, &[D])) -> Result<(), String> {
+    if is != should {
+        return Err(format!("{is} written, not {should}"));
+    }
+    match cells.iter().zip(nearest).position(|(is, should)| is != should) {
+        Some(k) => Err(format!("cell {k} holds {:?}, not {:?}", cells[k], nearest[k])),
+        None => Ok(()),
+    }
+}
+
+/// Spans with a depth test.
+///
+/// # Errors
+/// The first span that was wrong.
+pub fn check_fill<D: NaiveCell>(
+    cases: Cases,
+    mut fill: impl FnMut(&mut [u8], &mut [D], u16, u16, i64, i64) -> u32,
+) -> Checked {
+    on_every_shape(cases, "nearer", |random, canvas, shape| {
+        let before = bytes(random, shape.length);
+        let cells = other_row(random, shape.length).len();
+        let (shade, step) = (any_u16(random), any_u16(random));
+        let (z, dz, mut cells) = any_depths::<D>(random, cells);
+        let (mut after, mut nearest) = (before.clone(), cells.clone());
+        let shown = naive_span(shape.length, shade, step);
+        let written = naive_nearer(&mut after, &mut nearest, &shown, (z, dz), true);
+        let mut is_written = 0;
+        canvas
+            .check(shape.alignment, &before, &after, |row| {
+                is_written = fill(row, &mut cells, shade, step, z, dz);
+            })
+            .and_then(|()| compare((is_written, &cells), (written, &nearest)))
+            .map_err(|wrong| {
+                format!("shade {shade:#06x} step {step:#06x} z {z:#x} dz {dz:#x}, {} cells: {wrong}", cells.len())
+            })
+    })
+}
+
+/// Copies of so many bytes with a depth test. `keeps` says whether the cells keep what is nearer. Row, cells and bytes may
+/// be longer, as a vector's last turn needs it, and what lies behind stays.
+///
+/// # Errors
+/// The first copy that was wrong.
+pub fn check_copy<D: NaiveCell>(
+    cases: Cases,
+    keeps: bool,
+    mut copy: impl FnMut(usize, &mut [u8], &mut [D], &[u8], i64, i64) -> u32,
+) -> Checked {
+    on_every_shape(cases, "copy", |random, canvas, shape| {
+        let behind = random.below(9);
+        let length = shape.length.saturating_sub(random.one_of(&[0, behind]));
+        let before = bytes(random, shape.length);
+        let drawn = other_row(random, shape.length);
+        let cells = other_row(random, shape.length).len();
+        let (z, dz, mut cells) = any_depths::<D>(random, cells);
+        let (mut after, mut nearest) = (before.clone(), cells.clone());
+        let shown = &drawn[..length.min(drawn.len())];
+        let written = naive_nearer(&mut after, &mut nearest, shown, (z, dz), keeps);
+        let mut is_written = 0;
+        canvas
+            .check(shape.alignment, &before, &after, |row| {
+                is_written = copy(length, row, &mut cells, &drawn, z, dz);
+            })
+            .and_then(|()| compare((is_written, &cells), (written, &nearest)))
+            .map_err(|wrong| {
+                format!("{length}, z {z:#x} dz {dz:#x}, {} cells, {} bytes: {wrong}", cells.len(), drawn.len())
+            })
+    })
+}
+
+/// Rows of pixels and cells, each with its own pitch.
+struct Frame {
+    width: i64,
+    height: i64,
+    /// Pixels and cells from one row to the next.
+    pitch: i64,
+    cells_pitch: i64,
+}
+
+impl Frame {
+    fn any(random: &mut Random) -> Self {
+        let (width, height) = (random.one_of(&[4, 9, 17, 90]), random.within(1, 8));
+        let [pitch, cells_pitch] = [0; 2].map(|_| {
+            let wider = random.within(0, 70);
+            width + random.one_of(&[0, 1, wider])
+        });
+        Self { width, height, pitch, cells_pitch }
+    }
+
+    /// Up to the last pixel of the last row.
+    fn length(&self, pitch: i64) -> usize {
+        ((self.height - 1) * pitch + self.width) as usize
+    }
+
+    /// A span in one row, or one that reaches the very end of the frame, or a few pixels beyond it; and the offset of its
+    /// first cell, now and then beyond all.
+    fn span(&self, random: &mut Random) -> (Listed, u32) {
+        let length = random.within(0, self.width);
+        let (x, y) = match random.below(8) {
+            0 => (self.width - length, self.height - 1),
+            1 => (self.width - length + random.within(0, 3), self.height - 1),
+            _ => (random.within(0, self.width - length), random.within(0, self.height - 1)),
+        };
+        let at = |pitch: i64| (y * pitch + x) as u32;
+        let (shade, step) = (any_u16(random), any_u16(random));
+        let beyond = if random.below(16) == 0 { self.length(self.cells_pitch) as u32 } else { 0 };
+        (Listed { at: at(self.pitch), length: length as u32, shade, step }, at(self.cells_pitch) + beyond)
+    }
+}
+
+/// Calls `one` with a frame, its pixels and up to twelve spans, of which the offset of the first cell is given.
+fn on_every_list(
+    cases: Cases,
+    mut one: impl FnMut(&mut Random, &Frame, Vec<u8>, &[Listed], &[u32]) -> Result<(), String>,
+) -> Checked {
+    let mut random = cases.random("lists of spans");
+    let count = cases.of(2_000, 20_000);
+    for list in 0..count {
+        let frame = Frame::any(&mut random);
+        // Seldom more than a list has room for.
+        let spans = random.one_of(&[12, 12, 12, 12, 12, 12, 12, 150]);
+        let (spans, cells): (Vec<Listed>, Vec<u32>) =
+            (0..random.within(0, spans)).map(|_| frame.span(&mut random)).unzip();
+        let pixels = bytes(&mut random, frame.length(frame.pitch));
+        one(&mut random, &frame, pixels, &spans, &cells).map_err(|wrong| format!("list {list}: {spans:?}: {wrong}"))?;
+    }
+    Ok(count as u64)
+}
+
+/// The first of two rows of bytes that differ.
+fn same_pixels(is: &[u8], should: &[u8]) -> Result<(), String> {
+    match is.iter().zip(should).position(|(is, should)| is != should) {
+        Some(k) => Err(format!("pixel {k} is {:#04x}, not {:#04x}", is[k], should[k])),
+        None => Ok(()),
+    }
+}
+
+/// Where a span lies among so many; `None` if it reaches beyond.
+fn place(at: u32, length: u32, all: usize) -> Option<core::ops::Range<usize>> {
+    let (at, length) = (at as usize, length as usize);
+    (at + length <= all).then(|| at..at + length)
+}
+
+/// Lists of spans, in frames of any pitch: of spans that reach beyond the pixels nothing is drawn, and what lies before,
+/// between and behind the others stays.
+///
+/// # Errors
+/// The first list that was wrong.
+pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[Listed])) -> Checked {
+    on_every_list(cases, |_, _, mut pixels, spans, _| {
+        let mut after = pixels.clone();
+        for span in spans {
+            if let Some(place) = place(span.at, span.length, after.len()) {
+                after[place].copy_from_slice(&naive_span(span.length as usize, span.shade, span.step));
+            }
+        }
+        fill(&mut pixels, spans);
+        same_pixels(&pixels, &after)
+    })
+}
+
+/// The same with a depth test. Cells have a pitch of their own.
+///
+/// # Errors
+/// The first list that was wrong.
+pub fn check_list_nearer<D: NaiveCell>(
+    cases: Cases,
+    mut fill: impl FnMut(&mut [u8], &mut [D], &[Listed], &[ListedDepths]) -> u32,
+) -> Checked {
+    on_every_list(cases, |random, frame, mut pixels, spans, offsets| {
+        // Equal depths, too: then the first that was drawn stays.
+        let level = random.one_of(&[1_i64 << 30, 5, 1 << 32]);
+        let any_depths = |&at: &u32| {
+            let slope = random.next_u64() as i64 >> random.below(64);
+            let z = random.within(0, level - 1) << 24;
+            match random.below(4) {
+                0 => ListedDepths { at, z: random.next_u64() as i64, dz: slope },
+                1 => ListedDepths { at, z, dz: 0 },
+                _ => ListedDepths { at, z, dz: slope >> 30 },
+            }
+        };
+        let depths: Vec<ListedDepths> = offsets.iter().map(any_depths).collect();
+        let cells = frame.length(frame.cells_pitch);
+        let some = [0, 3, 1 << 29, u32::MAX].map(D::naive);
+        let mut cells: Vec<D> = (0..cells).map(|_| random.one_of(&some)).collect();
+        let (mut after, mut nearest, mut written) = (pixels.clone(), cells.clone(), 0);
+        for (span, depth) in spans.iter().zip(&depths) {
+            let places = (place(span.at, span.length, after.len()), place(depth.at, span.length, nearest.len()));
+            if let (Some(at), Some(cell)) = places {
+                let shown = naive_span(span.length as usize, span.shade, span.step);
+                let along = (depth.z, depth.dz);
+                written += naive_nearer(&mut after[at], &mut nearest[cell], &shown, along, true);
+            }
+        }
+        let is_written = fill(&mut pixels, &mut cells, spans, &depths);
+        same_pixels(&pixels, &after)
+            .and_then(|()| compare((is_written, &cells), (written, &nearest)))
+            .map_err(|wrong| format!("{depths:?}: {wrong}"))
+    })
+}
