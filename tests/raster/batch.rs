@@ -3,13 +3,13 @@
 mod against_the_oracle;
 mod shapes;
 
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 /// Shadings that a batch takes.
 fn interpolation(random: &mut Random) -> Interpolation {

@@ -2,8 +2,6 @@
 //! the letter of its definition; and what must change nothing: order, winding, clip rectangle, bands,
 //! kernel.
 
-use crate::support::oracle::{self, Point, Ratio};
-use crate::support::random::Random;
 use crate::support::triangles;
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
@@ -18,6 +16,8 @@ use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::depth::Cell;
 use mode13h::span::dither::BAYER;
 use mode13h::span::texture::{Levels, Texels};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle::{self, Point, Ratio};
 use num_bigint::BigInt;
 use num_traits::Signed;
 use std::ops::Range;

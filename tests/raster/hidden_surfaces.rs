@@ -1,14 +1,14 @@
 //! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all input; depth
 //! order against exact planes. Whole scenes are in `hidden_scenes.rs`.
 
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::U8F8;
 use mode13h::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 type Face = ([Vertex; 3], Interpolation);
 

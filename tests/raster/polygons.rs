@@ -1,14 +1,14 @@
 //! Convex polygons by the table of rows, against an oracle that says the same in i128; and why faces
 //! are split into triangles instead (N8), whose shades agree along their edges (N9).
 
-use crate::support::oracle::{self, Point, Ratio};
-use crate::support::random::Random;
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::polygon::{PolygonError, TableRow};
 use mode13h::raster::shade::ShadePlane;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle::{self, Point, Ratio};
 
 const WIDTH: u32 = 150;
 const HEIGHT: u32 = 30;

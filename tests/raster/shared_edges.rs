@@ -1,11 +1,11 @@
 //! R5: triangles that share edges draw each pixel inside exactly once and none outside.
 
-use crate::support::oracle::{self, Point};
-use crate::support::random::Random;
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::{Rect, Vertex};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle::{self, Point};
 
 const WIDTH: i32 = 80;
 const HEIGHT: i32 = 60;

@@ -1,13 +1,13 @@
 //! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
 
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::triangles::{draw, edge_beside, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::depth::DepthPlane;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex, VertexError};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 24;

@@ -1,8 +1,8 @@
 //! R13: a projected coordinate is rounded to floor(256·x + ½), exactly.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::fixed::{I16F16, I24F8};
+use mode13h_conformance::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 

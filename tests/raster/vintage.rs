@@ -1,13 +1,13 @@
 //! Triangles as the sources print them: against a naive walk over edges and rows, and quiet for all legal input.
 
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::triangles::{draw, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::depth::Cell;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 const VINTAGE: Interpolation = Interpolation::GouraudVintage;
 

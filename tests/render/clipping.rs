@@ -4,7 +4,6 @@ mod far;
 
 use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
 use crate::support::odd_views::odd_views;
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -15,6 +14,7 @@ use mode13h::raster::{Frame, Rect, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 

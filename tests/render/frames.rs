@@ -3,7 +3,6 @@
 //!
 //! `MODE13H_MODEL=model.obj cargo test --test frames` tries a model of your own as well.
 
-use crate::support::oracle;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::mesh::{Mesh, shapes};
@@ -12,6 +11,7 @@ use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_conformance::oracle;
 
 const WIDTH: i32 = Vga::WIDTH as i32;
 const HEIGHT: i32 = Vga::HEIGHT as i32;

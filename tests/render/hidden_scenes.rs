@@ -1,8 +1,6 @@
 //! The four ways to leave out hidden surfaces, on whole scenes: which one is taken, and that all of
 //! them give the same picture where they are right.
 
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -12,6 +10,8 @@ use mode13h::raster::Vertex;
 use mode13h::render::{HiddenSurfaces, Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 /// A bar of which all coordinates are whole numbers, so that its sides are exactly plane.
 fn bar(centre: [i32; 3], along: [i32; 3], across: [i32; 3]) -> Mesh {

@@ -4,8 +4,6 @@ use std::f64::consts::TAU;
 
 use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
 use crate::support::odd_views::odd_views;
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -17,6 +15,8 @@ use mode13h::raster::{Frame, Rect, Vertex};
 use mode13h::render::{RenderError, Renderer, Screen, Shading, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 200;

@@ -1,6 +1,5 @@
 //! The integer vertex path against naive oracles, and against the f32 path.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::I16F16;
@@ -13,6 +12,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Ramp;
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::scene;
+use mode13h_conformance::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use std::f64::consts::TAU;

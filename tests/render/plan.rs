@@ -1,6 +1,5 @@
 //! The plan: only what a scene calls for is computed, and that changes no picture.
 
-use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -12,6 +11,7 @@ use mode13h::raster::Frame;
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, RenderError, Renderer, Screen, Shading, Stats, VertexPath};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// The frame of a new renderer, prepared by `prepare`.
 fn draw(scene: &Scene, prepare: impl FnOnce(&mut Renderer)) -> (Vec<u8>, Stats, Renderer) {
@@ -478,7 +478,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let colors = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i % 64) as u8; 3]));
     let texture = mode13h::texture::Texture::new(64, 1, (0..64).collect(), colors).expect("sound");
     let texture = mode13h::scene::Shared::new(texture);
-    let mut random = crate::support::random::Random::named("perspective");
+    let mut random = mode13h_conformance::Random::named("perspective");
     // The greatest share of what was printed that was seen.
     let mut seen = 0.0_f64;
     while tried.more() {

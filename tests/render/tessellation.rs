@@ -2,8 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::support::oracle::{self, Point};
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -13,6 +11,8 @@ use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{Renderer, Screen, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle::{self, Point};
 
 /// The triangles that the raster gets.
 fn triangles(scene: &Scene) -> (Vec<[Vertex; 3]>, u64) {

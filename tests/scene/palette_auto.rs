@@ -1,6 +1,5 @@
 //! Palettes made for what is to be seen: how entries are shared out, and what is seen of a model.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::auto_palette::{self, Seen, seen};
@@ -13,6 +12,7 @@ use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, UpAxis};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)

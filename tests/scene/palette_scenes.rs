@@ -3,7 +3,6 @@
 //! The scenes are of walls that face the eye more or less, each with one normal, under one sun: so each has one colour,
 //! which is worked out here by the formulas alone.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::auto_palette::{self, AutomaticPalette};
@@ -17,6 +16,7 @@ use mode13h::render::Renderer;
 use mode13h::scene::{Fog, Object, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// Towards the sun.
 const SUN: [f32; 3] = [0.3, 0.5, 0.9];

@@ -1,8 +1,8 @@
 //! Tables made from palettes, against a search through all 256 entries and mixtures in exact fractions.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::palette::{InverseColormap, Lut64K, NearestColors, Palette, Rgb, builtin};
+use mode13h_conformance::Random;
 
 // The oracle
 

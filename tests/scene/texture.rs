@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec2;
@@ -13,6 +12,7 @@ use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
 use mode13h::texture::{self, LoadErrorKind, Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)

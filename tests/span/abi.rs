@@ -4,10 +4,10 @@
 //! value of its own, every other one rubbish, and so do the upper halves of the arguments' registers.
 //! Kernels that are wrong on purpose show that each fault would be seen.
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use iced_x86::{Decoder, DecoderOptions, Formatter, IntelFormatter, Mnemonic};
 use mode13h::span::{Kernel, entry};
+use mode13h_conformance::Random;
 use mode13h_conformance::loops::spans::naive_span;
 
 #[cfg(target_os = "linux")]

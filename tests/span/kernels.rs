@@ -6,11 +6,11 @@
 //! cargo test --release --test span_kernels -- --ignored --nocapture
 //! ```
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 #[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
 use crate::support::tried::is_here;
 use mode13h::span::Kernel;
+use mode13h_conformance::Random;
 use mode13h_conformance::loops::canvas::{Canvas, Shape};
 use mode13h_conformance::loops::spans::{check_span, naive_span};
 use proptest::prelude::*;
@@ -205,8 +205,8 @@ fn s6_complement(kernel: Kernel) {
 /// The property on anything, shrunk when it fails.
 fn any_span(kernel: Kernel) {
     let mut seed = [0; 32];
-    seed[..8].copy_from_slice(&crate::support::random::seed().to_le_bytes());
-    println!("MODE13H_SEED={}", crate::support::random::seed());
+    seed[..8].copy_from_slice(&mode13h_conformance::random::seed().to_le_bytes());
+    println!("MODE13H_SEED={}", mode13h_conformance::random::seed());
     let config = Config { cases: 2_000, failure_persistence: None, ..Config::default() };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
     let edge = || prop_oneof![any::<u16>(), proptest::sample::select(&EDGES[..])];

@@ -4,7 +4,7 @@ use mode13h::raster::{Frame, Interpolation, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
 use mode13h::scene::Scene;
 
-use super::oracle;
+use mode13h_conformance::oracle;
 
 /// A frame, the triangles that the raster got for it, and how often each pixel is covered by them.
 pub struct Judged {

@@ -26,4 +26,3 @@ pub mod shipped {
 pub mod triangles;
 pub mod tried;
 pub mod workspace;
-pub use mode13h_conformance::{oracle, random};

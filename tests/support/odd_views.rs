@@ -7,9 +7,9 @@ use mode13h::mesh::shapes;
 use mode13h::render::{Renderer, Screen, VertexPath};
 
 use super::judged::judged;
-use super::random::Random;
 use super::scenes::framed;
 use super::tried::Tried;
+use mode13h_conformance::Random;
 
 /// C4: fields of view from 1° to 179°, the eye inside a torus, on a vertex or a face of it, or anywhere near.
 pub fn odd_views(mut tried: Tried, path: VertexPath) {

@@ -6,8 +6,8 @@ use std::cell::Cell;
 use proptest::strategy::Strategy;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
 
-use super::random::seed;
 use super::tried::Tried;
+use mode13h_conformance::random::seed;
 
 /// Tries `property` on values of `strategy`: as many as `tried` states, or proptest's number of cases
 /// (`PROPTEST_CASES`, 256) if that is more.

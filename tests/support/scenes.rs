@@ -10,7 +10,7 @@ use mode13h::palette::{Rgb, builtin};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Preferences, Scene, Shading, Shared};
 use mode13h::texture::Texture;
 
-use super::random::Random;
+use mode13h_conformance::Random;
 
 /// A mesh that does not turn, in the middle, seen straight on by a camera that frames its sphere, under one sun: however
 /// it is turned it is in the picture.

@@ -3,7 +3,7 @@
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::{Frame, Interpolation, Raster, Rect, Vertex};
 
-use super::random::Random;
+use mode13h_conformance::Random;
 
 pub fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
     Vertex::new(

@@ -1,6 +1,5 @@
 //! The error budget: what it promises, measured against light at every pixel.
 
-use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -12,6 +11,7 @@ use mode13h::raster::effects::SampleSpacing;
 use mode13h::render::{Accuracy, FaceShading, RenderError, Renderer, Shading, Stats, VertexPath};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
 use mode13h_lab::truth::{ErrorMap, Screen, Shown, Standard, Truth};
 

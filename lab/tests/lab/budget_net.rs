@@ -5,7 +5,6 @@
 
 use core::fmt;
 
-use crate::support::random::Random;
 use crate::support::shipped;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -16,6 +15,7 @@ use mode13h::palette::builtin;
 use mode13h::render::{Accuracy, Renderer};
 use mode13h::scene::{Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
 use mode13h_lab::truth::{ErrorMap, Screen, Shown, Standard, Truth};
 

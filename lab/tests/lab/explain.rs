@@ -1,7 +1,5 @@
 //! The account of a pixel against the frame that it is of, and against the definitions.
 
-use crate::support::oracle::{self, Shades};
-use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::triangles;
 use mode13h::Angle;
@@ -11,6 +9,8 @@ use mode13h::mesh::Mesh;
 use mode13h::raster::{Frame, Interpolation};
 use mode13h::render::{Accuracy, FaceShading, HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene};
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle::{self, Shades};
 use mode13h_lab::cost::Probe;
 use mode13h_lab::explain::{
     self, Column, EdgeKind, ExplainError, Fate, Pixel, PixelStage, Progression, ShadeTrace, ShadedBy, Walk,

@@ -12,8 +12,8 @@ use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h_conformance::Random;
 use properties::PROPERTIES;
 
 /// Name and bytes of each file in the corpus of a property.

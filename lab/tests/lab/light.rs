@@ -2,7 +2,6 @@
 
 mod floats;
 
-use crate::support::random::Random;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
@@ -14,6 +13,7 @@ use mode13h::raster::Vertex;
 use mode13h::render::{RenderError, Renderer, Screen, Shading};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
 
 /// A triangle that faces the eye, with this normal at all three corners, lit by `lights`; its shade.

@@ -2,7 +2,6 @@
 //! recorded is the frame that is drawn.
 
 use crate::support::property::property;
-use crate::support::random::Random;
 use crate::support::triangles::triangle;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -11,6 +10,7 @@ use mode13h::palette::builtin;
 use mode13h::raster::{Interpolation, Rect};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
+use mode13h_conformance::Random;
 use mode13h_lab::record::{Record, RecordErrorKind};
 use mode13h_lab::verify;
 use proptest::prelude::*;

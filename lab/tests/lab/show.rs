@@ -4,9 +4,9 @@
 use std::io::Cursor;
 use std::path::PathBuf;
 
-use crate::support::oracle;
 use crate::support::tried::Tried;
 use mode13h::raster::{Frame, Raster, Vertex};
+use mode13h_conformance::oracle;
 use mode13h_lab::show::{CASES, Case, Comparison, Mark, Panel, by_id};
 
 /// What the raster's own calls draw of the triangles that a case says it was given.

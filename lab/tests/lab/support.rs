@@ -13,4 +13,3 @@ pub mod triangles;
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
-pub use mode13h_conformance::{oracle, random};

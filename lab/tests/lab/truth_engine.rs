@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -17,6 +16,7 @@ use mode13h::render::{Accuracy, HiddenSurfaces, RenderError, Renderer, Shading, 
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::span::channels::mix_cube;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 use mode13h_lab::cost::{Probe, ProbeError};
 use mode13h_lab::truth::{Bound, ErrorMap, Face, Screen, Shown, Standard, Truth, TruthFrame};
 

@@ -1,9 +1,9 @@
 //! The self-checks: that they pass, that they are quick, what the program says of them; and the one hash
 //! over the frames.
 
-use crate::support::random::seed;
 use crate::support::tried::Tried;
 use mode13h::span::Kernel;
+use mode13h_conformance::random::seed;
 use mode13h_lab::verify::{self, Frames, Group};
 
 /// Every machine draws these frames. A change of the engine's bytes belongs into CHANGELOG.md; it is

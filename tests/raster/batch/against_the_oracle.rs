@@ -6,9 +6,9 @@ use mode13h::span::depth::Cell;
 
 use super::interpolation;
 use super::shapes::{CLASSES, shape};
-use crate::support::oracle;
-use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 /// A depth buffer's cells.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use mode13h::raster::Vertex;
 
-use crate::support::random::Random;
 use crate::support::triangles::{edge_beside, vertex};
+use mode13h_conformance::Random;
 
 const BAND: i64 = Vertex::GUARD_BAND as i64;
 

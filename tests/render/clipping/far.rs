@@ -7,8 +7,8 @@ use mode13h::render::{Renderer, Screen, Shading};
 use super::scene;
 use crate::support::judged::judged;
 use crate::support::near_plane::{lit, normal};
-use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h_conformance::Random;
 
 const WIDTH: u32 = 20;
 const HEIGHT: u32 = 12;

@@ -16,10 +16,10 @@ use mode13h::span::{Kernel, channels};
 
 use super::guarded::{Side, arrays, guarded};
 use super::ran;
-use crate::support::random::Random;
 use crate::support::scenes;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
+use mode13h_conformance::Random;
 
 const SIDES: [Side; 2] = [Side::Behind, Side::Before];
 

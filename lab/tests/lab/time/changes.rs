@@ -18,7 +18,7 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_lab::explain;
 
-use crate::support::random::Random;
+use mode13h_conformance::Random;
 
 /// How a renderer is set: what a fresh one is given, so that it draws the same frame.
 #[derive(Clone, Debug, Default)]

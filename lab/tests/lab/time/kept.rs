@@ -12,8 +12,8 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
 use super::changes::{CHANGES, EXEMPT, Settings, World, in_the_sources, names_in, start};
-use crate::support::random::Random;
 use crate::support::tried::Tried;
+use mode13h_conformance::Random;
 
 /// Changes in a run.
 const STEPS: usize = 40;
