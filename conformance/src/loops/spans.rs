@@ -33,7 +33,7 @@ pub fn check_span(
         .map_err(|wrong| format!("shade {shade:#06x} step {step:#06x} length {length} alignment {alignment}: {wrong}"))
 }
 
-/// Spans in 8.8: every shape, all extremes at the length of two of the widest blocks and every tail, and rows of around
+/// Spans in 8.8: every shape, extremes and random shades at the length of two of the widest blocks and every tail, and rows of around
 /// 65,536 and 131,072 pixels.
 ///
 /// # Errors
@@ -48,6 +48,13 @@ pub fn check_fill(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16)) -> Ch
             check_span(&mut canvas, Shape { length, alignment: alignment % 64 }, shades, &mut fill)?;
             count += 1;
         }
+    }
+    for alignment in 0..cases.of(1_000, 20_000) {
+        let bits = random.next_u64();
+        // Two of its four words.
+        let shades = (bits as u16, (bits >> 16) as u16);
+        check_span(&mut canvas, Shape { length: WIDEST, alignment: alignment % 64 }, shades, &mut fill)?;
+        count += 1;
     }
     for length in [65_535, 65_536, 65_537, 131_073] {
         for alignment in 0..cases.of(4, 64) {
