@@ -37,53 +37,54 @@ host() {
     "$machines/release/frames" "$@"
 }
 
-# part STEP: the line of every STEP-th frame, drawn on this machine. Where MACHINES_REFERENCE says so, WebAssembly draws it,
-# which has drawn all frames just before, so that nothing need be built for it.
-part() {
-    if [ "${MACHINES_REFERENCE:-}" = wasm ]; then
-        node "$root/machines/wasm/run.mjs" "$machines/wasm32-unknown-unknown/release/frames.wasm" "step=$1" kernel=portable
-    else
-        host "step=$1" kernel=portable
-    fi
-}
-
 # drawn MACHINE STEP COMMAND...: runs the program, which prints a line for each kernel, and prints
-# `machine, kernel: hash, frames, time, verdict`. What is the same as all frames of other machines stands in the laboratory;
-# a part is drawn here, too.
+# `machine, kernel: hash, frames, time, verdict`. The program knows the hash of each frame on other machines. Of the first
+# frame that is different, the first pixel is looked for, beside this machine's own.
 drawn() {
-    local machine=$1 step=$2 expected line kernel rest now then lines=0
+    local machine=$1 step=$2 line kernel rest now then verdict name lines=0
     shift 2
-    if [ "$step" = 1 ]; then
-        # The frames and the hash of every machine: the program has compared with them, too.
-        expected=$(sed -nE 's/.*EXPECTED: Self = Self \{ count: ([0-9]+), hash: 0x([0-9A-F_]+) \};/\1 frames, \2/p' \
-            "$root/lab/src/verify/freestanding/frames.rs")
-        expected=$(tr -d _ <<<"${expected,,}")
-    else
-        expected=$(part "$step")
-        expected=${expected#*: }
-    fi
     then=${EPOCHREALTIME/./}
     while IFS= read -r line; do
         now=${EPOCHREALTIME/./} line=${line%$'\r'}
         kernel=${line%%: *} rest=${line#*: }
         lines=$((lines + 1))
-        if [ "$rest" = "$expected" ]; then verdict=same; else verdict=DIFFERENT wrong=1; fi
+        # N frames, HASH, VERDICT
+        verdict=${rest##*, }
+        [ "$verdict" = same ] || wrong=1
+        rest=${rest%, *}
         printf '%s, %s: %s, %s, %d.%d s, %s\n' "$machine" "$kernel" "${rest##* }" "${rest%%,*}" \
             $(((now - then) / 1000000)) $(((now - then) / 100000 % 10)) "$verdict"
-        then=$now
-    done < <("$@" "step=$step" "${words[@]}" 2>&1 || echo "the program: failed, with status $?")
+        if [[ "$verdict" == *DIFFERENT:* ]]; then
+            name=${verdict#*: }
+            pixel "${name%% *}" "$kernel" "$@"
+        fi
+        then=${EPOCHREALTIME/./}
+    done < <("$@" "step=$step" "${words[@]}" 2>&1 || [ $? = 1 ] || echo "the program: failed, with status $?")
     if [ $lines = 0 ]; then
         echo "$machine: nothing was drawn"
         wrong=1
     fi
 }
 
-# spans MACHINE COMMAND...: every kernel on random spans, and the loops that have twins.
-spans() {
-    local machine=$1 said then=$SECONDS
+# pixel FRAME KERNEL COMMAND...: the first pixel of a frame that the program draws otherwise than this machine does.
+pixel() {
+    local frame=$1 kernel=$2
+    shift 2
+    paste -d ' ' <(host "frame=$frame" kernel=portable) <("$@" "frame=$frame" "kernel=${kernel// (*/}") | awk -v frame="$frame" '
+        $1 != $2 {
+            for (x = 0; substr($1, 2 * x + 1, 2) == substr($2, 2 * x + 1, 2); x++) ;
+            printf "    %s: pixel (%d, %d) is 0x%s, not 0x%s\n", frame, x, NR - 1, substr($2, 2 * x + 1, 2), substr($1, 2 * x + 1, 2)
+            exit
+        }'
+}
+
+# loops MACHINE COMMAND...: every loop over pixels against its definition, by every kernel.
+loops() {
+    local machine=$1 said then=$SECONDS verdict
     shift
-    if said=$("$@" spans 2>&1); then verdict=right; else verdict=WRONG wrong=1; fi
-    printf '%s, %s, %d s, %s\n' "$machine" "$said" $((SECONDS - then)) "$verdict"
+    if said=$("$@" loops 2>&1); then verdict=right; else verdict=WRONG wrong=1; fi
+    printf '%s, %s, %d s, %s\n' "$machine" "$(head -n 1 <<<"$said")" $((SECONDS - then)) "$verdict"
+    tail -n +2 <<<"$said"
 }
 
 # The step of a machine: every frame, or what the first argument says. Words that follow are the program's, such as

@@ -1,32 +1,53 @@
-//! `mode13h verify`: what the library checks on this machine.
+//! `mode13h verify`: whether this machine draws what every machine draws.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use mode13h::export::{Picture, PixelShape, Png, Scale};
+use mode13h::palette::Rgb;
+use mode13h::render::Renderer;
 use mode13h::span::Kernel;
+use mode13h_conformance::frames::{self, Difference, Drawn, Frame};
+use mode13h_conformance::hash::START;
+use mode13h_conformance::loops::{self, Cases, Outcome};
 use mode13h_lab::record::{Record, RecordErrorKind};
-use mode13h_lab::verify::{self, Frames, Group, Replay};
+use mode13h_lab::replay::{self, Replay};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::{output, typo};
 
 #[derive(Args)]
 pub(crate) struct Options {
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// The number that the random cases are made from
+    /// The number that the random cases of loops are made from
     ///
     /// The same number makes the same cases.
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
+    /// Draw one frame, or all whose names begin with NAME, and try no loop
+    ///
+    /// Such as effect/fog or shipped/torus/picture.
+    #[arg(long, value_name = "NAME", conflicts_with = "seed")]
+    frame: Option<String>,
+    /// List the names of the frames, and draw nothing
+    #[arg(long, conflicts_with_all = ["json", "seed", "out", "replay"])]
+    list: bool,
+    /// The picture of the first frame that is wrong: as drawn, as it should be, and which pixels differ
+    ///
+    /// With --frame, if nothing is wrong, the first frame.
+    /// [default: verify-NAME.png for a frame that is wrong]
+    #[arg(short, long, value_name = "PNG", conflicts_with = "replay")]
+    out: Option<PathBuf>,
     /// Check a frame that `render --record` kept, instead of the cases
     ///
-    /// It is drawn by every kernel, with hidden surfaces left out in every way, and by the slow oracle. The frames are
+    /// It is drawn by every kernel, with hidden surfaces left out in every way, and by the exact oracle. The frames are
     /// compared.
-    #[arg(long, value_name = "FILE", conflicts_with = "seed")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seed", "frame"])]
     replay: Option<PathBuf>,
 }
 
@@ -41,83 +62,223 @@ fn kernels() -> Vec<&'static str> {
     Kernel::available().map(Kernel::name).collect()
 }
 
-fn check(options: &Options) -> Result<(), Failure> {
-    let groups = verify::GROUPS.map(|group| group(options.seed));
-    let frames: Vec<(Kernel, Frames)> = Kernel::available().map(|kernel| (kernel, verify::frames(kernel))).collect();
-    let mut failed = groups.iter().filter(|group| !group.passed()).count();
-    failed += usize::from(frames.iter().any(|(_, frames)| !frames.passed()));
-    output::print(&if options.json {
-        as_json(&groups, &frames, options.seed, failed == 0)
-    } else {
-        as_text(&groups, &frames, options.seed)
-    })?;
-    verdict(failed, groups.len() + 1)
+/// A frame that is not that of every machine.
+struct Wrong {
+    name: String,
+    /// Where it differs from the portable kernel's; `None` if that one draws it so, too.
+    difference: Option<Difference>,
+    /// The error of a frame that could not be drawn.
+    error: Option<String>,
 }
 
-fn verdict(failed: usize, groups: usize) -> Result<(), Failure> {
+impl std::fmt::Display for Wrong {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (&self.error, &self.difference) {
+            (Some(error), _) => write!(f, "{}: {error}", self.name),
+            (None, Some(difference)) => write!(f, "{}: {difference}", self.name),
+            (None, None) => write!(f, "{}: as the portable kernel draws it, and not as other machines do", self.name),
+        }
+    }
+}
+
+/// The frames by one kernel.
+struct ByKernel {
+    kernel: Kernel,
+    count: usize,
+    /// The hash over those of all frames.
+    hash: u64,
+    wrong: Vec<Wrong>,
+}
+
+/// The frames whose names begin with `prefix`, or all.
+fn chosen(prefix: Option<&str>) -> Vec<Frame> {
+    let mut all = frames::all();
+    if let Some(prefix) = prefix {
+        let prefix = prefix.trim_end_matches('/');
+        all.retain(|frame| {
+            frame.name.strip_prefix(prefix).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        });
+    }
+    all
+}
+
+fn draw(kernel: Kernel, prefix: Option<&str>) -> ByKernel {
+    let mut drawn = ByKernel { kernel, count: 0, hash: START, wrong: Vec::new() };
+    // One renderer for all frames: what it keeps from one to the next must not show.
+    let mut renderer = Renderer::new();
+    for frame in chosen(prefix) {
+        drawn.count += 1;
+        match frame.draw_by(&mut renderer, kernel) {
+            Ok(picture) => {
+                drawn.hash = frames::combined(drawn.hash, &picture);
+                if frame.expected() != Some(picture.hash) {
+                    let right = frame.draw(Kernel::PORTABLE).ok();
+                    let difference = right.and_then(|right| picture.difference(&right));
+                    drawn.wrong.push(Wrong { name: frame.name, difference, error: None });
+                }
+            }
+            Err(error) => {
+                drawn.wrong.push(Wrong { name: frame.name, difference: None, error: Some(error.to_string()) });
+            }
+        }
+    }
+    drawn
+}
+
+fn check(options: &Options) -> Result<(), Failure> {
+    let prefix = options.frame.as_deref();
+    let chosen = chosen(prefix);
+    if let Some(name) = prefix.filter(|_| chosen.is_empty()) {
+        let all = frames::all();
+        let near = typo::nearest(name, all.iter().map(|frame| frame.name.as_str()));
+        let near = near.map_or_else(|| "; --list shows them".into(), |near| format!("; did you mean {near}?"));
+        return Err(Failure::words(format!("{name}: there is no such frame{near}")));
+    }
+    if let Some(path) = options.out.as_ref().filter(|path| path.extension().is_none_or(|kind| kind != "png")) {
+        return Err(Failure::words(format!("{}: the name of a picture ends in .png", path.display())));
+    }
+    if options.list {
+        return output::print(&chosen.iter().fold(String::new(), |list, frame| list + &frame.name + "\n"));
+    }
+    let loops: Vec<Outcome> = match prefix {
+        None => loops::all(Cases::quick(options.seed)).collect(),
+        Some(_) => Vec::new(),
+    };
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let by_kernel: Vec<ByKernel> = kernels.into_par_iter().map(|kernel| draw(kernel, prefix)).collect();
+    let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
+        + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
+    let picture = picture(options, &chosen, &by_kernel)?;
+    output::print(&if options.json {
+        as_json(options, &loops, &by_kernel, picture.as_deref())
+    } else {
+        as_text(options, &loops, &by_kernel, picture.as_deref())
+    })?;
+    verdict(failed)
+}
+
+fn verdict(failed: usize) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
-        _ => Err(Failure::found(format!("{failed} of {groups} groups failed"))),
+        1 => Err(Failure::found("1 check failed")),
+        _ => Err(Failure::found(format!("{failed} checks failed"))),
     }
 }
 
-fn as_text(groups: &[Group], frames: &[(Kernel, Frames)], seed: u64) -> String {
-    let mut text = format!("kernels {}; seed {seed}\n", kernels().join(", "));
-    for group in groups {
-        let verdict = match group.failures.len() {
-            // A group that tried nothing has shown nothing.
-            0 if group.cases == 0 => "FAILED, nothing was tried".to_string(),
-            0 => "ok".to_string(),
-            failures => format!("FAILED, {failures} of them"),
-        };
-        text += &format!("{}: {} cases, {verdict}\n", group.name, group.cases);
-        text += &failures(&group.failures, group.record.as_ref());
-    }
-    text + &frames_as_text(frames)
-}
-
-fn frames_as_text(frames: &[(Kernel, Frames)]) -> String {
-    let Frames { count, hash, .. } = Frames::EXPECTED;
-    let wrong: Vec<&(Kernel, Frames)> = frames.iter().filter(|(_, frames)| !frames.passed()).collect();
-    let cases: u64 = frames.iter().map(|(_, frames)| frames.count).sum();
-    let mut text = match wrong.len() {
-        0 => format!("frames: {cases} cases, ok\nhash {hash:016x}, as on every machine\n"),
-        _ => format!("frames: {cases} cases, FAILED, {} of them\n", wrong.len()),
+/// Writes the picture of the first frame that is wrong, or with `-o` of the first of all. Returns its path.
+fn picture(options: &Options, chosen: &[Frame], by_kernel: &[ByKernel]) -> Result<Option<PathBuf>, Failure> {
+    let wrong = by_kernel.iter().find_map(|drawn| Some((drawn.kernel, drawn.wrong.first()?.name.as_str())));
+    let (kernel, name) = match (wrong, &options.out) {
+        (Some(wrong), _) => wrong,
+        (None, Some(_)) => (Kernel::default(), chosen[0].name.as_str()),
+        (None, None) => return Ok(None),
     };
-    for (kernel, frames) in wrong {
-        let Frames { count: drawn, hash: is, .. } = frames;
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "    {kernel}: hash {is:016x} of {drawn} frames, not {hash:016x} of {count}");
+    let path = options.out.clone().unwrap_or_else(|| format!("verify-{}.png", name.replace('/', "-")).into());
+    if options.out.is_none() && path.symlink_metadata().is_ok() {
+        // An earlier one, or something else: it is not worth a second failure.
+        return Ok(None);
+    }
+    let Some(frame) = chosen.iter().find(|frame| frame.name == name) else { return Ok(None) };
+    let (Ok(is), Ok(right)) = (frame.draw(kernel), frame.draw(Kernel::PORTABLE)) else { return Ok(None) };
+    let panels = if is == right {
+        vec![is.pixels.clone()]
+    } else {
+        vec![is.pixels.clone(), right.pixels.clone(), differing(&is, &right)]
+    };
+    let width = is.width as usize;
+    let rows =
+        (0..is.height as usize).flat_map(|y| panels.iter().flat_map(move |panel| &panel[y * width..(y + 1) * width]));
+    let pixels: Vec<u8> = rows.copied().collect();
+    let width = width * panels.len();
+    let shape = PixelShape::default();
+    let picture = Picture {
+        pixels: &pixels,
+        width,
+        height: is.height as usize,
+        pitch: width,
+        palette: is.palette.colors(),
+        shape,
+    };
+    output::file(&path, || Png { scale: Scale::One, rgb: false }.save(&picture, &path))?;
+    Ok(Some(path))
+}
+
+/// White where two drawings differ, black elsewhere, as near as the palette comes to it.
+fn differing(is: &Drawn, right: &Drawn) -> Vec<u8> {
+    let [black, white] = [Rgb::BLACK, Rgb::new(255, 255, 255)].map(|color| is.palette.nearest(color));
+    is.pixels.iter().zip(&right.pixels).map(|(is, right)| if is == right { black } else { white }).collect()
+}
+
+/// The hash over the frames as they are expected.
+fn expected_hash(prefix: Option<&str>) -> u64 {
+    chosen(prefix).iter().fold(START, |hash, frame| frames::combined_hash(hash, frame.expected().unwrap_or_default()))
+}
+
+fn as_text(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture: Option<&Path>) -> String {
+    let mut text = format!("kernels {}; seed {}\n", kernels().join(", "), options.seed);
+    let failed = |wrong: usize| if wrong == 0 { "ok".to_string() } else { format!("FAILED, {wrong} of them") };
+    // Writing to a string cannot fail.
+    if !loops.is_empty() {
+        let wrong: Vec<&Outcome> = loops.iter().filter(|outcome| outcome.wrong.is_some()).collect();
+        let cases: u64 = loops.iter().map(|outcome| outcome.cases).sum();
+        let _ = writeln!(text, "loops: {} in {cases} cases, {}", loops.len(), failed(wrong.len()));
+        for outcome in wrong {
+            let _ = writeln!(text, "    {outcome}: {}", outcome.wrong.as_deref().unwrap_or_default());
+        }
+    }
+    let cases: usize = by_kernel.iter().map(|drawn| drawn.count).sum();
+    let wrong: usize = by_kernel.iter().map(|drawn| drawn.wrong.len()).sum();
+    let count = by_kernel.first().map_or(0, |drawn| drawn.count);
+    let _ = writeln!(text, "frames: {count} by each kernel, {cases} in all, {}", failed(wrong));
+    for ByKernel { kernel, wrong, .. } in by_kernel {
+        for one in wrong.iter().take(MOST_NAMED) {
+            let _ = writeln!(text, "    {kernel}: {one}");
+        }
+        if wrong.len() > MOST_NAMED {
+            let _ = writeln!(text, "    {kernel}: and {} more", wrong.len() - MOST_NAMED);
+        }
+    }
+    if let Some(path) = picture {
+        let _ = writeln!(text, "picture: {}", path.display());
+    }
+    if wrong == 0 {
+        let _ = writeln!(text, "hash {:016x}, as on every machine", expected_hash(options.frame.as_deref()));
     }
     text
 }
 
-/// The lines of failures, and below them what can be replayed.
-fn failures(lines: &[String], record: Option<&Record>) -> String {
-    let mut text: String = lines.iter().map(|line| format!("    {line}\n")).collect();
-    if let Some(record) = record {
-        text += "    to see it again, put the lines below into a file and verify --replay it:\n";
-        text.extend(record.to_string().lines().map(|line| format!("        {line}\n")));
-    }
-    text
-}
+/// No more frames of a kernel are named in text: one fault shows in many.
+const MOST_NAMED: usize = 8;
 
-fn as_json(groups: &[Group], frames: &[(Kernel, Frames)], seed: u64, passed: bool) -> String {
-    let groups: Vec<Value> = groups
+fn as_json(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture: Option<&Path>) -> String {
+    let outcomes: Vec<Value> = loops
         .iter()
-        .map(|group| {
-            let record = group.record.as_ref().map(Record::to_string);
-            json!({ "name": group.name, "cases": group.cases, "failures": group.failures, "record": record })
+        .map(|Outcome { name, kernel, cases, wrong, .. }| {
+            json!({ "name": name, "kernel": kernel.map(Kernel::name), "cases": cases, "wrong": wrong })
         })
         .collect();
     let hex = |hash: u64| format!("{hash:016x}");
-    let by_kernel: Vec<Value> = frames
+    let wrong = |Wrong { name, difference, error }: &Wrong| {
+        let pixel = difference.map(|Difference { x, y, is, should, pixels }| {
+            json!({ "x": x, "y": y, "is": is, "should": should, "pixels": pixels })
+        });
+        json!({ "name": name, "first_pixel": pixel, "error": error })
+    };
+    let by_kernel: Vec<Value> = by_kernel
         .iter()
-        .map(|(kernel, frames)| json!({ "kernel": kernel.name(), "frames": frames.count, "hash": hex(frames.hash) }))
+        .map(|drawn| {
+            json!({
+                "kernel": drawn.kernel.name(), "frames": drawn.count, "hash": hex(drawn.hash),
+                "wrong": drawn.wrong.iter().map(wrong).collect::<Vec<_>>(),
+            })
+        })
         .collect();
-    let frames = json!({ "hash": hex(Frames::EXPECTED.hash), "by_kernel": by_kernel });
+    let passed = loops.iter().all(|outcome| outcome.wrong.is_none())
+        && by_kernel.iter().all(|kernel| kernel["wrong"].as_array().is_some_and(Vec::is_empty));
     let all = json!({
-        "schema": 1, "passed": passed, "seed": seed, "kernels": kernels(), "groups": groups, "frames": frames,
+        "schema": 2, "passed": passed, "seed": options.seed, "kernels": kernels(), "loops": outcomes,
+        "frames": { "hash": hex(expected_hash(options.frame.as_deref())), "by_kernel": by_kernel },
+        "picture": picture.map(|path| path.display().to_string()),
     });
     format!("{all:#}\n")
 }
@@ -127,7 +288,7 @@ fn replay(path: &Path, as_json: bool) -> Result<(), Failure> {
         let line = format!("{}: {error}", path.display());
         if matches!(error.kind, RecordErrorKind::Read(_)) { Failure::file(line) } else { Failure::words(line) }
     })?;
-    let replay = verify::replay(&record);
+    let replay = replay::replay(&record);
     output::print(&if as_json { replay_as_json(&record, &replay) } else { replay_as_text(&record, &replay) })?;
     match replay.failures.as_slice() {
         [] => Ok(()),
@@ -159,6 +320,16 @@ fn replay_as_text(record: &Record, replay: &Replay) -> String {
         _ => "FAILED\n",
     };
     text + &failures(&replay.failures, replay.smallest.as_ref())
+}
+
+/// The lines of failures, and below them what can be replayed.
+fn failures(lines: &[String], record: Option<&Record>) -> String {
+    let mut text: String = lines.iter().map(|line| format!("    {line}\n")).collect();
+    if let Some(record) = record {
+        text += "    to see it again, put the lines below into a file and verify --replay it:\n";
+        text.extend(record.to_string().lines().map(|line| format!("        {line}\n")));
+    }
+    text
 }
 
 fn replay_as_json(record: &Record, replay: &Replay) -> String {
@@ -194,10 +365,44 @@ fn replay_as_json(record: &Record, replay: &Replay) -> String {
 mod tests {
     use super::*;
 
+    fn options() -> Options {
+        let frame = Some("canvas/bands".into());
+        Options { json: false, seed: 13, frame, list: false, out: None, replay: None }
+    }
+
     #[test]
-    fn a_group_that_failed_is_a_finding() {
-        assert_eq!(verdict(0, 9), Ok(()));
-        let failure = verdict(2, 9).expect_err("two failed");
-        assert_eq!((failure.status(), failure.to_string().as_str()), (1, "2 of 9 groups failed"));
+    fn a_check_that_failed_is_a_finding() {
+        assert_eq!(verdict(0), Ok(()));
+        let failure = verdict(2).expect_err("two failed");
+        assert_eq!((failure.status(), failure.to_string().as_str()), (1, "2 checks failed"));
+    }
+
+    /// A wrong byte is told by kernel, frame and pixel, in text and as JSON.
+    #[test]
+    fn a_wrong_frame_is_named_with_its_pixel() {
+        let frames = chosen(Some("canvas/bands/plain"));
+        let right = frames[0].draw(Kernel::PORTABLE).expect("it is legal");
+        let mut is = right.clone();
+        is.pixels[2 * 320 + 5] ^= 1;
+        let wrong = vec![Wrong { name: frames[0].name.clone(), difference: is.difference(&right), error: None }];
+        let by_kernel = [ByKernel { kernel: Kernel::PORTABLE, count: 1, hash: 0, wrong }];
+        let byte = right.pixels[2 * 320 + 5];
+        let expected =
+            format!("    portable: canvas/bands/plain: pixel (5, 2) is {:#04x}, not {byte:#04x}; 1 differ\n", byte ^ 1);
+        let text = as_text(&options(), &[], &by_kernel, None);
+        assert!(text.contains("FAILED, 1 of them\n") && text.contains(&expected) && !text.contains("hash"), "{text}");
+        let json: Value = serde_json::from_str(&as_json(&options(), &[], &by_kernel, None)).expect("JSON");
+        assert_eq!(json["passed"], false);
+        assert_eq!(json["frames"]["by_kernel"][0]["wrong"][0]["first_pixel"]["x"], 5);
+        let panel = differing(&is, &right);
+        assert_eq!(panel.iter().filter(|byte| **byte != panel[0]).count(), 1);
+    }
+
+    #[test]
+    fn names_are_chosen_by_their_parts() {
+        assert_eq!(chosen(Some("canvas/bands")).len(), 9);
+        assert_eq!(chosen(Some("canvas/bands/")).len(), 9);
+        assert_eq!((chosen(Some("canvas/ban")).len(), chosen(Some("object/tiny")).len()), (0, 1));
+        assert_eq!(chosen(None).len(), frames::all().len());
     }
 }

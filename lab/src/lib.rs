@@ -6,14 +6,14 @@
 //! | [`cost`] | accuracy against time: the study, its statistics and its report |
 //! | [`explain`] | why a pixel has its byte; a row's intensity and slope |
 //! | [`show`] | hard cases as pictures: the right way beside the fault |
-//! | [`record`] | a frame's triangles in a file, to be replayed |
-//! | [`verify`] | the hard cases on this machine; a recorded frame through every kernel and method |
+//! | [`record`] | a frame's triangles in a file |
+//! | [`replay`] | a recorded frame through every kernel and hidden-surface method, and by the exact oracle |
 
 extern crate alloc;
 
 pub mod cost;
 pub mod explain;
 pub mod record;
+pub mod replay;
 pub mod show;
 pub mod truth;
-pub mod verify;

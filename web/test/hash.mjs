@@ -1,4 +1,4 @@
-// The 880 frames of `verify` in a browser: their hash must be that of every other machine.
+// The conformance frames in a browser: each must have the hash of every other machine.
 //
 //     hash.mjs FRAMES.wasm BROWSER...
 //
@@ -12,10 +12,6 @@ import { basename, join } from "node:path";
 import { removeProfile } from "./devtools.mjs";
 
 const [file, ...browsers] = process.argv.slice(2);
-const source = readFileSync(new URL("../../lab/src/verify/freestanding/frames.rs", import.meta.url), "utf8");
-const [, count, hash] = /EXPECTED: Self = Self \{ count: (\d+), hash: 0x([0-9A-F_]+) \};/.exec(source);
-const expected = `${count} frames, ${hash.replaceAll("_", "").toLowerCase()}`;
-
 const page = `<!doctype html><title>frames</title><script type="module">
 let said = "";
 let memory;
@@ -64,8 +60,8 @@ let failures = 0;
 for (const program of browsers) {
   const said = await ask(program);
   const lines = said.split("\n").filter((line) => line.includes(" frames, "));
-  const same = lines.length > 0 && lines.every((line) => line.endsWith(expected)) && said.endsWith("status 0");
+  const same = lines.length > 0 && lines.every((line) => line.endsWith(", same")) && said.endsWith("status 0");
   if (!same) failures++;
-  console.log(`${basename(program)}: ${same ? `${lines.length} kernels, ${expected}, same` : `DIFFERENT: ${said}`}`);
+  console.log(`${basename(program)}: ${same ? `${lines.length} kernels, same` : `DIFFERENT: ${said}`}`);
 }
 process.exit(failures);

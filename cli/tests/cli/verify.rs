@@ -4,7 +4,9 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use mode13h::span::Kernel;
-use mode13h_lab::verify::{self, Frames};
+use mode13h_conformance::frames;
+use mode13h_conformance::hash::START;
+use tempfile::TempDir;
 
 use crate::support::tried::Tried;
 
@@ -29,36 +31,68 @@ fn text_and_status(output: &Output) -> (&str, Option<i32>) {
     (str::from_utf8(&output.stdout).expect("text"), output.status.code())
 }
 
+/// The hash of all machines.
+fn hash() -> String {
+    let combine = |hash, frame: &frames::Frame| frames::combined_hash(hash, frame.expected().expect("it has one"));
+    format!("{:016x}", frames::all().iter().fold(START, combine))
+}
+
 #[test]
-fn a_line_for_each_group_and_the_hash() {
-    let mut tried = Tried::new("a_line_for_each_group_and_the_hash", 10);
+fn loops_frames_and_the_hash() {
     let (text, status) = text_and_status(verified());
     assert_eq!(status, Some(0), "{text}");
     let lines: Vec<&str> = text.lines().collect();
     let kernels: Vec<&str> = Kernel::available().map(Kernel::name).collect();
     assert_eq!(lines[0], format!("kernels {}; seed 13", kernels.join(", ")));
-    assert_eq!(lines[lines.len() - 1], format!("hash {:016x}, as on every machine", Frames::EXPECTED.hash));
-    for line in &lines[1..lines.len() - 1] {
-        let cases = line.split(": ").nth(1).and_then(|rest| rest.split(' ').next()).expect(line);
-        assert!(cases.parse::<u64>().expect(line) > 0 && line.ends_with(" cases, ok"), "{line}");
-        tried.add(1);
-    }
-    assert_eq!(lines.len(), 2 + verify::GROUPS.len() + 1);
+    assert!(lines[1].starts_with("loops: ") && lines[1].ends_with(" cases, ok"), "{text}");
+    let count = frames::all().len();
+    assert_eq!(lines[2], format!("frames: {count} by each kernel, {} in all, ok", count * kernels.len()));
+    assert_eq!(lines[3..], [format!("hash {}, as on every machine", hash())]);
 }
 
 #[test]
 fn the_same_for_programs() {
-    let mut tried = Tried::new("the_same_for_programs", 9);
+    let mut tried = Tried::new("the_same_for_programs", 17);
     let (text, status) = text_and_status(verified_as_json());
     assert_eq!(status, Some(0), "{text}");
     let json: serde_json::Value = serde_json::from_str(text).expect("JSON");
-    assert_eq!((&json["schema"], &json["seed"], &json["passed"]), (&1.into(), &7.into(), &true.into()));
-    assert_eq!(json["frames"]["hash"], format!("{:016x}", Frames::EXPECTED.hash));
+    assert_eq!((&json["schema"], &json["seed"], &json["passed"]), (&2.into(), &7.into(), &true.into()));
+    assert_eq!(json["frames"]["hash"], hash());
     let by_kernel = json["frames"]["by_kernel"].as_array().expect("a list");
     assert_eq!(by_kernel.len(), Kernel::available().count());
-    for group in json["groups"].as_array().expect("a list") {
-        assert!(group["cases"].as_u64() > Some(0), "{group}");
-        assert_eq!((&group["failures"], &group["record"]), (&serde_json::json!([]), &serde_json::Value::Null));
+    for kernel in by_kernel {
+        assert_eq!((&kernel["hash"], &kernel["wrong"]), (&hash().into(), &serde_json::json!([])), "{kernel}");
+    }
+    for outcome in json["loops"].as_array().expect("a list") {
+        assert!(outcome["cases"].as_u64() > Some(0) && outcome["wrong"].is_null(), "{outcome}");
         tried.add(1);
+    }
+}
+
+/// One frame by its name, as a picture; the names are listed; a name that is nearly right is answered.
+#[test]
+fn one_frame_is_drawn() {
+    let directory = TempDir::new().expect("a directory");
+    let run = |words: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_mode13h"));
+        program.current_dir(&directory).args(words.split(' ')).output().expect("started")
+    };
+    let output = run("verify --frame canvas/bands/plain -o bands.png");
+    let (text, status) = text_and_status(&output);
+    assert_eq!(status, Some(0), "{text}");
+    assert!(text.contains("frames: 1 by each kernel") && text.contains("picture: bands.png\n"), "{text}");
+    let file = std::fs::File::open(directory.path().join("bands.png")).expect("written");
+    let picture = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
+    assert_eq!((picture.info().width, picture.info().height), (320, 200));
+    let list = run("verify --list");
+    assert_eq!(text_and_status(&list).0.lines().count(), frames::all().len());
+    for (words, says) in [
+        ("verify --frame canvas/bands/plian", "did you mean canvas/bands/plain?"),
+        ("verify --frame nothing-like-it", "--list shows them"),
+        ("verify --frame canvas -o a.gif", "a.gif: the name of a picture ends in .png"),
+    ] {
+        let output = run(words);
+        let line = String::from_utf8(output.stderr).expect("text");
+        assert!(output.status.code() == Some(2) && line.trim_end().ends_with(says), "{line}");
     }
 }

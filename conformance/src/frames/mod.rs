@@ -199,5 +199,11 @@ pub fn all() -> Vec<Frame> {
 /// One hash for some frames in their order, from that of the frames before; begin with [`START`].
 #[must_use]
 pub fn combined(before: u64, drawn: &Drawn) -> u64 {
-    fnv_1a(before, &drawn.hash.to_le_bytes())
+    combined_hash(before, drawn.hash)
+}
+
+/// [`combined`], of a frame's [hash](Drawn::hash).
+#[must_use]
+pub fn combined_hash(before: u64, hash: u32) -> u64 {
+    fnv_1a(before, &hash.to_le_bytes())
 }

@@ -1,7 +1,7 @@
 //! A frame's triangles in a file, exactly as the raster gets them: a bug report is then one file.
 //!
 //! The renderer's floats have done their work by then, so that what is drawn from a record is the
-//! same on every machine, or the raster is wrong; [`verify::replay`](crate::verify::replay) looks.
+//! same on every machine, or the raster is wrong; [`replay`](crate::replay::replay) looks.
 //!
 //! # The file
 //!

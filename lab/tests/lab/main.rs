@@ -13,4 +13,3 @@ mod show;
 mod time;
 mod truth;
 mod truth_engine;
-mod verify;

@@ -12,7 +12,7 @@ use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
 use mode13h::scene::Scene;
 use mode13h_conformance::Random;
 use mode13h_lab::record::{Record, RecordErrorKind};
-use mode13h_lab::verify;
+use mode13h_lab::replay;
 use proptest::prelude::*;
 
 fn scene(name: &str) -> Scene {
@@ -167,7 +167,7 @@ fn f5_a_spoilt_record_never_panics() {
         if let Ok(record) = Record::read(&bytes[..]) {
             prop_assert_eq!(&Record::read(record.to_string().as_bytes()).expect("its own"), &record);
             if record.width() * record.height() < 1000 {
-                let replay = verify::replay(&record);
+                let replay = replay::replay(&record);
                 prop_assert!(replay.failures.is_empty(), "{:?}", replay.failures);
             }
         }
@@ -203,7 +203,7 @@ fn d4_recorded_frames_replay() {
             let mut vga = mode13h::vga::Vga::new();
             let stats = renderer.draw(&scene(name), &mut vga).expect("legal");
             assert_eq!((record.triangles.len() as u64, record.hidden_surfaces), (stats.drawn, stats.hidden_surfaces));
-            let replay = verify::replay(&record);
+            let replay = replay::replay(&record);
             assert!(replay.failures.is_empty(), "{name}, {shading}: {:#?}", replay.failures);
             let by_line = replay.comparisons.iter().find(|c| c.hidden_surfaces == HiddenSurfaces::ScanLine);
             assert_eq!(by_line.map(|c| c.must_agree), Some(shading.has_exact_cover()), "{name}, {shading}");

@@ -1,44 +1,48 @@
-//! Draws the frames of `verify` with every kernel that the machine has, and prints a line for each: its hash is that of
-//! every other machine. The arguments are words:
+//! Draws the conformance frames with every kernel that the machine has, and prints a line for each kernel: how many, one
+//! hash for all, and the names of those that are not as on every other machine. The arguments are words:
 //!
 //! | word | what |
 //! |---|---|
 //! | `step=N` | draws every N-th frame, for slow machines |
 //! | `kernel=NAME` | draws with this kernel alone |
-//! | `spans` | tries all kernels on spans of random lengths, shades, steps and alignments, and draws no frame |
+//! | `frame=NAME` | prints the pixels of one frame, a line of hexadecimal digits for each row |
+//! | `loops` | checks every loop over pixels against its definition, and draws no frame |
 //!
-//! The status is 1 if all 880 frames are drawn and are not those of other machines, or if a span is wrong. The hash of a
-//! part is for the script to compare.
+//! The status is 1 if a frame or a loop is wrong.
 #![cfg_attr(not(feature = "std"), no_std, no_main)]
 
 extern crate alloc;
 
-#[path = "../../../lab/src/verify/freestanding/mod.rs"]
-#[allow(dead_code, unused_imports, unreachable_pub, reason = "the laboratory has more use for it")]
-mod freestanding;
 #[cfg(not(feature = "std"))]
 mod heap;
 mod system;
 
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
-use freestanding::Frames;
+use mode13h::render::Renderer;
 use mode13h::span::Kernel;
+use mode13h_conformance::frames::{self, Frame};
+use mode13h_conformance::hash::START;
+use mode13h_conformance::loops::{self, Cases};
 
-/// The number that the cases of spans are made from, as `mode13h verify` has it.
+/// The number that the cases of loops are made from, as `mode13h verify` has it.
 const SEED: u64 = 13;
+/// No more wrong frames of a kernel are named: one fault shows in many.
+const MOST_NAMED: usize = 8;
 
 /// Does what the words say. Returns whether nothing is wrong.
 fn run(words: &str) -> bool {
     // `simd` is one of the levels that follow it, under another name: they are drawn with once.
     let kernels = Kernel::available().filter(|kernel| kernel.name() != "simd");
-    let (mut step, mut kernels) = (1, kernels.collect::<Vec<_>>());
+    let (mut step, mut kernels, mut name) = (1, kernels.collect::<Vec<_>>(), None);
     for word in words.split_ascii_whitespace() {
         match word.split_once('=') {
-            None if word == "spans" => return spans(),
-            Some(("step", number)) if number.parse().is_ok_and(|number: u64| number > 0) => {
+            None if word == "loops" => return check_loops(),
+            Some(("step", number)) if number.parse().is_ok_and(|number: usize| number > 0) => {
                 step = number.parse().unwrap_or(1);
             }
+            Some(("frame", of)) => name = Some(of),
             Some(("kernel", name)) => match name.parse::<Kernel>() {
                 Ok(kernel) => kernels = [kernel].into(),
                 Err(error) => {
@@ -47,28 +51,65 @@ fn run(words: &str) -> bool {
                 }
             },
             _ => {
-                system::print(&format!("{word}: no such word; there are step=N, kernel=NAME and spans\n"));
+                system::print(&format!("{word}: no such word; there are step=N, kernel=NAME, frame=NAME and loops\n"));
                 return false;
             }
         }
     }
-    let mut passed = true;
-    for kernel in kernels {
-        let frames = freestanding::frames_in_steps(kernel, step);
-        system::print(&format!("{kernel}: {} frames, {:016x}\n", frames.count, frames.hash));
-        passed &= step > 1 || frames == Frames::EXPECTED;
-    }
-    passed
+    let all = frames::all();
+    let drawn = kernels.into_iter().map(|kernel| match name {
+        Some(name) => print_pixels(kernel, all.iter().find(|frame| frame.name == name)),
+        None => draw(kernel, all.iter().step_by(step)),
+    });
+    drawn.fold(true, |passed, right| passed & right)
 }
 
-fn spans() -> bool {
-    let tally = freestanding::kernels(SEED);
-    let names = Kernel::available().map(|kernel| format!("{kernel}")).collect::<Vec<_>>();
-    system::print(&format!("spans of {}: {} cases, {} wrong\n", names.join(", "), tally.cases, tally.failures.len()));
-    for failure in &tally.failures {
-        system::print(&format!("    {failure}\n"));
+/// Draws frames with a kernel. Returns whether all are those of every machine.
+fn draw<'a>(kernel: Kernel, frames: impl Iterator<Item = &'a Frame>) -> bool {
+    // What one renderer keeps from frame to frame must not show.
+    let (mut renderer, mut count, mut hash, mut wrong) = (Renderer::new(), 0_usize, START, Vec::new());
+    for frame in frames {
+        count += 1;
+        let drawn = frame.draw_by(&mut renderer, kernel);
+        if let Ok(drawn) = &drawn {
+            hash = frames::combined(hash, drawn);
+        }
+        if drawn.is_err() || drawn.ok().map(|drawn| drawn.hash) != frame.expected() {
+            wrong.push(frame.name.as_str());
+        }
     }
-    tally.cases > 0 && tally.failures.is_empty()
+    let verdict = match wrong.len() {
+        0 => "same".into(),
+        number => format!("{number} DIFFERENT: {}", wrong[..number.min(MOST_NAMED)].join(" ")),
+    };
+    system::print(&format!("{kernel}: {count} frames, {hash:016x}, {verdict}\n"));
+    wrong.is_empty()
+}
+
+fn print_pixels(kernel: Kernel, frame: Option<&Frame>) -> bool {
+    let Some(Ok(drawn)) = frame.map(|frame| frame.draw(kernel)) else {
+        system::print("no such frame\n");
+        return false;
+    };
+    for row in drawn.pixels.chunks(drawn.width as usize) {
+        let mut line: String = row.iter().map(|byte| format!("{byte:02x}")).collect();
+        line.push('\n');
+        system::print(&line);
+    }
+    true
+}
+
+fn check_loops() -> bool {
+    let (mut count, mut cases, mut wrong) = (0, 0, Vec::new());
+    for outcome in loops::all(Cases::quick(SEED)) {
+        (count, cases) = (count + 1, cases + outcome.cases);
+        if let Some(what) = &outcome.wrong {
+            wrong.push(format!("    {outcome}: {what}\n"));
+        }
+    }
+    system::print(&format!("{count} loops: {cases} cases, {} wrong\n", wrong.len()));
+    wrong.iter().for_each(|line| system::print(line));
+    cases > 0 && wrong.is_empty()
 }
 
 #[cfg(feature = "std")]

@@ -20,7 +20,7 @@ use mode13h::span::Kernel;
 use mode13h::texture::{self, Texture};
 use mode13h::vga::Vga;
 use mode13h_lab::record::{Record, RecordErrorKind};
-use mode13h_lab::verify;
+use mode13h_lab::replay;
 
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
@@ -398,7 +398,7 @@ pub fn record(bytes: &[u8]) {
             }
             let pixels = u64::from(record.width()) * u64::from(record.height());
             if record.triangles.len() <= 8 && pixels <= 4096 {
-                let replay = verify::replay(&record);
+                let replay = replay::replay(&record);
                 assert!(!replay.comparisons.is_empty());
                 // Where triangles have no exact cover, methods that agree on others may differ.
                 let exact = record.triangles.iter().all(|(_, interpolation)| interpolation.has_exact_cover());

@@ -111,17 +111,22 @@ fn plainer(value: i64) -> impl Iterator<Item = i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::random::Random;
-    use crate::verify::triangles::any_triangle;
     use mode13h::raster::Interpolation;
+    use mode13h_conformance::Random;
 
     /// One of a hundred triangles is at fault, for the shade of its second vertex.
     #[test]
     fn one_triangle_is_left_and_what_makes_it_fail() {
-        let mut random = Random::new(5, "shrink");
+        let mut random = Random::seeded(5, "shrink");
+        let mut vertex = || {
+            let mut units = |most: i64| I24F8::from_bits(random.within(-500, most * 256 + 500) as i32);
+            let (x, y) = (units(64), units(48));
+            Vertex::new(x, y, U8F8::from_bits(random.within(0, 0xFF00) as u16), random.next_u64() as u32 >> 2)
+                .expect("inside the guard band")
+        };
         let mut record = Record::new(64, 48).expect("a frame").with_clip(None);
         for _ in 0..100 {
-            record.triangles.push((any_triangle(&mut random, 64, 48), Interpolation::Gouraud));
+            record.triangles.push(([vertex(), vertex(), vertex()], Interpolation::Gouraud));
         }
         record.background = 7;
         let guilty = record.triangles.iter().map(|(v, _)| v[1].shade()).max().expect("a shade");

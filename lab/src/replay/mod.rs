@@ -1,11 +1,15 @@
-//! A recorded frame, drawn every way there is.
+//! A recorded frame, drawn by every kernel and every hidden-surface method, and by the exact oracle. A frame that fails is
+//! made as small as it can be.
+
+mod definition;
+mod drawing;
+mod shrink;
 
 use std::fmt;
 
-use super::drawing::{self, Configuration, Draw, Stray};
-use super::oracle::{self, Drawing};
-use super::shrink;
 use crate::record::Record;
+use definition::Drawing;
+use drawing::{Configuration, Draw, Stray};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::HiddenSurfaces;
 use mode13h::span::Kernel;
@@ -42,7 +46,7 @@ pub struct Comparison {
 }
 
 /// Draws a recorded frame by every kernel of this machine and every hidden-surface method, whole and in
-/// bands, and by the slow oracle.
+/// bands, and by the exact oracle.
 ///
 /// A failure is: a kernel whose bytes are not those of the others; a frame in bands that is not that of
 /// the whole; the scan-line method's frame that is not the depth buffer's, unless a triangle has no exact cover;
@@ -53,11 +57,11 @@ pub struct Comparison {
 /// use mode13h_lab::record::Record;
 /// use mode13h::render::{Renderer, Screen};
 /// use mode13h::scene::Scene;
-/// use mode13h_lab::verify;
+/// use mode13h_lab::replay::replay;
 ///
 /// let scene = Scene::showing(shapes::torus(16, 8));
 /// let record = Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H)?;
-/// let replay = verify::replay(&record);
+/// let replay = replay(&record);
 /// assert!(replay.failures.is_empty() && replay.covered > 10_000);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -67,7 +71,7 @@ pub fn replay(record: &Record) -> Replay {
 }
 
 fn replay_by(record: &Record, draw: Draw<'_>) -> Replay {
-    let by_definition = oracle::frame(record, oracle::NEAREST);
+    let by_definition = definition::frame(record, definition::NEAREST);
     let count = |least: u32| by_definition.covered.iter().filter(|times| **times >= least).count() as u64;
     let mut replay =
         Replay { covered: count(1), overlaid: count(2), comparisons: Vec::new(), failures: Vec::new(), smallest: None };
@@ -121,12 +125,12 @@ fn differs(record: &Record, should: Configuration, is: Configuration, draw: Draw
 }
 
 /// A drawing against the oracle's; the depth buffer's and the scan-line's by depth, others in turn.
-pub(super) fn against_oracle(record: &Record, way: Configuration, draw: Draw<'_>) -> Option<String> {
+fn against_oracle(record: &Record, way: Configuration, draw: Draw<'_>) -> Option<String> {
     let test = match way.hidden_surfaces {
-        HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine => oracle::NEAREST,
-        _ => oracle::LAST,
+        HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine => definition::NEAREST,
+        _ => definition::LAST,
     };
-    let should = oracle::frame(record, test);
+    let should = definition::frame(record, test);
     let is = match draw(record, way) {
         Ok(is) => is,
         Err(Stray::Byte) => return Some(format!("{way}: {}", Stray::Byte)),
@@ -167,12 +171,12 @@ fn out_of_range(record: &Record, should: &Drawing, is: &[u8]) -> Option<String> 
 
 /// Difference of two frames.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Difference {
-    pub(super) pixels: u64,
+struct Difference {
+    pixels: u64,
     x: u32,
     y: u32,
     is: u8,
-    pub(super) should: u8,
+    should: u8,
 }
 
 impl Difference {
@@ -192,7 +196,7 @@ impl fmt::Display for Difference {
 }
 
 /// Finds the difference of two frames of a record, if they differ.
-pub(super) fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Difference> {
+fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Difference> {
     let mut found: Option<Difference> = None;
     for (place, (is, should)) in (0..).zip(is.iter().zip(should)) {
         if is != should {
@@ -207,11 +211,15 @@ pub(super) fn difference(record: &Record, is: &[u8], should: &[u8]) -> Option<Di
 mod tests {
     use super::*;
     use mode13h::Angle;
+    use mode13h::light::Light;
     use mode13h::mesh::shapes;
     use mode13h::render::{Renderer, Screen};
+    use mode13h::scene::{Object, Scene};
 
     fn torus() -> Record {
-        let mut scene = super::super::framed(shapes::torus(12, 6));
+        let mut scene = Scene::new();
+        scene.add(Object::new(shapes::torus(12, 6)));
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         scene.objects_mut()[0].angles = [1.1, 0.0, 0.4].map(Angle::from_radians);
         Record::of_scene(&mut Renderer::new(), &scene, Screen::MODE_13H).expect("a legal scene")
     }
