@@ -70,6 +70,10 @@ fn draw<'a>(kernel: Kernel, frames: impl Iterator<Item = &'a Frame>) -> bool {
     let (mut renderer, mut count, mut hash, mut wrong) = (Renderer::new(), 0_usize, START, Vec::new());
     for frame in frames {
         count += 1;
+        if cfg!(target_os = "none") {
+            // A chip has no room for what it keeps.
+            renderer = Renderer::new();
+        }
         let drawn = frame.draw_by(&mut renderer, kernel);
         if let Ok(drawn) = &drawn {
             hash = frames::combined(hash, drawn);
