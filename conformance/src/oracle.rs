@@ -109,7 +109,7 @@ pub struct Pixel {
     pub x: i32,
     /// The row.
     pub y: i32,
-    /// What is drawn there.
+    /// The byte drawn there.
     pub byte: u8,
 }
 

@@ -150,7 +150,7 @@ impl<'a> BatchedEffects<'a> {
         Self { batch, pipelines, object, of: None }
     }
 
-    /// Adds a face behind those that wait, which are drawn if it has another pipeline or there is no room.
+    /// Queues a face. The queue is drawn first if it has another pipeline or there is no room.
     pub(super) fn push(
         &mut self,
         (vertices, attributes, of): (&[Vertex; 3], &[Attributes; 3], Pipeline),
@@ -164,7 +164,7 @@ impl<'a> BatchedEffects<'a> {
         self.batch.push(vertices, attributes);
     }
 
-    /// Draws those that wait. `clips` is false where all lie inside the frame.
+    /// Draws the queued faces. `clips` is false where all lie inside the frame.
     pub(super) fn draw(&mut self, clips: bool, raster: &mut Raster<'_>, drawn: &mut DrawStats) {
         let Some(of) = self.of.take() else { return };
         if self.batch.is_empty() {

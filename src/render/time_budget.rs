@@ -142,7 +142,7 @@ impl TimeBudget {
             self.patience = if self.is_kept() { PATIENCE } else { (2 * self.patience).min(16 * PATIENCE) };
         }
         let chosen = self.choose();
-        // What stands still would be tried in vain.
+        // A frame that does not change is not drawn, so its time says nothing.
         let tried =
             self.to_be_tried().filter(|_| moves && chosen == self.at && self.is_kept() && self.held >= self.patience);
         self.is_trial = tried.is_some();

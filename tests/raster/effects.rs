@@ -307,8 +307,8 @@ impl<'a> Naive<'a> {
         (level, texels.at(whole(u, texels.width()), whole(v, texels.height())))
     }
 
-    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and `last`. Of shades
-    /// that are light, the two lit pixels beside it or the three channels of a curve are off by so many 256ths of a shade.
+    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and `last`. `off` is
+    /// added, in 1/256 shade, to the lit pixels on either side of it, or to the three channels of a curve.
     fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, before: u8, off: [i128; 3]) -> u8 {
         let seed = first + (x - first) / 64 * 64;
         let threshold = self.look.dither.map_or(128, |matrix| matrix[(y & 7) as usize][(x & 7) as usize]);

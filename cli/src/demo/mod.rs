@@ -128,7 +128,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = inputs.drawing.kernel()?;
     let loader = Loader::start(Arc::clone(&inputs))?;
     let mut demo = Demo::new(inputs, kernel);
-    // What is wrong with an input is soon found, most often, and then no window has to open.
+    // Most faults of an input are found at once, and then no window need open.
     if let Some(first) = loader.wait(PATIENCE) {
         demo.put_on(first)?;
     }

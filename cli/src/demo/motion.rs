@@ -7,7 +7,7 @@ use mode13h::window::{Input, Key};
 
 use crate::turntable::Pose;
 
-/// What is said as long as the time stands still.
+/// The note on a stopped picture.
 pub(super) const STOPPED: &str = "stopped";
 /// Speed of turning by the arrow keys, in radians a second.
 const ARROW_SPEED: f64 = 2.0;

@@ -830,8 +830,8 @@ fn input_comes_by_a_pipe_or_packed() {
     );
 }
 
-/// What came by a pipe is there for as long as the program runs: the window shows it again after another, and when a file
-/// that it names has changed.
+/// Input from a pipe is kept until the program ends: the window shows it again after another input, and when a file that it
+/// names has changed.
 #[test]
 fn standard_input_is_read_once_and_shown_as_often_as_asked_for() {
     use std::io::Write;
@@ -1545,7 +1545,7 @@ fn explain_says_why_a_pixel_has_its_byte() {
     }
 }
 
-/// What is seen is named as the model's author knows it: by object, material and line.
+/// `explain` names a face as the model's author knows it: by object, material and line.
 #[test]
 fn explain_names_material_and_line() {
     let directory = directory();

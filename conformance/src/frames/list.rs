@@ -414,7 +414,7 @@ const EFFECTS: [(&str, Change); 18] = [
     }),
 ];
 
-/// What is drawn into frames of other shapes.
+/// Scenes for frames of other shapes than the machine's.
 const CANVASES: [(&str, Change, Shading); 9] = [
     ("plain", |_| {}, Shading::Gouraud88Reseeded),
     ("float", |_| {}, Shading::Float),

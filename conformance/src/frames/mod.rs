@@ -34,12 +34,12 @@ use mode13h::vga::Vga;
 
 use crate::hash::{START, fnv_1a};
 
-/// What a frame is drawn into.
+/// The target of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shape {
     /// The machine: 320 × 200, with its DAC.
     Vga,
-    /// A frame of any size with square pixels, its rows so many bytes apart, drawn in bands of so many rows.
+    /// A frame of any size with square pixels, with a pitch, drawn in bands.
     Canvas {
         /// Columns.
         width: u32,
@@ -59,7 +59,7 @@ pub struct Picture {
     pub scene: Scene,
     /// The renderer's settings; its kernel is the caller's choice.
     pub settings: Settings,
-    /// What it is drawn into.
+    /// The target.
     pub shape: Shape,
 }
 
@@ -76,7 +76,7 @@ impl fmt::Debug for Frame {
     }
 }
 
-/// What came of a frame.
+/// A frame as drawn.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Drawn {
     /// Columns.
@@ -137,7 +137,7 @@ impl Frame {
     /// Draws the frame by a new renderer.
     ///
     /// # Errors
-    /// Those of [`Renderer::draw`]: none, unless the engine is broken.
+    /// [`Renderer::draw`] lists them; these scenes have none, unless the engine is broken.
     pub fn draw(&self, kernel: Kernel) -> Result<Drawn, RenderError> {
         self.draw_by(&mut Renderer::new(), kernel)
     }
@@ -145,7 +145,7 @@ impl Frame {
     /// Draws the frame by a renderer that may have drawn others, which changes nothing but the time it takes.
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw).
+    /// See [`draw`](Self::draw).
     pub fn draw_by(&self, renderer: &mut Renderer, kernel: Kernel) -> Result<Drawn, RenderError> {
         let Picture { scene, settings, shape } = self.picture();
         renderer.settings = settings;

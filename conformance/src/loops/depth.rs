@@ -15,7 +15,7 @@ use crate::Random;
 
 /// A cell of a depth buffer by its definition.
 pub trait NaiveCell: Cell + Debug {
-    /// What it holds of a depth.
+    /// The cell for a depth.
     fn naive(depth: u32) -> Self;
     /// Any value.
     fn any(random: &mut Random) -> Self;
@@ -113,7 +113,7 @@ pub fn check_fill<D: NaiveCell>(
     })
 }
 
-/// Copies of so many bytes with a depth test. `keeps` says whether the cells keep what is nearer. Row, cells and bytes may
+/// Checks copies of a given length with a depth test. `keeps` says whether the cells keep what is nearer. Row, cells and bytes may
 /// be longer, as a vector's last turn needs it, and what lies behind stays.
 ///
 /// # Errors
@@ -212,7 +212,7 @@ fn same_pixels(is: &[u8], should: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Where a span lies among so many; `None` if it reaches beyond.
+/// The range of a span in `all` pixels; `None` if it reaches beyond.
 fn place(at: u32, length: u32, all: usize) -> Option<core::ops::Range<usize>> {
     let (at, length) = (at as usize, length as usize);
     (at + length <= all).then(|| at..at + length)

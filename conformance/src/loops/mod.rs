@@ -71,7 +71,7 @@ impl Cases {
         Self { seed, is_full: true }
     }
 
-    /// Returns the number of cases, of so many or so many.
+    /// Returns `quick` or `full`, the number of cases of either amount.
     const fn of(self, quick: usize, full: usize) -> usize {
         if self.is_full { full } else { quick }
     }

@@ -342,13 +342,13 @@ fn mark_efficient(rows: &mut [ShadingRow]) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use alloc::string::String;
 
     use crate::cost::{Errors, Nanoseconds, ties};
 
-    fn row(shading: Shading, time: f64, rms: f64, tied: &[Shading]) -> ShadingRow {
+    pub(in crate::cost) fn row(shading: Shading, time: f64, rms: f64, tied: &[Shading]) -> ShadingRow {
         ShadingRow {
             shading,
             per_frame: Nanoseconds { median: time, ..Nanoseconds::default() },

@@ -101,7 +101,7 @@ pub fn warnings(study: &Study) -> Vec<String> {
     warnings
 }
 
-/// Shadings whose times cannot be told apart, from fast to slow, each with the slower ones of them: no pair stands twice.
+/// Shadings with no measurable difference in time, from fast to slow, each with the slower ones: no pair is listed twice.
 #[must_use]
 pub fn ties(study: &Study) -> Vec<(Shading, Vec<Shading>)> {
     let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
@@ -121,31 +121,8 @@ pub fn ties(study: &Study) -> Vec<(Shading, Vec<Shading>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::{Errors, Host, Nanoseconds, Split};
-
-    fn row(shading: Shading, time: f64, tied: &[Shading]) -> ShadingRow {
-        ShadingRow {
-            shading,
-            per_frame: Nanoseconds { median: time, ..Nanoseconds::default() },
-            per_pixel: 0.0,
-            per_triangle: 0.0,
-            ratio: 1.0,
-            ratio_interval: (1.0, 1.0),
-            split: Split::default(),
-            instructions: None,
-            error_gouraud: Errors::default(),
-            error_lit: Errors::default(),
-            error_palette: 0.0,
-            cover_errors: 0,
-            not_compared: 0.0,
-            excess: None,
-            swim: 0.0,
-            efficient: true,
-            as_fast_as: tied.to_vec(),
-            picture: Vec::new(),
-            error_map: Vec::new(),
-        }
-    }
+    use crate::cost::measure::tests::row;
+    use crate::cost::{Host, Nanoseconds};
 
     fn budget(max_error: f64, within: f64, best: Option<(f64, (f64, f64))>) -> BudgetRow {
         BudgetRow {
@@ -191,7 +168,10 @@ mod tests {
                 "the budget of 4 takes 1.20 times as long as phong, not 1.05 at most",
             ),
             (
-                study(alloc::vec![ShadingRow { excess: Some(0.125), ..row(Shading::Gouraud88, 1.0, &[]) }], Vec::new()),
+                study(
+                    alloc::vec![ShadingRow { excess: Some(0.125), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) }],
+                    Vec::new(),
+                ),
                 "gouraud-8.8 is off by 0.12 shades more than its bound",
             ),
         ] {
@@ -199,7 +179,7 @@ mod tests {
             assert!(!promises_are_kept(&broken), "{says}");
         }
         // At the bound, at the limit, and beyond it by no more than chance may do.
-        let at_bound = ShadingRow { excess: Some(0.0), ..row(Shading::Gouraud88, 1.0, &[]) };
+        let at_bound = ShadingRow { excess: Some(0.0), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) };
         let times = [(1.05, (1.02, 1.08)), (1.06, (1.04, 1.08))].map(|times| budget(4.0, 1.0, Some(times)));
         let kept = study(alloc::vec![at_bound], times.to_vec());
         assert!(warnings(&kept).is_empty() && promises_are_kept(&kept));
@@ -229,7 +209,11 @@ mod tests {
     #[test]
     fn no_pair_is_listed_twice() {
         use Shading::{Flat, Float, Gouraud88};
-        let rows = [row(Float, 3.0, &[Flat]), row(Flat, 1.0, &[Float, Gouraud88]), row(Gouraud88, 2.0, &[Flat])];
+        let rows = [
+            row(Float, 3.0, 0.0, &[Flat]),
+            row(Flat, 1.0, 0.0, &[Float, Gouraud88]),
+            row(Gouraud88, 2.0, 0.0, &[Flat]),
+        ];
         assert_eq!(ties(&study(rows.to_vec(), Vec::new())), [(Flat, alloc::vec![Gouraud88, Float])]);
     }
 }

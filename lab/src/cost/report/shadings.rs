@@ -66,9 +66,8 @@ pub(super) fn times(study: &Study) -> Table {
             bar(&row.split),
         ]
     };
-    Table::new(&columns, study.shadings.iter().map(row).collect()).note(
-        "★ efficient: no shading is as near to lit (root mean square) and faster, as far as times can be told apart.",
-    )
+    Table::new(&columns, study.shadings.iter().map(row).collect())
+        .note("★ efficient: no shading is as near to lit (root mean square) and faster, as far as the times show.")
 }
 
 /// A shading's name; the default is marked, and what is efficient if that is asked for.
@@ -98,7 +97,7 @@ fn bar(split: &Split) -> Cell {
     Cell::shown(told.clone(), bar)
 }
 
-/// What is said of shadings whose times cannot be told apart, and the list of them.
+/// The sentence on shadings with no measurable difference in time, and the list of them.
 pub(super) fn tied(study: &Study) -> Option<(&'static str, Vec<String>)> {
     let pairs = |(one, others): &(Shading, Vec<Shading>)| {
         let each = if others.len() > 1 { "each of " } else { "" };
@@ -106,7 +105,7 @@ pub(super) fn tied(study: &Study) -> Option<(&'static str, Vec<String>)> {
     };
     let tied: Vec<String> = ties(study).iter().map(pairs).collect();
     let says =
-        "Cannot be told apart by their times, as the intervals of their ratios contain 1; their order means nothing:";
+        "No measurable difference in time, as the intervals of their ratios contain 1; their order means nothing:";
     (!tied.is_empty()).then_some((says, tied))
 }
 
@@ -115,7 +114,7 @@ fn ties_list(study: &Study) -> Markup {
         @if let Some((says, tied)) = tied(study) {
             div.warning { p { (says) } ul { @for tied in tied { li { (tied) } } } }
         } @else if study.shadings.len() > 1 {
-            p { "The times of all shadings can be told apart." }
+            p { "All shadings differ measurably in time." }
         }
     }
 }

@@ -91,7 +91,7 @@ fn of_others(study: &Study) -> [String; 2] {
     [first, second]
 }
 
-/// Ratio of the time of `row` to that of `other`; `None` if the two cannot be told apart.
+/// Ratio of the time of `row` to that of `other`; `None` if the difference is not measurable.
 fn times(row: &ShadingRow, other: &ShadingRow) -> Option<f64> {
     let tied = row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading);
     (!tied).then_some(row.ratio / other.ratio)

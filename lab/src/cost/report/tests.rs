@@ -160,7 +160,7 @@ fn a_report_is_well_formed_and_says_everything() {
         "time limit is void",
         "The time for a frame",
         "1\u{2009}200",
-        "Cannot be told apart",
+        "No measurable difference in time",
         "gouraud-8.8 and float",
         "holds in part",
         "does not hold",
