@@ -351,7 +351,7 @@ pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
 }
 
 /// Draws spans, in order, where they are nearer, as the batches do it with this kernel: those that lie inside the pixels and
-/// cells. For tests.
+/// cells. Where each has the offset of its cells, the list has one for both. For tests.
 pub fn fill_where_nearer<D: Cell>(
     kernel: Kernel,
     pixels: &mut [u8],
@@ -359,8 +359,9 @@ pub fn fill_where_nearer<D: Cell>(
     spans: &[Listed],
     depths: &[ListedDepths],
 ) -> u32 {
-    // Of different pitches, so that offsets of cells are their own.
-    let mut list = SpanList::new((pixels.len(), 0), (cells.len(), 1));
+    // Of one pitch, or of two, so that offsets of cells are their own.
+    let is_shared = spans.iter().zip(depths).all(|(span, depths)| span.at == depths.at);
+    let mut list = SpanList::new((pixels.len(), 0), (cells.len(), u32::from(!is_shared)));
     for (spans, depths) in spans.chunks(LANES).zip(depths.chunks(LANES)) {
         let mut eight = lanes(spans);
         let mut dz = [0; LANES];

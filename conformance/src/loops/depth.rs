@@ -161,6 +161,8 @@ impl Frame {
             let wider = random.within(0, 70);
             width + random.one_of(&[0, 1, wider])
         });
+        // In half of the frames pixels and their cells have one offset.
+        let cells_pitch = random.one_of(&[pitch, cells_pitch]);
         Self { width, height, pitch, cells_pitch }
     }
 
@@ -170,7 +172,7 @@ impl Frame {
     }
 
     /// A span in one row, or one that reaches the very end of the frame, or a few pixels beyond it; and the offset of its
-    /// first cell, now and then beyond all.
+    /// first cell: that of the first pixel, if rows have one pitch, and otherwise now and then beyond all.
     fn span(&self, random: &mut Random) -> (Listed, u32) {
         let length = random.within(0, self.width);
         let (x, y) = match random.below(8) {
@@ -180,7 +182,11 @@ impl Frame {
         };
         let at = |pitch: i64| (y * pitch + x) as u32;
         let (shade, step) = (any_u16(random), any_u16(random));
-        let beyond = if random.below(16) == 0 { self.length(self.cells_pitch) as u32 } else { 0 };
+        let beyond = if self.cells_pitch != self.pitch && random.below(16) == 0 {
+            self.length(self.cells_pitch) as u32
+        } else {
+            0
+        };
         (Listed { at: at(self.pitch), length: length as u32, shade, step }, at(self.cells_pitch) + beyond)
     }
 }
@@ -257,7 +263,9 @@ pub fn check_list_nearer<D: NaiveCell>(
             }
         };
         let depths: Vec<ListedDepths> = offsets.iter().map(any_depths).collect();
-        let cells = frame.length(frame.cells_pitch);
+        // Now and then a few are missing.
+        let missing = random.within(0, 2 * frame.width) as usize;
+        let cells = frame.length(frame.cells_pitch).saturating_sub(random.one_of(&[0, 0, 0, missing]));
         let some = [0, 3, 1 << 29, u32::MAX].map(D::naive);
         let mut cells: Vec<D> = (0..cells).map(|_| random.one_of(&some)).collect();
         let (mut after, mut nearest, mut written) = (pixels.clone(), cells.clone(), 0);

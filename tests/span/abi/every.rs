@@ -45,9 +45,10 @@ fn own<T: Clone>(numbers: &[T]) -> Box<[T]> {
     numbers.to_vec().into_boxed_slice()
 }
 
-/// Spans within so many pixels, the first and the last of them among their ends.
+/// Spans within so many pixels, the first and the last of them among their ends; of one half of the lists each has the offset
+/// of its cells.
 fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
-    let count = random.within(1, 40);
+    let (count, is_shared) = (random.within(1, 40), random.below(2) == 0);
     (0..count)
         .map(|_| {
             let most = random.one_of(&[4, 8, 20, 150]);
@@ -57,7 +58,8 @@ fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
             let bits = random.next_u64();
             let span = Listed { at, length: length as u32, shade: bits as u16, step: (bits >> 16) as u16 };
             let z = random.within(0, i64::from(u32::MAX)) << 24;
-            (span, ListedDepths { z, dz: random.within(-(1 << 30), 1 << 30), at })
+            let dz = random.within(-(1 << 30), 1 << 30);
+            (span, ListedDepths { z, dz, at: if is_shared { at } else { any as u32 } })
         })
         .unzip()
 }
