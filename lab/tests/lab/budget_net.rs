@@ -270,13 +270,15 @@ fn look(renderer: Renderer, scene: &Scene, screen: Screen) -> Shown {
 
 /// The pixel that is farthest beyond any of the budgets: by how much, the budget and the place.
 #[derive(Clone, Copy)]
-struct Worst {
-    beyond: f64,
+pub(crate) struct Worst {
+    pub(crate) beyond: f64,
     /// The greatest error of any pixel as a ratio to its budget.
-    ratio: f64,
+    pub(crate) ratio: f64,
     budget: f32,
     place: (u32, u32),
-    pixels: u64,
+    pub(crate) pixels: u64,
+    /// The greatest share of a frame's pixels that could not be compared.
+    pub(crate) not_compared: f64,
 }
 
 impl fmt::Display for Worst {
@@ -285,15 +287,17 @@ impl fmt::Display for Worst {
     }
 }
 
-/// Compares the frames of all budgets with the truth.
-fn worst(scene: &Scene, screen: Screen) -> Worst {
+/// Compares the frames of budgets with the truth.
+pub(crate) fn worst(scene: &Scene, screen: Screen, budgets: &[f32]) -> Worst {
     let truth = Truth::new(scene, screen).expect("a legal scene");
     let lit = truth.draw(Standard::Lit);
-    let mut worst = Worst { beyond: f64::NEG_INFINITY, ratio: 0.0, budget: 0.0, place: (0, 0), pixels: 0 };
-    for budget in BUDGETS {
+    let mut worst =
+        Worst { beyond: f64::NEG_INFINITY, ratio: 0.0, budget: 0.0, place: (0, 0), pixels: 0, not_compared: 0.0 };
+    for &budget in budgets {
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = Some(Accuracy::WithinError(budget));
         let errors = ErrorMap::new(&lit, &look(renderer, scene, screen)).expect("of one size");
+        worst.not_compared = worst.not_compared.max(errors.share_not_compared());
         for (place, (error, right)) in errors.errors().zip(&lit.pixels).enumerate() {
             let (Some(error), Some(right)) = (error, right) else { continue };
             worst.pixels += 1;
@@ -327,7 +331,7 @@ fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
     for i in 0..scenes {
         let (screen, mut genes) = (screen(random), Genes::new(random));
         let scene = scene(kind, &mut genes);
-        let worst = worst(&scene, screen);
+        let worst = worst(&scene, screen, &BUDGETS);
         tried.add(worst.pixels);
         if worst.pixels > 0 {
             tried.worst("beyond", worst.beyond);
@@ -390,7 +394,7 @@ fn no_pixel_is_beyond_from_the_nearest_near_plane_on() {
         let Some(needed) = renderer.plan().near_needed() else { continue };
         let times = if random.unit() < 0.5 { 1.0 } else { 16.0_f32.powf(random.unit() as f32) };
         scene.camera.near = needed * times;
-        let worst = worst(&scene, screen);
+        let worst = worst(&scene, screen, &BUDGETS);
         tried.add(worst.pixels);
         if worst.pixels > 0 {
             tried.worst("beyond", worst.beyond);
@@ -413,7 +417,7 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
         let kind = random.one_of(&Kind::ALL);
         let [width, height] = [(); 2].map(|()| random.within(9, 97) as u32);
         let (screen, mut best) = (Screen { width, height, ..Screen::MODE_13H }, Genes::new(&mut random));
-        let first = worst(&scene(kind, &mut best), screen);
+        let first = worst(&scene(kind, &mut best), screen, &BUDGETS);
         assert!(first.beyond <= 0.0, "{kind:?}, before any step: {first}");
         let mut most = first.beyond;
         tried.add(1);
@@ -421,7 +425,7 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
         for _ in 0..24 {
             let mut genes = best.mutated(&mut random);
             let at = scene(kind, &mut genes);
-            let found = worst(&at, screen);
+            let found = worst(&at, screen, &BUDGETS);
             tried.add(1);
             tried.worst("error by budget", found.ratio);
             if found.beyond > most {
@@ -454,7 +458,7 @@ fn no_pixel_of_a_turn_is_beyond() {
                 scene.set_time((f64::from(pose) + 0.37) / 12.0 * scene.duration);
             }
             for (width, height) in [(131, 97), (211, 133)] {
-                let worst = worst(&scene, Screen { width, height, ..Screen::MODE_13H });
+                let worst = worst(&scene, Screen { width, height, ..Screen::MODE_13H }, &BUDGETS);
                 assert!(worst.beyond <= 0.0, "{name}, pose {pose}, {width} × {height}: {worst}");
                 tried.add(worst.pixels);
                 tried.worst("beyond", worst.beyond);
@@ -482,7 +486,7 @@ fn no_pixel_is_beyond_at_any_size() {
         all.add_light(Light::lamp(Vec3::Z * 3.0 * size, 4.0 * size));
         for (what, scene) in [("a lamp", lamp_alone), ("all", all)] {
             let screen = Screen { width: 96, height: 64, ..Screen::MODE_13H };
-            let worst = worst(&scene, screen);
+            let worst = worst(&scene, screen, &BUDGETS);
             tried.add(worst.pixels);
             assert!(worst.beyond <= 0.0, "{what} of size {size}: {worst}");
         }
@@ -517,7 +521,7 @@ fn what_is_beyond_is_what_rounded_vertices_move() {
         let face = truth.draw(Standard::Lit).pixels[at].expect("covered").face;
         println!("{error}, of which {:?} by rounded vertices", truth.rounding_shift(face, place.0, place.1));
         assert!(error > 1.0, "{error}");
-        let worst = worst(&scene, screen);
+        let worst = worst(&scene, screen, &BUDGETS);
         assert!(worst.beyond <= 0.0, "{worst}");
     }
 }
