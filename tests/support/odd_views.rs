@@ -11,21 +11,32 @@ use super::scenes::framed;
 use super::tried::Tried;
 use mode13h_conformance::Random;
 
-/// C4: fields of view from 1° to 179°, the eye inside a torus, on a vertex or a face of it, or anywhere near.
+/// C4: fields of view from 1° to 179°, the eye inside a torus, on a vertex or a face of it, or anywhere near; in one light
+/// to three, of any direction and strength, on screens of any size.
 pub fn odd_views(mut tried: Tried, path: VertexPath) {
     let mut random = Random::named("c4");
     let mesh = shapes::torus(16, 8);
-    let screen = Screen { width: 64, height: 40, ..Screen::MODE_13H };
-    let (mut seen, mut clipped) = (0, 0);
+    let (mut seen, mut clipped, mut bright) = (0, 0, 0);
     while tried.more() {
+        let (width, height) =
+            random.one_of(&[(1, 1), (1, 90), (90, 1), (7, 5), (64, 40), (64, 40), (97, 33), (160, 100)]);
+        let screen = Screen { width, height, ..Screen::MODE_13H };
         let mut scene = framed(mesh.clone());
         scene.background = 7;
-        scene.add_light(Light::sun([0.3, 0.5, -1.0]));
-        let mut place =
-            || Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
+        let mut place = || Vec3::from_array([0.0; 3].map(|_| random.unit() as f32 - 0.5));
         scene.camera.eye = place() * 2.0;
         scene.camera.target = place();
         scene.camera.near = 1e-3;
+        let toward = [place(), place(), place()];
+        scene.clear_lights();
+        for toward in &toward[..random.within(1, 3) as usize] {
+            let strength = random.one_of(&[-0.5, 0.3, 1.0, 3.0]);
+            // Integers know no lamps.
+            scene.add_light(match path == VertexPath::Float && random.below(2) == 0 {
+                true => Light::lamp(*toward, 0.2 + 3.0 * random.unit() as f32).with_intensity(strength),
+                false => Light::sun(*toward).with_intensity(strength),
+            });
+        }
         let [a, b, c] = random.one_of(mesh.triangles()).map(|corner| mesh.positions()[corner as usize]);
         match random.within(0, 3) {
             0 => scene.camera.eye = a,
@@ -42,8 +53,13 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
         assert_eq!(judged.stats.faces, 256);
         seen += u64::from(judged.counts.iter().any(|&times| times > 0));
         clipped += u64::from(judged.stats.clipped > 0);
+        let shades =
+            || judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|vertex| vertex.shade().to_bits()));
+        bright += u64::from(shades().any(|shade| shade == 65_280) && shades().any(|shade| shade < 32_640));
     }
     tried.worst("views that show something", seen as f64);
     tried.worst("views with clipped faces", clipped as f64);
-    assert!(seen * 2 > tried.stated() && clipped * 4 > tried.stated(), "{seen} show something, {clipped} are clipped");
+    tried.worst("views with dark and with full light", bright as f64);
+    let enough = seen * 2 > tried.stated() && clipped * 4 > tried.stated() && bright * 10 > tried.stated();
+    assert!(enough, "{seen} show something, {clipped} are clipped, {bright} are bright and dark");
 }

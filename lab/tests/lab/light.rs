@@ -316,7 +316,8 @@ fn r9_what_is_not_finite_is_refused_where_it_enters() {
 
 #[test]
 fn r10_denormals_and_minus_zero_draw_as_zero() {
-    let mut tried = Tried::new("r10_denormals_and_minus_zero_draw_as_zero", 5);
+    let mut tried = Tried::new("r10_denormals_and_minus_zero_draw_as_zero", 430);
+    floats::every_float_near_zero_is_zero(&mut tried);
     let corners = [[0.0, 0.0, 0.0], [0.7, 0.0, 0.0], [0.0, 0.7, 0.0], [0.0, 0.0, 0.7]];
     let mesh = |tiny: f32| {
         let positions = corners.map(|c| Vec3::from_array(c.map(|x| if x == 0.0 { tiny } else { x })));
@@ -335,7 +336,7 @@ fn r10_denormals_and_minus_zero_draw_as_zero() {
     };
     let with_zero = frame(0.0);
     assert!(with_zero.iter().filter(|&&byte| byte != 0).count() > 1000);
-    for tiny in [-0.0, f32::MIN_POSITIVE, -f32::MIN_POSITIVE, f32::from_bits(1), -f32::from_bits(1)] {
+    for tiny in floats::NEXT_TO_ZERO {
         assert_eq!(frame(tiny), with_zero, "{tiny:e}");
         tried.add(1);
     }

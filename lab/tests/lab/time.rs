@@ -123,24 +123,27 @@ fn t1_long_a_million_frames_on_the_integer_path() {
     rotation(&mut tried, VertexPath::Integer);
 }
 
+/// A step of any size turns by what is left of it without its whole turns, and the same step backwards turns back.
 #[test]
 fn t2_any_step_is_defined() {
-    let mut tried = Tried::new("t2_any_step_is_defined", 12);
-    let turned = |angle: f64| {
+    // At 90° a second: 900 whole turns.
+    let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
+    let sizes = [0.0, f64::MIN_POSITIVE, 1e-300, 0.3, 1.0, 7.0, 3600.0, hour, 1e9, 1e15, 1e300, f64::MAX];
+    let mut tried = Tried::new("t2_any_step_is_defined", 2 * sizes.len() as u64);
+    let turned = |steps: &[f64]| {
         let mut scene = crate::support::scenes::framed(shapes::cube());
-        scene.objects_mut()[0].rotate_y(Angle::from_radians(angle));
+        scene.objects_mut()[0].rotate_x(Angle::from_radians(0.4));
+        steps.iter().for_each(|step| scene.objects_mut()[0].rotate_y(Angle::from_radians(*step)));
         frame(&mut Renderer::new(), &scene)
     };
-    assert_eq!(turned(0.0), turned(-0.0));
-    // An hour at 90° a second is 900 whole turns.
-    let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
-    let mut scene = crate::support::scenes::framed(shapes::cube());
-    scene.objects_mut()[0].rotate_y(Angle::from_radians(hour));
-    scene.objects_mut()[0].rotate_y(Angle::from_radians(-hour));
-    assert_eq!(frame(&mut Renderer::new(), &scene), turned(0.0), "there and back");
-    for angle in [-1.0, 1e-300, 3600.0, -3600.0, 1e9, -1e9, 1e15, 1e300, f64::MAX, f64::MIN_POSITIVE] {
-        assert!(turned(angle).iter().any(|&byte| byte != 0), "{angle:e}");
+    let first = turned(&[]);
+    for step in sizes.into_iter().flat_map(|size| [size, -size]) {
+        let there = turned(&[step]);
+        // Sine and cosine leave out whole turns, to the last bit of an angle of any size.
+        let left = step.sin().atan2(step.cos());
+        assert!(there == turned(&[left]), "{step:e} is {left}");
+        assert_eq!(there == first, left.abs() < 1e-9, "{step:e} is seen");
+        assert!(turned(&[step, -step]) == first, "{step:e}, there and back");
         tried.add(1);
     }
-    tried.add(2);
 }

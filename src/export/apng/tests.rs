@@ -47,7 +47,16 @@ fn film(palette: [Rgb; 256], frames: usize, seed: &mut u64) -> Frames {
 }
 
 fn written<W: Write>(frames: &Frames, scale: Scale, colors: &FilmColors, out: W) -> Result<(W, u64), ExportErrorKind> {
-    let rate = FrameRate::default();
+    written_at(FrameRate::default(), frames, scale, colors, out)
+}
+
+fn written_at<W: Write>(
+    rate: FrameRate,
+    frames: &Frames,
+    scale: Scale,
+    colors: &FilmColors,
+    out: W,
+) -> Result<(W, u64), ExportErrorKind> {
     let promised = frames.len() as u32;
     let mut film = Writer { out, rate, frames: promised, given: 0, sequence: 0, first: None, bytes: 0, failed: None };
     for (i, frame) in frames.iter().enumerate() {
@@ -149,11 +158,26 @@ fn a_palette_that_changes_is_for_true_color() {
 fn the_head_says_shape_and_rate() {
     let frames = film(*GREY.colors(), 2, &mut 1);
     let colors = FilmColors::Palette(Box::new(*GREY.colors()));
-    for (scale, density) in [(Scale::One, (6, 5)), (Scale::FiveBySix, (1, 1))] {
-        let (file, _) = written(&frames, scale, &colors, Vec::new()).expect("a film");
-        let reader = Decoder::new(Cursor::new(&file)).read_info().expect("a PNG");
-        let dims = reader.info().pixel_dims.expect("pHYs");
-        assert_eq!((dims.xppu, dims.yppu), density);
+    for (scale, size, density) in [(Scale::One, (37, 11), (6, 5)), (Scale::FiveBySix, (185, 66), (1, 1))] {
+        // Of a frame: so many seconds, as a fraction.
+        for (rate, delay) in [(0.1, (10, 1)), (12.5, (2, 25)), (35.0, (1, 35)), (50.0, (1, 50))] {
+            let rate = FrameRate::try_from(rate).expect("a legal rate");
+            let (file, _) = written_at(rate, &frames, scale, &colors, Vec::new()).expect("a film");
+            let mut reader = Decoder::new(Cursor::new(&file)).read_info().expect("a PNG");
+            let info = reader.info();
+            assert_eq!((info.width, info.height), size);
+            let dims = info.pixel_dims.expect("pHYs");
+            assert_eq!((dims.xppu, dims.yppu), density);
+            let control = info.animation_control.expect("acTL");
+            assert_eq!((control.num_frames, control.num_plays), (2, 0));
+            let mut buffer = vec![0; 185 * 66 * 4];
+            for _ in 0..2 {
+                reader.next_frame(&mut buffer).expect("a frame");
+                let control = reader.info().frame_control().expect("fcTL");
+                let (num, den) = (u64::from(control.delay_num), u64::from(control.delay_den));
+                assert_eq!(num * delay.1, den * delay.0, "{rate:?}: {num} / {den} s");
+            }
+        }
     }
 }
 

@@ -134,6 +134,10 @@ const FLOATS: &[Row] = &[
     ("Preferences.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "preferences"),
 ];
 
+/// Minus zero, and the least numbers that f32 has, with and without all of their bits.
+pub(crate) const NEXT_TO_ZERO: [f32; 5] =
+    [-0.0, f32::MIN_POSITIVE, -f32::MIN_POSITIVE, f32::from_bits(1), -f32::from_bits(1)];
+
 /// Those that no frame is made from, and where they are tried.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("Bounds.centre", "worked out from positions"),
@@ -192,33 +196,73 @@ pub(crate) fn every_float_is_refused(mut tried: Tried) {
     assert_eq!(fields, listed, "the floats of the sources, and those of the list");
 
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        for (name, components, put, what) in FLOATS {
-            for i in 0..*components {
-                let mut scene = framed(mode13h::mesh::shapes::cube());
-                scene.add_light(Light::lamp([1.0, 2.0, 3.0], 9.0));
-                let mut begins = scene.clone();
-                let mut vga = Vga::new();
-                assert!(Renderer::new().draw(&scene, &mut vga).is_ok(), "{name} before");
-                put(&mut scene, bad, i);
-                vga.pixels_mut().fill(7);
-                let palette = vga.palette();
-                let drawn = Renderer::new().draw(&scene, &mut vga);
-                if *what == BEGINS {
-                    put(&mut begins, 0.0, i);
-                    let mut first = Vga::new();
-                    assert!(
-                        Renderer::new().draw(&begins, &mut first).is_ok() && drawn.is_ok(),
-                        "{name} [{i}] is {bad}"
-                    );
-                    assert!(vga.pixels() == first.pixels(), "{name} [{i}] is {bad}: another picture");
-                } else {
-                    let text = drawn.map(|_| ()).expect_err(&format!("{name} [{i}] is {bad}")).to_string();
-                    assert!(text.starts_with(what), "{name} [{i}] is {bad}: {text}");
-                    let is_left = vga.pixels().iter().all(|&byte| byte == 7) && vga.palette() == palette;
-                    assert!(is_left, "{name} [{i}] is {bad}: left as it was");
-                }
-                tried.add(1);
+        for (name, i, put, what) in components() {
+            let mut scene = with_a_lamp();
+            let mut begins = scene.clone();
+            let mut vga = Vga::new();
+            assert!(Renderer::new().draw(&scene, &mut vga).is_ok(), "{name} before");
+            put(&mut scene, bad, i);
+            vga.pixels_mut().fill(7);
+            let palette = vga.palette();
+            let drawn = Renderer::new().draw(&scene, &mut vga);
+            if what == BEGINS {
+                put(&mut begins, 0.0, i);
+                let mut first = Vga::new();
+                assert!(Renderer::new().draw(&begins, &mut first).is_ok() && drawn.is_ok(), "{name} [{i}] is {bad}");
+                assert!(vga.pixels() == first.pixels(), "{name} [{i}] is {bad}: another picture");
+            } else {
+                let text = drawn.map(|_| ()).expect_err(&format!("{name} [{i}] is {bad}")).to_string();
+                assert!(text.starts_with(what), "{name} [{i}] is {bad}: {text}");
+                let is_left = vga.pixels().iter().all(|&byte| byte == 7) && vga.palette() == palette;
+                assert!(is_left, "{name} [{i}] is {bad}: left as it was");
             }
+            tried.add(1);
+        }
+    }
+}
+
+/// Every component of every float of the list.
+fn components() -> impl Iterator<Item = (&'static str, usize, Put, &'static str)> {
+    FLOATS.iter().flat_map(|(name, components, put, what)| (0..*components).map(move |i| (*name, i, *put, *what)))
+}
+
+fn with_a_lamp() -> Scene {
+    let mut scene = framed(mode13h::mesh::shapes::cube());
+    scene.add_light(Light::lamp([1.0, 2.0, 3.0], 9.0));
+    scene
+}
+
+/// Floats for which anything above 0 is another thing than 0, and why.
+const NOT_ZERO: [(&str, &str); 2] =
+    [("Camera.up", "a direction of any length"), ("Surface.opacity", "without any it is opaque, as files have it")];
+
+/// What is next to nothing is 0 for every float: the same picture in the same colours. It is refused where it is negative,
+/// and 0 is refused where a number must be above it.
+pub(crate) fn every_float_near_zero_is_zero(tried: &mut Tried) {
+    for (name, i, put, _) in components() {
+        let shown = |value: f32| {
+            let (mut scene, mut vga) = (with_a_lamp(), Vga::new());
+            scene.objects_mut()[0].angles = [0.5, 0.7, 0.1].map(Angle::from_radians);
+            put(&mut scene, value, i);
+            let drawn = Renderer::new().draw(&scene, &mut vga);
+            drawn.map(|_| (vga.pixels().to_vec(), vga.palette())).map_err(|error| error.to_string())
+        };
+        let with_zero = shown(0.0);
+        for tiny in NEXT_TO_ZERO {
+            let shown = shown(tiny);
+            let is_other = tiny != 0.0 && NOT_ZERO.iter().any(|(other, _)| *other == name);
+            let is_right = match (&shown, &with_zero) {
+                (Ok(_), Ok(_)) => shown == with_zero || is_other,
+                (Err(text), Ok(_)) => tiny < 0.0 && text.contains("must not be negative"),
+                (Ok(_), Err(text)) => {
+                    let above = ["must be above 0", "must lie between 0", "it looks at the point where it is"];
+                    tiny != 0.0 && above.iter().any(|why| text.contains(why))
+                }
+                (Err(_), Err(_)) => shown == with_zero,
+            };
+            let said = |shown: &Result<_, String>| shown.as_ref().map_or_else(String::clone, |_| "a picture".into());
+            assert!(is_right, "{name} [{i}] is {tiny:e}: {}; with 0: {}", said(&shown), said(&with_zero));
+            tried.add(1);
         }
     }
 }
