@@ -8,12 +8,12 @@ use core::fmt;
 use crate::support::shipped;
 use crate::support::tried::Tried;
 use mode13h::Angle;
-use mode13h::glam::Vec3;
+use mode13h::glam::{Mat3, Vec3};
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::render::{Accuracy, Renderer};
-use mode13h::scene::{Object, Scene};
+use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
@@ -45,10 +45,12 @@ enum Kind {
     Several,
     /// Everything.
     Mixed,
+    /// Everything, moved, turned and grown as one, on a body that hangs from another.
+    Placed,
 }
 
 impl Kind {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::CloseLamp,
         Self::CutInside,
         Self::CloseEye,
@@ -58,6 +60,7 @@ impl Kind {
         Self::Telephoto,
         Self::Several,
         Self::Mixed,
+        Self::Placed,
     ];
 }
 
@@ -175,7 +178,7 @@ fn with_materials(object: &Object, genes: &mut Genes) -> Object {
 /// A scene of a kind.
 fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     genes.next = 0;
-    let mixed = kind == Kind::Mixed;
+    let mixed = matches!(kind, Kind::Mixed | Kind::Placed);
     let is = |of: Kind| kind == of;
     let sphere = |genes: &mut Genes| (shapes::sphere(genes.log(16.0, 70.0) as u32, genes.log(8.0, 35.0) as u32), 0.1);
     let flat = is(Kind::CloseLamp) || is(Kind::CutInside) || is(Kind::DimLamp);
@@ -227,7 +230,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     let mirrored = normal * (2.0 * normal.dot(to_eye)) - to_eye;
     let lights = match kind {
         Kind::Several | Kind::Colors | Kind::Telephoto => genes.between(2.0, 5.0) as usize,
-        Kind::Mixed => genes.between(1.0, 5.0) as usize,
+        Kind::Mixed | Kind::Placed => genes.between(1.0, 5.0) as usize,
         _ => 1,
     };
     for i in 0..lights {
@@ -261,7 +264,43 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     }
     let several = (mixed || is(Kind::Several)) && genes.chance(0.5);
     scene.add(if several { with_materials(&object, genes) } else { object });
-    scene
+    if is(Kind::Placed) { placed(&scene, edge, genes) } else { scene }
+}
+
+/// The scene moved, turned and grown as one: its body hangs from another, which gives it its turn and place.
+fn placed(scene: &Scene, edge: f32, genes: &mut Genes) -> Scene {
+    let angles = [0.0; 3].map(|_| genes.between(0.0, core::f64::consts::TAU));
+    let [x, y, z] = angles.map(|angle| angle as f32);
+    let turn = Mat3::from_rotation_x(x) * Mat3::from_rotation_y(y) * Mat3::from_rotation_z(z);
+    let grown = genes.log(1e-3, 1e3) as f32;
+    let place = genes.vector() * genes.log(0.1, 1e4) as f32 * edge * grown;
+    let put = |at: Vec3| place + grown * (turn * at);
+    let mut moved = Scene::new();
+    moved.ambient = genes.between(0.0, 1.5) as f32;
+    moved.palette = scene.palette.clone();
+    moved.camera = Camera { eye: put(scene.camera.eye), target: put(scene.camera.target), ..scene.camera };
+    moved.camera.near = grown * scene.camera.near;
+    let mut carrier = Object::new(shapes::cone(genes.log(3.0, 40.0) as u32, 1));
+    (carrier.position, carrier.scale) = (place, grown);
+    carrier.angles = angles.map(Angle::from_radians);
+    carrier.materials[0].highlight = colored(genes, 0.0);
+    let carrier = moved.add(carrier);
+    for object in scene.objects() {
+        let mut object = object.clone();
+        object.parent = Some(carrier);
+        moved.add(object);
+    }
+    for light in scene.lights() {
+        let light = match *light {
+            Light::Sun { direction, .. } => Light::sun(turn * direction),
+            Light::Lamp { position, range, .. } => Light::lamp(put(position), grown * range),
+            _ => continue,
+        }
+        .with_intensity(light.intensity())
+        .with_color(light.color());
+        moved.add_light(light);
+    }
+    moved
 }
 
 fn look(renderer: Renderer, scene: &Scene, screen: Screen) -> Shown {
@@ -375,6 +414,7 @@ holes! {
     no_pixel_is_beyond_through_a_telephoto_lens: Telephoto, 33;
     no_pixel_is_beyond_in_several_lights: Several, 60;
     no_pixel_is_beyond_in_mixed_scenes: Mixed, 40;
+    no_pixel_is_beyond_wherever_a_scene_is_placed: Placed, 60;
 }
 
 /// Near planes as near as the plan says that they may be, and up to 16 times as far: the promise holds from there on.
