@@ -12,10 +12,11 @@
 //!
 //! **Upright.** A closed mesh looks everywhere, so its faces' area vectors add up to nothing; those of a sheet add up to
 //! what it shows from its front. A sheet that looks along z is terrain or a floor with z up: with y up it would stand on
-//! edge.
+//! edge. One that looks along x is turned to show its front at first, where it would be seen edge on.
 
 use core::ops::Range;
 
+use crate::angle::Angle;
 use crate::auto_palette;
 use crate::light::Light;
 use crate::mesh::Mesh;
@@ -46,10 +47,12 @@ const GLARING: u8 = 43;
 /// Those of [`Renderer::draw`](crate::render::Renderer::draw).
 #[doc(hidden)]
 pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderError> {
-    object.up_axis = up.unwrap_or_else(|| upright(object.mesh()));
+    let facing = facing(object.mesh());
+    object.up_axis = up.unwrap_or(if facing[2] == 0.0 { UpAxis::Y } else { UpAxis::Z });
+    let turn = Angle::from_degrees(-90.0 * facing[0]);
     expose(&mut object);
     let has_colors = object.has_colors();
-    let mut scene = Scene::showing_tilted(object, |object| framing::tilt(object, Scene::TILT));
+    let mut scene = Scene::showing_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
     scene.clear_lights();
     // Two lights at right angles add up to the length of (key, fill) where both fall fullest.
     let key = 1.0 / libm::sqrtf(1.0 + FILL_SHARE * FILL_SHARE);
@@ -87,8 +90,8 @@ fn background(seen: &[(Rgb, f32)], has_colors: bool) -> Rgb {
     tried.map(|color| (color, closeness(color))).fold(best, |best, next| if next.1 < best.1 { next } else { best }).0
 }
 
-/// The axis of a mesh that points up.
-fn upright(mesh: &Mesh) -> UpAxis {
+/// The direction of the axis that a sheet looks along: 1 or -1 on it, and 0 on the others. 0 on all for what looks everywhere.
+fn facing(mesh: &Mesh) -> [f64; 3] {
     let (mut sum, mut all) = ([0.0; 3], 0.0);
     for corners in mesh.triangles() {
         let [a, b, c] = corners.map(|i| framing::widen(mesh.positions()[i as usize]));
@@ -97,7 +100,7 @@ fn upright(mesh: &Mesh) -> UpAxis {
         all += libm::sqrt(framing::dot(area, area));
         sum.iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
     }
-    if sum[2].abs() > all / 2.0 { UpAxis::Z } else { UpAxis::Y }
+    sum.map(|sum: f64| if sum.abs() > all / 2.0 { sum.signum() } else { 0.0 })
 }
 
 #[cfg(test)]

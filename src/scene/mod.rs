@@ -142,14 +142,16 @@ impl Scene {
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {
-        Self::showing_tilted(object.into(), |_| Self::TILT)
+        Self::showing_turned(object.into(), |_| [Self::TILT, Angle::default()])
     }
 
-    /// Makes a scene that [shows](Self::showing) an object tilted otherwise. `tilt` is given the object in its place.
-    pub(crate) fn showing_tilted(object: Object, tilt: impl FnOnce(&Object) -> Angle) -> Self {
+    /// Makes a scene that [shows](Self::showing) an object at other angles about x and y at first. `angles` is given the object
+    /// in its place.
+    pub(crate) fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
         let mut object = object.centred();
         object.position = Vec3::ZERO;
-        object.angles = [tilt(&object), Angle::default(), Angle::default()];
+        let [tilt, turn] = angles(&object);
+        object.angles = [tilt, turn, Angle::default()];
         let mut scene = Self::new();
         scene.camera = Camera::framing_turn(&object);
         let start = object.angles;

@@ -214,6 +214,24 @@ fn a_sheet_on_its_back_is_seen_from_all_sides() {
     assert_eq!(shown(of_color(sheet(), [0.8; 3]), Some(UpAxis::Y)).objects()[0].up_axis, UpAxis::Y);
 }
 
+/// A sheet that looks along x shows its front at first, and is not seen edge on.
+#[test]
+fn a_sheet_that_looks_sideways_shows_its_front() {
+    // A turn of the axes, so the front stays the front: it looks along x.
+    let sheet = sheet();
+    let positions = sheet.positions().iter().map(|p| Vec3::new(p.z, p.x, p.y)).collect();
+    let sideways = Mesh::new(positions, sheet.triangles().to_vec()).expect("a mesh");
+    for (mesh, front) in [(sideways.clone(), Vec3::X), (flipped(sideways), -Vec3::X)] {
+        let scene = studio(Object::new(mesh), None).expect("a model");
+        let object = &scene.objects()[0];
+        // But for the tilt it looks towards the eye.
+        let Vec3 { x, z, .. } = object.rotation() * front;
+        assert!(x.abs() < 1e-6 && z > 0.0, "{front}: {x} {z}");
+        let covered = pixels(&scene).iter().flatten().count();
+        assert!(covered > WIDTH * HEIGHT / 4, "{front}: {covered}");
+    }
+}
+
 /// The other side out.
 fn flipped(mesh: Mesh) -> Mesh {
     let triangles = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
