@@ -10,7 +10,7 @@
 use mode13h::lanes::{LANES, Points};
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::depth::{copy_before, copy_nearer};
-use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered, fill_dithered_portable};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
@@ -39,12 +39,12 @@ struct Memory {
 
 type Draw = fn(&mut Memory, start: usize, length: usize);
 
-type Fill = fn(&mut [u8], u16, u16, &[u8; 8], usize);
+type Fill = fn(&mut [u8], u16, u16, &ThresholdRow, usize);
 type Affine = fn(&mut [u8], Texels<'_>, u32, u32, u32, u32);
 type Perspective = fn(&mut [u8], Texels<'_>, [i128; 2], [i128; 2], i128, i128);
 type Lookup = fn(&mut [u8], &[u8], &[u8; 65_536]);
-type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize);
-type MixNearest = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize, u8, &[u8; 32_768]);
+type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize);
+type MixNearest = fn(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize, u8, &[u8; 32_768]);
 type Nearer = fn(&mut [u8], &mut [u32], &[u8], i64, i64) -> u32;
 type Before = fn(&mut [u8], &[u32], &[u8], i64, i64) -> u32;
 type Quotients = fn(&mut [u8], i128, i128, i128, i128);
@@ -72,7 +72,16 @@ const LOOPS: [(&str, Draw); 16] = [
     ("mix_cube", |m, start, n| cube(mix_cube, m, start, n)),
     ("mix_nearest", |m, start, n| {
         let [r, g, b] = m.channels.each_ref().map(|channel| &channel[start..start + n]);
-        black_box(mix_nearest as MixNearest)(&mut m.row[start..start + n], r, g, b, &BAYER[3], start, 32, &m.map);
+        black_box(mix_nearest as MixNearest)(
+            &mut m.row[start..start + n],
+            r,
+            g,
+            b,
+            DitherPattern::Ordered.thresholds().row(3),
+            start,
+            32,
+            &m.map,
+        );
     }),
     ("copy_nearer", |m, start, n| {
         let (depth, bytes) = (&mut m.depth[start..start + n], &m.channels[0][start..start + n]);
@@ -98,12 +107,12 @@ const LOOPS: [(&str, Draw); 16] = [
 ];
 
 fn dither(fill: Fill, memory: &mut Memory, start: usize, n: usize) {
-    black_box(fill)(&mut memory.row[start..start + n], 0x1234, 0x56, &BAYER[3], start);
+    black_box(fill)(&mut memory.row[start..start + n], 0x1234, 0x56, DitherPattern::Ordered.thresholds().row(3), start);
 }
 
 fn cube(mix: MixCube, memory: &mut Memory, start: usize, n: usize) {
     let [r, g, b] = memory.channels.each_ref().map(|channel| &channel[start..start + n]);
-    black_box(mix)(&mut memory.row[start..start + n], r, g, b, &BAYER[3], start);
+    black_box(mix)(&mut memory.row[start..start + n], r, g, b, DitherPattern::Ordered.thresholds().row(3), start);
 }
 
 fn texels(texture: &[u8]) -> Texels<'_> {

@@ -12,7 +12,7 @@ use mode13h::glam::Vec3;
 use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, VertexPath};
-use mode13h::scene::{Scene, UpAxis};
+use mode13h::scene::{DitherPattern, Scene, UpAxis};
 use mode13h::span::Kernel;
 
 use crate::failure::Failure;
@@ -100,11 +100,16 @@ struct Pipeline {
     /// [default: the scene's, otherwise no face is split]
     #[arg(long, value_name = "N", value_parser = shades)]
     tessellation: Option<f32>,
-    /// Show shades between two entries as a pattern of both
-    ///
-    /// [default: as the scene says]
-    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1, default_missing_value = "on")]
-    dither: Option<bool>,
+    #[arg(
+        long,
+        value_name = "on|off|PATTERN",
+        value_parser = dither,
+        num_args = 0..=1,
+        default_missing_value = "on",
+        help = "Show shades between two entries as a pattern of both",
+        long_help = long_help_on_dither(),
+    )]
+    dither: Option<Dither>,
     #[arg(
         long,
         value_name = "NAME",
@@ -230,7 +235,7 @@ impl Drawing {
         if let Some(background) = self.background {
             stage.set_background(background);
         }
-        if let Some(dither) = self.pipeline.dither {
+        if let Some(Dither(dither)) = self.pipeline.dither {
             stage.set_dither(dither);
         }
         if let Some(shades) = self.pipeline.tessellation {
@@ -348,6 +353,21 @@ fn switch(words: &str) -> Result<bool, String> {
     }
 }
 
+/// A pattern of dither, or none.
+#[derive(Clone, Copy)]
+struct Dither(Option<DitherPattern>);
+
+fn dither(words: &str) -> Result<Dither, String> {
+    match words {
+        "on" => Ok(Dither(Some(DitherPattern::default()))),
+        "off" => Ok(Dither(None)),
+        _ => words.parse().map(|pattern| Dither(Some(pattern))).map_err(|_| {
+            let names = DitherPattern::ALL.map(DitherPattern::name).join(", ");
+            format!("none of on, off, {names}; an INPUT stands before this option, or behind its =on")
+        }),
+    }
+}
+
 /// An angle between faces on the command line, in degrees.
 pub(crate) fn crease(words: &str) -> Result<Angle, String> {
     match words.parse::<f32>() {
@@ -366,6 +386,14 @@ pub(crate) fn shades(words: &str) -> Result<f32, String> {
 
 fn long_help_on_names(what: &str, names: &[&str]) -> String {
     format!("{what}: {}\n\n[default: as the scene calls for]", names.join(", "))
+}
+
+fn long_help_on_dither() -> String {
+    format!(
+        "Show shades between two entries as a pattern of both: off, {}. `on` is {}.\n\n[default: as the scene says]",
+        DitherPattern::ALL.map(DitherPattern::name).join(", "),
+        DitherPattern::default()
+    )
 }
 
 fn long_help_on_arithmetic() -> String {

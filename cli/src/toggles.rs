@@ -3,12 +3,15 @@
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::palette::{Palette, Rgb};
-use mode13h::plan::Effect;
+use mode13h::plan::{Choice, Decision, Effect, Plan};
 use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::{Fog, Object, Scene};
+use mode13h::scene::{DitherPattern, Fog, Object, Scene};
 use mode13h::window::Key;
 
 use crate::turntable::Turntable;
+
+/// The state of what is not drawn.
+const OFF: &str = "off";
 
 /// Switches of the keys.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -23,6 +26,9 @@ impl Switch {
     pub(crate) const KEYS: [(Key, Switch); 4] =
         [(Key::L, Switch::Lights), (Key::O, Switch::Fog), (Key::T, Switch::Texture), (Key::D, Switch::Dither)];
 
+    /// The most states that a switch has: dither is off, or in one of the patterns.
+    pub(crate) const MAX_STATES: usize = 1 + DitherPattern::ALL.len();
+
     fn effects(self) -> &'static [Effect] {
         match self {
             Switch::Lights => &[Effect::Lighting],
@@ -32,30 +38,40 @@ impl Switch {
         }
     }
 
-    /// Returns whether the last frame had it anywhere.
-    pub(crate) fn is_on(self, renderer: &Renderer) -> bool {
-        self.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect))
+    /// What the last frame had of it: "off", "on", or for dither the pattern's name.
+    pub(crate) fn state(self, renderer: &Renderer) -> &'static str {
+        let plan = renderer.plan();
+        let pattern = (self == Switch::Dither).then(|| dither(plan)).flatten();
+        match (pattern, self.effects().iter().any(|effect| plan.is_on_anywhere(*effect))) {
+            (_, false) => OFF,
+            (Some(pattern), true) => pattern.name(),
+            (None, true) => "on",
+        }
     }
 
     /// Outcome of switching it, in words.
-    pub(crate) fn outcome(self, was_on: bool, is_on: bool) -> String {
+    pub(crate) fn outcome(self, was: &str, is: &str) -> String {
         let name = match self {
             Switch::Lights => "lights",
             Switch::Fog => "fog",
             Switch::Texture => "texture",
             Switch::Dither => "dither",
         };
-        match (was_on, is_on) {
-            (false, false) => format!("no {name} here"),
-            (_, true) => format!("{name} on"),
-            (true, false) => format!("{name} off"),
-        }
+        if (was, is) == (OFF, OFF) { format!("no {name} here") } else { format!("{name} {is}") }
     }
 
     /// Switches off what was on in the frame before: images by taking them away, the rest by force. Else leaves it to
-    /// the plan, which has it on if the scene calls for it, and sees to it that the scene does.
+    /// the plan, which has it on if the scene calls for it, and sees to it that the scene does. Dither goes through the
+    /// patterns before it is off.
     pub(crate) fn turn(self, stage: &mut Turntable, renderer: &mut Renderer) -> Result<(), RenderError> {
-        let was_on = self.is_on(renderer);
+        let was_on = self.state(renderer) != OFF;
+        if self == Switch::Dither {
+            let shown = dither(renderer.plan());
+            let next = DitherPattern::ALL.into_iter().find(|pattern| shown.is_none_or(|shown| *pattern > shown));
+            stage.scene.preferences.dither = next;
+            renderer.force(Effect::Dither, next.is_none().then_some(false));
+            return Ok(());
+        }
         if self == Switch::Texture {
             return stage.set_images(!was_on);
         }
@@ -65,11 +81,18 @@ impl Switch {
         match self {
             Switch::Lights if !was_on => light(&mut stage.scene),
             Switch::Fog if !was_on => fog(&mut stage.scene),
-            Switch::Dither => stage.scene.preferences.dither = !was_on,
             _ => {}
         }
         Ok(())
     }
+}
+
+/// The pattern in which a frame is dithered.
+fn dither(plan: &Plan) -> Option<DitherPattern> {
+    plan.objects().iter().find_map(|object| match object[Effect::Dither] {
+        Decision { on: true, choice: Choice::Dither(pattern), .. } => Some(pattern),
+        _ => None,
+    })
 }
 
 /// A scene in the dark gets a sun.
@@ -136,12 +159,12 @@ mod tests {
                 let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                 let mut draw = |scene: &Scene, renderer: &mut Renderer| {
                     renderer.draw(scene, &mut vga).expect("a legal scene");
-                    let on = switch.effects().iter().any(|effect| renderer.plan().is_on_anywhere(*effect));
-                    (on, vga.pixels().to_vec())
+                    (switch.state(renderer), vga.pixels().to_vec())
                 };
                 let (at_first, picture) = draw(&stage.scene, &mut renderer);
                 let mut was = (at_first, picture.clone());
-                for turn in 0..4 {
+                // Off and on twice; dither has two patterns.
+                for turn in 0..if switch == Switch::Dither { 6 } else { 4 } {
                     switch.turn(&mut stage, &mut renderer).expect("a legal scene");
                     let is = draw(&stage.scene, &mut renderer);
                     if (name, switch) == ("phong-table", Switch::Dither) {
@@ -170,7 +193,7 @@ mod tests {
         for colors in [Colors::Auto, cube.into()] {
             let mut stage = Turntable::of_model(shapes::cube(), None, std::slice::from_ref(&texture)).expect("a model");
             stage.set_colors(&colors).expect("a legal scene");
-            stage.scene.preferences.dither = false;
+            stage.scene.preferences.dither = None;
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
             let mut draw = |stage: &Turntable, renderer: &mut Renderer| {
                 renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
@@ -179,14 +202,14 @@ mod tests {
             };
             let with = draw(&stage, &mut renderer);
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.preferences.dither = false;
+            stage.scene.preferences.dither = None;
             let without = draw(&stage, &mut renderer);
             // White in white light: greys, or what is nearest to them.
             let is_grey = |color: Rgb| color.r.abs_diff(color.g).max(color.g.abs_diff(color.b)) < 24;
             assert!(without.iter().all(|color| is_grey(*color)), "{colors:?}");
             assert!(without != with && without.iter().any(|color| color.brightness() > 100_000), "{colors:?}");
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.preferences.dither = false;
+            stage.scene.preferences.dither = None;
             assert!(draw(&stage, &mut renderer) == with, "{colors:?}: the image comes back");
         }
     }

@@ -8,7 +8,7 @@ use mode13h::mesh::Mesh;
 use mode13h::model::{studio, with_textures};
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
-use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
+use mode13h::scene::{Camera, DitherPattern, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 /// Colours of the frame's bytes.
@@ -68,10 +68,10 @@ pub(crate) struct Turntable {
     has_images: bool,
     /// The palette whose ramps they name.
     palette: Option<Palette>,
-    /// True if the scene asks for dither, whatever the palette.
-    dithers: bool,
-    /// Dither on or off, whatever the scene and the palette, if that was asked for.
-    dither: Option<bool>,
+    /// Dither that the scene asks for, whatever the palette.
+    own_dither: Option<DitherPattern>,
+    /// Dither or none, whatever the scene and the palette, if that was asked for.
+    dither: Option<Option<DitherPattern>>,
     /// Made when first asked for.
     automatic: Option<AutomaticPalette>,
     /// Colours that were chosen last.
@@ -110,7 +110,7 @@ impl Turntable {
 
     fn new(scene: Scene, shown: Shown) -> Turntable {
         let materials = scene.objects().iter().map(|object| object.materials.clone()).collect();
-        let (camera, palette, dithers) = (scene.camera, scene.palette.clone(), scene.preferences.dither);
+        let (camera, palette, own_dither) = (scene.camera, scene.palette.clone(), scene.preferences.dither);
         Turntable {
             scene,
             shown,
@@ -120,7 +120,7 @@ impl Turntable {
             materials,
             has_images: true,
             palette,
-            dithers,
+            own_dither,
             dither: None,
             automatic: None,
             colors: None,
@@ -198,8 +198,8 @@ impl Turntable {
         };
     }
 
-    /// Sets dither on or off, from the next [`set_colors`](Self::set_colors) on.
-    pub(crate) fn set_dither(&mut self, dither: bool) {
+    /// Sets the dither, from the next [`set_colors`](Self::set_colors) on.
+    pub(crate) fn set_dither(&mut self, dither: Option<DitherPattern>) {
         self.dither = Some(dither);
     }
 
@@ -246,19 +246,21 @@ impl Turntable {
     /// objects are drawn in the nearest entries to their own colours, with dither, as no palette for everything has many
     /// shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
-        let mut dithers = self.dithers;
+        let mut dither = self.own_dither;
         let shown = self.materials_shown();
         let has_no_ramps = matches!(colors, Colors::Palette(palette) if palette.ramps() == 0);
         for (object, shown) in self.scene.objects_mut().iter_mut().zip(shown) {
             object.materials = shown;
             if has_no_ramps {
                 let named = |material: &Material| matches!(material.ramp, RampChoice::Number(_));
-                dithers |= object.materials.iter().any(named);
+                if object.materials.iter().any(named) {
+                    dither.get_or_insert_default();
+                }
                 let shown = object.materials.iter().zip(object.mesh().surfaces());
                 object.materials = shown.map(|(material, surface)| material.in_own_colors(surface)).collect();
             }
         }
-        self.scene.preferences.dither = self.dither.unwrap_or(dithers);
+        self.scene.preferences.dither = self.dither.unwrap_or(dither);
         self.scene.preferences.auto_palette = false;
         match colors {
             Colors::Palette(palette) => {

@@ -78,7 +78,7 @@ impl Picture {
         scene.fog = None;
         scene.background = 0;
         scene.background_color = None;
-        scene.preferences = Preferences { dither: false, ..scene.preferences };
+        scene.preferences = Preferences { dither: None, ..scene.preferences };
         let materials = scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials);
         for (number, material) in materials.enumerate() {
             (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);

@@ -6,7 +6,7 @@ use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, VertexStage}
 use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
-use crate::scene::{HiddenSurfaces, Mapping, Object, Scene, Shading};
+use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Object, Scene, Shading};
 use crate::view::{ObjectView, ScreenBounds};
 
 /// The max error of an affine mapping, in texels: half of one.
@@ -30,8 +30,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) max_error: Option<f32>,
     /// Faces are to be split.
     pub(crate) tessellates: bool,
-    /// Shades between two entries are to be shown as a pattern of both.
-    pub(crate) dithers: bool,
+    /// Shades between two entries are to be shown in this pattern of both.
+    pub(crate) dither: Option<DitherPattern>,
     pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
     pub(crate) mapping: Option<Mapping>,
     pub(crate) mipmaps: Option<bool>,
@@ -186,10 +186,10 @@ impl Rules<'_> {
                 true => Lamps::InRange,
             },
             mapping: mapping(plan),
-            dither: match is_on(Effect::Dither) {
-                false => Dither::None,
-                true if forced(Effect::Dither) && !self.inputs.dithers => Dither::Neutral,
-                true => Dither::Ordered,
+            dither: match plan[Effect::Dither] {
+                Decision { on: false, .. } => Dither::None,
+                Decision { choice: Choice::Dither(pattern), .. } => Dither::By(pattern),
+                _ => Dither::Neutral,
             },
             neutral_image: forced(Effect::Texture) || forced(Effect::EnvironmentMap),
             neutral_blend: forced(Effect::Transparency),
@@ -459,19 +459,17 @@ impl Rules<'_> {
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
-        if !self.inputs.dithers {
+        let Some(pattern) = self.inputs.dither else {
             // Few palettes without ramps have many shades of one colour.
             if before.is_on(Effect::RgbChannels) && self.misses_ramp() {
-                return Decision::on(Reason::NoRamps).choosing(Choice::Ordered8x8);
+                return Decision::on(Reason::NoRamps).choosing(Choice::Dither(DitherPattern::default()));
             }
-            Decision::off(Reason::NotAsked)
-        } else if before.is_on(Effect::Phong)
-            && self.shading == Shading::PhongTable
-            && !before.is_on(Effect::RgbChannels)
-        {
+            return Decision::off(Reason::NotAsked);
+        };
+        if before.is_on(Effect::Phong) && self.shading == Shading::PhongTable && !before.is_on(Effect::RgbChannels) {
             Decision::off(Reason::WholeShades)
         } else {
-            Decision::on(Reason::Asked).choosing(Choice::Ordered8x8)
+            Decision::on(Reason::Asked).choosing(Choice::Dither(pattern))
         }
     }
 

@@ -1,6 +1,6 @@
 //! The stages that an object goes through, as values for the renderer. Words and reasons are for people alone.
 
-use crate::scene::{HiddenSurfaces, Mapping, Shading};
+use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 
 /// The way in which an effect is done, of several.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -21,8 +21,8 @@ pub enum Choice {
     LevelPerFace,
     /// Mipmaps: a level for each 16 pixels of a row.
     LevelPer16Pixels,
-    /// Dither by a matrix of 8 × 8 thresholds.
-    Ordered8x8,
+    /// Dither by this pattern.
+    Dither(DitherPattern),
 }
 
 impl Choice {
@@ -38,7 +38,7 @@ impl Choice {
             Self::Mapping(mapping) => mapping.name(),
             Self::LevelPerFace => "per face",
             Self::LevelPer16Pixels => "per 16 pixels",
-            Self::Ordered8x8 => "ordered 8 x 8",
+            Self::Dither(pattern) => pattern.name(),
         }
     }
 }
@@ -90,7 +90,7 @@ pub(crate) enum Lamps {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Dither {
     None,
-    Ordered,
+    By(DitherPattern),
     /// Thresholds that change nothing: by force.
     Neutral,
 }

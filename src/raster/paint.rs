@@ -15,9 +15,9 @@ use super::interpolation::Interpolation;
 use super::shade::{RESEED, ShadePlane};
 use super::vintage::{Ramp, VintageTriangle};
 #[cfg(feature = "alloc")]
-use crate::lanes::{LANES, Lanes, each};
+use crate::lanes::{LANES, each};
 #[cfg(feature = "alloc")]
-use crate::span::dither::fill_dithered;
+use crate::span::dither::{ThresholdRow, fill_dithered};
 use crate::span::fixed16::fill_16_16;
 #[cfg(feature = "alloc")]
 use crate::span::float;
@@ -169,7 +169,7 @@ impl RowShader {
 impl RowShader {
     /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the
     /// thresholds of the row take the place of the half.
-    pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&[u8; 8]>, kernel: Kernel) {
+    pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&ThresholdRow>, kernel: Kernel) {
         // A column.
         let column = x as usize;
         let linear = |piece: &mut [u8], column: usize, shade: u16, step: u16, half: u16| match dither {
@@ -234,19 +234,19 @@ impl RowShader {
 
 /// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
 #[cfg(feature = "alloc")]
-pub(super) fn to_bytes(shades: &[u16], thresholds: &[u8; 8], column: usize, bytes: &mut [u8]) {
-    // Eight by eight, so that the compiler makes vectors of it.
-    let from_column: Lanes<u16> = each!(k => u16::from(thresholds[(column + k) & 7]));
+pub(super) fn to_bytes(shades: &[u16], thresholds: &ThresholdRow, column: usize, bytes: &mut [u8]) {
     // A shade is at most 0xFF00.
-    let byte = |shade: u16, k: usize| (shade.wrapping_add(from_column[k]) >> 8) as u8;
+    let byte = |shade: u16, threshold: u8| (shade.wrapping_add(u16::from(threshold)) >> 8) as u8;
     let n = bytes.len().min(shades.len());
     let (eights, rest) = bytes[..n].as_chunks_mut::<LANES>();
     let (shades, rest_shades) = shades[..n].as_chunks::<LANES>();
     for (i, bytes) in eights.iter_mut().enumerate() {
-        *bytes = each!(k => byte(shades[i][k], k));
+        let thresholds = thresholds.next::<LANES>(column + i * LANES);
+        *bytes = each!(k => byte(shades[i][k], thresholds[k]));
     }
+    let first = column + eights.len() * LANES;
     for (k, to) in rest.iter_mut().enumerate() {
-        *to = byte(rest_shades[k], k);
+        *to = byte(rest_shades[k], thresholds.at(first + k));
     }
 }
 

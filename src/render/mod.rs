@@ -458,7 +458,7 @@ impl Renderer {
             shading: settings.accuracy.shading(),
             max_error: settings.accuracy.max_error(),
             tessellates: settings.tessellates,
-            dithers: settings.dither,
+            dither: settings.dither,
             hidden_surfaces: settings.hidden_surfaces,
             mapping: settings.mapping,
             mipmaps: settings.mipmaps,

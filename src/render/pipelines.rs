@@ -14,17 +14,11 @@ use crate::raster::DrawStats;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureMapping, TextureStage};
 use crate::scene::{Mapping, Scene, Shading};
 use crate::span::Kernel;
-use crate::span::dither::BAYER;
+use crate::span::dither::Thresholds;
 use crate::span::texture::Texels;
 
 /// One texel, for an image that changes nothing.
 const ONE_TEXEL: [u8; 1] = [0];
-
-/// Thresholds that are all a half: dither without amplitude.
-const NO_AMPLITUDE: [[u8; 8]; 8] = [[128; 8]; 8];
-
-/// Thresholds that are all zero: dither without amplitude, for shades that have no half added to them.
-const NO_THRESHOLD: [[u8; 8]; 8] = [[0; 8]; 8];
 
 /// The image of a surface, if one is on: its own, or what it mirrors.
 fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
@@ -158,9 +152,9 @@ impl Pipelines<'_> {
             dither: match dither {
                 Dither::Neutral => {
                     let cut = shading.interpolation().rounding() == 0 && channels.is_none();
-                    Some(if cut { &NO_THRESHOLD } else { &NO_AMPLITUDE })
+                    Some(if cut { Thresholds::ZEROS } else { Thresholds::HALVES })
                 }
-                Dither::Ordered => Some(&BAYER),
+                Dither::By(pattern) => Some(pattern.thresholds()),
                 Dither::None => None,
             },
             texture: texture_look,

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::VertexPath;
 use crate::plan::{Effect, Overrides};
-use crate::scene::{HiddenSurfaces, Mapping, Preferences, Shading};
+use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Preferences, Shading};
 use crate::span::Kernel;
 
 /// Accuracy of shades: one choice, so that a shading and a budget cannot both be set.
@@ -123,8 +123,8 @@ pub struct Resolved {
     pub tessellates: bool,
     /// Faces that are split are split until the shades on their edges are linear to so many shades.
     pub tolerance: f32,
-    /// True if shades between two entries of a ramp are shown as a pattern of both.
-    pub dither: bool,
+    /// The pattern in which shades between two entries of a ramp are shown.
+    pub dither: Option<DitherPattern>,
     /// The numbers that vertices are made in.
     pub vertex_path: VertexPath,
     /// True if vertices may be kept for the next frame.

@@ -38,6 +38,7 @@ use crate::light::Light;
 use crate::palette::{Palette, Rgb, builtin};
 pub use crate::shading::Shading;
 pub use crate::shared::Shared;
+pub use crate::span::dither::DitherPattern;
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
 pub use camera::Camera;

@@ -2,6 +2,7 @@
 
 use crate::names::named;
 use crate::shading::Shading;
+use crate::span::dither::DitherPattern;
 
 named! {
     /// The way to leave out hidden surfaces.
@@ -48,8 +49,8 @@ pub struct Preferences {
     /// The tessellation error, in shades of 1/255 of full intensity, above 0: faces are split until the shades on their
     /// edges are linear to this. [`Shading::GouraudTessellated`] uses one shade.
     pub tessellation: Option<f32>,
-    /// Shades between two entries of a ramp are shown as a pattern of both.
-    pub dither: bool,
+    /// Shades between two entries of a ramp are shown in this pattern of both.
+    pub dither: Option<DitherPattern>,
     /// The max error of shades, in 1/255 of full intensity; above 0. Each triangle then gets the cheapest shading that
     /// is known to keep within, whatever `shading` says.
     pub max_error: Option<f32>,

@@ -3,6 +3,7 @@
 //! Each loop writes as many pixels as the shortest of its rows has. `thresholds` and `x` are as in
 //! [`dither`](super::dither): 0 to 255 by the pixel's place in the frame.
 
+use super::dither::ThresholdRow;
 use crate::palette::{cube, dac6_to_8};
 
 /// The six levels of a channel in the colour cube: 0, 52, 101, 154, 203, 255.
@@ -61,7 +62,7 @@ static BETWEEN: [Between; 256] = {
 /// [`nearest_mixture`](crate::palette::cube::nearest_mixture); at 127 it is the same, but of two equally
 /// near (26 and 229 are the only such values) the higher.
 #[inline(never)]
-pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
+pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &ThresholdRow, x: usize) {
     #[cfg(feature = "simd")]
     blocks::mix_cube(row, red, green, blue, thresholds, x);
     #[cfg(not(feature = "simd"))]
@@ -69,11 +70,11 @@ pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], threshold
 }
 
 /// The specification of [`mix_cube`].
-pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
+pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &ThresholdRow, x: usize) {
     let n = row.len().min(red.len()).min(green.len()).min(blue.len());
     let (row, red, green, blue) = (&mut row[..n], &red[..n], &green[..n], &blue[..n]);
     for (k, pixel) in row.iter_mut().enumerate() {
-        let threshold = thresholds[x.wrapping_add(k) % 8];
+        let threshold = thresholds.at(x.wrapping_add(k));
         let level = |value: u8| {
             let between = BETWEEN[usize::from(value)];
             between.level + u8::from(threshold < between.next_below)
@@ -86,9 +87,9 @@ pub fn mix_cube_portable(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], 
 /// Plain arrays that the compiler vectorises.
 #[cfg(feature = "simd")]
 mod blocks {
-    use super::{LEVELS, mix_cube_portable};
+    use super::{LEVELS, ThresholdRow, mix_cube_portable};
 
-    /// Pixels a turn: the thresholds twice.
+    /// Pixels per iteration.
     const BLOCK: usize = 16;
 
     /// The mixture without a table: a value's level is the number of switches that it has passed.
@@ -100,34 +101,27 @@ mod blocks {
     ///
     /// 256·(c − a) > t·(b − a) says the same as c > switch, c being whole. Switch i lies at or above a and
     /// below b, so a value has passed those of the levels below its own, and none of those above.
-    pub(super) fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &[u8; 8], x: usize) {
-        if row.len() < BLOCK {
-            return mix_cube_portable(row, red, green, blue, thresholds, x);
-        }
+    pub(super) fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &ThresholdRow, x: usize) {
         let n = row.len().min(red.len()).min(green.len()).min(blue.len());
-        // Those of the row's pixels 0 to 7: turned by x mod 8 places.
-        let thresholds = u64::from_le_bytes(*thresholds).rotate_right(8 * (x % 8) as u32).to_le_bytes();
-        let switches = [0, 1, 2, 3, 4].map(|i| {
-            let (a, b) = (LEVELS[i], LEVELS[i + 1]);
-            // The shifted product is below b − a.
-            let switches = thresholds.map(|t| a + ((u16::from(t) * u16::from(b - a)) >> 8) as u8);
-            core::array::from_fn(|k| switches[k % 8])
-        });
         let (blocks, rest) = row[..n].as_chunks_mut::<BLOCK>();
         let (red, rest_red) = red[..n].as_chunks::<BLOCK>();
         let (green, rest_green) = green[..n].as_chunks::<BLOCK>();
         let (blue, rest_blue) = blue[..n].as_chunks::<BLOCK>();
+        let mut column = x;
         for (((block, red), green), blue) in blocks.iter_mut().zip(red).zip(green).zip(blue) {
-            *block = mixed(&switches, red, green, blue);
+            *block = mixed(&thresholds.next(column), red, green, blue);
+            column = column.wrapping_add(BLOCK);
         }
-        // A block is a multiple of 8, so the thresholds begin anew.
-        mix_cube_portable(rest, rest_red, rest_green, rest_blue, &thresholds, 0);
+        mix_cube_portable(rest, rest_red, rest_green, rest_blue, thresholds, column);
     }
 
     #[inline]
-    fn mixed(switches: &[[u8; BLOCK]; 5], red: &[u8; BLOCK], green: &[u8; BLOCK], blue: &[u8; BLOCK]) -> [u8; BLOCK] {
+    fn mixed(t: &[u8; BLOCK], red: &[u8; BLOCK], green: &[u8; BLOCK], blue: &[u8; BLOCK]) -> [u8; BLOCK] {
         let mut block = [0; BLOCK];
-        for switch in switches {
+        for levels in LEVELS.windows(2) {
+            let (a, b) = (levels[0], levels[1]);
+            // The shifted product is below b − a.
+            let switch = t.map(|t| a + ((u16::from(t) * u16::from(b - a)) >> 8) as u8);
             for (k, pixel) in block.iter_mut().enumerate() {
                 let passed = |channel: &[u8; BLOCK], by: u8| if channel[k] > switch[k] { by } else { 0 };
                 *pixel += passed(red, 36) + passed(green, 6) + passed(blue, 1);
@@ -157,7 +151,7 @@ pub fn mix_nearest(
     red: &[u8],
     green: &[u8],
     blue: &[u8],
-    thresholds: &[u8; 8],
+    thresholds: &ThresholdRow,
     x: usize,
     spread: u8,
     map: &[u8; 32_768],
@@ -165,7 +159,7 @@ pub fn mix_nearest(
     let n = row.len().min(red.len()).min(green.len()).min(blue.len());
     let (row, red, green, blue) = (&mut row[..n], &red[..n], &green[..n], &blue[..n]);
     for (k, pixel) in row.iter_mut().enumerate() {
-        let threshold = i32::from(thresholds[x.wrapping_add(k) % 8]);
+        let threshold = i32::from(thresholds.at(x.wrapping_add(k)));
         let offset = ((threshold * i32::from(spread)) >> 8) - i32::from(spread / 2);
         // 0 to 31.
         let five_bits = |value: u8| ((i32::from(value) + offset).clamp(0, 255) >> 3) as usize;

@@ -1,15 +1,107 @@
-//! The span with ordered dither: at each pixel another threshold takes the place of the half.
+//! Dither: at each pixel a threshold takes the place of the half that is otherwise added to a shade.
 //!
 //! ```text
-//! row[k] = ((shade + k·step + thresholds[(x + k) mod 8]) mod 65,536) >> 8
+//! row[k] = ((shade + k·step + thresholds.at(x + k)) mod 65,536) >> 8
 //! ```
 //!
-//! A shade that is rounded to the nearest has a half (128) added to it; here the number added is 0 to
-//! 255 by the pixel's place, so that of many pixels of a shade between two bytes as many take the upper
-//! one as it is near to it.
+//! Rounding to nearest adds a half (128); dither adds 0 to 255, depending on the pixel's position, so that the share of
+//! pixels that take the upper of two bytes is the shade's fraction.
 
-/// Thresholds by row and column, `BAYER[y % 8][x % 8]`: Bayer's matrix (B. E. Bayer, *An optimum method
-/// for two-level rendition of continuous-tone pictures*, 1973), its ranks spread evenly over 0 to 255.
+use crate::names::named;
+
+named! {
+    /// A pattern of thresholds.
+    #[derive(Default)]
+    pub enum DitherPattern, "dither pattern" {
+        /// Bayer's 8 × 8 matrix: a regular weave.
+        #[default]
+        Ordered = "ordered",
+        /// A 64 × 64 void-and-cluster mask: grain without a visible pattern.
+        BlueNoise = "blue-noise",
+    }
+}
+
+impl DitherPattern {
+    /// The thresholds of the pattern.
+    #[must_use]
+    pub const fn thresholds(self) -> Thresholds {
+        match self {
+            Self::Ordered => Thresholds(&BAYER),
+            Self::BlueNoise => Thresholds(&BLUE_NOISE),
+        }
+    }
+}
+
+/// Columns after which the thresholds of a row repeat.
+pub const PERIOD: usize = 64;
+
+/// The most neighbouring thresholds that [`ThresholdRow::next`] returns.
+const MAX_BLOCK: usize = 16;
+
+/// Thresholds for a row of the frame, [`PERIOD`] of them.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ThresholdRow(
+    /// The first ones again at the end, so that any [`MAX_BLOCK`] neighbours lie side by side.
+    [u8; PERIOD + MAX_BLOCK],
+);
+
+impl ThresholdRow {
+    /// A row that repeats `thresholds`, whose number divides [`PERIOD`].
+    #[must_use]
+    pub const fn new<const N: usize>(thresholds: &[u8; N]) -> Self {
+        const { assert!(PERIOD.is_multiple_of(N)) }
+        let mut row = [0; PERIOD + MAX_BLOCK];
+        let mut x = 0;
+        while x < row.len() {
+            row[x] = thresholds[x % N];
+            x += 1;
+        }
+        Self(row)
+    }
+
+    /// The threshold of a column of the frame.
+    #[inline]
+    #[must_use]
+    pub const fn at(&self, column: usize) -> u8 {
+        self.0[column % PERIOD]
+    }
+
+    /// The thresholds of `N` columns, `column` first.
+    #[cfg(any(feature = "alloc", feature = "simd"))]
+    #[inline]
+    pub(crate) fn next<const N: usize>(&self, column: usize) -> [u8; N] {
+        const { assert!(N <= MAX_BLOCK) }
+        let first = column % PERIOD;
+        let mut next = [0; N];
+        next.copy_from_slice(&self.0[first..first + N]);
+        next
+    }
+}
+
+/// Thresholds for every pixel of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Thresholds(
+    /// Rows after which they repeat: a power of two.
+    &'static [ThresholdRow],
+);
+
+impl Thresholds {
+    /// A half everywhere: no dither.
+    pub const HALVES: Self = Self(&[ThresholdRow::new(&[128])]);
+
+    /// Zero everywhere: no dither, for shades that are to be truncated.
+    pub const ZEROS: Self = Self(&[ThresholdRow::new(&[0])]);
+
+    /// The thresholds of a row of the frame.
+    #[inline]
+    #[must_use]
+    pub const fn row(self, y: usize) -> &'static ThresholdRow {
+        &self.0[y & (self.0.len() - 1)]
+    }
+}
+
+/// Bayer's matrix (B. E. Bayer, *An optimum method for two-level rendition of continuous-tone pictures*, 1973), its
+/// ranks spread evenly over 0 to 255.
 ///
 /// ```text
 /// threshold = nearest((2·rank + 1) · 255 / 128)        rank 0 to 63
@@ -18,42 +110,62 @@
 /// That is the middle of the rank's 64th of 0 to 255. Ranks i and 63 − i have thresholds that add up to
 /// 255 (no product is half-way between two numbers), so the mean is exactly 127.5; thresholds of ranks
 /// that follow each other are 4 apart, and 3 (126 and 129) in the middle.
-pub const BAYER: [[u8; 8]; 8] = bayer();
-
-const fn bayer() -> [[u8; 8]; 8] {
-    let mut thresholds = [[0; 8]; 8];
-    let mut place = 0;
-    while place < 64 {
-        let (x, y) = (place % 8, place / 8);
-        // The ranks of 2 × 2 pixels are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square makes
-        // two bits more, the finest the highest.
-        let (mut rank, mut bit) = (0, 0);
-        while bit < 3 {
-            rank = rank * 4 + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1);
-            bit += 1;
+static BAYER: [ThresholdRow; 8] = {
+    let mut rows = [ThresholdRow::new(&[0]); 8];
+    let mut y = 0;
+    while y < 8 {
+        let mut thresholds = [0; 8];
+        let mut x = 0;
+        while x < 8 {
+            // The ranks of 2 × 2 pixels are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square makes
+            // two bits more, the finest the highest.
+            let (mut rank, mut bit) = (0, 0);
+            while bit < 3 {
+                rank = rank * 4 + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1);
+                bit += 1;
+            }
+            // At most 253.
+            thresholds[x] = (((2 * rank + 1) * 255 + 64) / 128) as u8;
+            x += 1;
         }
-        // At most 253.
-        thresholds[y][x] = (((2 * rank + 1) * 255 + 64) / 128) as u8;
-        place += 1;
+        rows[y] = ThresholdRow::new(&thresholds);
+        y += 1;
     }
-    thresholds
-}
+    rows
+};
+
+/// A mask by the void-and-cluster method (R. Ulichney, *The void-and-cluster method for dither array generation*, 1993):
+/// the pixels below any threshold are spread evenly, but without order. `tests/span/blue_noise.rs` generates the file.
+///
+/// ```text
+/// threshold = rank >> 4        rank 0 to 4,095
+/// ```
+static BLUE_NOISE: [ThresholdRow; 64] = {
+    let (thresholds, _) = include_bytes!("blue_noise.bin").as_chunks::<PERIOD>();
+    let mut rows = [ThresholdRow::new(&[0]); 64];
+    let mut y = 0;
+    while y < 64 {
+        rows[y] = ThresholdRow::new(&thresholds[y]);
+        y += 1;
+    }
+    rows
+};
 
 /// Fills `row` with the shades of a linear ramp, dithered, with the fastest loop of this build.
 ///
 /// `shade` and `step` are 8.8, without the half; the sum wraps. `thresholds` are those of the frame's
-/// row, a row of [`BAYER`] for one; `x` is the frame's column of `row[0]`, of which only the lower three
-/// bits count.
+/// row; `x` is the frame's column of `row[0]`.
 ///
 /// ```
-/// use mode13h::span::dither::{BAYER, fill_dithered};
+/// use mode13h::span::dither::{DitherPattern, fill_dithered};
 ///
 /// let mut row = [0; 8];
-/// fill_dithered(&mut row, 0x1080, 0, &BAYER[0], 0); // 16.5: half of them 16, half 17
+/// // 16.5: half of them 16, half 17
+/// fill_dithered(&mut row, 0x1080, 0, DitherPattern::Ordered.thresholds().row(0), 0);
 /// assert_eq!(row, [16, 17, 16, 17, 16, 17, 16, 17]);
 /// ```
 #[inline(never)]
-pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
+pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if row.len() >= 16 {
         return super::simd::sse2::fill_dithered(row, shade, step, thresholds, x);
@@ -62,11 +174,10 @@ pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8]
 }
 
 /// The specification of [`fill_dithered`].
-pub fn fill_dithered_portable(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
+pub fn fill_dithered_portable(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
     let mut ax = shade;
     for (k, pixel) in row.iter_mut().enumerate() {
-        let threshold = thresholds[x.wrapping_add(k) % 8];
-        let [ah, _al] = ax.wrapping_add(u16::from(threshold)).to_be_bytes();
+        let [ah, _al] = ax.wrapping_add(u16::from(thresholds.at(x.wrapping_add(k)))).to_be_bytes();
         *pixel = ah;
         ax = ax.wrapping_add(step);
     }

@@ -83,6 +83,7 @@ pub(super) mod arrays {
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
+    use super::super::dither::ThresholdRow;
     use super::super::list::SpanList;
     use core::arch::x86_64::*;
 
@@ -133,13 +134,13 @@ pub(super) mod sse2 {
             [_mm_cvtsi128_si64(bytes) as u64, _mm_cvtsi128_si64(high) as u64]
         }
 
-        /// The block with a threshold added to each shade: `thresholds` holds those of its pixels 0 to 7,
-        /// the first lowest, and 8 to 15 have the same.
+        /// The block with a threshold added to each shade.
         #[inline]
         #[target_feature(enable = "sse2")]
-        fn dithered(self, thresholds: u64) -> Self {
+        fn dithered(self, thresholds: [u8; 16]) -> Self {
+            // SAFETY: `thresholds` is 16 readable bytes; the load asks for no alignment.
+            let pairs = unsafe { _mm_loadu_si128(thresholds.as_ptr().cast()) };
             // In lanes of 16 bits the lower byte is an even pixel's, the upper an odd one's.
-            let pairs = _mm_set1_epi64x(thresholds as i64); // the same bits
             let even = _mm_and_si128(pairs, _mm_set1_epi16(0xFF));
             Self { even: _mm_add_epi16(self.even, even), odd: _mm_add_epi16(self.odd, _mm_srli_epi16(pairs, 8)) }
         }
@@ -223,26 +224,25 @@ pub(super) mod sse2 {
 
     /// The span with dither, for any processor: see [`dither`](super::super::dither).
     /// Rows of at least 16 pixels.
-    pub(crate) fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
+    pub(crate) fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
         // SAFETY: x86-64 includes SSE2.
         unsafe { dithered(row, shade, step, thresholds, x) }
     }
 
     #[target_feature(enable = "sse2")]
-    fn dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize) {
+    fn dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
         let n = row.len();
-        // Those of the pixels from `from` on: turned by its column mod 8 places.
-        let thresholds = u64::from_le_bytes(*thresholds);
-        let turned = |from: usize| thresholds.rotate_right(8 * (x.wrapping_add(from) % 8) as u32);
         // The last 16, as in `vectors`.
         let to_last = step.wrapping_mul((n - 16) as u16);
-        let last = Block::new(shade.wrapping_add(to_last), step).dithered(turned(n - 16));
+        let last = Block::new(shade.wrapping_add(to_last), step).dithered(thresholds.next(x.wrapping_add(n - 16)));
         let by = _mm_set1_epi16(step.wrapping_mul(16) as i16);
-        let mut block = Block::new(shade, step).dithered(turned(0));
+        let mut block = Block::new(shade, step);
+        let mut column = x;
         let (blocks, _) = row.as_chunks_mut::<16>();
         for to in blocks {
-            block.store(to);
+            block.dithered(thresholds.next(column)).store(to);
             block = block.raised(by);
+            column = column.wrapping_add(16);
         }
         if let Some(to) = row.last_chunk_mut::<16>() {
             last.store(to);

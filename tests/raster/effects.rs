@@ -14,7 +14,7 @@ use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::span::depth::Cell;
-use mode13h::span::dither::BAYER;
+use mode13h::span::dither::{DitherPattern, ThresholdRow};
 use mode13h::span::texture::{Levels, Texels};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};
@@ -158,7 +158,7 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> PixelPipeline<'a> {
             0 => Mix::Cube,
             _ => Mix::Nearest { map: &stock.map, spread: random.within(0, 255) as u8 },
         }),
-        dither: dither.then_some(&BAYER),
+        dither: dither.then(|| random.one_of(&DitherPattern::ALL).thresholds()),
         texture: texture.then(|| TextureStage {
             texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
             levels: (random.within(0, 1) == 0).then(|| {
@@ -311,7 +311,7 @@ impl<'a> Naive<'a> {
     /// added, in 1/256 shade, to the lit pixels on either side of it, or to the three channels of a curve.
     fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, before: u8, off: [i128; 3]) -> u8 {
         let seed = first + (x - first) / 64 * 64;
-        let threshold = self.look.dither.map_or(128, |matrix| matrix[(y & 7) as usize][(x & 7) as usize]);
+        let threshold = self.look.dither.map_or(128, |thresholds| thresholds.row(y as usize).at(x as usize));
         let lookup = |table: &[u8; 65_536], high: u8, low: u8| table[usize::from(high) << 8 | usize::from(low)];
         let byte_of = |sum: i128, threshold: u8| ((sum + i128::from(threshold)) >> 8) as u8;
         let linear = |value: fn(&Attributes) -> U8F8, threshold: u8| {
@@ -354,9 +354,9 @@ impl<'a> Naive<'a> {
             let ([r, g, b], mut byte) = (channels, [0]);
             match mix {
                 Mix::Nearest { map, spread } => {
-                    mix_nearest(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0, *spread, map);
+                    mix_nearest(&mut byte, &[r], &[g], &[b], &ThresholdRow::new(&[threshold]), 0, *spread, map);
                 }
-                _ => mix_cube_portable(&mut byte, &[r], &[g], &[b], &[threshold; 8], 0),
+                _ => mix_cube_portable(&mut byte, &[r], &[g], &[b], &ThresholdRow::new(&[threshold]), 0),
             }
             byte[0]
         } else {

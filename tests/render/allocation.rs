@@ -16,7 +16,7 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Choice, Decision, Effect};
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
-use mode13h::scene::{Motion, Object, Scene, shipped};
+use mode13h::scene::{DitherPattern, Motion, Object, Scene, shipped};
 use mode13h::vga::Vga;
 
 /// Frames of a turn.
@@ -118,7 +118,9 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| {
             renderer.settings.vertex_path = VertexPath::Integer
         });
-        try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.preferences.dither = true);
+        try_one(format!("{name}, dithered"), &scene, &|scene, _| {
+            scene.preferences.dither = Some(DitherPattern::Ordered)
+        });
         for effect in Effect::ALL {
             try_one(format!("{name}, {effect} forced"), &scene, &|_, renderer| renderer.force(effect, Some(true)));
         }

@@ -6,7 +6,7 @@ use mode13h::Angle;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::render::{Renderer, Shading};
-use mode13h::scene::Scene;
+use mode13h::scene::{DitherPattern, Scene};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 
@@ -92,7 +92,7 @@ fn golden_frames_of_a_house() {
         scene
     };
     let mut in_cube = in_palette("cube");
-    in_cube.preferences.dither = true;
+    in_cube.preferences.dither = Some(DitherPattern::Ordered);
     let surfaces = house[id].mesh().surfaces();
     let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
     let own: Vec<_> = own.collect();

@@ -9,7 +9,7 @@ use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{Renderer, Screen, Shading};
-use mode13h::scene::{Object, Scene};
+use mode13h::scene::{DitherPattern, Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};
@@ -206,16 +206,17 @@ fn faces_far_from_a_highlight_are_not_split() {
 fn n3_opposite_normals_at_two_ends_of_an_edge() {
     // Of none of the ramp's entries.
     const BACKGROUND: u8 = 7;
-    let mut tried = Tried::new("n3_opposite_normals_at_two_ends_of_an_edge", 12 * 40);
+    let mut tried = Tried::new("n3_opposite_normals_at_two_ends_of_an_edge", 18 * 40);
     let mut random = Random::named("n3");
     let (mut compared, mut apart) = (0_u64, 0_u64);
     for _ in 0..40 {
         let axis = Vec3::from_array([0.0; 3].map(|_| random.unit() as f32 - 0.5)).normalize();
         let third = if random.within(0, 1) == 0 { 1.0_f64 } else { -1.0 };
         for (specular, shading, dither) in [0.0, 0.7].into_iter().flat_map(|specular| {
-            [Shading::PhongTable, Shading::Phong, Shading::GouraudTessellated]
-                .into_iter()
-                .flat_map(move |shading| [false, true].map(move |dither| (specular, shading, dither)))
+            [Shading::PhongTable, Shading::Phong, Shading::GouraudTessellated].into_iter().flat_map(move |shading| {
+                [None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]
+                    .map(move |dither| (specular, shading, dither))
+            })
         }) {
             let scene = |normals: [Vec3; 3]| {
                 let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
@@ -259,7 +260,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
             assert!(covered.iter().filter(|covered| **covered).count() > 5000, "{shading}: it is drawn");
             for (place, (&byte, &covered)) in bytes.iter().zip(&covered).enumerate() {
                 let what =
-                    || format!("{shading}, dither {dither}, specular {specular}: pixel {place}, {axis}, {third}");
+                    || format!("{shading}, dither {dither:?}, specular {specular}: pixel {place}, {axis}, {third}");
                 let is_right = if covered { (128..192).contains(&byte) } else { byte == BACKGROUND };
                 assert!(is_right, "{byte} of {}", what());
                 if !covered {
@@ -308,7 +309,7 @@ fn p2_dither_keeps_to_its_ramp() {
             [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
         {
             let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
-            scene.preferences.dither = true;
+            scene.preferences.dither = Some(DitherPattern::Ordered);
             scene.preferences.shading = Some(shading);
             scene.objects_mut()[0].angles = [0.3, tried_angle(first, entries), 0.2].map(Angle::from_radians);
             let ramp = mode13h::palette::Ramp::new(first, entries).expect("a ramp");

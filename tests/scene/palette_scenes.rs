@@ -13,7 +13,7 @@ use mode13h::palette::auto::Entries;
 use mode13h::palette::cube::CUBE;
 use mode13h::palette::{Palette, Ramp, Rgb};
 use mode13h::render::Renderer;
-use mode13h::scene::{Fog, Object, Scene, Shared};
+use mode13h::scene::{DitherPattern, Fog, Object, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
@@ -405,7 +405,7 @@ fn a_palette_without_ramps_means_the_nearest_entries_dithered() {
         let material = &mut scene.objects_mut()[0].materials[0];
         *material = material.in_own_colors(&surface);
         assert_eq!(material.ramp, RampChoice::Nearest);
-        scene.preferences.dither = true;
+        scene.preferences.dither = Some(DitherPattern::Ordered);
         assert!(draw(&scene) == bytes, "as asked for by hand");
     }
 }

@@ -11,7 +11,9 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
 use mode13h::scene::file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
-use mode13h::scene::{HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis};
+use mode13h::scene::{
+    DitherPattern, HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis,
+};
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 
@@ -151,7 +153,14 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found map",
         ),
         (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
-        (cube("render.dither = 'yes'"), "2:17: key `render.dither`: expected a boolean, found string \"yes\""),
+        (
+            cube("render.dither = 'yes'"),
+            "2:17: key `render.dither`: \"yes\": unknown dither pattern; there are ordered, blue-noise",
+        ),
+        (
+            cube("render.dither = 1"),
+            "2:17: key `render.dither`: expected true, false, or a name in quotes, found integer `1`",
+        ),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
         (cube("duration = nan"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found NaN"),
@@ -512,7 +521,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!(scene.preferences.mapping, Some(Mapping::Every16));
     assert_eq!((scene.preferences.tessellation, scene.preferences.max_error), (Some(1.5), Some(2.0)));
     assert_eq!(scene.preferences.max_time, Some(2.5));
-    assert!(scene.preferences.dither && !scene.preferences.auto_palette);
+    assert!(scene.preferences.dither == Some(DitherPattern::Ordered) && !scene.preferences.auto_palette);
 
     let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };
     assert_eq!((bar.name.as_str(), bar.mesh().triangles().len()), ("bar", 16));

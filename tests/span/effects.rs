@@ -8,7 +8,7 @@ use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
 use mode13h::span::depth::{copy_before, copy_nearer, fill_nearer};
-use mode13h::span::dither::{BAYER, fill_dithered};
+use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
 use mode13h::span::hyperbolic::fill_quotients;
@@ -131,11 +131,11 @@ fn wrong_spans_in_f32_are_caught() {
 
 #[test]
 fn wrong_dithered_spans_are_caught() {
-    let column = |row: &mut [u8], s, d, t: &[u8; 8], _| fill_dithered(row, s, d, t, 0);
+    let column = |row: &mut [u8], s, d, t: &ThresholdRow, _| fill_dithered(row, s, d, t, 0);
     assert_caught("the column is forgotten", check_dithered(full(), column));
-    let half = |row: &mut [u8], s, d, t: &[u8; 8], x| fill_dithered(row, s + 128 * u16::from(s < 99), d, t, x);
+    let half = |row: &mut [u8], s, d, t: &ThresholdRow, x| fill_dithered(row, s + 128 * u16::from(s < 99), d, t, x);
     assert_caught("the half is added, too", check_dithered(full(), half));
-    let last = |row: &mut [u8], shade: u16, step: u16, thresholds: &[u8; 8], x: usize| {
+    let last = |row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize| {
         fill_dithered(row, shade, step, thresholds, x);
         // The last eight, as if a block began there.
         if let Some(from) = row.len().checked_sub(8).filter(|from| *from >= 300) {
@@ -155,17 +155,19 @@ fn the_matrix_is_bayers() {
         let place = |y: usize, x: usize| 4 * ranks[y % half][x % half] + [[0, 2], [3, 1]][y / half][x / half];
         ranks = (0..2 * half).map(|y| (0..2 * half).map(|x| place(y, x)).collect()).collect();
     }
-    for (row, ranks) in BAYER.iter().zip(&ranks) {
-        for (threshold, rank) in row.iter().zip(ranks) {
+    for (y, ranks) in ranks.iter().enumerate() {
+        for (x, rank) in ranks.iter().enumerate() {
+            let threshold = DitherPattern::Ordered.thresholds().row(y).at(x);
             let exact = f64::from(2 * rank + 1) * 255.0 / 128.0;
-            assert!((f64::from(*threshold) - exact).abs() < 0.5, "rank {rank}: {threshold}, not {exact}");
+            assert!((f64::from(threshold) - exact).abs() < 0.5, "rank {rank}: {threshold}, not {exact}");
         }
     }
 }
 
 #[test]
 fn the_thresholds_are_spread_evenly() {
-    let mut thresholds = BAYER.concat();
+    let pattern = DitherPattern::Ordered.thresholds();
+    let mut thresholds: Vec<u8> = (0..64).map(|i| pattern.row(i / 8).at(i % 8)).collect();
     assert_eq!(thresholds.iter().map(|t| 2 * u32::from(*t)).sum::<u32>(), 64 * 255, "the mean is 127.5");
     thresholds.sort_unstable();
     for (low, high) in thresholds.iter().zip(thresholds.iter().rev()) {
@@ -177,9 +179,9 @@ fn the_thresholds_are_spread_evenly() {
     // 64 equal parts, or within half a unit, so the share is off by half a part of 4 units at most.
     for fraction in 0..256_u16 {
         let mut upper = 0;
-        for thresholds in &BAYER {
+        for y in 0..8 {
             let mut row = [0; 8];
-            fill_dithered(&mut row, 0x4000 + fraction, 0, thresholds, 0);
+            fill_dithered(&mut row, 0x4000 + fraction, 0, pattern.row(y), 0);
             assert!(row.iter().all(|byte| [0x40, 0x41].contains(byte)));
             upper += row.iter().filter(|byte| **byte == 0x41).count();
         }
@@ -279,14 +281,19 @@ fn wrong_look_ups_are_caught() {
 
 #[test]
 fn wrong_mixtures_are_caught() {
-    type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize);
-    let lower: MixCube = |row, r, g, b, t, x| mix_cube(row, r, g, b, &t.map(|t| t.saturating_sub(1)), x);
+    let lowered = |row: &ThresholdRow| -> ThresholdRow {
+        ThresholdRow::new(&core::array::from_fn::<u8, 64, _>(|x| row.at(x).saturating_sub(1)))
+    };
+    type MixCube = fn(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize);
+    let lower = |row: &mut [u8], r: &[u8], g: &[u8], b: &[u8], t: &ThresholdRow, x| {
+        mix_cube(row, r, g, b, &lowered(t), x);
+    };
     assert_caught("a threshold that is reached counts as passed", check_cube(full(), lower));
     let places: MixCube = |row, r, g, b, t, x| mix_cube(row, g, r, b, t, x);
     assert_caught("red and green change places", check_cube(full(), places));
-    let even: MixCube = |row, r, g, b, _, x| mix_cube(row, r, g, b, &[128; 8], x);
+    let even: MixCube = |row, r, g, b, _, x| mix_cube(row, r, g, b, &ThresholdRow::new(&[128]), x);
     assert_caught("no dither", check_cube(full(), even));
-    let up = |row: &mut [u8], r: &[u8], g: &[u8], b: &[u8], t: &[u8; 8], x, spread: u8, map: &[u8; 32_768]| {
+    let up = |row: &mut [u8], r: &[u8], g: &[u8], b: &[u8], t: &ThresholdRow, x, spread: u8, map: &[u8; 32_768]| {
         mix_nearest(row, r, g, b, t, x, spread, map);
         if spread % 2 == 1 {
             // Half the spread, rounded up.
@@ -310,7 +317,7 @@ fn every_value_at_every_threshold() {
                     [0, 6, 5].iter().enumerate().filter(|(i, _)| *i != channel).map(|(_, base)| base).sum::<u8>();
                 rows[channel] = &values;
                 let mut row = [0; 256];
-                mix(&mut row, rows[0], rows[1], rows[2], &[threshold; 8], 0);
+                mix(&mut row, rows[0], rows[1], rows[2], &ThresholdRow::new(&[threshold]), 0);
                 for (value, entry) in values.iter().zip(row) {
                     let level = naive_level(*value, threshold);
                     assert_eq!(entry, weight * level + others, "{value} at {threshold}, channel {channel}");
@@ -333,8 +340,8 @@ fn in_the_middle_it_is_the_nearest_level() {
     for value in 0..=255_u8 {
         let mut row = [0; 2];
         let grey = [value; 1];
-        mix_cube(&mut row[..1], &grey, &grey, &grey, &[128; 8], 0);
-        mix_cube(&mut row[1..], &grey, &grey, &grey, &[127; 8], 0);
+        mix_cube(&mut row[..1], &grey, &grey, &grey, &ThresholdRow::new(&[128]), 0);
+        mix_cube(&mut row[1..], &grey, &grey, &grey, &ThresholdRow::new(&[127]), 0);
         let nearest = cube::nearest_mixture(Rgb::new(value, value, value));
         assert_eq!(row[0], nearest, "{value}");
         if row[1] != nearest {
@@ -348,7 +355,7 @@ fn in_the_middle_it_is_the_nearest_level() {
     for red in 0..=255 {
         let mut row = [0; 256];
         let green: Vec<u8> = values.iter().map(|v| v.wrapping_mul(7).wrapping_add(red)).collect();
-        mix_cube(&mut row, &[red; 256], &green, &values, &[128; 8], 0);
+        mix_cube(&mut row, &[red; 256], &green, &values, &ThresholdRow::new(&[128]), 0);
         for (k, entry) in row.iter().enumerate() {
             assert_eq!(*entry, cube::nearest_mixture(Rgb::new(red, green[k], values[k])));
             tried.add(1);

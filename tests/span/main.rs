@@ -5,5 +5,6 @@ mod support;
 
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 mod abi;
+mod blue_noise;
 mod effects;
 mod kernels;

@@ -7,7 +7,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
-use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Preferences, Scene, Shading, Shared};
+use mode13h::scene::{Camera, DitherPattern, Fog, Object, PaletteAnimation, Preferences, Scene, Shading, Shared};
 use mode13h::texture::Texture;
 
 use mode13h_conformance::Random;
@@ -176,7 +176,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut colors = showing("sphere");
     colors.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
-    colors.preferences.dither = true;
+    colors.preferences.dither = Some(DitherPattern::Ordered);
     colors.clear_lights();
     colors.add_light(Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]));
     colors.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]));
@@ -195,7 +195,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut dithered = showing("sphere");
     dithered.palette = Some(builtin::by_name("materials-16x16").expect("built in").palette.clone());
-    dithered.preferences.dither = true;
+    dithered.preferences.dither = Some(DitherPattern::Ordered);
     scenes.push(("dither", dithered));
 
     for shading in [Shading::PhongTable, Shading::Phong, Shading::Flat, Shading::GouraudHyperbolic] {

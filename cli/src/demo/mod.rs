@@ -80,7 +80,8 @@ Keys in the window:
   Z               Magnify 16 times at the mouse; the pixel explains itself
   . and ,         Step through the pixels of its triangle, with Shift its rows
   K, P, M         The next kernel, the next palette, the next mapping of textures
-  L, O, T, D      Lights, fog, texture, dither off and on
+  L, O, T         Lights, fog, texture off and on
+  D               Dither: ordered, blue noise, off
   N, Shift-N      The next INPUT, the one before
   S               Save the picture, without the text over it, as a PNG";
 
@@ -252,9 +253,9 @@ struct Demo {
     /// Words at the lower edge, and until when.
     notice: Option<(String, f64)>,
     /// An effect that a key has just switched, and whether it was on before.
-    switched: Option<(Switch, bool)>,
+    switched: Option<(Switch, &'static str)>,
     /// The effects that keys switched, and to what.
-    switches: Vec<(Switch, bool)>,
+    switches: Vec<(Switch, &'static str)>,
     seconds: f64,
 }
 
@@ -360,8 +361,11 @@ impl Demo {
         }
         if keeps {
             for &(switch, wanted) in &self.switches {
-                self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
-                if switch.is_on(&self.renderer) != wanted {
+                for _ in 0..Switch::MAX_STATES {
+                    self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+                    if switch.state(&self.renderer) == wanted {
+                        break;
+                    }
                     switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
                 }
             }
@@ -445,7 +449,7 @@ impl Demo {
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
-                self.switched = Some((switch, switch.is_on(&self.renderer)));
+                self.switched = Some((switch, switch.state(&self.renderer)));
                 self.forget_times();
                 switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
                 self.compare.renew(&self.renderer);
@@ -496,11 +500,11 @@ impl Demo {
     /// Draws the picture, and what the keys lay over it.
     fn draw(&mut self) -> Result<(), Failure> {
         self.draw_scene()?;
-        if let Some((switch, was_on)) = self.switched.take() {
-            let is_on = switch.is_on(&self.renderer);
-            self.say(switch.outcome(was_on, is_on));
+        if let Some((switch, was)) = self.switched.take() {
+            let is = switch.state(&self.renderer);
+            self.say(switch.outcome(was, is));
             self.switches.retain(|(other, _)| *other != switch);
-            self.switches.push((switch, is_on));
+            self.switches.push((switch, is));
         }
         // The picture itself stays as it is, for the next frame may be the same.
         self.shown.clone_from(&self.vga);

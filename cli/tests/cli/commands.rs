@@ -169,7 +169,7 @@ fn wrong_words_end_with_2() {
             "neither a colour such as '#203040' nor an entry",
         ),
         (vec!["render", "torus", "-o", "x.png", "--background", "#12345"], "neither a colour"),
-        (vec!["render", "torus", "-o", "x.png", "--dither=maybe"], "neither on nor off"),
+        (vec!["render", "torus", "-o", "x.png", "--dither=maybe"], "none of on, off, ordered, blue-noise"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),

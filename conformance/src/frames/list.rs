@@ -10,7 +10,7 @@ use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
-use mode13h::scene::{Camera, Fog, Object, Scene, Shared, UpAxis};
+use mode13h::scene::{Camera, DitherPattern, Fog, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 use super::{Frame, Picture, Shape, shipped};
@@ -137,7 +137,8 @@ impl List {
     }
 
     fn lights_and_palettes(&mut self) {
-        for (name, dither) in [("plain", false), ("dithered", true)] {
+        let (ordered, blue_noise) = (Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise));
+        for (name, dither) in [("plain", None), ("dithered", ordered), ("blue-noise", blue_noise)] {
             for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong, Shading::Float] {
                 self.vga(format!("light/coloured-lamps/{name}/{shading}"), with(shading), move || {
                     let mut scene = pair(1.0);
@@ -148,13 +149,17 @@ impl List {
                 });
             }
         }
-        for shading in [Shading::Gouraud88, Shading::Gouraud1616, Shading::Float, Shading::PhongTable] {
-            self.vga(format!("light/dithered-ramps/{shading}"), with(shading), || {
-                let mut scene = pair(2.0);
-                scene.palette = Some(builtin::MATERIALS_16X16.clone());
-                scene.preferences.dither = true;
-                scene
-            });
+        for (name, dither, last) in
+            [("dithered", ordered, Shading::PhongTable), ("blue-noise", blue_noise, Shading::Phong)]
+        {
+            for shading in [Shading::Gouraud88, Shading::Gouraud1616, Shading::Float, last] {
+                self.vga(format!("light/{name}-ramps/{shading}"), with(shading), move || {
+                    let mut scene = pair(2.0);
+                    scene.palette = Some(builtin::MATERIALS_16X16.clone());
+                    scene.preferences.dither = dither;
+                    scene
+                });
+            }
         }
         self.vga("light/ten-lamps".into(), Settings::default(), || {
             let mut scene = pair(0.5);
@@ -381,7 +386,7 @@ const EFFECTS: [(&str, Change); 18] = [
     ("nearest", |scene| each(scene, |material| material.ramp = RampChoice::Nearest)),
     ("dither", |scene| {
         scene.palette = Some(builtin::MATERIALS_8X32.clone());
-        scene.preferences.dither = true;
+        scene.preferences.dither = Some(DitherPattern::Ordered);
     }),
     ("tessellation", |scene| scene.preferences.tessellation = Some(2.0)),
     ("texture", |scene| textured(scene, "checker", Mapping::Affine, false)),
@@ -409,13 +414,13 @@ const EFFECTS: [(&str, Change); 18] = [
         scene.objects_mut()[1].materials[0].texture = None;
         each(scene, |material| (material.diffuse, material.specular, material.shininess) = (0.5, 0.4, 12.0));
         scene.fog = Some(Fog { color: Rgb::new(60, 60, 90), start: 1.0, end: 6.0 });
-        scene.preferences.dither = true;
+        scene.preferences.dither = Some(DitherPattern::Ordered);
         colored_lamps(scene);
     }),
 ];
 
 /// Scenes for frames of other shapes than the machine's.
-const CANVASES: [(&str, Change, Shading); 9] = [
+const CANVASES: [(&str, Change, Shading); 10] = [
     ("plain", |_| {}, Shading::Gouraud88Reseeded),
     ("float", |_| {}, Shading::Float),
     ("hyperbolic", |_| {}, Shading::GouraudHyperbolic),
@@ -425,6 +430,14 @@ const CANVASES: [(&str, Change, Shading); 9] = [
     ("mipmaps", |scene| (EFFECTS[11].1)(scene), Shading::Float),
     ("glass", |scene| (EFFECTS[15].1)(scene), Shading::Gouraud88),
     ("everything", |scene| (EFFECTS[17].1)(scene), Shading::Gouraud88Reseeded),
+    (
+        "blue-noise",
+        |scene| {
+            (EFFECTS[6].1)(scene);
+            scene.preferences.dither = Some(DitherPattern::BlueNoise);
+        },
+        Shading::Gouraud88Reseeded,
+    ),
 ];
 
 fn each(scene: &mut Scene, change: impl Fn(&mut Material)) {

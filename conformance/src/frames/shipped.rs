@@ -12,7 +12,9 @@ use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::render::{Mapping, Shading};
-use mode13h::scene::{Camera, Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared};
+use mode13h::scene::{
+    Camera, DitherPattern, Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared,
+};
 use mode13h::texture::Texture;
 
 /// A scene by its name.
@@ -242,7 +244,7 @@ fn fog() -> Scene {
 fn rgb() -> Scene {
     let mut scene = scene("rgb", None, 1.48);
     scene.preferences.auto_palette = true;
-    scene.preferences.dither = true;
+    scene.preferences.dither = Some(DitherPattern::Ordered);
     let sphere = placed(object("sphere", shapes::sphere(40, 20)), vec3(0.0, 0.1, 0.0), 1.0);
     scene.add(of_material(sphere, matt(0.15, 0.85)));
     let floor = placed(turned(object("floor", shapes::wall(24, 24)), [-90.0, 0.0, 0.0]), vec3(0.0, -1.0, 0.0), 5.0);
@@ -349,7 +351,7 @@ fn cycle() -> Scene {
 
 fn still() -> Scene {
     let mut scene = scene("still", Some(&builtin::MATERIALS_8X32), 0.0);
-    scene.preferences.dither = true;
+    scene.preferences.dither = Some(DitherPattern::Ordered);
     for (name, mesh, position, scale, angles, ramp, light) in [
         ("table", shapes::wall(16, 16), vec3(0.0, -0.7, 0.0), 4.2, [-90.0, 0.0, 0.0], 0, None),
         ("teapot", shapes::teapot(8), vec3(-0.2, -0.18, -0.3), 1.1, [0.0, 25.0, 0.0], 5, Some([0.1, 0.6, 0.4, 30.0])),

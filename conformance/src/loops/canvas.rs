@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::span::dither::BAYER;
+use mode13h::span::dither::{DitherPattern, PERIOD, ThresholdRow};
 
 use super::{Cases, Checked};
 use crate::Random;
@@ -123,14 +123,13 @@ pub(super) fn any_u16(random: &mut Random) -> u16 {
     if random.below(4) == 0 { random.one_of(&EDGES) } else { random.next_u64() as u16 }
 }
 
-/// Thresholds: of Bayer's matrix, all the same, or any.
-pub(super) fn any_thresholds(random: &mut Random) -> [u8; 8] {
+/// Thresholds of a row: a pattern's, all the same, or any.
+pub(super) fn any_thresholds(random: &mut Random) -> ThresholdRow {
     match random.below(6) {
-        0 => [0; 8],
-        1 => [255; 8],
-        2 => [128; 8],
-        3 => random.next_u64().to_le_bytes(),
-        _ => random.one_of(&BAYER),
+        0 => ThresholdRow::new(&[random.one_of(&[0, 128, 255])]),
+        1 => ThresholdRow::new(&random.next_u64().to_le_bytes()),
+        2 | 3 => ThresholdRow::new(&core::array::from_fn::<u8, PERIOD, _>(|_| random.next_u64() as u8)),
+        _ => *random.one_of(&DitherPattern::ALL).thresholds().row(random.below(PERIOD)),
     }
 }
 
@@ -140,8 +139,9 @@ pub(super) fn any_column(random: &mut Random) -> usize {
 }
 
 /// The threshold of pixel `k` in a row whose first pixel lies in column `x`.
-pub(super) fn threshold(thresholds: &[u8; 8], x: usize, k: usize) -> u8 {
-    thresholds[((x as u128 + k as u128) % 8) as usize]
+pub(super) fn threshold(thresholds: &ThresholdRow, x: usize, k: usize) -> u8 {
+    // Below 64.
+    thresholds.at(((x as u128 + k as u128) % PERIOD as u128) as usize)
 }
 
 #[cfg(test)]

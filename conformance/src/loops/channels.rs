@@ -4,6 +4,8 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use mode13h::span::dither::ThresholdRow;
+
 use super::canvas::{Canvas, Shape, any_column, any_thresholds, bytes, on_every_shape, other_row, threshold};
 use super::{Cases, Checked};
 use crate::Random;
@@ -27,7 +29,7 @@ fn check_rows(
     canvas: &mut Canvas,
     shape: Shape,
     naive: impl Fn([u8; 3], u8) -> u8,
-    draw: impl FnOnce(&mut [u8], [&[u8]; 3], &[u8; 8], usize),
+    draw: impl FnOnce(&mut [u8], [&[u8]; 3], &ThresholdRow, usize),
 ) -> Result<(), String> {
     let channels: [_; 3] = core::array::from_fn(|_| other_row(random, shape.length));
     let (thresholds, x) = (any_thresholds(random), any_column(random));
@@ -47,7 +49,7 @@ fn check_rows(
 ///
 /// # Errors
 /// The first row that was wrong.
-pub fn check_cube(cases: Cases, mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize)) -> Checked {
+pub fn check_cube(cases: Cases, mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize)) -> Checked {
     on_every_shape(cases, "cube", |random, canvas, shape| {
         let naive = |color: [u8; 3], threshold| {
             let [r, g, b] = color.map(|value| naive_level(value, threshold));
@@ -63,7 +65,7 @@ pub fn check_cube(cases: Cases, mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u
 /// The first row that was wrong.
 pub fn check_nearest(
     cases: Cases,
-    mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &[u8; 8], usize, u8, &[u8; 32_768]),
+    mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize, u8, &[u8; 32_768]),
 ) -> Checked {
     let map = bytes(&mut cases.random("map"), 32_768);
     let Some(map) = map.first_chunk() else { return Err("no map".into()) };
@@ -76,7 +78,7 @@ pub fn check_nearest(
             });
             map[(1_024 * r + 32 * g + b) as usize]
         };
-        let draw = |row: &mut [u8], [r, g, b]: [&[u8]; 3], thresholds: &[u8; 8], x| {
+        let draw = |row: &mut [u8], [r, g, b]: [&[u8]; 3], thresholds: &ThresholdRow, x| {
             mix(row, r, g, b, thresholds, x, spread, map);
         };
         check_rows(random, canvas, shape, naive, draw).map_err(|wrong| format!("spread {spread}: {wrong}"))

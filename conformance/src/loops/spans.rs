@@ -5,6 +5,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use alloc::{format, string::ToString};
 
+use mode13h::span::dither::ThresholdRow;
+
 use super::canvas::{Canvas, EDGES, Shape, any_column, any_thresholds, any_u16, on_every_shape, threshold};
 use super::{Cases, Checked};
 use crate::Random;
@@ -200,7 +202,7 @@ pub fn check_float(cases: Cases, mut fill: impl FnMut(&mut [u8], i32, [f32; 2], 
 ///
 /// # Errors
 /// The first span that was wrong.
-pub fn check_dithered(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16, &[u8; 8], usize)) -> Checked {
+pub fn check_dithered(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16, &ThresholdRow, usize)) -> Checked {
     on_every_shape(cases, "dithered", |random, canvas, shape| {
         let (shade, step) = (any_u16(random), any_u16(random));
         let (thresholds, x) = (any_thresholds(random), any_column(random));

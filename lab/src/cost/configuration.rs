@@ -8,6 +8,7 @@ use core::fmt;
 use super::Aspect;
 use mode13h::hooks;
 use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading, VertexPath};
+use mode13h::scene::DitherPattern;
 use mode13h::span::Kernel;
 
 /// The budgets that are measured, in shades, the greatest error first.
@@ -41,8 +42,8 @@ pub(super) struct Configuration<'a> {
     pub(super) kind: Kind,
     pub(super) name: String,
     set: Box<dyn Fn(&mut Renderer) + Sync + 'a>,
-    /// Dither that is asked for, whatever the scene does.
-    pub(super) dither: Option<bool>,
+    /// Dither or none, whatever the scene asks for.
+    pub(super) dither: Option<Option<DitherPattern>>,
 }
 
 impl fmt::Debug for Configuration<'_> {
@@ -88,8 +89,8 @@ impl<'a> Configuration<'a> {
         Self { set, ..self }
     }
 
-    /// The configuration with or without dither.
-    pub(super) fn dithered(mut self, dither: bool) -> Self {
+    /// The configuration with this dither or none.
+    pub(super) fn dithered(mut self, dither: Option<DitherPattern>) -> Self {
         self.dither = Some(dither);
         self
     }
@@ -118,7 +119,8 @@ impl<'a> Configuration<'a> {
         for kernel in core::iter::once(fastest).chain(others) {
             ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.settings.kernel = kernel)));
         }
-        for (dither, name) in [(false, "none"), (true, "ordered")] {
+        for dither in core::iter::once(None).chain(DitherPattern::ALL.map(Some)) {
+            let name = dither.map_or("none", DitherPattern::name);
             ways.push(with_shading(Aspect::Dither, &name, Box::new(|_| {})).dithered(dither));
         }
         let called_for = core::iter::once((None, "as called for"));

@@ -15,7 +15,7 @@ use super::timed::timed_rows;
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
 use mode13h::render::{FaceShading, Renderer, Screen, Shading, VertexPath};
-use mode13h::scene::Scene;
+use mode13h::scene::{DitherPattern, Scene};
 use mode13h_conformance::Random;
 
 /// Subject of a study.
@@ -127,9 +127,10 @@ pub fn measure(
     let court = Referee { ways: &ways, base: renderer, frames, steps };
     let findings = court.judge(&|share| progress(Step::Errors, share))?;
 
-    let dithered = [false, true].map(|dither| with_dither(frames, dither));
+    let dithered: Vec<Option<Vec<Scene>>> =
+        ways.iter().map(|way| way.dither.map(|dither| with_dither(frames, dither))).collect();
     let entrants: Vec<(&Configuration<'_>, &[Scene])> =
-        ways.iter().map(|way| (way, way.dither.map_or(frames, |dither| &dithered[usize::from(dither)]))).collect();
+        ways.iter().zip(&dithered).map(|(way, dithered)| (way, dithered.as_deref().unwrap_or(frames))).collect();
     let outcome = run_interleaved(&entrants, renderer, &spent(0.5), &|share| progress(Step::Times, share))?;
     let of_shadings: Vec<&Configuration<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Shading(_))).collect();
     let splits = split(&of_shadings, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
@@ -189,8 +190,8 @@ fn choices(
     Ok(ways)
 }
 
-/// The frames with dither, or without.
-fn with_dither(frames: &[Scene], dither: bool) -> Vec<Scene> {
+/// The frames with this dither or none.
+fn with_dither(frames: &[Scene], dither: Option<DitherPattern>) -> Vec<Scene> {
     let mut frames = frames.to_vec();
     frames.iter_mut().for_each(|scene| scene.preferences.dither = dither);
     frames

@@ -12,7 +12,7 @@ use mode13h::palette::Ramp;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, FrameError};
 use mode13h::render::{Accuracy, RenderError, Renderer, Screen, Shading};
-use mode13h::scene::{Object, Scene, Shared};
+use mode13h::scene::{DitherPattern, Object, Scene, Shared};
 
 /// Finds out what a renderer shows, by nothing but drawing with it.
 ///
@@ -43,7 +43,7 @@ pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
     /// Dither, on a ramp of few entries then in any case.
-    dither: Option<bool>,
+    dither: Option<Option<DitherPattern>>,
 }
 
 /// The ramp that dither is judged on.
@@ -61,9 +61,9 @@ impl Probe {
         &mut self.renderer
     }
 
-    /// Sets whether shades are dithered, and on a ramp of 32 entries either way, which stand for shades 8.2 apart; with
+    /// Sets the dither of shades, or none, and shows them on a ramp of 32 entries either way, which stand for shades 8.2 apart; with
     /// `None` they are not, on one of 256.
-    pub(super) fn dither(&mut self, dither: Option<bool>) {
+    pub(super) fn dither(&mut self, dither: Option<Option<DitherPattern>>) {
         self.dither = dither;
     }
 
@@ -75,7 +75,7 @@ impl Probe {
     pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
         let mut scene = scene.clone();
         scene.fog = None;
-        scene.preferences.dither = self.dither == Some(true);
+        scene.preferences.dither = self.dither.flatten();
         let ramp = if self.dither.is_some() { Ramp::new(0, COARSE).unwrap_or(Ramp::WHOLE) } else { Ramp::WHOLE };
         for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
             let ramp = RampChoice::Entries(ramp);
@@ -86,7 +86,7 @@ impl Probe {
             let step = 255.0 / f64::from(ramp.entries() - 1);
             shades.iter_mut().for_each(|shades| *shades = shades.map(|entry| entry * step));
         }
-        scene.preferences.dither = false;
+        scene.preferences.dither = None;
         let faces = self.faces(scene, screen)?;
         Ok(Shown { width: screen.width, height: screen.height, faces, shades })
     }

@@ -14,6 +14,7 @@ use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleS
 use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
+use mode13h::span::dither::Thresholds;
 use mode13h::span::texture::{Levels, Texels};
 
 /// Source of a face's shades.
@@ -264,8 +265,11 @@ fn stages(
             pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &listed), ..bare });
             // Numbered, and rounded down, it is the number of the pixel before.
             let numbers = Counted::default();
-            let numbered =
-                PixelPipeline { source: ShadeSource::LitEvery(apart, &numbers), dither: Some(&[[0; 8]; 8]), ..single };
+            let numbered = PixelPipeline {
+                source: ShadeSource::LitEvery(apart, &numbers),
+                dither: Some(Thresholds::ZEROS),
+                ..single
+            };
             let place = usize::from(pixel.look(met, behind, &numbered));
             let all = listed.all.borrow();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
@@ -303,7 +307,8 @@ fn stages(
     let mut so_far = bare;
     if let Some(thresholds) = look.dither {
         so_far.dither = look.dither;
-        let threshold = thresholds[(pixel.y & 7) as usize][(pixel.x & 7) as usize];
+        // A pixel of the frame.
+        let threshold = thresholds.row(pixel.y as usize).at(pixel.x as usize);
         let byte = if made.channels { 0 } else { pixel.look(met, behind, &so_far) };
         made.dithered = Some((threshold, byte));
     }

@@ -15,6 +15,7 @@ use mode13h::raster::FrameError;
 use mode13h::render::{Accuracy, HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::span::channels::mix_cube;
+use mode13h::span::dither::ThresholdRow;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::{Probe, ProbeError};
@@ -390,7 +391,7 @@ fn the_probe_shows_what_is_drawn() {
             // As the probe sees it: grey, 256 shades, nothing over them.
             scene.palette = Some(builtin::GREY.clone());
             scene.fog = None;
-            scene.preferences.dither = false;
+            scene.preferences.dither = None;
             for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
                 *material = Material { texture: None, environment: None, ..material.clone() };
                 material.ramp = Material::default().ramp;
@@ -431,7 +432,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
                 // Shades of 0 to 255.
                 let [r, g, b] = shades.map(|shade| shade as u8);
                 let mut mixed = [0];
-                mix_cube(&mut mixed, &[r], &[g], &[b], &[128; 8], 0);
+                mix_cube(&mut mixed, &[r], &[g], &[b], &ThresholdRow::new(&[128]), 0);
                 assert_eq!(mixed[0], drawn, "{shading}");
                 seen += 1;
             }

@@ -7,6 +7,7 @@ use crate::raster::cover::SortedTriangle;
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
+use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
 
 /// The most places in a piece that are lit where not all are, its end being one, and as many as are lit at once.
@@ -186,7 +187,7 @@ impl Pieces {
         faces: &[Face],
         kernel: Kernel,
         (spacing, light): (SampleSpacing, &impl Lit<N>),
-        pattern: &[[u8; 8]; 8],
+        thresholds: Thresholds,
         mut out: [&mut [u8]; N],
     ) {
         let mut nothing = [(); super::pieces::PIXELS];
@@ -202,7 +203,7 @@ impl Pieces {
                 }
             });
             for (lit, out) in lit.iter().zip(&mut out) {
-                knots.fill(lit, piece.thresholds(pattern), piece.column(), &mut out[piece.pixels()]);
+                knots.fill(lit, piece.thresholds(thresholds), piece.column(), &mut out[piece.pixels()]);
             }
         });
     }
@@ -244,7 +245,7 @@ impl Knots {
     }
 
     /// The bytes of shades in 8.8 that are linear between those at the knots.
-    fn fill(&self, knots: &[u16; KNOTS], thresholds: &[u8; 8], column: usize, piece: &mut [u8]) {
+    fn fill(&self, knots: &[u16; KNOTS], thresholds: &ThresholdRow, column: usize, piece: &mut [u8]) {
         for (i, piece) in piece.chunks_mut(self.spacing).enumerate() {
             let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
             let pixels = self.places[i + 1] - self.places[i];

@@ -53,9 +53,6 @@ use crate::simd::at_best_level;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
-/// A half for every pixel: no dither.
-const HALVES: [[u8; 8]; 8] = [[128; 8]; 8];
-
 /// Faces that are drawn by one pixel pipeline, and room for their pieces. Filled and drawn again and again it allocates
 /// nothing.
 #[derive(Clone, Debug)]

@@ -8,6 +8,7 @@ use crate::raster::shade::{RESEED, ShadePlane};
 use crate::raster::vertex::Vertex;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
+use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::texture::LANES;
 
 /// Pixels in a piece, at most.
@@ -97,10 +98,11 @@ impl Piece {
         self.seed as usize
     }
 
-    /// The thresholds of its row in a pattern of 8 × 8.
+    /// The thresholds of its row.
     #[inline]
-    pub(super) fn thresholds<'a>(&self, pattern: &'a [[u8; 8]; 8]) -> &'a [u8; 8] {
-        &pattern[(self.row.y & 7) as usize]
+    pub(super) fn thresholds(&self, of: Thresholds) -> &'static ThresholdRow {
+        // Not negative: it lies inside the frame.
+        of.row(self.row.y as usize)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
 use crate::raster::interpolation::Interpolation;
+use crate::span::dither::Thresholds;
 use crate::span::texture::{Levels, Texels};
 
 /// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
@@ -140,8 +141,8 @@ pub struct PixelPipeline<'a> {
     pub source: ShadeSource<'a>,
     /// Red, green and blue instead of one shade, and what they are mixed to.
     pub channels: Option<Mix<'a>>,
-    /// Thresholds of 8 × 8 pixels instead of the half that is else added to a shade.
-    pub dither: Option<&'a [[u8; 8]; 8]>,
+    /// Thresholds that replace the half that is otherwise added to a shade.
+    pub dither: Option<Thresholds>,
     /// An image.
     pub texture: Option<TextureStage<'a>>,
     /// The index for a level (row) and an index (column).
@@ -160,7 +161,7 @@ impl<'a> PixelPipeline<'a> {
     }
 
     #[inline]
-    pub(super) fn dither(&self) -> Option<&'a [[u8; 8]; 8]> {
+    pub(super) fn dither(&self) -> Option<Thresholds> {
         self.dither.filter(|_| !cfg!(mode13h_leave_out = "dither"))
     }
 

@@ -1,9 +1,9 @@
 //! The first stages of a piece: shades from their source, with an image, or mixed of three channels.
 
+use super::Buffers;
 use super::curve::CurvePlane;
 use super::pieces::{Face, Pieces};
 use super::pipeline::{Attributes, Mix, PixelPipeline, ShadeSource};
-use super::{Buffers, HALVES};
 use crate::fixed::U8F8;
 use crate::lanes::three;
 use crate::raster::cover::SortedTriangle;
@@ -11,6 +11,7 @@ use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{RowShader, to_bytes};
 use crate::raster::shade::ShadePlane;
 use crate::span::channels::{mix_cube, mix_nearest};
+use crate::span::dither::Thresholds;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
@@ -74,8 +75,8 @@ impl Pieces {
                     (_, None) => self.each(faces, bytes, plane, |shader, piece, bytes| {
                         shader.piece(&piece.row, piece.seed, bytes, None, kernel);
                     }),
-                    (_, Some(pattern)) => self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        let thresholds = Some(piece.thresholds(pattern));
+                    (_, Some(dither)) => self.each(faces, bytes, plane, |shader, piece, bytes| {
+                        let thresholds = Some(piece.thresholds(dither));
                         shader.piece(&piece.row, piece.seed, bytes, thresholds, kernel);
                     }),
                 }
@@ -96,8 +97,8 @@ impl Pieces {
                 self.round(shades, pipeline.dither(), bytes);
             }
             ShadeSource::LitEvery(spacing, light) => {
-                let pattern = pipeline.dither().unwrap_or(&HALVES);
-                self.light_some::<1>(faces, kernel, (spacing, &light), pattern, [bytes]);
+                let thresholds = pipeline.dither().unwrap_or(Thresholds::HALVES);
+                self.light_some::<1>(faces, kernel, (spacing, &light), thresholds, [bytes]);
             }
             ShadeSource::Curved(limits) => {
                 let plane = |triangle: &SortedTriangle, corners| CurvePlane::new(triangle, corners, limits, 1);
@@ -133,7 +134,7 @@ impl Pieces {
                 return;
             }
             ShadeSource::LitEvery(spacing, light) => {
-                return self.light_some::<3>(faces, kernel, (spacing, &light), &HALVES, bytes);
+                return self.light_some::<3>(faces, kernel, (spacing, &light), Thresholds::HALVES, bytes);
             }
             ShadeSource::Lit(light) => {
                 self.light_each::<3>(faces, kernel, &light, shades.each_mut().map(|of| &mut **of))
@@ -153,20 +154,20 @@ impl Pieces {
     }
 
     /// Shades to bytes, by thresholds.
-    fn round(&self, shades: &[u16], dither: Option<&[[u8; 8]; 8]>, bytes: &mut [u8]) {
-        let Some(pattern) = dither else {
+    fn round(&self, shades: &[u16], dither: Option<Thresholds>, bytes: &mut [u8]) {
+        let Some(dither) = dither else {
             let n = self.pixels();
-            return to_bytes(&shades[..n], &HALVES[0], 0, &mut bytes[..n]);
+            return to_bytes(&shades[..n], Thresholds::HALVES.row(0), 0, &mut bytes[..n]);
         };
         for piece in self.pieces() {
             let pixels = piece.pixels();
-            to_bytes(&shades[pixels.clone()], piece.thresholds(pattern), piece.column(), &mut bytes[pixels]);
+            to_bytes(&shades[pixels.clone()], piece.thresholds(dither), piece.column(), &mut bytes[pixels]);
         }
     }
 
     /// Three channels to one index.
-    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<&[[u8; 8]; 8]>) {
-        let pattern = dither.unwrap_or(&HALVES);
+    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<Thresholds>) {
+        let dither = dither.unwrap_or(Thresholds::HALVES);
         let Buffers { bytes, channels, .. } = buffers;
         if let Mix::Only(channel) = mix {
             return bytes.copy_from_slice(&channels[channel.min(2)]);
@@ -176,7 +177,7 @@ impl Pieces {
             let [red, green, blue] = &*channels;
             let pixels = piece.pixels();
             let (red, green, blue) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels]);
-            let (thresholds, column) = (piece.thresholds(pattern), piece.column());
+            let (thresholds, column) = (piece.thresholds(dither), piece.column());
             match mix {
                 Mix::Nearest { map, spread } => {
                     mix_nearest(bytes, red, green, blue, thresholds, column, spread, map);

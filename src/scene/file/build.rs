@@ -211,7 +211,7 @@ fn preferences(layout: &RenderLayout) -> Preferences {
         mapping: layout.mapping.as_ref().map(|name| name.0),
         mipmaps: layout.mipmaps,
         tessellation: layout.tessellation.map(|shades| shades.0),
-        dither: layout.dither.unwrap_or_default(),
+        dither: layout.dither.as_ref().and_then(|dither| dither.0),
         max_error: layout.max_error.map(|shades| shades.0),
         max_time: layout.max_time.map(|milliseconds| milliseconds.0),
         auto_palette: false,

@@ -13,11 +13,11 @@ use toml::Spanned;
 
 use super::shape::Shape;
 use super::value::{
-    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, List, Name, NotNegative, Number,
+    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, List, Name, NotNegative, Number, OffOr,
     OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
-use crate::scene::{HiddenSurfaces, Mapping, Shading, UpAxis};
+use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -151,7 +151,7 @@ pub(super) struct RenderLayout {
     pub(super) mapping: Option<Name<Mapping>>,
     pub(super) mipmaps: Option<bool>,
     pub(super) tessellation: Option<Positive>,
-    pub(super) dither: Option<bool>,
+    pub(super) dither: Option<OffOr<DitherPattern>>,
     pub(super) max_error: Option<Positive>,
     pub(super) max_time: Option<Positive>,
 }

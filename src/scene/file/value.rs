@@ -273,28 +273,53 @@ impl<'de> Deserialize<'de> for Background {
 /// One of several names.
 pub(super) struct Name<T>(pub(super) T);
 
+struct NameVisitor<T>(PhantomData<T>);
+
+impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for NameVisitor<T> {
+    type Value = Name<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a name in quotes")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
+        name.parse().map(Name).map_err(|error| match renamed::value(name) {
+            Some(new) if new.parse::<T>().is_ok() => E::custom(format_args!("\"{name}\" is now called \"{new}\"")),
+            _ => E::custom(format_args!("\"{name}\": {error}")),
+        })
+    }
+}
+
 impl<'de, T: FromStr<Err: fmt::Display>> Deserialize<'de> for Name<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Named<T>(PhantomData<T>);
+        deserializer.deserialize_any(NameVisitor(PhantomData))
+    }
+}
 
-        impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for Named<T> {
-            type Value = Name<T>;
+/// `false`, `true` for the default, or one of several names.
+pub(super) struct OffOr<T>(pub(super) Option<T>);
+
+impl<'de, T: FromStr<Err: fmt::Display> + Default> Deserialize<'de> for OffOr<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either<T>(PhantomData<T>);
+
+        impl<T: FromStr<Err: fmt::Display> + Default> Visitor<'_> for Either<T> {
+            type Value = OffOr<T>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a name in quotes")
+                f.write_str("true, false, or a name in quotes")
             }
 
-            fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
-                name.parse().map(Name).map_err(|error| match renamed::value(name) {
-                    Some(new) if new.parse::<T>().is_ok() => {
-                        E::custom(format_args!("\"{name}\" is now called \"{new}\""))
-                    }
-                    _ => E::custom(format_args!("\"{name}\": {error}")),
-                })
+            fn visit_bool<E: Error>(self, on: bool) -> Result<OffOr<T>, E> {
+                Ok(OffOr(on.then(T::default)))
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<OffOr<T>, E> {
+                NameVisitor(PhantomData).visit_str(name).map(|Name(value)| OffOr(Some(value)))
             }
         }
 
-        deserializer.deserialize_any(Named(PhantomData))
+        deserializer.deserialize_any(Either(PhantomData))
     }
 }
 

@@ -10,7 +10,7 @@ use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raste
 use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::span::depth::Cell;
-use mode13h::span::dither::{BAYER, fill_dithered, fill_dithered_portable};
+use mode13h::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
 use mode13h::span::list::{self, Listed, ListedDepths};
 use mode13h::span::{Kernel, channels};
 
@@ -102,7 +102,7 @@ fn s7_rows_keep_the_rules() {
         let bits = random.next_u64();
         let (shade, step, x) = (bits as u16, (bits >> 16) as u16, (bits >> 32) as usize % 64);
         let channel = [0; 3].map(|_| (0..length).map(|_| random.next_u64() as u8).collect::<Vec<u8>>());
-        let thresholds = random.one_of(&BAYER);
+        let thresholds = *random.one_of(&DitherPattern::ALL).thresholds().row(random.below(64));
         let parabola = [0.0, -3.0, 0.5].map(|most: f64| (most * random.unit() + random.unit()) as f32);
         try_kernels("a row", &mut random, &mut tried, |kernel| {
             let is_portable = kernel.name() == Kernel::PORTABLE.name();

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use mode13h::plan::{Effect, FaceShading};
 use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
+use mode13h::scene::DitherPattern;
 use mode13h::scene::shipped;
 use mode13h::span::Kernel;
 
@@ -186,6 +187,7 @@ fn documents_name_what_there_is() {
     known.extend(FaceShading::ALL.map(FaceShading::name));
     known.extend(HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     known.extend(Mapping::ALL.map(Mapping::name));
+    known.extend(DitherPattern::ALL.map(DitherPattern::name));
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
     known.extend(["mode13h-conformance", "mode13h-lab", "mode13h-cli"]);

@@ -12,7 +12,7 @@ use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Shading, VertexPath};
-use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
+use mode13h::scene::{DitherPattern, Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
@@ -216,7 +216,9 @@ pub(super) const CHANGES: &[Change] = &[
             w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
         }
     }),
-    seen("Preferences.dither", |w, r| w.scene.preferences.dither = r.within(0, 1) == 1),
+    seen("Preferences.dither", |w, r| {
+        w.scene.preferences.dither = r.one_of(&[None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]);
+    }),
     seen("Preferences.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // No frame says how long it took: all are drawn within 16 shades, or what the scene says.
     seen("Preferences.max_time", |w, r| w.scene.preferences.max_time = sometimes(r, |r| between(r, 0.5, 16.0))),
