@@ -48,6 +48,9 @@ fn every_error_prints_what_it_displays() {
                 folders.push(path);
                 continue;
             }
+            if path.extension().is_none_or(|extension| extension != "rs") {
+                continue;
+            }
             let text = std::fs::read_to_string(&path).expect("text");
             for (_, rest) in text.match_indices("Error for ").map(|(at, start)| text.split_at(at + start.len())) {
                 let name = rest.split(|c: char| !c.is_alphanumeric()).next().expect("a name");
