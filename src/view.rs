@@ -312,9 +312,14 @@ impl ObjectView {
 
     /// A direction of the world in the object's own space, unit; `None` for the zero vector.
     pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
+        let [x, y, z] = self.wide_direction_in_object(world)?;
+        Some(Vec3::new(x as f32, y as f32, z as f32))
+    }
+
+    /// [`direction_in_object`](Self::direction_in_object), before it is rounded.
+    pub(crate) fn wide_direction_in_object(&self, world: Vec3) -> Option<[f64; 3]> {
         let world = unit(widen(world))?;
-        let column = |j: usize| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world) as f32;
-        Some(Vec3::new(column(0), column(1), column(2)))
+        Some(core::array::from_fn(|j| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world)))
     }
 
     /// The longer side of a pixel at a distance along the view, in units of the object's mesh.

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::power::Shininess;
+use super::source::Cone;
 use crate::lanes::three;
 use crate::mesh::Bounds;
 
@@ -27,6 +28,42 @@ pub(crate) struct LampBeam {
     pub(crate) channels: [f32; 3],
     /// 1 / range².
     pub(crate) inverse_square: f64,
+    pub(crate) cone: Option<ConeBeam>,
+}
+
+/// The cone of a spot light as an object sees it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct ConeBeam {
+    /// The unit direction back to the light along the cone's axis.
+    pub(crate) back: Wide,
+    /// The cosine of the inner angle.
+    pub(crate) inner: f64,
+    /// 1 / (cosine of the inner angle − that of the outer).
+    pub(crate) inverse_width: f64,
+}
+
+/// The least difference of a cone's two cosines.
+const LEAST_WIDTH: f64 = 1.0 / 65_536.0;
+
+impl ConeBeam {
+    /// A cone, and its direction as the object has it, of any length; `None` for one that vanishes.
+    pub(crate) fn new(cone: &Cone, direction: Wide) -> Option<Self> {
+        let inner = libm::cos(cone.inner.to_radians());
+        let width = inner - libm::cos(cone.outer.to_radians());
+        Some(Self { back: unit(three(direction, |c| -c))?, inner, inverse_width: 1.0 / width.max(LEAST_WIDTH) })
+    }
+
+    /// The share of the light at a point from which the light lies in this unit direction.
+    #[inline]
+    pub(crate) fn share(&self, towards: Wide) -> f64 {
+        let x = positive(1.0 - positive((self.inner - dot(self.back, towards)) * self.inverse_width));
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+/// 0 for numbers that are not above it, or not numbers.
+fn positive(number: f64) -> f64 {
+    if number > 0.0 { number } else { 0.0 }
 }
 
 /// Returns whether a lamp reaches anything within `bounds`.
@@ -201,7 +238,10 @@ impl Lights<'_> {
             let Some(towards) = unit(to_lamp) else { continue };
             let cosine = dot(wide_normal, towards);
             let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);
-            let fall_off = (1.0 - square) * (1.0 - square);
+            let mut fall_off = (1.0 - square) * (1.0 - square);
+            if let Some(cone) = &lamp.cone {
+                fall_off *= cone.share(towards);
+            }
             let mut light = of_lamp(lamp);
             light.iter_mut().for_each(|intensity| *intensity *= fall_off);
             if cosine > 0.0 {
@@ -224,7 +264,7 @@ fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shi
     shininess.of(along)
 }
 
-fn widen(v: Vec3) -> Wide {
+pub(crate) fn widen(v: Vec3) -> Wide {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 

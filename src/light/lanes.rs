@@ -9,7 +9,7 @@
 
 use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
-use super::{Beam, LampBeam};
+use super::{Beam, ConeBeam, LampBeam};
 use crate::lanes::{LANES, Lanes, Points};
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use crate::simd::compiled_for_avx2;
@@ -258,7 +258,10 @@ impl Lights<'_> {
                 continue;
             }
             let left = l.sub(one, squares);
-            let fall_off = l.if_less(squares, one, l.mul(left, left));
+            let mut fall_off = l.if_less(squares, one, l.mul(left, left));
+            if let Some(cone) = &lamp.cone {
+                fall_off = l.mul(fall_off, share(l, cone, &towards));
+            }
             let mut highlights = None;
             if let Some(eye) = &eye {
                 highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
@@ -339,6 +342,15 @@ fn positive<L: Light8>(l: L, values: L::F64) -> L::F64 {
     l.if_less(l.all_f64(0.0), values, values)
 }
 
+/// [`ConeBeam::share`].
+#[inline(always)]
+fn share<L: Light8>(l: L, cone: &ConeBeam, towards: &Vectors<L>) -> L::F64 {
+    let back = [l.all_f64(cone.back[0]), l.all_f64(cone.back[1]), l.all_f64(cone.back[2])];
+    let beyond = l.mul(l.sub(l.all_f64(cone.inner), dot(l, &back, towards)), l.all_f64(cone.inverse_width));
+    let x = positive(l, l.sub(l.all_f64(1.0), positive(l, beyond)));
+    l.mul(l.mul(x, x), l.sub(l.all_f64(3.0), l.mul(l.all_f64(2.0), x)))
+}
+
 /// The vectors from the points to `to`.
 #[inline(always)]
 fn from<L: Lanes8>(l: L, to: &Wide, points: &Vectors<L>) -> Vectors<L> {
@@ -361,6 +373,8 @@ fn unit<L: Light8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Angle;
+    use crate::light::Cone;
     use crate::mesh::normals;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -382,13 +396,22 @@ mod tests {
         })
     }
 
+    fn cone() -> impl Strategy<Value = Option<ConeBeam>> {
+        prop::option::of((vector(), 0.0..90.0, 0.0..90.0).prop_map(|(direction, a, b): (_, f64, f64)| {
+            let [inner, outer] = [a.min(b), a.max(b)].map(Angle::from_degrees);
+            ConeBeam::new(&Cone { direction: direction.into(), inner, outer }, direction.map(f64::from))
+        }))
+        .prop_map(Option::flatten)
+    }
+
     fn lamp() -> impl Strategy<Value = LampBeam> {
-        (vector(), 0.01_f64..10.0, -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0)).prop_map(
-            |(v, inverse_square, intensity, channels)| LampBeam {
+        (vector(), 0.01_f64..10.0, -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0), cone()).prop_map(
+            |(v, inverse_square, intensity, channels, cone)| LampBeam {
                 position: v.map(f64::from),
                 intensity,
                 channels,
                 inverse_square,
+                cone,
             },
         )
     }

@@ -6,6 +6,8 @@
 //! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
 //! ```
 //!
+//! A lamp falls off with the distance, a spot light also towards the edge of its [`Cone`].
+//!
 //! n is the unit normal, l points to the light, v to the eye, r = 2·(n·l)·n − l is l mirrored at the
 //! surface. A light behind a face adds nothing, never a negative amount. The sum is clamped once, at
 //! its end: the Russian article clamps each component after summing, and so several lights together may fill what one
@@ -13,7 +15,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `source` | [`Light`]: suns, and lamps with a position and a fall-off (the Russian textbook) |
+//! | `source` | [`Light`]: suns, lamps with a position and a fall-off (the Russian textbook), and spot lights |
 //! | `material` | [`Material`]: what a surface answers |
 //! | `intensity` | the sum |
 //! | `lanes` | the same at eight points at a time |
@@ -26,7 +28,7 @@ mod power;
 mod response;
 mod source;
 
-pub(crate) use intensity::{Beam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches};
+pub(crate) use intensity::{Beam, ConeBeam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches, widen};
 pub use material::{Blend, Material, RampChoice};
 pub use response::LightResponse;
-pub use source::Light;
+pub use source::{Cone, Light};

@@ -1,5 +1,6 @@
 //! Sources of light.
 
+use crate::Angle;
 use glam::Vec3;
 
 /// A source of light.
@@ -28,7 +29,31 @@ pub enum Light {
         range: f32,
         /// Red, green, blue, as a rule 0 to 1.
         color: [f32; 3],
+        /// The cone of a spot light; `None` for a lamp that shines all around.
+        cone: Option<Cone>,
     },
+}
+
+/// The cone of a spot light.
+///
+/// All of the light is left within `inner`, none beyond `outer`, and between the two a share that depends on the cosine of
+/// the angle θ to `direction`:
+///
+/// ```text
+/// x     = (cos θ − cos outer) / (cos inner − cos outer), cut off to 0 … 1
+/// share = x²·(3 − 2x)
+/// ```
+///
+/// That is the `smoothstep` of RenderMan's spot light (S. Upstill, *The RenderMan Companion*, 1990), without an edge at
+/// either end. Cosines less than 2⁻¹⁶ apart count as 2⁻¹⁶ apart, so that equal angles make a sharp edge.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Cone {
+    /// Away from the light, in the world; any length but zero.
+    pub direction: Vec3,
+    /// The half-angle within which all of the light is left; at most `outer`.
+    pub inner: Angle,
+    /// The half-angle beyond which none is left: above 0, at most 90 degrees.
+    pub outer: Angle,
 }
 
 /// Neither red nor green nor blue.
@@ -44,7 +69,14 @@ impl Light {
     /// A white lamp of intensity 1 at `position` that reaches as far as `range`, above 0.
     #[must_use]
     pub fn lamp(position: impl Into<Vec3>, range: f32) -> Self {
-        Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE }
+        Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: None }
+    }
+
+    /// A white spot light of intensity 1: a lamp at `position` that reaches as far as `range`, above 0, and no farther to the
+    /// sides than `cone`.
+    #[must_use]
+    pub fn spot(position: impl Into<Vec3>, range: f32, cone: Cone) -> Self {
+        Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: Some(cone) }
     }
 
     /// Sets the light's intensity.
@@ -121,7 +153,23 @@ impl Light {
                 Err("its position, intensity, range and colour must be finite")
             }
             Self::Lamp { range, .. } if range <= 0.0 => Err("its range must be above 0"),
+            Self::Lamp { cone: Some(cone), .. } => cone.check(),
             _ => Ok(()),
+        }
+    }
+}
+
+impl Cone {
+    fn check(&self) -> Result<(), &'static str> {
+        let (inner, outer) = (self.inner.to_radians(), self.outer.to_radians());
+        if !self.direction.is_finite() {
+            Err("the direction of its cone must be finite")
+        } else if self.direction == Vec3::ZERO {
+            Err("the direction of its cone must not be zero")
+        } else if !(0.0 <= inner && inner <= outer && 0.0 < outer && outer <= core::f64::consts::FRAC_PI_2) {
+            Err("the angles of its cone must be 0 <= inner <= outer, and outer above 0 and at most 90 degrees")
+        } else {
+            Ok(())
         }
     }
 }

@@ -17,7 +17,7 @@ named! {
         HiddenSurfaces = "hidden-surfaces",
         /// Vertices are lit; else the shade is constant, and no normal is looked at.
         Lighting = "lighting",
-        /// Lamps in range: a distance, a direction and a fall-off for every vertex; else suns alone.
+        /// Lamps and spot lights in range: a distance, a direction and a fall-off for every vertex; else suns alone.
         PositionalLights = "positional-lights",
         /// Highlights: a power for every vertex and light.
         Specular = "specular",

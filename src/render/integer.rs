@@ -160,7 +160,7 @@ impl IntegerPath {
     /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
-        // Lamps are left out: the plan says so.
+        // Lamps, spot lights among them, are left out: the plan says so.
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";

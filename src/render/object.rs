@@ -15,7 +15,7 @@ use super::settings::{Accuracy, Resolved};
 use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex::{self, Geometry, VertexAttributes};
-use crate::light::{Beam, LampBeam, Light, Lights, Material};
+use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material, widen};
 use crate::mesh::Mesh;
 use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
@@ -103,11 +103,16 @@ fn sun(light: &Light, view: &ObjectView) -> Option<Beam> {
 
 /// A lamp as the object of `view` sees it.
 pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
-    let Light::Lamp { position, intensity, range, color } = *light else { return None };
+    let Light::Lamp { position, intensity, range, color, cone } = *light else { return None };
     // In the object's units.
     let part = view.scale() / f64::from(range);
+    let cone = match cone {
+        Some(cone) => Some(ConeBeam::new(&cone, view.wide_direction_in_object(cone.direction)?)?),
+        None => None,
+    };
     Some(LampBeam {
         position: view.point_in_object(position.to_array().map(f64::from)),
+        cone,
         intensity: light.brightness(),
         channels: color.map(|c| c * intensity),
         inverse_square: part * part,
@@ -350,13 +355,18 @@ impl ObjectState {
             // A lamp counts as a sun where the object is: a table knows no places.
             let (towards, share) = match *light {
                 Light::Sun { direction, .. } => (direction, 1.0),
-                Light::Lamp { position, range, .. } => {
+                Light::Lamp { position, range, cone, .. } => {
                     let away = position - at;
                     let part = away.length_squared() / (range * range);
                     if part >= 1.0 || part.is_nan() {
                         return None;
                     }
-                    (away, (1.0 - part) * (1.0 - part))
+                    let mut share = (1.0 - part) * (1.0 - part);
+                    if let Some(cone) = cone {
+                        let beam = ConeBeam::new(&cone, widen(cone.direction))?;
+                        share *= beam.share(widen(away.normalize_or_zero())) as f32;
+                    }
+                    (away, share)
                 }
             };
             let towards = view.direction_to_eye(towards)?;

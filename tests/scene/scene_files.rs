@@ -161,6 +161,33 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             cube("render.dither = 1"),
             "2:17: key `render.dither`: expected true, false, or a name in quotes, found integer `1`",
         ),
+        // Spot lights.
+        (
+            light("lamp = [1, 1, 1]\nrange = 5\ndirection = [0, -1, 0]"),
+            "key `lights[0].direction`: a cone needs an `outer` angle",
+        ),
+        (light("lamp = [1, 1, 1]\nrange = 5\nouter = 20"), "key `lights[0].outer`: a cone needs a `direction`"),
+        (light("lamp = [1, 1, 1]\nrange = 5\ninner = 20"), "key `lights[0].inner`: a cone needs a `direction`"),
+        (
+            light("lamp = [1, 1, 1]\nrange = 5\ndirection = [0, 0, 0]\nouter = 20"),
+            "key `lights[0].direction`: a direction must not be zero",
+        ),
+        (
+            light("lamp = [1, 1, 1]\nrange = 5\ndirection = [0, 1, 0]\nouter = 0"),
+            "key `lights[0].outer`: a cone's outer angle must be above 0",
+        ),
+        (
+            light("lamp = [1, 1, 1]\nrange = 5\ndirection = [0, 1, 0]\nouter = 91"),
+            "key `lights[0].outer`: expected a number of degrees from 0 to 90",
+        ),
+        (
+            light("lamp = [1, 1, 1]\nrange = 5\ndirection = [0, 1, 0]\nouter = 20\ninner = 30"),
+            "key `lights[0].inner`: a cone's inner angle must be at most its outer one",
+        ),
+        (
+            cube("[[lights]]\nsun = [0, 1, 0]\ndirection = [0, 1, 0]"),
+            "key `lights[0].direction`: only a lamp has a cone",
+        ),
         // Out of range.
         (cube("duration = 0"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 0"),
         (cube("duration = nan"), "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found NaN"),

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3, vec3};
-use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
+use mode13h::light::{Blend, Cone, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
@@ -160,6 +160,14 @@ impl List {
                     scene
                 });
             }
+        }
+        for (name, color) in [("white", None), ("coloured", Some([1.0, 0.7, 0.2]))] {
+            for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong, Shading::PhongTable] {
+                self.vga(format!("light/spot/{name}/{shading}"), with(shading), move || spots(color));
+            }
+            let mut settings = Settings::default();
+            settings.accuracy = Some(Accuracy::WithinError(2.0));
+            self.vga(format!("light/spot/{name}/within-2"), settings, move || spots(color));
         }
         self.vga("light/ten-lamps".into(), Settings::default(), || {
             let mut scene = pair(0.5);
@@ -463,6 +471,25 @@ fn textured(scene: &mut Scene, name: &str, mapping: Mapping, mipmaps: bool) {
 fn colored_lamps(scene: &mut Scene) {
     scene.add_light(Light::lamp([-1.2, 0.6, 1.0], 3.5).with_color([1.0, 0.2, 0.1]));
     scene.add_light(Light::lamp([1.4, -0.4, 0.8], 3.0).with_color([0.1, 0.3, 1.0]).with_intensity(1.2));
+}
+
+/// A wall of few faces and a torus before it, in the edges of two spot lights: a soft one, and a sharp one that is narrow.
+fn spots(color: Option<[f32; 3]>) -> Scene {
+    let mut scene = Scene::new();
+    scene.palette = if color.is_some() { colors() } else { Some(builtin::GREY.clone()) };
+    let mut wall = at(Object::new(shapes::wall(9, 7)), vec3(0.0, 0.0, -1.0));
+    wall.scale = 2.0;
+    scene.add(wall);
+    scene.add(turned(at(Object::new(shapes::torus(24, 12)), vec3(-0.4, 0.1, 0.2)), 0.8));
+    let cone = |direction: Vec3, inner, outer| {
+        let [inner, outer] = [inner, outer].map(Angle::from_degrees);
+        Cone { direction, inner, outer }
+    };
+    let soft = Light::spot([1.0, 1.2, 2.5], 8.0, cone(vec3(-1.3, -1.2, -3.0), 6.0, 19.0));
+    let sharp = Light::spot([1.4, -0.6, 1.5], 7.0, cone(vec3(-0.4, 0.3, -2.5), 11.0, 11.0));
+    scene.add_light(soft.with_color(color.unwrap_or([1.0; 3])).with_intensity(1.5));
+    scene.add_light(sharp.with_intensity(0.8));
+    scene
 }
 
 /// A floor that runs away from the eye, with a texture that repeats.

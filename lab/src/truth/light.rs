@@ -5,10 +5,11 @@
 //! ```
 //!
 //! With three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l.
-//! A light that n points away from adds nothing. A lamp at the distance d falls off as (1 − d²/R²)² within its range R.
+//! A light that n points away from adds nothing. A lamp at the distance d falls off as (1 − d²/R²)² within its range R, a spot
+//! light also from its inner to its outer angle (see [`Cone`]).
 
 use super::vector::{Vector, dot, sub, times, unit, wide};
-use mode13h::light::{Light, Material};
+use mode13h::light::{Cone, Light, Material};
 use mode13h::scene::Scene;
 
 /// Red, green and blue of what a point shows, clamped once, after the sum: 0 to 1. `normal` is unit, or
@@ -56,15 +57,27 @@ pub(super) fn intensity(
 fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
     match *light {
         Light::Sun { direction, .. } => Some((unit(wide(direction))?, 1.0)),
-        Light::Lamp { position, range, .. } => {
+        Light::Lamp { position, range, cone, .. } => {
             let to_lamp = sub(wide(position), at);
             let part = dot(to_lamp, to_lamp) / (f64::from(range) * f64::from(range));
             let left = 1.0 - part;
-            if left > 0.0 { Some((unit(to_lamp)?, left * left)) } else { None }
+            let towards = unit(to_lamp).filter(|_| left > 0.0)?;
+            Some((towards, left * left * cone.map_or(Some(1.0), |cone| in_cone(&cone, towards))?))
         }
         // A kind of light that came after this laboratory.
         _ => None,
     }
+}
+
+/// The share of a spot light that is left where the light lies in the unit direction `towards`; `None` if the cone has no
+/// direction.
+fn in_cone(cone: &Cone, towards: Vector) -> Option<f64> {
+    let cosine = -dot(unit(wide(cone.direction))?, towards);
+    let inner = libm::cos(cone.inner.to_radians());
+    // An edge is no sharper than that.
+    let outer = libm::cos(cone.outer.to_radians()).min(inner - 1.0 / 65_536.0);
+    let x = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0);
+    Some(3.0 * x * x - 2.0 * x * x * x)
 }
 
 /// Id of each channel; on one channel, of a coloured light the luminance after ITU-R BT.601.

@@ -3,13 +3,14 @@
 //! A pixel is beyond if it is farther than E from the truth in f64 (or than what rounding to a byte takes, if that is more),
 //! beside what the rounding of vertices explains ([`Truth::rounding_shift`]).
 
+use core::f64::consts::FRAC_PI_2;
 use core::fmt;
 
 use crate::support::shipped;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::{Mat3, Vec3};
-use mode13h::light::{Light, Material};
+use mode13h::light::{Cone, Light, Material};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::render::{Accuracy, Renderer};
@@ -43,6 +44,8 @@ enum Kind {
     Telephoto,
     /// Shininess below 1, several lights and materials.
     Several,
+    /// Spot lights whose edges, soft or sharp, cross faces.
+    SpotEdge,
     /// Everything.
     Mixed,
     /// Everything, moved, turned and grown as one, on a body that hangs from another.
@@ -50,7 +53,7 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::CloseLamp,
         Self::CutInside,
         Self::CloseEye,
@@ -59,6 +62,7 @@ impl Kind {
         Self::DimLamp,
         Self::Telephoto,
         Self::Several,
+        Self::SpotEdge,
         Self::Mixed,
         Self::Placed,
     ];
@@ -235,7 +239,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     };
     for i in 0..lights {
         let is_lamp = match kind {
-            Kind::CloseLamp | Kind::CutInside | Kind::DimLamp | Kind::Telephoto => true,
+            Kind::CloseLamp | Kind::CutInside | Kind::DimLamp | Kind::Telephoto | Kind::SpotEdge => true,
             Kind::CloseEye | Kind::BroadHighlight => false,
             _ => genes.chance(0.5),
         };
@@ -251,7 +255,18 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
             let on = if i == 0 { (at, normal) } else { place_on(object.mesh(), genes) };
             let height = genes.log(1e-3, 10.0) as f32 * edge;
             let towards = if shiny && i == 0 { mirrored } else { on.1 };
-            Light::lamp(on.0 + towards * height, genes.log(0.3, 30.0) as f32 * edge.max(height))
+            let (from, range) = (on.0 + towards * height, genes.log(0.3, 30.0) as f32 * edge.max(height));
+            if is(Kind::SpotEdge) || (mixed && genes.chance(0.5)) {
+                // Its edge is near the point, whatever its angles.
+                let aside = towards.cross(genes.vector()).normalize_or(Vec3::X);
+                let angle = genes.log(0.3, 89.0).to_radians();
+                let direction = aside * angle.sin() as f32 - towards * angle.cos() as f32;
+                let (inner, outer) = (angle * (1.0 - genes.log(1e-3, 1.0)), angle * (1.0 + genes.log(1e-3, 1.0)));
+                let [inner, outer] = [inner, outer.min(FRAC_PI_2)].map(Angle::from_radians);
+                Light::spot(from, range, Cone { direction, inner, outer })
+            } else {
+                Light::lamp(from, range)
+            }
         } else {
             let about = if shiny || genes.chance(0.5) { mirrored } else { normal };
             Light::sun(about + genes.vector() * genes.log(0.01, 3.0) as f32)

@@ -6,7 +6,7 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
-use mode13h::light::{Light, Material, RampChoice};
+use mode13h::light::{Cone, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::raster::Vertex;
@@ -121,10 +121,20 @@ fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 
     for light in scene.lights() {
         let (towards, strength) = match light {
             Light::Sun { direction, intensity, .. } => (unit(wide(*direction)), f64::from(*intensity)),
-            Light::Lamp { position, intensity, range, .. } => {
+            Light::Lamp { position, intensity, range, cone, .. } => {
                 let to_lamp = sub(wide(*position), at);
                 let left = (1.0 - dot(to_lamp, to_lamp) / f64::from(*range).powi(2)).max(0.0);
-                (unit(to_lamp), f64::from(*intensity) * left * left)
+                let share = match (cone, unit(to_lamp)) {
+                    (Some(cone), Some(towards)) => {
+                        let axis = unit(wide(cone.direction)).expect("a direction");
+                        let [inner, outer] = [cone.inner, cone.outer].map(|angle| angle.to_radians().cos());
+                        let outer = outer.min(inner - 1.0 / 65_536.0);
+                        let x = ((-dot(axis, towards) - outer) / (inner - outer)).clamp(0.0, 1.0);
+                        x * x * (3.0 - 2.0 * x)
+                    }
+                    _ => 1.0,
+                };
+                (unit(to_lamp), f64::from(*intensity) * left * left * share)
             }
             _ => panic!("a sun or a lamp"),
         };
@@ -170,7 +180,16 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
             let on_face = random.one_of(&[middle, corners[1], anywhere]);
             let place = random.one_of(&[corners[0], on_face, on_face + Vec3::Z * hair, scene.camera.eye]);
             let range = random.one_of(&[0.5, 3.0, 10.0]);
-            scene.add_light(Light::lamp(place, range).with_intensity(random.one_of(&[0.5, 1.0, 3.0])));
+            let light = match random.within(0, 1) {
+                0 => Light::lamp(place, range),
+                _ => {
+                    let direction = Vec3::new(quarter(&mut random, 4), quarter(&mut random, 4), -1.0);
+                    let [a, b] = [(); 2].map(|()| random.unit() * 89.0 + 1.0);
+                    let [inner, outer] = [a.min(b), a.max(b)].map(Angle::from_degrees);
+                    Light::spot(place, range, Cone { direction, inner, outer })
+                }
+            };
+            scene.add_light(light.with_intensity(random.one_of(&[0.5, 1.0, 3.0])));
         }
         let mut drawn: Vec<Vertex> = Vec::new();
         Renderer::new()

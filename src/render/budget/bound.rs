@@ -6,7 +6,7 @@
 
 use super::ranges::{HUGE, Patches, Sight, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes, each};
-use crate::light::{Lights, Reflectance};
+use crate::light::{ConeBeam, Lights, Reflectance};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
@@ -127,6 +127,58 @@ impl FallOff {
             first: lesser(4.0 * steepest * e, HUGE),
             second: lesser(greater(4.0 * left, 12.0 * d1 * d1 - 4.0) * e * e, HUGE),
             turn: lesser(turn, GREATEST_TURN),
+        }
+    }
+}
+
+/// A spot light's share on a patch, along the patch's radius.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    most: f32,
+    least: f32,
+    /// Greatest first and second derivatives.
+    first: f32,
+    second: f32,
+}
+
+impl Share {
+    /// Lemma 12, from the range of the cosine at the corners, and what the direction turns by.
+    #[inline(always)]
+    fn new(cone: &ConeBeam, (most, least): (f32, f32), turn: f32) -> Self {
+        let (inner, inverse_width) = (cone.inner as f32, cone.inverse_width as f32);
+        let curved = 0.5 * BEND * turn * turn;
+        let (most, least) = (lesser(most + curved, 1.0), greater(least - curved, -1.0));
+        let x = |cosine: f32| lesser(greater(1.0 - (inner - cosine) * inverse_width, 0.0), 1.0);
+        let (high, low) = (x(most), x(least));
+        let share = |x: f32| x * x * (3.0 - 2.0 * x);
+        // The x of the range that is nearest to the steepest one, and the farther end, where it bends most.
+        let steepest = greater(lesser(0.5, high), low);
+        let is_edge = if low < 1.0 && high > 0.0 { 1.0 } else { 0.0 };
+        let slope = is_edge * 6.0 * steepest * (1.0 - steepest) * inverse_width;
+        let bend =
+            is_edge * greater((6.0 - 12.0 * low).abs(), (6.0 - 12.0 * high).abs()) * inverse_width * inverse_width;
+        // Where it has an edge, the cosine is no less than the outer one.
+        let cosine = greater(greater(least, inner - 1.0 / inverse_width), 0.0);
+        let sine = square_root(greater(1.0 - cosine * cosine, 0.0) + ROUNDING);
+        Self {
+            most: share(high),
+            least: share(low),
+            first: lesser(slope * sine * turn, HUGE),
+            second: lesser((bend * sine * sine + slope * BEND) * turn * turn, HUGE),
+        }
+    }
+}
+
+impl FallOff {
+    /// The fall-off times a share.
+    #[inline(always)]
+    fn times(self, share: Share) -> Self {
+        Self {
+            most: self.most * share.most,
+            least: self.least * share.least,
+            first: lesser(self.first * share.most + self.most * share.first, HUGE),
+            second: lesser(self.second * share.most + 2.0 * self.first * share.first + self.most * share.second, HUGE),
+            turn: self.turn,
         }
     }
 }
@@ -402,7 +454,17 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
             *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
         }
         let ends = [each!(lane => falls[lane].most), each!(lane => falls[lane].least)];
-        let weighted = patches.weighted(&sight, &ends, inverse_range);
+        let mut weighted = patches.weighted(&sight, &ends, inverse_range);
+        if let Some(cone) = &lamp.cone {
+            let [most, least] = patches.along(&sight.directions, narrow(cone.back));
+            for lane in 0..LANES {
+                let share = Share::new(cone, (most[lane], least[lane]), falls[lane].turn);
+                falls[lane] = falls[lane].times(share);
+                let [above, below] = &mut weighted;
+                above[lane] *= if above[lane] > 0.0 { share.most } else { share.least };
+                below[lane] *= if below[lane] > 0.0 { share.least } else { share.most };
+            }
+        }
         let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
         sums.add_light::<WHOLE, P>(patches, &sight.directions, (Some(weighted), &falls), eye.as_ref(), &strength);
     }

@@ -1,6 +1,7 @@
 //! The bound, tested as a bound: on random patches in random light no sampled error is greater than that of the face, of the
 //! part, or of the cluster that the face is in. `cargo test` tries 36,000 faces, the long run 3,200,000.
 
+use core::f64::consts::FRAC_PI_2;
 use std::vec::Vec;
 
 use glam::Vec3;
@@ -9,8 +10,9 @@ use proptest::prelude::*;
 use super::bound::{Bounds, Incident, Shapes, error_at_best, interpolation_error};
 use super::clusters::{Clusters, radius};
 use super::ranges::{EightFaces, ZERO};
+use crate::Angle;
 use crate::lanes::LANES;
-use crate::light::{Beam, LampBeam, Lights, Reflectance};
+use crate::light::{Beam, Cone, ConeBeam, LampBeam, Lights, Reflectance, widen};
 use crate::mesh::normals::unit;
 use crate::random::Random;
 use crate::render::vertex::Geometry;
@@ -37,6 +39,17 @@ impl Chance {
 
     fn chance(&mut self, share: f64) -> bool {
         self.unit() < share
+    }
+
+    /// A cone whose edge, soft or sharp, is near a point, whatever its angles.
+    fn cone(&mut self, from: Vec3, to: Vec3) -> ConeBeam {
+        let axis = unit(to - from).unwrap_or(Vec3::Z);
+        let aside = unit(axis.cross(self.direction())).unwrap_or(Vec3::Z);
+        let angle = self.log(0.3, 89.0).to_radians();
+        let direction = axis * angle.cos() as f32 + aside * angle.sin() as f32;
+        let (inner, outer) = (angle * (1.0 - self.log(1e-3, 1.0)), angle * (1.0 + self.log(1e-3, 1.0)));
+        let [inner, outer] = [inner, outer.min(FRAC_PI_2)].map(Angle::from_radians);
+        ConeBeam::new(&Cone { direction, inner, outer }, widen(direction)).expect("a direction")
     }
 
     fn colors(&mut self) -> [f32; 3] {
@@ -95,6 +108,7 @@ impl Case {
                     intensity: intensity(random),
                     channels: random.colors(),
                     inverse_square: 1.0 / (range * range),
+                    cone: None,
                 });
             }
         }
@@ -133,11 +147,41 @@ impl Case {
         let height = needed.fold(f32::MIN, f32::max) + random.log(1e-5, 1e-2) as f32;
         let wide = |v: Vec3| [v.x, v.y, v.z].map(f64::from);
         let (intensity, channels) = (1.0, [1.0; 3]);
-        let lamp = LampBeam { position: wide(away + Vec3::Z * height), intensity, channels, inverse_square: 1e-12 };
+        let lamp = LampBeam {
+            position: wide(away + Vec3::Z * height),
+            intensity,
+            channels,
+            inverse_square: 1e-12,
+            cone: None,
+        };
         (case.suns, case.lamps) = (Vec::new(), [lamp].into());
         let eye = away * -random.log(0.5, 2.0) as f32 + Vec3::Z * random.log(1e-3, 1.0) as f32;
         case.eye = wide(eye);
         (case.answer.specular, case.answer.shininess) = (1.0, random.log(2.0, 20.0));
+        case
+    }
+
+    /// Faces at the edge of a spot light, near it or far away.
+    fn spot(random: &mut Chance) -> Self {
+        let mut case = Self::new(random);
+        case.suns.clear();
+        case.lamps.clear();
+        let size = random.log(0.01, 1.0) as f32;
+        case.positions.iter_mut().for_each(|position| *position *= size);
+        let away = random.log(0.1, 30.0) as f32;
+        for _ in 0..if random.chance(0.8) { 1 } else { 2 } {
+            let at = case.positions[0].lerp(case.positions[1], random.unit() as f32);
+            let from = at + (Vec3::Z + 0.5 * random.vector()) * away;
+            let range = f64::from(away) * random.log(1.0, 10.0);
+            let intensity = random.log(0.1, 10.0) as f32 * if random.chance(0.25) { -1.0 } else { 1.0 };
+            case.lamps.push(LampBeam {
+                position: [from.x, from.y, from.z].map(f64::from),
+                intensity,
+                channels: random.colors(),
+                inverse_square: 1.0 / (range * range),
+                cone: Some(random.cone(from, at)),
+            });
+        }
         case
     }
 
@@ -192,9 +236,15 @@ impl Case {
         for lamp in &self.lamps {
             let way = sub(lamp.position, at);
             let left = (1.0 - dot(way, way) * lamp.inverse_square).max(0.0);
+            let share = lamp.cone.map_or(1.0, |cone| {
+                let outer = cone.inner - 1.0 / cone.inverse_width;
+                let x = ((dot(cone.back, made_unit(way)) - outer) / (cone.inner - outer)).clamp(0.0, 1.0);
+                3.0 * x * x - 2.0 * x * x * x
+            });
+            let fall_off = left * left * share;
             let mut channels = lamp.channels;
-            channels.iter_mut().for_each(|channel| *channel *= (left * left) as f32);
-            add(made_unit(way), f64::from(lamp.intensity) * left * left, channels);
+            channels.iter_mut().for_each(|channel| *channel *= fall_off as f32);
+            add(made_unit(way), f64::from(lamp.intensity) * fall_off, channels);
         }
         light.map(|light| light.clamp(0.0, 1.0))
     }
@@ -325,6 +375,21 @@ fn try_case(case: &Case, random: &mut Chance, points: u32) -> Vec<f64> {
 }
 
 #[test]
+fn no_sampled_error_of_a_spot_light_is_beyond_its_bound() {
+    let mut random = Chance(Random::again(16));
+    let mut ratios: Vec<f64> = (0..2_000)
+        .map(|_| Case::spot(&mut random))
+        .collect::<Vec<_>>()
+        .iter()
+        .flat_map(|case| try_case(case, &mut random, 24))
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64) as usize];
+    std::println!("{} faces: bound over error {:.2} at the least, {:.2} in the median", ratios.len(), at(0.0), at(0.5));
+    assert!(ratios.len() > 2_000);
+}
+
+#[test]
 fn no_sampled_error_is_beyond_its_bound() {
     let mut random = Chance(Random::again(13));
     let mut ratios = Vec::new();
@@ -353,6 +418,7 @@ fn bound_of_many_more_patches() {
         let case = match random.unit() {
             kind if kind < 0.1 => Case::grazing(&mut random),
             kind if kind < 0.2 => Case::stepped(&mut random),
+            kind if kind < 0.4 => Case::spot(&mut random),
             _ => Case::new(&mut random),
         };
         try_case(&case, &mut random, 12);
@@ -365,7 +431,7 @@ fn bounds_do_not_depend_on_the_kernel() {
     use crate::span::Kernel;
     let mut random = Chance(Random::again(15));
     for _ in 0..200 {
-        let case = Case::new(&mut random);
+        let case = if random.chance(0.3) { Case::spot(&mut random) } else { Case::new(&mut random) };
         let clusters = case.clusters();
         let shapes = Shapes {
             spread: [clusters.facets[0].spread; LANES],

@@ -47,6 +47,8 @@ pub(super) trait Patches {
     fn point(&self, at: [f32; 3], blur: f32, edge: &Lanes<f32>) -> Sight<Self::Directions>;
     /// Range of n·l.
     fn facing(&self, directions: &Self::Directions) -> [Lanes<f32>; 2];
+    /// Range of the cosine between an axis and the directions, at the corners.
+    fn along(&self, directions: &Self::Directions, axis: [f32; 3]) -> [Lanes<f32>; 2];
     /// Range of n·l times a lamp's fall-off, whose own range is `falls`.
     fn weighted(&self, sight: &Sight<Self::Directions>, falls: &[Lanes<f32>; 2], inverse_range: f32)
     -> [Lanes<f32>; 2];
@@ -101,6 +103,13 @@ impl Patches for EightFaces {
         let [a, b, c] = &self.normals;
         let [to_a, to_b, to_c] = &to.directions;
         ends(&[dot(a, to_a), dot(b, to_b), dot(c, to_c)], &to.off)
+    }
+
+    #[inline(always)]
+    fn along(&self, to: &FromCorners, axis: [f32; 3]) -> [Lanes<f32>; 2] {
+        let axis = splat(axis);
+        let [to_a, to_b, to_c] = &to.directions;
+        ends(&[dot(&axis, to_a), dot(&axis, to_b), dot(&axis, to_c)], &to.off)
     }
 
     #[inline(always)]
@@ -216,6 +225,11 @@ impl Patches for EightClusters {
     fn facing(&self, to: &FromBoxes) -> [Lanes<f32>; 2] {
         let turns = each!(lane => self.angles[lane] + to.turns[lane]);
         turned(&dot(&self.axes, &to.directions), &turns)
+    }
+
+    #[inline(always)]
+    fn along(&self, to: &FromBoxes, axis: [f32; 3]) -> [Lanes<f32>; 2] {
+        turned(&dot(&splat(axis), &to.directions), &to.turns)
     }
 
     #[inline(always)]

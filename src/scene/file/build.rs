@@ -12,9 +12,10 @@ use super::error::Fault;
 use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, SceneLayout};
 use super::named::{Named, Open};
 use super::object::Objects;
-use super::value::{Background, FileName, List, OneOrThree};
+use super::value::{Background, FileName, HalfAngle, List, OneOrThree, Vector};
 use super::{SceneErrorKind, motion};
-use crate::light::Light;
+use crate::Angle;
+use crate::light::{Cone, Light};
 use crate::scene::framing::{Swept, Turning};
 use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Preferences, Scene};
 
@@ -159,8 +160,11 @@ impl<'a> Builder<'a> {
     }
 
     fn light(&mut self, layout: &Spanned<LightLayout>) -> Result<(), Fault> {
-        let LightLayout { sun, lamp, range, intensity, color, path } = layout.get_ref();
+        let LightLayout { sun, lamp, range, direction, outer, inner, intensity, color, path } = layout.get_ref();
         let path = path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
+        if let (Some(_), Some(span)) = (sun, direction.as_ref().map(Spanned::span)) {
+            return Err(Fault::value(span, "only a lamp has a cone"));
+        }
         let light = match (sun, lamp, range) {
             (Some(direction), None, None) => {
                 let towards = direction.get_ref().vec3();
@@ -172,7 +176,13 @@ impl<'a> Builder<'a> {
             (Some(_), None, Some(range)) => {
                 return Err(Fault::value(range.span(), "only a lamp has a range"));
             }
-            (None, Some(position), Some(range)) => Light::lamp(position.get_ref().vec3(), range.get_ref().0),
+            (None, Some(position), Some(range)) => {
+                let (position, range) = (position.get_ref().vec3(), range.get_ref().0);
+                match cone(direction.as_ref(), outer.as_ref(), inner.as_ref())? {
+                    Some(cone) => Light::spot(position, range, cone),
+                    None => Light::lamp(position, range),
+                }
+            }
             (None, Some(_), None) => {
                 return Err(Fault::value(layout.span(), "a lamp needs a `range`: how far it reaches"));
             }
@@ -202,6 +212,34 @@ impl<'a> Builder<'a> {
         }
         Ok(())
     }
+}
+
+/// The cone of a spot light: a direction with an outer angle.
+fn cone(
+    direction: Option<&Spanned<Vector>>,
+    outer: Option<&Spanned<HalfAngle>>,
+    inner: Option<&Spanned<HalfAngle>>,
+) -> Result<Option<Cone>, Fault> {
+    let (direction, outer) = match (direction, outer) {
+        (Some(direction), Some(outer)) => (direction, outer),
+        (Some(direction), None) => return Err(Fault::value(direction.span(), "a cone needs an `outer` angle")),
+        (None, _) => match outer.or(inner) {
+            Some(angle) => return Err(Fault::value(angle.span(), "a cone needs a `direction`")),
+            None => return Ok(None),
+        },
+    };
+    if direction.get_ref().vec3() == Vec3::ZERO {
+        return Err(Fault::value(direction.span(), "a direction must not be zero"));
+    }
+    if outer.get_ref().0 == 0.0 {
+        return Err(Fault::value(outer.span(), "a cone's outer angle must be above 0"));
+    }
+    let degrees = inner.map_or(0.0, |angle| angle.get_ref().0);
+    if let Some(inner) = inner.filter(|_| degrees > outer.get_ref().0) {
+        return Err(Fault::value(inner.span(), "a cone's inner angle must be at most its outer one"));
+    }
+    let [inner, outer] = [degrees, outer.get_ref().0].map(|degrees| Angle::from_degrees(degrees.into()));
+    Ok(Some(Cone { direction: direction.get_ref().vec3(), inner, outer }))
 }
 
 fn preferences(layout: &RenderLayout) -> Preferences {

@@ -13,8 +13,8 @@ use toml::Spanned;
 
 use super::shape::Shape;
 use super::value::{
-    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, List, Name, NotNegative, Number, OffOr,
-    OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
+    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, HalfAngle, List, Name, NotNegative,
+    Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
 use crate::light::Blend;
 use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
@@ -97,6 +97,9 @@ pub(super) struct LightLayout {
     pub(super) sun: Option<Spanned<Vector>>,
     pub(super) lamp: Option<Spanned<Vector>>,
     pub(super) range: Option<Spanned<Positive>>,
+    pub(super) direction: Option<Spanned<Vector>>,
+    pub(super) outer: Option<Spanned<HalfAngle>>,
+    pub(super) inner: Option<Spanned<HalfAngle>>,
     pub(super) intensity: Option<Plain>,
     pub(super) color: Option<Color>,
     pub(super) path: Option<Spanned<PathLayout>>,

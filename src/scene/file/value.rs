@@ -91,6 +91,8 @@ numbers! {
     Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
     /// An angle between the picture's upper and lower edge, in degrees.
     FieldOfView(f32): "a number of degrees from 1 to 179", |x| (1.0..=179.0).contains(&x);
+    /// The angle between the axis of a cone and its edge, in degrees.
+    HalfAngle(f32): "a number of degrees from 0 to 90", |x| (0.0..=90.0).contains(&x);
     /// An angle between two faces, in degrees.
     Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
     /// An entry of the palette.

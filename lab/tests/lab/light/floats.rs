@@ -5,7 +5,7 @@ use std::path::Path;
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::{Light, Material};
+use mode13h::light::{Cone, Light, Material};
 use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::{BIOS, Rgb};
 use mode13h::render::Renderer;
@@ -23,8 +23,18 @@ type Row = (&'static str, usize, Put, &'static str);
 
 fn lamp(scene: &mut Scene) -> (&mut Vec3, &mut f32, &mut f32, &mut [f32; 3]) {
     match &mut scene.lights_mut()[1] {
-        Light::Lamp { position, intensity, range, color } => (position, intensity, range, color),
+        Light::Lamp { position, intensity, range, color, .. } => (position, intensity, range, color),
         _ => panic!("a lamp"),
+    }
+}
+
+/// The lamp made a spot light.
+fn spot(scene: &mut Scene, change: impl FnOnce(&mut Cone)) {
+    let (inner, outer) = (Angle::from_degrees(10.0), Angle::from_degrees(20.0));
+    let mut new = Cone { direction: Vec3::X, inner, outer };
+    change(&mut new);
+    if let Light::Lamp { cone, .. } = &mut scene.lights_mut()[1] {
+        *cone = Some(new);
     }
 }
 
@@ -93,6 +103,9 @@ const FLOATS: &[Row] = &[
     ("Light::Lamp.intensity", 1, |s, bad, _| *lamp(s).1 = bad, "light 1"),
     ("Light::Lamp.range", 1, |s, bad, _| *lamp(s).2 = bad, "light 1"),
     ("Light::Lamp.color", 3, |s, bad, i| lamp(s).3[i] = bad, "light 1"),
+    ("Cone.direction", 3, |s, bad, i| spot(s, |cone| cone.direction[i] = bad), "light 1"),
+    ("Cone.inner", 1, |s, bad, _| spot(s, |cone| cone.inner = Angle::from_radians(bad.into())), "light 1"),
+    ("Cone.outer", 1, |s, bad, _| spot(s, |cone| cone.outer = Angle::from_radians(bad.into())), "light 1"),
     ("Material.ambient", 1, |s, bad, _| material(s).ambient = bad, "object 0"),
     ("Material.diffuse", 1, |s, bad, _| material(s).diffuse = bad, "object 0"),
     ("Material.specular", 1, |s, bad, _| material(s).specular = bad, "object 0"),

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Light, LightResponse, Material, RampChoice};
+use mode13h::light::{Blend, Cone, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
@@ -354,6 +354,10 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Light::Lamp.intensity", |w, r| lamp(w, r, |r, _, intensity, _, _| *intensity = between(r, 0.2, 1.5))),
     seen("Light::Lamp.range", |w, r| lamp(w, r, |r, _, _, range, _| *range = between(r, 0.5, 4.0))),
     seen("Light::Lamp.color", |w, r| lamp(w, r, |r, _, _, _, color| *color = channels(r))),
+    seen("Light::Lamp.cone", |w, r| cone(w, r, |_, _| {})),
+    seen("Cone.direction", |w, r| cone(w, r, |r, cone| cone.direction = place(r, 1.0))),
+    seen("Cone.inner", |w, r| cone(w, r, |r, cone| cone.inner = Angle::from_degrees(between(r, 0.0, 40.0).into()))),
+    seen("Cone.outer", |w, r| cone(w, r, |r, cone| cone.outer = Angle::from_degrees(between(r, 40.0, 90.0).into()))),
     // The renderer
     seen("Settings.accuracy", |w, r| {
         // Half the time two shadings that take the same vertices and stages.
@@ -879,8 +883,19 @@ fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
         drawn(world);
     }
     for light in world.scene.lights_mut() {
-        if let Light::Lamp { position, intensity, range, color } = light {
+        if let Light::Lamp { position, intensity, range, color, .. } = light {
             return change(random, position, intensity, range, color);
+        }
+    }
+}
+
+/// The same with the cone of a spot light, which one of the lamps is made.
+fn cone(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut Cone)) {
+    lamp(world, random, |_, _, _, _, _| {});
+    for light in world.scene.lights_mut() {
+        if let Light::Lamp { position, cone, .. } = light {
+            let [inner, outer] = [20.0, 45.0].map(Angle::from_degrees);
+            return change(random, cone.get_or_insert(Cone { direction: -*position, inner, outer }));
         }
     }
 }
