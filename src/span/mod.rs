@@ -83,6 +83,7 @@ pub(crate) use simd::avx512::{LargeTriangle, fill_large};
 pub mod fixed16;
 #[doc(hidden)]
 pub mod texture;
+mod thresholds;
 #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;

@@ -83,8 +83,8 @@ pub(super) mod arrays {
 
 #[cfg(target_arch = "x86_64")]
 pub(super) mod sse2 {
-    use super::super::dither::ThresholdRow;
     use super::super::list::SpanList;
+    use super::super::thresholds::ThresholdRow;
     use core::arch::x86_64::*;
 
     /// Even and odd shades of a block of 16 pixels.
