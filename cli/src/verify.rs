@@ -400,8 +400,10 @@ mod tests {
 
     #[test]
     fn names_are_chosen_by_their_parts() {
-        assert_eq!(chosen(Some("canvas/bands")).len(), 9);
-        assert_eq!(chosen(Some("canvas/bands/")).len(), 9);
+        let of_bands = frames::all().iter().filter(|frame| frame.name.starts_with("canvas/bands/")).count();
+        assert!(of_bands > 8);
+        assert_eq!(chosen(Some("canvas/bands")).len(), of_bands);
+        assert_eq!(chosen(Some("canvas/bands/")).len(), of_bands);
         assert_eq!((chosen(Some("canvas/ban")).len(), chosen(Some("object/tiny")).len()), (0, 1));
         assert_eq!(chosen(None).len(), frames::all().len());
     }

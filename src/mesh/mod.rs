@@ -77,10 +77,10 @@ impl PartialEq for Lines {
 }
 
 impl Mesh {
-    /// The max number of vertices, and of triangles, of a mesh: a third of 2³², so that the corners of all triangles
-    /// can be counted in 32 bits.
+    /// The max number of vertices, and of triangles, of a mesh: 2²⁸, which leaves the renderer four bits beside a face's
+    /// index.
     #[doc(hidden)]
-    pub const MAX_COUNT: usize = (u32::MAX / 3) as usize;
+    pub const MAX_COUNT: usize = 1 << 28;
 
     /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex. A
     /// vertex that is listed twice is a crease.

@@ -188,8 +188,8 @@ pub struct Plan {
     pub(crate) near_needed: Option<f32>,
 }
 
-impl Plan {
-    pub(crate) const fn new() -> Self {
+impl Default for Plan {
+    fn default() -> Self {
         Self {
             hidden_surfaces: HiddenSurfaces::BackFaces,
             chosen: true,
@@ -199,7 +199,9 @@ impl Plan {
             near_needed: None,
         }
     }
+}
 
+impl Plan {
     /// A near distance for the camera that depths need, if its own is too small for them: 2⁻²⁰ of the distance that the
     /// farthest visible object reaches to.
     ///

@@ -96,6 +96,13 @@ impl Clipped {
         (2..self.count).map(move |i| [corner(0), corner(i - 1), corner(i)])
     }
 
+    /// The corners.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn vertices(&self) -> &[Vertex] {
+        // Never more than there are places.
+        &self.vertices[..self.count]
+    }
+
     /// The triangle of these corners.
     #[must_use]
     pub fn triangle(&self, corners: [usize; 3]) -> [Vertex; 3] {

@@ -96,31 +96,9 @@ impl SortedTriangle {
     /// Calls `row` for every row that has a covered pixel inside `clip`, from the top down.
     /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
     #[inline]
-    pub fn rows(&self, frame_width: u32, clip: Rect, row: impl FnMut(Row)) {
+    pub fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row)) {
         let Some(rows) = self.extent(clip) else { return };
-        self.each_row::<true>(rows, frame_width, clip, row);
-    }
-
-    /// Calls `row` for the covered rows of a triangle that lies wholly inside the frame.
-    ///
-    /// Nothing is compared with the frame's edges. A triangle that does not lie inside gets some rows or other.
-    #[inline]
-    pub fn rows_inside(&self, row: impl FnMut(Row)) {
-        let [top, _, bottom] = &self.vertices;
-        let rows = top.y().first_centre()..bottom.y().first_centre();
-        if self.doubled_area != 0 && !rows.is_empty() {
-            self.each_row::<false>(rows, 0, Rect { x0: 0, y0: 0, x1: 0, y1: 0 }, row);
-        }
-    }
-
-    #[inline]
-    fn each_row<const CLIPS: bool>(
-        &self,
-        core::ops::Range { start: first, end }: core::ops::Range<i32>,
-        frame_width: u32,
-        clip: Rect,
-        mut row: impl FnMut(Row),
-    ) {
+        let (first, end) = (rows.start, rows.end);
         let [top, middle, bottom] = &self.vertices;
         // As in `extent`.
         let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
@@ -134,14 +112,10 @@ impl SortedTriangle {
             let mut short = Edge::at_row(point(from), point(to), y);
             while y < until {
                 let (x_left, x_right) = if self.doubled_area > 0 { (long.x, short.x) } else { (short.x, long.x) };
-                if CLIPS {
-                    let origin = x_left.max(0);
-                    let (x0, x1) = (origin.max(clip_x0), x_right.min(width).min(clip_x1));
-                    if x0 < x1 {
-                        row(Row { y, origin, x0, x1, last: x_right.min(width) - 1 });
-                    }
-                } else if x_left < x_right {
-                    row(Row { y, origin: x_left, x0: x_left, x1: x_right, last: x_right - 1 });
+                let origin = x_left.max(0);
+                let (x0, x1) = (origin.max(clip_x0), x_right.min(width).min(clip_x1));
+                if x0 < x1 {
+                    row(Row { y, origin, x0, x1, last: x_right.min(width) - 1 });
                 }
                 long.down();
                 short.down();

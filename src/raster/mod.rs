@@ -23,7 +23,8 @@
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
-//! | [`batch`], `triangles` | many triangles at a time: [`Raster::triangles`] |
+//! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
+//! | `triangles` | the same by vertices: [`Raster::triangles`] |
 //! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
@@ -41,11 +42,11 @@
 //! ```
 
 #[doc(hidden)]
-pub mod batch;
-#[doc(hidden)]
 pub mod clip;
+pub(crate) mod columns;
 #[doc(hidden)]
 pub mod cover;
+pub(crate) mod cull;
 pub mod depth;
 mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
@@ -60,22 +61,30 @@ pub mod fixed16;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod float;
+#[cfg(feature = "alloc")]
+mod found;
 pub mod frame;
 #[doc(hidden)]
 pub mod hyperbolic;
 pub mod interpolation;
 mod paint;
+pub(crate) mod pick;
 #[doc(hidden)]
 pub mod polygon;
 #[doc(hidden)]
 pub mod quotient;
+mod rows;
 #[doc(hidden)]
 pub mod scan_line;
+mod setup;
+#[cfg(feature = "alloc")]
+mod setup_texture;
 #[doc(hidden)]
 pub mod shade;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod shade_trace;
+mod spans;
 pub mod triangle;
 mod triangles;
 pub mod vertex;
@@ -83,8 +92,6 @@ pub mod vertex;
 pub mod vintage;
 mod weights;
 
-#[doc(hidden)]
-pub use batch::Batch;
 pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
@@ -92,4 +99,6 @@ pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
 pub use interpolation::Interpolation;
 pub use triangle::Raster;
+#[doc(hidden)]
+pub use triangles::Batch;
 pub use vertex::{Vertex, VertexError};

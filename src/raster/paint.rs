@@ -232,6 +232,21 @@ impl RowShader {
     }
 }
 
+/// Shades of 8.8 to the nearest bytes.
+#[cfg(feature = "alloc")]
+pub(super) fn to_nearest_bytes(shades: &[u16], bytes: &mut [u8]) {
+    // Eight by eight, so that the compiler makes vectors of it. A shade is at most 0xFF00.
+    let n = bytes.len().min(shades.len());
+    let (eights, rest) = bytes[..n].as_chunks_mut::<LANES>();
+    let (shades, rest_shades) = shades[..n].as_chunks::<LANES>();
+    for (i, bytes) in eights.iter_mut().enumerate() {
+        *bytes = each!(k => (shades[i][k].wrapping_add(128) >> 8) as u8);
+    }
+    for (byte, shade) in rest.iter_mut().zip(rest_shades) {
+        *byte = (shade.wrapping_add(128) >> 8) as u8;
+    }
+}
+
 /// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
 #[cfg(feature = "alloc")]
 pub(super) fn to_bytes(shades: &[u16], thresholds: &ThresholdRow, column: usize, bytes: &mut [u8]) {

@@ -107,20 +107,6 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// without area draws nothing.
     #[inline]
     pub fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
-        self.draw::<true>(vertices, interpolation)
-    }
-
-    /// Draws a triangle that lies wholly inside the frame, without comparing its rows with any edge.
-    ///
-    /// All of it is drawn. Parts that lie outside all the same are not drawn, or only some of them.
-    #[inline]
-    #[doc(hidden)]
-    pub fn triangle_inside(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
-        self.draw::<false>(vertices, interpolation)
-    }
-
-    #[inline]
-    fn draw<const CLIPS: bool>(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         let triangle = SortedTriangle::new(vertices);
         if !interpolation.has_exact_cover() {
             return self.draw_vintage(&triangle);
@@ -143,11 +129,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle));
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         };
-        if CLIPS {
-            triangle.rows(width, clip, draw)
-        } else {
-            triangle.rows_inside(draw)
-        }
+        triangle.rows(width, clip, draw);
         drawn
     }
 

@@ -77,7 +77,6 @@ impl Vertex {
     }
 
     /// A vertex that has been one before, or is legal by the way it was made.
-    #[cfg(feature = "alloc")]
     #[inline]
     pub(crate) fn of_projected(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Self {
         debug_assert!(Self::new(x, y, shade, depth).is_ok(), "({x:?}, {y:?}), {shade:?}");

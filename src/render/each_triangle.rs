@@ -1,10 +1,9 @@
 //! Every triangle of a frame with all that the raster would get, for the laboratory.
 
-use super::face::Sink;
-use super::pipelines::{Pipeline, Pipelines};
+use super::pick::Look;
+use super::pipelines::PipelineKey;
 use super::{RenderError, Renderer, Screen, Stats, VertexPath};
 use crate::palette::Ramp;
-use crate::plan::FaceShading;
 use crate::raster::effects::{Attributes, PixelPipeline};
 use crate::raster::{DrawStats, Interpolation, Vertex};
 use crate::scene::Scene;
@@ -38,47 +37,6 @@ pub struct DrawnEffects<'a> {
     pub pipeline: &'a PixelPipeline<'a>,
 }
 
-/// Hands the faces of an object to a visitor.
-struct Visitor<'a, 'b> {
-    pipelines: Pipelines<'a>,
-    object: usize,
-    triangle_surfaces: &'a [u16],
-    visit: &'b mut dyn FnMut(&DrawnTriangle<'_>),
-}
-
-impl Visitor<'_, '_> {
-    fn triangle<'t>(&self, face: u32, vertices: &'t [Vertex; 3], interpolation: Interpolation) -> DrawnTriangle<'t> {
-        let face = face as usize;
-        let surface = self.triangle_surfaces.get(face);
-        let ramp = surface.and_then(|&surface| self.pipelines.ramp(self.object, surface));
-        DrawnTriangle { object: self.object, face: Some(face), vertices, interpolation, ramp, effects: None }
-    }
-}
-
-impl Sink for Visitor<'_, '_> {
-    fn plain(&mut self, face: u32, vertices: &[Vertex; 3], interpolation: Interpolation) {
-        let triangle = self.triangle(face, vertices, interpolation);
-        (self.visit)(&triangle);
-    }
-
-    fn with_effects(
-        &mut self,
-        face: u32,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        surface: u16,
-        shading: FaceShading,
-    ) {
-        let triangle = self.triangle(face, vertices, shading.interpolation());
-        let transparent = self.pipelines.is_transparent(self.object, surface);
-        self.pipelines.with(Pipeline { object: self.object, surface, shading }, |pipeline| {
-            let effects = Some(DrawnEffects { attributes, transparent, pipeline });
-            (self.visit)(&DrawnTriangle { effects, ..triangle });
-            DrawStats::default()
-        });
-    }
-}
-
 impl Renderer {
     /// Hands every triangle that [`draw`](Self::draw) would draw to `visit`, in the order of
     /// [`for_each_triangle`](Self::for_each_triangle), with all that the raster would get. Nothing is drawn, and the frames
@@ -91,26 +49,32 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let pipelines = Pipelines {
-            scene,
-            plan: &self.plan,
-            states: &self.states,
-            tables: &self.tables,
-            kernel: self.settings.kernel,
-        };
-        for &object in &self.plan.order {
-            let of_scene = &scene.objects()[object];
-            if self.settings.vertex_path == VertexPath::Integer {
-                let mut plain = |vertices: &[Vertex; 3], interpolation| {
-                    visit(&DrawnTriangle { object, face: None, vertices, interpolation, ramp: None, effects: None });
-                };
-                self.integer.triangles(stats.shading, (object, of_scene), &mut stats, &mut plain);
-            } else if let Some(faces) = self.states[object].faces(of_scene, &self.plan.objects[object]) {
-                let triangle_surfaces = faces.geometry.triangle_surfaces;
-                let mut visitor = Visitor { pipelines, object, triangle_surfaces, visit: &mut *visit };
-                faces.draw(self.states[object].budget(), &mut stats, &mut (&mut visitor as &mut dyn Sink));
+        let is_integer = self.settings.vertex_path == VertexPath::Integer;
+        let kernel = self.settings.kernel;
+        let Self { cache, scratch, .. } = self;
+        let pipelines = cache.pipelines(scene, kernel);
+        scratch.each_run(scene, cache, is_integer, &mut stats, &mut |object, run| {
+            let Look { surface, shading, effects, transparent, .. } = run.look;
+            let surfaces = cache.states[object].triangle_surfaces(&scene.objects()[object]);
+            for k in 0..run.picks.picks.len() {
+                let (vertices, interpolation) = run.vertices(k);
+                let face = (!is_integer).then(|| run.face(k));
+                let ramp = face.and_then(|face| pipelines.ramp(object, *surfaces.get(face)?));
+                let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
+                if !effects {
+                    visit(&plain);
+                    continue;
+                }
+                let attributes = &run.attributes(k);
+                pipelines.with(PipelineKey { object, surface, shading }, |pipeline| {
+                    visit(&DrawnTriangle {
+                        effects: Some(DrawnEffects { attributes, transparent, pipeline }),
+                        ..plain
+                    });
+                    DrawStats::default()
+                });
             }
-        }
+        });
         Ok(stats)
     }
 }

@@ -1,12 +1,27 @@
-//! Input for the faces of an object.
+//! Input for the faces of an object, and the light of those that are lit each as one.
 
-use super::lit::ShadedVertices;
+use super::columns::VertexColumns;
+use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::vertex::{Geometry, VertexAttributes};
-use crate::light::Lights;
+use crate::fixed::U8F8;
+use crate::lanes::three;
+use crate::light::{Lights, both_sides};
+use crate::mesh::normals::face_normal;
+use crate::raster::columns::Triangles;
 use crate::scene::Shading;
 use crate::span::Kernel;
 use crate::view::ObjectView;
+
+/// A face of the geometry that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Its index in the mesh, or in what splitting made of it.
+    pub(super) index: u32,
+    /// Its vertices.
+    pub(super) indices: [u32; 3],
+    pub(super) surface: u16,
+    pub(super) back_facing: bool,
+}
 
 /// One object in one frame: what its faces are made from.
 pub(super) struct Faces<'a> {
@@ -16,9 +31,7 @@ pub(super) struct Faces<'a> {
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
     pub(super) paints: &'a [SurfaceMaterial],
-    pub(super) lit: &'a ShadedVertices,
-    /// The attributes of each vertex, if there are effects.
-    pub(super) extras: &'a [VertexAttributes],
+    pub(super) columns: &'a VertexColumns,
     /// True if back faces are left out.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. As a back face it
@@ -37,4 +50,37 @@ pub(super) struct Faces<'a> {
     pub(super) lights_pixels: bool,
     /// Kernel for the light where a face is decided on.
     pub(super) kernel: Kernel,
+}
+
+impl<'a> Faces<'a> {
+    /// The triangles of the geometry.
+    pub(super) fn triangles(&self) -> Triangles<'a> {
+        self.columns.triangles(&self.geometry)
+    }
+
+    /// The one shade of a face, or its three channels: at its middle, by its own normal.
+    pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
+        let (centre, normal) = self.middle(face.indices);
+        let paint = &self.paints[usize::from(face.surface)];
+        if self.channels {
+            let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
+            let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
+            return three(channels, |channel| paint.respond_on_channel(channel));
+        }
+        let (front, back) = if self.full {
+            self.lights.one_channel(&paint.answer, centre, normal)
+        } else {
+            both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
+        };
+        [paint.respond(paint.shade(if face.back_facing { back } else { front })); 3]
+    }
+
+    /// The middle of a face, and its normal.
+    fn middle(&self, indices: [u32; 3]) -> (glam::Vec3, glam::Vec3) {
+        let [a, b, c] = three(indices, |i| self.geometry.positions[i as usize]);
+        // A face without area has no normal; rounded, it may still cover a pixel.
+        let normal = face_normal(a, b, c).unwrap_or(self.geometry.normals[indices[0] as usize]);
+        // Each third by itself: the sum of three might overflow.
+        (a / 3.0 + b / 3.0 + c / 3.0, normal)
+    }
 }

@@ -1,233 +1,279 @@
 //! The ways to visible surfaces: the faces of a frame drawn as they come, far to near, or row by row.
 
-use core::mem;
+use alloc::vec::Vec;
 
-use super::cull::Culler;
-use super::face::Sink;
-use super::object::ObjectState;
-use super::pipelines::Pipelines;
-use super::sinks::{Batched, BatchedEffects, DeferredFace, DeferredSink, ForEachSink, ImmediateSink, depth_of};
+use super::integer::IntegerScratch;
+use super::pick::{Culler, Look, PickScratch, Picker, Run};
+use super::pipelines::{PipelineKey, Pipelines};
 use super::stats::Shares;
-use super::{HiddenSurfaces, Renderer, Stats, VertexPath};
-use crate::plan::{Effect, ObjectPlan, far_to_near};
-use crate::raster::{Batch, DrawStats, Frame, Interpolation, Raster, Vertex};
+use super::{Cache, HiddenSurfaces, Renderer, Stats, VertexPath};
+use crate::fixed::U8F8;
+use crate::plan::{Effect, far_to_near};
+use crate::raster::columns::{Picks, Triangles};
+use crate::raster::effects::EffectScratch;
+use crate::raster::pick::{CHUNK, Pick};
+use crate::raster::scan_line::Lists;
+use crate::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
 use crate::scene::Scene;
+
+/// Memory that drawing takes, and whose contents between two frames do not matter.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    depths: Vec<u32>,
+    effects: EffectScratch,
+    pick: PickScratch,
+    integer: IntegerScratch,
+    /// The faces of a frame that must be known whole before it is drawn, ...
+    faces: Vec<DeferredFace>,
+    /// ... those that shine through, ...
+    transparent: Vec<DeferredFace>,
+    /// ... and the sum of a face's depths with its index: what is painted far to near.
+    far_to_near: Vec<(u64, usize)>,
+    /// The faces as the scan-line method takes them.
+    triangles: Vec<([Vertex; 3], Interpolation)>,
+    lists: Lists,
+    /// Faces of each object by the shading that a budget chose when it was drawn last.
+    pub(super) counts: Vec<Shares>,
+}
+
+impl Scratch {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.depths.capacity() * 4
+            + self.effects.bytes()
+            + self.pick.bytes()
+            + self.integer.bytes()
+            + (self.faces.capacity() + self.transparent.capacity()) * size_of::<DeferredFace>()
+            + self.far_to_near.capacity() * size_of::<(u64, usize)>()
+            + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()
+            + self.lists.bytes()
+            + self.counts.capacity() * size_of::<Shares>()
+    }
+}
+
+impl Scratch {
+    /// Hands every face to `visit` by its object, in runs of one look: object by object, each in the order of its faces.
+    pub(super) fn each_run(
+        &mut self,
+        scene: &Scene,
+        cache: &Cache,
+        is_integer: bool,
+        stats: &mut Stats,
+        visit: &mut dyn FnMut(usize, &Run<'_>),
+    ) {
+        let Self { pick, integer, counts, .. } = self;
+        each_run(scene, cache, (is_integer, None, false), (integer, pick, counts), stats, visit);
+        pick.added.clear();
+    }
+}
+
+/// A face that is drawn when all are known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DeferredFace {
+    object: u32,
+    /// A [`Pick`](crate::raster::pick::Pick).
+    pick: u32,
+    look: Look,
+    flat: [U8F8; 3],
+    has_flat: bool,
+}
+
+impl DeferredFace {
+    /// The faces of a run.
+    fn of<'a>(object: usize, run: &'a Run<'_>) -> impl Iterator<Item = Self> + 'a {
+        let has_flat = !run.picks.flat.is_empty();
+        run.picks.picks.iter().enumerate().map(move |(k, &pick)| {
+            let flat = run.picks.flat.get(k).copied().unwrap_or_default();
+            // Fewer than 2³² objects.
+            Self { object: object as u32, pick, look: run.look, flat, has_flat }
+        })
+    }
+
+    /// Returns whether it may be drawn in one run with another.
+    fn goes_with(&self, other: &Self) -> bool {
+        (self.object, self.look, self.has_flat) == (other.object, other.look, other.has_flat)
+    }
+
+    /// The triangles that it is one of.
+    fn triangles<'a>(&self, scene: &'a Scene, cache: &'a Cache, added: Triangles<'a>) -> Triangles<'a> {
+        if self.look.added { added } else { cache.triangles(scene, self.object as usize).unwrap_or(added) }
+    }
+}
+
+/// What faces are drawn with.
+struct Painter<'a, 'b> {
+    pipelines: Pipelines<'a>,
+    raster: &'a mut Raster<'b>,
+    scratch: &'a mut EffectScratch,
+}
+
+impl Painter<'_, '_> {
+    /// Draws faces of one look, in order.
+    fn draw(&mut self, object: usize, look: Look, triangles: &Triangles<'_>, picks: Picks<'_>) -> DrawStats {
+        if !look.effects {
+            return self.raster.picks(triangles, picks, look.interpolation());
+        }
+        let Look { surface, shading, .. } = look;
+        let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);
+        self.pipelines.with(PipelineKey { object, surface, shading }, |pipeline| {
+            raster.picks_with_effects(triangles, picks, pipeline, scratch)
+        })
+    }
+
+    /// Draws faces far to near.
+    fn draw_far_to_near(
+        &mut self,
+        (scene, cache, added): (&Scene, &Cache, Triangles<'_>),
+        faces: &[DeferredFace],
+        order: &mut Vec<(u64, usize)>,
+    ) -> DrawStats {
+        let depth = |face: &DeferredFace| {
+            let triangles = face.triangles(scene, cache, added);
+            triangles.corners(Pick(face.pick)).into_iter().map(|i| u64::from(triangles.columns.depth[i])).sum()
+        };
+        far_to_near(faces.iter().map(depth), order);
+        let mut drawn = DrawStats::default();
+        for run in order.chunk_by(|(_, a), (_, b)| faces[*a].goes_with(&faces[*b])) {
+            let first = faces[run[0].1];
+            let triangles = first.triangles(scene, cache, added);
+            for part in run.chunks(CHUNK) {
+                let (mut picks, mut flat) = ([0; CHUNK], [[U8F8::default(); 3]; CHUNK]);
+                for (k, &(_, i)) in part.iter().enumerate() {
+                    (picks[k], flat[k]) = (faces[i].pick, faces[i].flat);
+                }
+                let flat = if first.has_flat { &flat[..part.len()] } else { &[] };
+                let picks = Picks { picks: &picks[..part.len()], flat };
+                drawn += self.draw(first.object as usize, first.look, &triangles, picks);
+            }
+        }
+        drawn
+    }
+}
 
 impl Renderer {
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
         frame.clear(scene.background);
-        let mut raster = Raster::new(frame).with_kernel(self.settings.kernel);
-        let mut depths = mem::take(&mut self.depths);
-        let culler = Culler { clip: raster.clip(), kernel: self.settings.kernel };
-        match self.plan.hidden_surfaces() {
-            HiddenSurfaces::BackFaces => self.one_by_one(scene, stats, raster),
+        let Self { settings, cache, scratch, .. } = self;
+        let Scratch { depths, effects, pick, integer, faces, transparent, far_to_near, triangles, lists, counts } =
+            scratch;
+        let mut raster = Raster::new(frame).with_kernel(settings.kernel);
+        let method = cache.plan.hidden_surfaces();
+        if method == HiddenSurfaces::DepthBuffer {
+            raster = raster.with_depth_cleared_within(depths, cache.plan.seen);
+        }
+        let deferred = match method {
+            HiddenSurfaces::BackFaces | HiddenSurfaces::DepthBuffer => false,
             // Chosen, the objects lie far to near, and in a convex one no face hides another.
-            HiddenSurfaces::PainterOrder if self.plan.is_chosen() => self.one_by_one(scene, stats, raster),
-            HiddenSurfaces::DepthBuffer => {
-                let raster = raster.with_depth_cleared_within(&mut depths, self.plan.seen);
-                self.one_by_one(scene, stats, raster);
-            }
-            HiddenSurfaces::PainterOrder => {
-                self.gather(scene, stats, culler);
-                self.painter(scene, stats, &mut raster);
-                self.draw_transparent(scene, stats, &mut raster);
-            }
-            HiddenSurfaces::ScanLine => {
-                self.gather(scene, stats, culler);
-                self.scan_line(scene, stats, &mut raster);
-                self.draw_transparent(scene, stats, &mut raster);
+            HiddenSurfaces::PainterOrder => !cache.plan.is_chosen(),
+            HiddenSurfaces::ScanLine => true,
+        };
+        transparent.clear();
+        transparent.reserve(cache.most_faces(scene, |plan| plan.is_on(Effect::Transparency)));
+        far_to_near.clear();
+        far_to_near.reserve(transparent.capacity());
+        faces.clear();
+        if deferred {
+            faces.reserve(cache.most_faces(scene, |_| true));
+            far_to_near.reserve(faces.capacity());
+            if method == HiddenSurfaces::ScanLine {
+                triangles.clear();
+                triangles.reserve(faces.capacity());
+                lists.reserve(faces.capacity());
             }
         }
-        self.depths = depths;
+        let culler = Some(Culler { clip: raster.clip(), level: settings.kernel.simd_level() });
+        let pipelines = cache.pipelines(scene, settings.kernel);
+        let mut painter = Painter { pipelines, raster: &mut raster, scratch: effects };
+        let mut drawn = DrawStats::default();
+        let path = (settings.vertex_path == VertexPath::Integer, culler, deferred);
+        each_run(scene, cache, path, (integer, pick, counts), stats, &mut |object, run| {
+            if run.look.transparent {
+                transparent.extend(DeferredFace::of(object, run));
+            } else if deferred {
+                faces.extend(DeferredFace::of(object, run));
+            } else {
+                drawn += painter.draw(object, run.look, &run.triangles, run.picks);
+            }
+        });
+        let of = (scene, &*cache, pick.added.triangles());
+        if method == HiddenSurfaces::ScanLine {
+            drawn += scan_line(of, faces, (triangles, lists), &mut painter);
+        } else if deferred {
+            drawn += painter.draw_far_to_near(of, faces, far_to_near);
+        }
+        if !transparent.is_empty() {
+            drawn += painter.draw_far_to_near(of, transparent, far_to_near);
+        }
+        pick.added.clear();
+        stats.raster += drawn;
         // Those of the 16.16 path are not counted one by one.
         stats.shares.complete(stats.shading.into(), stats.drawn);
     }
+}
 
-    /// Draws each face as it comes, then those that shine through.
-    fn one_by_one(&mut self, scene: &Scene, stats: &mut Stats, mut raster: Raster<'_>) {
-        self.transparent.clear();
-        self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        let mut batch = Batch::of_culled();
-        for &object in &self.plan.order {
-            let plan = &self.plan.objects[object];
-            let mut drawn = DrawStats::default();
-            let mut counts = Shares::default();
-            let pipelines = Pipelines {
-                scene,
-                plan: &self.plan,
-                states: &self.states,
-                tables: &self.tables,
-                kernel: self.settings.kernel,
-            };
-            if self.settings.vertex_path == VertexPath::Integer {
-                let mut batched = Batched { clips: true, raster: &mut raster, batch: &mut batch, drawn: &mut drawn };
-                let mut plain = |vertices: &[Vertex; 3], interpolation| batched.triangle(vertices, interpolation);
-                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
-                batched.draw();
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], plan) {
-                let (raster, batch, drawn) = (&mut raster, &mut batch, &mut drawn);
-                let effects = BatchedEffects::new(&mut self.effects, &pipelines, object);
-                let transparent = &mut self.transparent;
-                let batched = Batched { clips: plan.is_on(Effect::ScreenClipping), raster, batch, drawn };
-                let mut sink = ImmediateSink::new(batched, effects, transparent);
-                counts = faces.draw(self.states[object].budget(), stats, &mut sink);
-                sink.finish();
+/// Hands the faces of a frame to `draw`, by their object, in runs that are drawn together: object by object, each in the
+/// order of its faces. Triangles that the frame adds stay if `keeps` says so, or if they shine through.
+fn each_run(
+    scene: &Scene,
+    cache: &Cache,
+    (is_integer, culler, keeps): (bool, Option<Culler>, bool),
+    (integer, pick, counts): (&mut IntegerScratch, &mut PickScratch, &mut Vec<Shares>),
+    stats: &mut Stats,
+    draw: &mut dyn FnMut(usize, &Run<'_>),
+) {
+    counts.clear();
+    counts.resize(scene.objects().len(), Shares::default());
+    pick.added.clear();
+    for &object in &cache.plan.order {
+        let (of_scene, plan) = (&scene.objects()[object], &cache.plan.objects[object]);
+        let mut of_object = |run: &Run<'_>| draw(object, run);
+        if is_integer {
+            let mut picker = Picker::new(culler, keeps, pick, &mut of_object);
+            picker.added().make_room();
+            let shading = stats.shading;
+            cache.integer.triangles(shading, (object, of_scene), stats, integer, &mut |vertices, interpolation| {
+                picker.push_vertices(vertices, interpolation, shading.into());
+            });
+            picker.finish_vertices();
+        } else if let Some(faces) = cache.states[object].faces(of_scene, plan) {
+            let budget = cache.states[object].budget();
+            let mut picker = Picker::new(culler, keeps, pick, &mut of_object);
+            if budget.is_some() {
+                picker.added().make_room();
             }
-            self.states[object].counts = counts;
-            stats.raster += drawn;
-        }
-        if self.plan.is_on_anywhere(Effect::Transparency) {
-            self.draw_transparent(scene, stats, &mut raster);
+            counts[object] = faces.pick(budget, stats, &mut picker);
         }
     }
+}
 
-    /// Faces that shine through, far to near, over all others.
-    fn draw_transparent(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        if self.transparent.is_empty() {
-            return;
+/// All faces at once, each pixel once.
+fn scan_line(
+    (scene, cache, added): (&Scene, &Cache, Triangles<'_>),
+    faces: &[DeferredFace],
+    (triangles, lists): (&mut Vec<([Vertex; 3], Interpolation)>, &mut Lists),
+    painter: &mut Painter<'_, '_>,
+) -> DrawStats {
+    triangles.clear();
+    triangles.extend(faces.iter().map(|face| {
+        let picks = Picks { picks: &[face.pick], flat: if face.has_flat { &[face.flat] } else { &[] } };
+        let vertices = face.triangles(scene, cache, added).vertices(&picks, 0);
+        (vertices, if face.look.effects { Interpolation::default() } else { face.look.interpolation() })
+    }));
+    let Painter { pipelines, raster, scratch } = painter;
+    // There is room for all.
+    let drawn = raster.scan_line_with(triangles, lists.scratch(faces.len()), |i, row, pixels, kernel, drawn| {
+        let face = &faces[i];
+        let Look { surface, shading, effects, .. } = face.look;
+        if !effects {
+            return false;
         }
-        self.far_to_near.clear();
-        self.far_to_near.reserve(self.transparent.capacity());
-        far_to_near(self.transparent.iter().map(DeferredFace::depth), &mut self.far_to_near);
-        let pipelines = Pipelines {
-            scene,
-            plan: &self.plan,
-            states: &self.states,
-            tables: &self.tables,
-            kernel: self.settings.kernel,
-        };
-        let mut batched = BatchedEffects::new(&mut self.effects, &pipelines, 0);
-        for &(_, place) in &self.far_to_near {
-            let DeferredFace { vertices, attributes, of } = &self.transparent[place];
-            batched.push((vertices, attributes, *of), raster, &mut stats.raster);
-        }
-        batched.draw(true, raster, &mut stats.raster);
-        self.transparent.clear();
-    }
-
-    /// Hands every face to `triangle`.
-    pub(super) fn faces(
-        &mut self,
-        scene: &Scene,
-        stats: &mut Stats,
-        triangle: &mut dyn FnMut(&[Vertex; 3], Interpolation),
-    ) {
-        for &object in &self.plan.order {
-            let mut counts = Shares::default();
-            if self.settings.vertex_path == VertexPath::Integer {
-                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, triangle);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
-            {
-                let mut sink = ForEachSink(&mut *triangle);
-                counts = faces.draw(self.states[object].budget(), stats, &mut (&mut sink as &mut dyn Sink));
-            }
-            self.states[object].counts = counts;
-        }
-    }
-
-    /// Keeps every face for when all are known.
-    fn gather(&mut self, scene: &Scene, stats: &mut Stats, culler: Culler) {
-        self.triangles.clear();
-        self.kept_places.clear();
-        self.kept.clear();
-        self.transparent.clear();
-        self.triangles.reserve(self.most_faces(scene, |_, _| true));
-        self.kept_places.reserve(self.triangles.capacity());
-        self.kept.reserve(self.most_faces(scene, |_, state| state.may_have_effects()));
-        self.transparent.reserve(self.most_faces(scene, |plan, _| plan.is_on(Effect::Transparency)));
-        for &object in &self.plan.order {
-            let mut counts = Shares::default();
-            if self.settings.vertex_path == VertexPath::Integer {
-                let mut plain = |vertices: &[Vertex; 3], interpolation| {
-                    self.triangles.push((*vertices, interpolation));
-                    self.kept_places.push(None);
-                };
-                self.integer.triangles(stats.shading, (object, &scene.objects()[object]), stats, &mut plain);
-            } else if let Some(faces) = self.states[object].faces(&scene.objects()[object], &self.plan.objects[object])
-            {
-                let pipelines = Pipelines {
-                    scene,
-                    plan: &self.plan,
-                    states: &self.states,
-                    tables: &self.tables,
-                    kernel: self.settings.kernel,
-                };
-                let mut sink = DeferredSink {
-                    triangles: &mut self.triangles,
-                    places: &mut self.kept_places,
-                    kept: &mut self.kept,
-                    transparent: &mut self.transparent,
-                    looks: &pipelines,
-                    object,
-                    culler,
-                };
-                counts = faces.draw(self.states[object].budget(), stats, &mut (&mut sink as &mut dyn Sink));
-            }
-            self.states[object].counts = counts;
-        }
-    }
-
-    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
-    /// so many is enough until a plane cuts some in parts.
-    fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan, &ObjectState) -> bool) -> usize {
-        let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
-        let counted = objects.filter(|((_, state), plan)| counts(plan, state));
-        counted.map(|((object, state), _)| state.most_faces(object)).sum()
-    }
-
-    /// Far to near, each over what is there.
-    fn painter(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let pipelines = Pipelines {
-            scene,
-            plan: &self.plan,
-            states: &self.states,
-            tables: &self.tables,
-            kernel: self.settings.kernel,
-        };
-        self.far_to_near.clear();
-        self.far_to_near.reserve(self.triangles.capacity());
-        far_to_near(self.triangles.iter().map(|(vertices, _)| depth_of(vertices)), &mut self.far_to_near);
-        let mut batch = Batch::of_culled();
-        let mut batched = Batched { clips: true, raster, batch: &mut batch, drawn: &mut stats.raster };
-        let mut effects = BatchedEffects::new(&mut self.effects, &pipelines, 0);
-        for &(_, i) in &self.far_to_near {
-            let (vertices, interpolation) = &self.triangles[i];
-            // One of both is always empty: faces are drawn in this order.
-            let Some(place) = self.kept_places[i] else {
-                effects.draw(true, batched.raster, batched.drawn);
-                batched.triangle(vertices, *interpolation);
-                continue;
-            };
-            batched.draw();
-            let face = &self.kept[place as usize];
-            effects.push((vertices, &face.attributes, face.of), batched.raster, batched.drawn);
-        }
-        batched.draw();
-        effects.draw(true, batched.raster, batched.drawn);
-    }
-
-    /// All at once, each pixel once.
-    fn scan_line(&mut self, scene: &Scene, stats: &mut Stats, raster: &mut Raster<'_>) {
-        let pipelines = Pipelines {
-            scene,
-            plan: &self.plan,
-            states: &self.states,
-            tables: &self.tables,
-            kernel: self.settings.kernel,
-        };
-        self.lists.reserve(self.triangles.capacity());
-        let scratch = self.lists.scratch(self.triangles.len());
-        let (places, kept, effects) = (&self.kept_places, &self.kept, &mut self.effects);
-        // There is room for all.
-        stats.raster += raster
-            .scan_line_with(&self.triangles, scratch, |i, row, pixels, kernel, drawn| {
-                let Some(face) = places[i].and_then(|place| kept.get(place as usize)) else { return false };
-                pipelines.with(face.of, |pipeline| {
-                    effects.paint_row((&face.vertices, &face.attributes), pipeline, row, pixels, kernel, drawn);
-                    DrawStats::default()
-                });
-                true
-            })
-            .unwrap_or_default();
-    }
+        let triangles = face.triangles(scene, cache, added);
+        let picks = Picks { picks: &[face.pick], flat: if face.has_flat { &[face.flat] } else { &[] } };
+        pipelines.with(PipelineKey { object: face.object as usize, surface, shading }, |pipeline| {
+            scratch.paint_row((&triangles, picks, 0), pipeline, row, pixels, kernel, drawn);
+            DrawStats::default()
+        });
+        true
+    });
+    drawn.unwrap_or_default()
 }

@@ -140,8 +140,20 @@ pub(super) struct IntegerPath {
     objects: Vec<Prepared>,
     paints: Vec<Paint>,
     suns: Vec<Sun>,
+}
+
+/// Memory of the vertices of an object.
+#[derive(Debug, Default)]
+pub(super) struct IntegerScratch {
     lit: Vec<LitVertex>,
     beams: Vec<Beam>,
+}
+
+impl IntegerScratch {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.lit.capacity() * size_of::<LitVertex>() + self.beams.capacity() * size_of::<Beam>()
+    }
 }
 
 impl IntegerPath {
@@ -153,8 +165,6 @@ impl IntegerPath {
             + self.objects.capacity() * size_of::<Prepared>()
             + self.paints.capacity() * size_of::<Paint>()
             + self.suns.capacity() * size_of::<Sun>()
-            + self.lit.capacity() * size_of::<LitVertex>()
-            + self.beams.capacity() * size_of::<Beam>()
     }
 
     /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
@@ -259,21 +269,22 @@ impl IntegerPath {
 
     /// Hands the triangles of an object of the prepared scene to `triangle`.
     pub(super) fn triangles(
-        &mut self,
+        &self,
         shading: Shading,
         (index, object): (usize, &scene::Object),
         stats: &mut Stats,
+        scratch: &mut IntegerScratch,
         triangle: &mut dyn FnMut(&[Vertex; 3], Interpolation),
     ) {
         let (Some(view), Some(prepared)) = (&self.view, self.objects.get(index)) else { return };
         let mesh = fixed_mesh(&self.meshes, prepared, object);
-        self.lit.resize(mesh.vertices().max(self.lit.len()), LitVertex::default());
-        self.beams.resize(self.suns.len(), Beam::default());
+        let IntegerScratch { lit, beams } = scratch;
+        lit.resize(mesh.vertices().max(lit.len()), LitVertex::default());
+        beams.resize(self.suns.len(), Beam::default());
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and here is room for all.
-        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, &mut self.lit, &mut self.beams)
-        else {
+        let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, lit, beams) else {
             return;
         };
         let vertices = mesh.vertices() as u64;

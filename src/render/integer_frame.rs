@@ -37,21 +37,21 @@ impl Renderer {
         self.settings.vertex_path = VertexPath::Integer;
         let (stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let Some((camera, focal, suns)) = self.integer.frame() else {
+        let Some((camera, focal, suns)) = self.cache.integer.frame() else {
             return Err(RenderError::Camera("there is none"));
         };
-        let order = self.plan.order.iter();
+        let order = self.cache.plan.order.iter();
         Ok(IntegerFrame {
             shading: stats.shading,
             is_depth_tested: !matches!(
-                self.plan.hidden_surfaces(),
+                self.cache.plan.hidden_surfaces(),
                 HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder
             ),
             background: scene.background,
             camera,
             focal,
             suns,
-            objects: order.filter_map(|&i| Some((i, self.integer.object(i, &scene.objects()[i])?))).collect(),
+            objects: order.filter_map(|&i| Some((i, self.cache.integer.object(i, &scene.objects()[i])?))).collect(),
         })
     }
 }

@@ -3,13 +3,12 @@
 //! | file | what |
 //! |---|---|
 //! | `object` | the state kept of an object: its vertices, and their inputs |
-//! | `vertex`, `lit` | the stages of vertices: projected, lit, given attributes for effects; their results, in arrays |
+//! | `vertex`, `columns` | the stages of vertices: projected, lit, given values for effects; their results, in columns |
 //! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
-//! | `cull` | culling: back faces, and those that cover no pixel centre |
 //! | `faces` | the input for an object's faces |
-//! | `face`, `within` | the stage of faces, with `clip`: near plane and guard band |
+//! | `pick` | which faces are drawn, and how, with `clip`: near plane and guard band |
 //! | `budget` | the error budget: the shading for each triangle |
-//! | `sinks`, `visible` | where faces go: drawn as they come, or kept; the ways to visible surfaces |
+//! | `hidden_surfaces` | the ways to visible surfaces: faces drawn as they come, far to near, or row by row |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
 //! | `settings` | settings of a renderer and of the scene drawn, and whose choice counts |
@@ -23,46 +22,45 @@
 
 mod budget;
 mod clip;
-mod cull;
+mod columns;
 pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
-mod face;
 mod faces;
+mod geometry;
 mod hidden_surfaces;
 mod integer;
 pub(crate) mod integer_frame;
-mod lit;
 mod object;
 mod paint;
+mod pick;
 mod pipelines;
 mod pixel_light;
 mod settings;
-mod sinks;
 mod stats;
 mod tables;
 mod tessellate;
 mod time_budget;
 mod vertex;
 mod vertex_path;
-mod within;
 
 use alloc::vec::Vec;
 use core::time::Duration;
 
+use self::hidden_surfaces::Scratch;
 use self::integer::IntegerPath;
 use self::object::ObjectState;
-use self::sinks::DeferredFace;
+use self::pipelines::Pipelines;
 use self::tables::Tables;
 use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
 pub use crate::plan::FaceShading;
-use crate::plan::{self, Change, Effect, Findings, Inputs, Plan, decide};
-use crate::raster::effects::EffectBatch;
-use crate::raster::scan_line::Lists;
+use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Plan, decide};
+use crate::raster::columns::Triangles;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
 pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
+use crate::span::Kernel;
 use crate::vga::Vga;
 #[doc(hidden)]
 pub use crate::view::Screen;
@@ -88,6 +86,39 @@ struct Drawing {
 /// Bits after the point of what the raster takes.
 const VERTEX_BITS: u32 = 8;
 
+/// What is kept from frame to frame: the plan, vertices, tables, and what they were made from.
+#[derive(Debug, Default)]
+struct Cache {
+    views: Vec<ObjectView>,
+    change: Vec<Change>,
+    states: Vec<ObjectState>,
+    tables: Tables,
+    plan: Plan,
+    integer: IntegerPath,
+    drawing: Option<Drawing>,
+}
+
+impl Cache {
+    /// Pixel pipelines of all surfaces.
+    fn pipelines<'a>(&'a self, scene: &'a Scene, kernel: Kernel) -> Pipelines<'a> {
+        Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel }
+    }
+
+    /// The triangles of an object, if its vertices were made.
+    fn triangles<'a>(&'a self, scene: &'a Scene, object: usize) -> Option<Triangles<'a>> {
+        let of_scene = scene.objects().get(object)?;
+        self.states.get(object)?.triangles(of_scene)
+    }
+
+    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
+    /// so many is enough until a plane cuts some in parts.
+    fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan) -> bool) -> usize {
+        let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
+        let counted = objects.filter(|(_, plan)| counts(plan));
+        counted.map(|((object, state), _)| state.most_faces(object)).sum()
+    }
+}
+
 /// Draws scenes. It keeps the memory that the next frame will need too, and the vertices of objects that
 /// do not change; the bytes are those of a new renderer.
 ///
@@ -104,25 +135,8 @@ pub struct Renderer {
     pub settings: Settings,
     /// Bits after the point of projected vertices; 8 as the raster has them.
     vertex_bits: u32,
-    views: Vec<ObjectView>,
-    change: Vec<Change>,
-    states: Vec<ObjectState>,
-    tables: Tables,
-    plan: Plan,
-    integer: IntegerPath,
-    depths: Vec<u32>,
-    effects: EffectBatch,
-    /// The faces of a frame that must be known whole before it is drawn.
-    triangles: Vec<([Vertex; 3], Interpolation)>,
-    /// Index in `kept` of each of `triangles`, if it has effects.
-    kept_places: Vec<Option<u32>>,
-    kept: Vec<DeferredFace>,
-    /// Faces that shine through.
-    transparent: Vec<DeferredFace>,
-    /// The sum of a face's depths, and its place: what is painted far to near.
-    far_to_near: Vec<(u64, usize)>,
-    lists: Lists,
-    drawing: Option<Drawing>,
+    cache: Cache,
+    scratch: Scratch,
     /// Choice of the error, where that is to fit in a time.
     time_budget: Option<TimeBudget>,
     /// True if the last frame was not left as it was.
@@ -138,21 +152,8 @@ impl Renderer {
         Self {
             settings: Settings::default(),
             vertex_bits: VERTEX_BITS,
-            views: Vec::new(),
-            change: Vec::new(),
-            states: Vec::new(),
-            tables: Tables::default(),
-            plan: Plan::new(),
-            integer: IntegerPath::default(),
-            depths: Vec::new(),
-            effects: EffectBatch::new(),
-            triangles: Vec::new(),
-            kept_places: Vec::new(),
-            kept: Vec::new(),
-            transparent: Vec::new(),
-            far_to_near: Vec::new(),
-            lists: Lists::default(),
-            drawing: None,
+            cache: Cache::default(),
+            scratch: Scratch::default(),
             time_budget: None,
             redrawn: false,
             last: None,
@@ -199,7 +200,7 @@ impl Renderer {
     pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
         self.vertex_bits = bits.min(VERTEX_BITS);
         // Vertices that are kept are rounded otherwise.
-        self.states.clear();
+        self.cache.states.clear();
     }
 
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
@@ -223,7 +224,7 @@ impl Renderer {
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
     /// palette; with `None`, as a new renderer has it, they are mixed. For those who measure shades.
     pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
-        self.tables.only_channel = channel;
+        self.cache.tables.only_channel = channel;
         // The machine holds another picture.
         self.last = None;
     }
@@ -231,7 +232,7 @@ impl Renderer {
     /// The plan that was made last: of the frame that was drawn last, or by [`make_plan`](Self::make_plan).
     #[must_use]
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        &self.cache.plan
     }
 
     /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
@@ -241,12 +242,13 @@ impl Renderer {
     #[must_use]
     #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
-        self.plan.rows_with(scene, |object| Findings {
+        self.cache.plan.rows_with(scene, |object| Findings {
             face_counts: self
+                .cache
                 .states
                 .get(object)
                 .zip(scene.objects().get(object))
-                .and_then(|(of, at)| of.face_counts(at)),
+                .and_then(|(of, at)| of.face_counts(at, self.scratch.counts.get(object)?)),
             linear_error: self.linear_error(scene, object),
         })
     }
@@ -258,12 +260,12 @@ impl Renderer {
     #[must_use]
     #[doc(hidden)]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
-        let plan = self.plan.objects().get(object)?;
+        let plan = self.cache.plan.objects().get(object)?;
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
             return None;
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::answers_itself(object))?;
-        let faces = self.states.get(object)?.faces(object_in_scene, plan)?;
+        let faces = self.cache.states.get(object)?.faces(object_in_scene, plan)?;
         Some(faces.linear_error())
     }
 
@@ -289,7 +291,7 @@ impl Renderer {
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
-        Ok(&self.plan)
+        Ok(&self.cache.plan)
     }
 
     /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its
@@ -306,7 +308,7 @@ impl Renderer {
         let before = self.bytes();
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
         // Nothing was decided for a scene without objects.
-        if self.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
+        if self.cache.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
             scene.load_palette(vga);
         } else if let Some(palette) = &scene.palette {
             vga.set_palette(palette);
@@ -363,7 +365,13 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        self.faces(scene, &mut stats, &mut triangle);
+        let is_integer = self.settings.vertex_path == VertexPath::Integer;
+        self.scratch.each_run(scene, &self.cache, is_integer, &mut stats, &mut |_, run| {
+            for k in 0..run.picks.picks.len() {
+                let (vertices, interpolation) = run.vertices(k);
+                triangle(&vertices, if run.look.effects { Interpolation::default() } else { interpolation });
+            }
+        });
         Ok(stats)
     }
 
@@ -385,38 +393,38 @@ impl Renderer {
     ) -> Result<(Stats, bool), RenderError> {
         let view = self.checked(scene, screen)?;
         if self.settings.vertex_path == VertexPath::Integer {
-            self.integer.prepare(scene, screen)?;
+            self.cache.integer.prepare(scene, screen)?;
         }
         let settings = self.decide(scene, &view, whole);
 
-        let drawing = (screen, scene.background, self.plan.hidden_surfaces(), settings);
+        let drawing = (screen, scene.background, self.cache.plan.hidden_surfaces(), settings);
         let palette = scene.palette.as_ref().or(shown);
-        let same = self.drawing.as_ref().is_some_and(|last| {
+        let same = self.cache.drawing.as_ref().is_some_and(|last| {
             (last.screen, last.background, last.hidden_surfaces, last.settings) == drawing
-                && last.order == self.plan.order
+                && last.order == self.cache.plan.order
                 && last.palette.as_ref() == palette
         });
         let mut changed = !same;
         if !same {
             let (screen, background, hidden_surfaces, settings) = drawing;
             // The list that is there is used again.
-            let mut order = self.drawing.take().map_or_else(Vec::new, |last| last.order);
-            order.clone_from(&self.plan.order);
+            let mut order = self.cache.drawing.take().map_or_else(Vec::new, |last| last.order);
+            order.clone_from(&self.cache.plan.order);
             let palette = palette.cloned();
-            self.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
+            self.cache.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
         }
 
-        let mut stats = Stats::new(&settings, self.settings.kernel, self.plan.hidden_surfaces());
+        let mut stats = Stats::new(&settings, self.settings.kernel, self.cache.plan.hidden_surfaces());
         stats.fits = self.time_budget.as_ref().is_none_or(TimeBudget::fits);
-        for (i, (object, state)) in scene.objects().iter().zip(&mut self.states).enumerate() {
-            let plan = &self.plan.objects[i];
+        for (i, (object, state)) in scene.objects().iter().zip(&mut self.cache.states).enumerate() {
+            let plan = &self.cache.plan.objects[i];
             if !scene.is_visible(i) {
-                state.forget();
+                state.invalidate();
                 continue;
             }
             if self.settings.vertex_path == VertexPath::Integer {
                 changed = true;
-                state.forget();
+                state.invalidate();
                 continue;
             }
             if state.vertices(scene, object, &view, plan, self.settings.kernel, &mut stats) {
@@ -428,7 +436,13 @@ impl Renderer {
                 stats.kept += 1;
             }
         }
-        pipelines::need(&mut self.tables, scene, palette.unwrap_or(&BIOS), &self.plan, &self.states);
+        pipelines::ensure_tables(
+            &mut self.cache.tables,
+            scene,
+            palette.unwrap_or(&BIOS),
+            &self.cache.plan,
+            &self.cache.states,
+        );
         Ok((stats, changed))
     }
 
@@ -441,19 +455,19 @@ impl Renderer {
 
     /// Makes the plan of a scene that has been checked. Returns what it is drawn by.
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Resolved {
-        self.views.clear();
+        self.cache.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
-        self.views.extend(scene.objects().iter().enumerate().map(placed));
+        self.cache.views.extend(scene.objects().iter().enumerate().map(placed));
         let settings = self.settings_now(scene);
-        self.states.resize_with(scene.objects().len(), ObjectState::default);
-        self.change.clear();
-        for ((object, view), state) in scene.objects().iter().zip(&self.views).zip(&mut self.states) {
-            self.change.push(state.renew(scene, object, view, &settings));
+        self.cache.states.resize_with(scene.objects().len(), ObjectState::default);
+        self.cache.change.clear();
+        for ((object, view), state) in scene.objects().iter().zip(&self.cache.views).zip(&mut self.cache.states) {
+            self.cache.change.push(state.renew(scene, object, view, &settings));
         }
         let inputs = Inputs {
             scene,
-            views: &self.views,
-            change: &self.change,
+            views: &self.cache.views,
+            change: &self.cache.change,
             forced: &self.settings.overrides,
             shading: settings.accuracy.shading(),
             max_error: settings.accuracy.max_error(),
@@ -466,8 +480,8 @@ impl Renderer {
             integer: settings.vertex_path == VertexPath::Integer,
             keeps: settings.keeps_vertices,
         };
-        let states = &self.states;
-        decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.plan);
+        let states = &self.cache.states;
+        decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.cache.plan);
         settings
     }
 
@@ -488,17 +502,12 @@ impl Renderer {
 
     /// Bytes that the renderer holds.
     fn bytes(&self) -> usize {
-        self.views.capacity() * size_of::<ObjectView>()
-            + self.states.iter().map(ObjectState::bytes).sum::<usize>()
-            + self.tables.bytes()
-            + self.integer.bytes()
-            + self.depths.capacity() * 4
-            + self.effects.bytes()
-            + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()
-            + self.kept_places.capacity() * size_of::<Option<u32>>()
-            + (self.kept.capacity() + self.transparent.capacity()) * size_of::<DeferredFace>()
-            + self.far_to_near.capacity() * size_of::<(u64, usize)>()
-            + self.lists.bytes()
+        let Cache { views, states, tables, integer, .. } = &self.cache;
+        views.capacity() * size_of::<ObjectView>()
+            + states.iter().map(ObjectState::bytes).sum::<usize>()
+            + tables.bytes()
+            + integer.bytes()
+            + self.scratch.bytes()
     }
 }
 

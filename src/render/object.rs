@@ -7,19 +7,22 @@ use glam::Vec3;
 
 use super::Stats;
 use super::budget::Budget;
+use super::columns::VertexColumns;
 use super::faces::Faces;
-use super::lit::ShadedVertices;
+use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
 use super::settings::{Accuracy, Resolved};
 use super::stats::Shares;
 use super::tessellate::Tessellated;
-use super::vertex::{self, Geometry, VertexAttributes};
+use super::vertex;
+use crate::fixed::U8F8;
 use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material, widen};
 use crate::mesh::Mesh;
 use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
 use crate::plan::{Change, Effect, FaceCounts, FaceShading, ObjectPlan};
+use crate::raster::columns::Triangles;
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
@@ -139,8 +142,7 @@ pub(super) struct ObjectState {
     paints: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
-    lit: ShadedVertices,
-    extras: Vec<VertexAttributes>,
+    columns: VertexColumns,
     tessellated: Tessellated,
     /// True if the tessellated mesh is drawn. Otherwise it stays for when it is again.
     is_tessellated: bool,
@@ -153,7 +155,6 @@ pub(super) struct ObjectState {
     /// Data of a budget's decisions, and the faces that got each shading when the object was drawn last.
     budget: Budget,
     has_budget: bool,
-    pub(super) counts: Shares,
 }
 
 impl ObjectState {
@@ -190,8 +191,8 @@ impl ObjectState {
         self.source.as_ref().map_or(&[], |source| &source.lamps)
     }
 
-    /// Marks all that is kept as of no use any more.
-    pub(super) fn forget(&mut self) {
+    /// Invalidates the cached vertices.
+    pub(super) fn invalidate(&mut self) {
         self.made_by = None;
     }
 
@@ -264,15 +265,26 @@ impl ObjectState {
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         let count = geometry.positions.len();
         stats.vertices += count as u64;
-        self.lit.begin(count);
+        self.columns.begin(count);
         if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
-            vertex::project_tested(&source.view, &geometry, kernel, &mut self.lit);
+            vertex::project_tested(&source.view, &geometry, kernel, &mut self.columns);
         } else {
-            vertex::project_inside(&source.view, &geometry, kernel, &mut self.lit);
+            vertex::project_inside(&source.view, &geometry, kernel, &mut self.columns);
         }
-        self.extras.clear();
-        if self.paints.iter().any(|paint| paint.has_effects) {
-            self.extras.resize(count, VertexAttributes::default());
+        if !self.has_effects() {
+            return;
+        }
+        // Those that the plan asks for, also where an effect is forced to run on input that changes nothing.
+        let VertexColumns { texture, fog, channels, .. } = &mut self.columns;
+        let image = plan.is_on(Effect::Texture) || plan.is_on(Effect::EnvironmentMap);
+        if image || plan.stages().neutral_image {
+            texture.resize(count, [0; 2]);
+        }
+        if plan.is_on(Effect::Fog) {
+            fog.resize(count, U8F8::default());
+        }
+        if plan.is_on(Effect::RgbChannels) {
+            channels.resize(count, [[U8F8::default(); 3]; 2]);
         }
     }
 
@@ -287,19 +299,22 @@ impl ObjectState {
             stats.lit += geometry.positions.len() as u64;
         }
         match (stages.lighting, stages.lit_at) {
-            (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.lit),
-            (_, LitAt::Faces | LitAt::Pixels) => self.lit.leave_without_light(),
+            (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.columns),
+            (_, LitAt::Faces | LitAt::Pixels) => self.columns.leave_without_light(),
             (Lighting::Suns, _) => {
-                vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit);
+                vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.columns);
             }
-            (Lighting::All, _) => vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.lit),
+            (Lighting::All, _) => {
+                vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.columns)
+            }
             (Lighting::Channels, _) => {
-                self.lit.leave_without_light();
-                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), &mut self.extras);
+                self.columns.leave_without_light();
+                let channels = &mut self.columns.channels;
+                vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), channels);
             }
         }
         if self.paints.iter().any(|paint| paint.response.is_some()) {
-            vertex::respond(&geometry, &self.paints, &mut self.lit, &mut self.extras);
+            vertex::respond(&geometry, &self.paints, &mut self.columns);
         }
     }
 
@@ -308,15 +323,15 @@ impl ObjectState {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         if plan.is_on(Effect::Texture) {
-            vertex::texture_coordinates(&geometry, &self.paints, &mut self.extras);
+            vertex::texture_coordinates(&geometry, &self.paints, &mut self.columns.texture);
         }
         if plan.is_on(Effect::EnvironmentMap) {
-            vertex::environment_coordinates(&geometry, &source.view, &self.paints, &mut self.extras);
+            vertex::environment_coordinates(&geometry, &source.view, &self.paints, &mut self.columns.texture);
         }
         if plan.is_on(Effect::Fog)
             && let Some(fog) = &scene.fog
         {
-            vertex::fog_levels(&geometry, &source.view, fog, &mut self.extras);
+            vertex::fog_levels(&geometry, &source.view, fog, &mut self.columns.fog);
         }
     }
 
@@ -340,11 +355,10 @@ impl ObjectState {
         }
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         if source.accuracy.shading() == Shading::PhongTable && plan.stages().lighting != Lighting::Channels {
-            vertex::slopes(&geometry, &source.view, &mut self.extras);
+            self.columns.slope.resize(geometry.normals.len(), [U8F8::default(); 2]);
+            vertex::slopes(&geometry, &source.view, &mut self.columns.slope);
             let at = source.view.position();
             self.tables_of_normals(scene, at, view);
-        } else {
-            vertex::lit_points(&geometry, &mut self.extras);
         }
     }
 
@@ -393,7 +407,7 @@ impl ObjectState {
 
     /// Rounds its vertices once more.
     pub(super) fn round_vertices(&mut self, bits: u32) {
-        vertex::round_further(bits, &mut self.lit);
+        vertex::round_further(bits, &mut self.columns);
     }
 
     /// The table of a surface's shades by normal.
@@ -411,6 +425,17 @@ impl ObjectState {
         self.source.as_ref().map_or(none, |source| source.lights(&self.lamps, plan))
     }
 
+    /// Its triangles, if their vertices were made.
+    pub(super) fn triangles<'a>(&'a self, object: &'a Object) -> Option<Triangles<'a>> {
+        self.made_by?;
+        Some(self.columns.triangles(&drawn_geometry(self.is_tessellated, &self.tessellated, object)))
+    }
+
+    /// The surface of each of its faces.
+    pub(super) fn triangle_surfaces<'a>(&'a self, object: &'a Object) -> &'a [u16] {
+        drawn_geometry(self.is_tessellated, &self.tessellated, object).triangle_surfaces
+    }
+
     /// Its faces, ready to be drawn.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
         let stages = plan.stages();
@@ -423,8 +448,7 @@ impl ObjectState {
             view: &source.view,
             lights: self.lights(plan),
             paints: &self.paints,
-            lit: &self.lit,
-            extras: &self.extras,
+            columns: &self.columns,
             culls: plan.is_on(Effect::BackFaceCulling),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             runs: plan.is_on(Effect::Gouraud),
@@ -447,15 +471,15 @@ impl ObjectState {
         drawn_geometry(self.is_tessellated, &self.tessellated, object).triangles.len()
     }
 
-    /// Returns whether pixels of its faces may pass through stages. A budget lights some where it must.
-    pub(super) fn may_have_effects(&self) -> bool {
-        !self.extras.is_empty() || self.has_budget
+    /// Returns whether pixels of some surface pass through stages.
+    fn has_effects(&self) -> bool {
+        self.paints.iter().any(|paint| paint.has_effects)
     }
 
     /// Counts the faces by the way in which they were shaded, by a budget's choices; `None` without a budget.
-    pub(super) fn face_counts(&self, object: &Object) -> Option<FaceCounts> {
+    pub(super) fn face_counts(&self, object: &Object, counts: &Shares) -> Option<FaceCounts> {
         self.has_budget.then(|| {
-            let drawn: Vec<(FaceShading, u64)> = self.counts.into_iter().collect();
+            let drawn: Vec<(FaceShading, u64)> = (*counts).into_iter().collect();
             // Below 2³².
             let faces = self.most_faces(object) as u64;
             let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
@@ -465,8 +489,7 @@ impl ObjectState {
 
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
-        self.lit.bytes()
-            + self.extras.capacity() * size_of::<VertexAttributes>()
+        self.columns.bytes()
             + self.paints.capacity() * size_of::<SurfaceMaterial>()
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()

@@ -32,9 +32,15 @@ fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial)
     texture.as_ref().map(|texture| Image { texture, has_levels })
 }
 
-/// Sees to it that the tables that a frame needs are there.
+/// Makes the tables that a frame needs.
 #[inline(never)]
-pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: &Plan, states: &[ObjectState]) {
+pub(super) fn ensure_tables(
+    tables: &mut Tables,
+    scene: &Scene,
+    palette: &Palette,
+    plan: &Plan,
+    states: &[ObjectState],
+) {
     let effects = [Effect::Fog, Effect::RgbChannels, Effect::Texture, Effect::EnvironmentMap, Effect::Transparency];
     if !effects.iter().any(|effect| plan.is_on_anywhere(*effect)) {
         return;
@@ -42,25 +48,25 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
     tables.use_palette(palette);
     for ((object, plan), state) in scene.objects().iter().zip(plan.objects()).zip(states) {
         if plan.is_on(Effect::Fog) {
-            tables.need_fog(scene.fog.map(|fog| fog.color));
+            tables.ensure_fog(scene.fog.map(|fog| fog.color));
         }
         let channels = plan.is_on(Effect::RgbChannels);
         if channels {
-            tables.need_mix();
+            tables.ensure_mix();
         }
         for (material, paint) in object.materials.iter().zip(state.paints()) {
             let image = image(plan, material, paint);
             if let Some(image) = image {
-                tables.need_levels(image);
+                tables.ensure_levels(image);
             }
             match image {
-                Some(image) if channels => tables.need_channels(image),
-                Some(image) => tables.need_shades(Some(image)),
-                None if plan.stages().neutral_image => tables.need_shades(None),
+                Some(image) if channels => tables.ensure_channels(image),
+                Some(image) => tables.ensure_shades(Some(image)),
+                None if plan.stages().neutral_image => tables.ensure_shades(None),
                 None => {}
             }
             if paint.blend != Blend::Opaque || plan.stages().neutral_blend {
-                tables.need_blend(paint.blend);
+                tables.ensure_blend(paint.blend);
             }
         }
     }
@@ -68,7 +74,7 @@ pub(super) fn need(tables: &mut Tables, scene: &Scene, palette: &Palette, plan: 
 
 /// The surface and the shading that a pixel pipeline is made for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Pipeline {
+pub(super) struct PipelineKey {
     pub(super) object: usize,
     pub(super) surface: u16,
     pub(super) shading: FaceShading,
@@ -94,16 +100,10 @@ impl Pipelines<'_> {
         self.paint(object, surface).map(|paint| paint.ramp)
     }
 
-    /// Returns whether a surface shines through.
-    pub(super) fn is_transparent(&self, object: usize, surface: u16) -> bool {
-        self.plan.objects().get(object).is_some_and(|plan| plan.is_on(Effect::Transparency))
-            && self.paint(object, surface).is_some_and(|paint| paint.blend != Blend::Opaque)
-    }
-
     /// Hands the pixel pipeline of an object's surface to `draw`. A surface that is not there is not drawn.
     pub(super) fn with(
         &self,
-        Pipeline { object, surface, shading }: Pipeline,
+        PipelineKey { object, surface, shading }: PipelineKey,
         draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
     ) -> DrawStats {
         let (Some(plan), Some(state), Some(paint)) =

@@ -62,8 +62,8 @@ impl Tables {
         self.palette.as_ref().unwrap_or(&crate::palette::BIOS)
     }
 
-    /// Sees to it that there is a table of fog in this colour; of none, one that changes nothing.
-    pub(super) fn need_fog(&mut self, color: Option<Rgb>) {
+    /// Makes a table of fog in this colour, if there is none; of no colour, one that changes nothing.
+    pub(super) fn ensure_fog(&mut self, color: Option<Rgb>) {
         match color {
             None if self.neutral_fog.is_none() => self.neutral_fog = Some(Lut64K::from_fn(|_, index| index)),
             Some(color) if self.fog.as_ref().is_none_or(|(of, _)| *of != color) => {
@@ -80,7 +80,7 @@ impl Tables {
         }
     }
 
-    pub(super) fn need_mix(&mut self) {
+    pub(super) fn ensure_mix(&mut self) {
         if self.nearest.is_none() && self.palette() != &CUBE {
             self.nearest = Some(InverseColormap::new(self.palette()));
         }
@@ -97,8 +97,8 @@ impl Tables {
         }
     }
 
-    /// Sees to it that the smaller copies of an image are there, if it has some.
-    pub(super) fn need_levels(&mut self, image: Image<'_>) {
+    /// Makes the smaller copies of an image, if it has some.
+    pub(super) fn ensure_levels(&mut self, image: Image<'_>) {
         if image.has_levels && self.mipmap(image).is_none() {
             self.mipmaps.push((Shared::clone(image.texture), Mipmap::new(image.texture)));
         }
@@ -119,7 +119,7 @@ impl Tables {
         self.mipmap(image).map_or(image.texture.colors(), Mipmap::colors)
     }
 
-    pub(super) fn need_shades(&mut self, image: Option<Image<'_>>) {
+    pub(super) fn ensure_shades(&mut self, image: Option<Image<'_>>) {
         match image {
             None if self.neutral_shades.is_none() => self.neutral_shades = Some(Lut64K::from_fn(|shade, _| shade)),
             Some(image) if find(&self.shades, image).is_none() => {
@@ -138,9 +138,9 @@ impl Tables {
         table.map(|table| [table.as_array(); 3])
     }
 
-    /// Sees to it that an image has its tables of channels: row a channel's shade, column a texel, entry the channel of
+    /// Makes the tables of channels of an image: row a channel's shade, column a texel, entry the channel of
     /// the lit texel.
-    pub(super) fn need_channels(&mut self, image: Image<'_>) {
+    pub(super) fn ensure_channels(&mut self, image: Image<'_>) {
         if find(&self.channels, image).is_none() {
             let colors = self.colors(image);
             let lit = |channel: fn(Rgb) -> u8| {
@@ -159,7 +159,7 @@ impl Tables {
         find(&self.channels, image).map(|tables| tables.each_ref().map(Lut64K::as_array))
     }
 
-    pub(super) fn need_blend(&mut self, blend: Blend) {
+    pub(super) fn ensure_blend(&mut self, blend: Blend) {
         if self.blend(blend).is_none() {
             let table = match blend {
                 // The new byte itself.

@@ -19,8 +19,8 @@ use core::mem;
 use glam::{Vec2, Vec3};
 
 use super::edge_map::EdgeMap;
+use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
 

@@ -80,7 +80,6 @@ pub(crate) trait Lanes8: Copy {
     /// The lanes taken as u32.
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
     /// The lower and the upper halves.
-    #[cfg_attr(not(any(feature = "alloc", test)), expect(dead_code, reason = "only faces are culled by it"))]
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
     /// Like [`zip_i32`](Self::zip_i32).
     fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
@@ -89,7 +88,6 @@ pub(crate) trait Lanes8: Copy {
     ///
     /// # Panics
     /// If one of them is not there.
-    #[cfg(feature = "alloc")]
     #[inline(always)]
     fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [Self::I64; 3] {
         let mut lanes = [[0; 8]; 3];
@@ -109,7 +107,6 @@ pub(crate) trait Lanes8: Copy {
     /// A bit for each lane, that of lane 0 lowest.
     fn mask_bits(self, mask: Self::Mask) -> u32;
     /// The mask of such bits.
-    #[cfg_attr(not(any(feature = "alloc", test)), expect(dead_code, reason = "only faces are culled by it"))]
     fn mask_of_bits(self, bits: u8) -> Self::Mask;
     /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
     fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);

@@ -3,9 +3,16 @@
 use super::Lanes8;
 
 /// Up to `N` − 8 numbers, one after the other.
+#[derive(Debug)]
 pub(crate) struct Packed<const N: usize> {
     numbers: [u32; N],
     count: usize,
+}
+
+impl<const N: usize> Default for Packed<N> {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl<const N: usize> Packed<N> {
@@ -27,12 +34,21 @@ impl<const N: usize> Packed<N> {
         }
     }
 
-    /// Takes the first so many out.
+    /// Puts a number behind the others, if there is room.
     #[cfg(feature = "alloc")]
-    pub(crate) fn remove_first(&mut self, count: usize) {
-        let count = count.min(self.count);
-        self.numbers.copy_within(count..self.count, 0);
-        self.count -= count;
+    #[inline(always)]
+    pub(crate) fn push(&mut self, number: u32) {
+        if self.count < Self::CAPACITY {
+            self.numbers[self.count] = number;
+            self.count += 1;
+        }
+    }
+
+    /// Takes all out.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
     }
 
     #[inline(always)]

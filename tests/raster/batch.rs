@@ -265,9 +265,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
-            // None reaches beyond the frame.
-            let clips = random.within(0, 1) == 0;
-            let draw = |raster: &mut Raster<'_>| if clips { raster.batch(&batch) } else { raster.batch_inside(&batch) };
+            let draw = |raster: &mut Raster<'_>| raster.batch(&batch);
             let batched = drawn(&place, kernel, draw, draw);
             assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
         }

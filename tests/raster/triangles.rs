@@ -355,31 +355,6 @@ fn a_refusal_says_what_was_refused() {
     assert_eq!(above, "vertex shade 0xff01 is above 0xff00 (255.0)");
 }
 
-/// No row is compared with the frame's edges, and nothing changes.
-#[test]
-fn triangles_inside_the_frame_need_no_edges() {
-    let mut random = Random::named("triangles inside the frame");
-    let mut pixels = 0;
-    for _ in 0..1_000 {
-        let vertices = [(); 3].map(|()| {
-            let (x, y) = (random.within(0, i64::from(WIDTH) * 256), random.within(0, i64::from(HEIGHT) * 256));
-            vertex(x, y, random.within(0, 0xFF00), random.log_uniform(30) as i64)
-        });
-        for interpolation in interpolations() {
-            let on = |inside: bool| {
-                let mut bytes = vec![99; (WIDTH * HEIGHT) as usize];
-                let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
-                let draw = if inside { Raster::triangle_inside } else { Raster::triangle };
-                (draw(&mut raster, &vertices, interpolation), bytes)
-            };
-            let expected = on(false);
-            assert!(on(true) == expected, "{interpolation:?} of {vertices:?}");
-            pixels += expected.0.pixels;
-        }
-    }
-    assert!(pixels > 500_000, "{pixels}");
-}
-
 #[test]
 fn r4_random_triangles_against_the_oracle() {
     against_the_oracle(Tried::new("r4_random_triangles_against_the_oracle", 3000));

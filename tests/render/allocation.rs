@@ -53,7 +53,7 @@ fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga, seconds: f64)
 fn turns(what: &str, scene: &mut Scene, renderer: &mut Renderer) -> Vec<String> {
     let mut vga = Vga::new();
     let mut wrong = Vec::new();
-    let (mut plans, mut most) = (Vec::new(), [0; 3]);
+    let (mut plans, mut most) = (Vec::new(), [0; 4]);
     for frame in 0..2 * FRAMES {
         // Six poses of a turn of 10 s, and the same again.
         let seconds = f64::from(frame % FRAMES) * 10.0 / f64::from(FRAMES);
@@ -64,9 +64,9 @@ fn turns(what: &str, scene: &mut Scene, renderer: &mut Renderer) -> Vec<String> 
             plans.push(plan);
         }
         let grows = renderer.plan().is_on_anywhere(Effect::Tessellation) || stats.clipped > 0;
-        let counts = [stats.vertices, stats.faces, stats.drawn];
+        let counts = [stats.vertices, stats.faces, stats.drawn, stats.clipped];
         let more = grows && counts.iter().zip(most).any(|(count, most)| *count > most);
-        most = [0, 1, 2].map(|i| most[i].max(counts[i]));
+        most = [0, 1, 2, 3].map(|i| most[i].max(counts[i]));
         // The plan, which says why in words, is not of its count.
         let apart = kept - i64::try_from(stats.allocated).expect("it fits");
         if frame == 0 && !(0..=PLAN * scene.objects().len() as i64).contains(&apart) {

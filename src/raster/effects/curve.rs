@@ -15,10 +15,10 @@
 //! as |q| ≤ 5/3 of the greatest shade, M, n·|b| and n²·|c| are at most 8 · 5/3 · M (Markov): in f32 they are off by less than
 //! 2⁻²⁰ · M together, of shades to 1 by a thousandth of one.
 
-use super::{Attributes, Limits};
+use super::Limits;
+use super::pieces::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
-use crate::raster::cover::SortedTriangle;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
 
@@ -37,12 +37,12 @@ struct Curve {
 }
 
 impl Curve {
-    fn new(corners: [&Attributes; 3], channel: usize, [sa, sb, sc]: [f64; 3]) -> Self {
+    fn new(corners: [[f32; 6]; 3], channel: usize, [sa, sb, sc]: [f64; 3]) -> Self {
         // Not a number is the least.
         #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
         let shade = |value: f32| f64::from(value.max(-GREATEST).min(GREATEST));
-        let [fa, fb, fc] = three(corners, |corner| shade(corner.lit[channel]));
-        let [ma, mb, mc] = three(corners, |corner| shade(corner.lit[channel + 3]));
+        let [fa, fb, fc] = three(corners, |corner| shade(corner[channel]));
+        let [ma, mb, mc] = three(corners, |corner| shade(corner[channel + 3]));
         let bend = |from: f64, middle: f64, to: f64| 2.0 * (from - 2.0 * middle + to);
         let [da, db, dc] = [bend(fb, ma, fc), bend(fc, mb, fa), bend(fa, mc, fb)];
         Self {
@@ -75,12 +75,8 @@ pub(super) struct CurvePlane {
 }
 
 impl CurvePlane {
-    pub(super) fn new(
-        triangle: &SortedTriangle,
-        corners: [&Attributes; 3],
-        limits: [Limits; 3],
-        channels: usize,
-    ) -> Self {
+    pub(super) fn new(face: &FaceCorners<'_>, limits: [Limits; 3], channels: usize) -> Self {
+        let (triangle, corners) = (face.triangle, face.lit());
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;

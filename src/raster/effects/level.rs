@@ -59,14 +59,14 @@ pub(super) struct LevelPlane {
 }
 
 impl LevelPlane {
-    /// The plane of a triangle that is not degenerate, with these coordinates and depths at its corners.
-    pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 2]; 3], depths: [i128; 3]) -> Self {
+    /// The plane of a triangle that is not degenerate, with these coordinates, u and v, and depths at its corners.
+    pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 3]; 2], depths: [i128; 3]) -> Self {
         let (mut sums, mut times_y, mut times_x) = ([0; 2], [0; 2], [0; 2]);
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let corner = &triangle.vertices[k];
             for of in 0..2 {
                 // Depths are below 2³².
-                let term = depths[i] * depths[j] * (i128::from(coordinates[i][of]) - i128::from(coordinates[j][of]));
+                let term = depths[i] * depths[j] * (i128::from(coordinates[of][i]) - i128::from(coordinates[of][j]));
                 sums[of] += term;
                 times_y[of] += term * i128::from(corner.y().to_bits());
                 times_x[of] += term * i128::from(corner.x().to_bits());

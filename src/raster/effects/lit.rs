@@ -1,9 +1,8 @@
 //! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
 
-use super::pieces::{Face, PIECE, Piece, Pieces};
-use super::pipeline::{Attributes, Lighting, SampleSpacing};
+use super::pieces::{FaceCorners, Faces, PIECE, Piece, Pieces};
+use super::pipeline::{Lighting, SampleSpacing};
 use crate::lanes::{LANES, Lanes, Points, each};
-use crate::raster::cover::SortedTriangle;
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;
 use crate::span::Kernel;
@@ -43,11 +42,12 @@ pub(super) struct LitPlane {
 }
 
 impl LitPlane {
-    pub(super) fn new(triangle: &SortedTriangle, corners: [&Attributes; 3]) -> Self {
+    pub(super) fn new(face: &FaceCorners<'_>) -> Self {
+        let (triangle, corners) = (face.triangle, face.lit());
         let mut values = [[0.0; 7]; 3];
         for (k, values) in values.iter_mut().enumerate() {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
-            for (i, value) in corners[k].lit.iter().enumerate() {
+            for (i, value) in corners[k].iter().enumerate() {
                 values[i] = f64::from(*value) * depth;
             }
             values[6] = depth;
@@ -146,7 +146,7 @@ impl Pieces {
     #[inline(never)]
     pub(super) fn light_each<const N: usize>(
         &self,
-        faces: &[Face],
+        faces: Faces<'_>,
         kernel: Kernel,
         light: &impl Lit<N>,
         mut out: [&mut [u16]; N],
@@ -184,7 +184,7 @@ impl Pieces {
     #[inline(never)]
     pub(super) fn light_some<const N: usize>(
         &self,
-        faces: &[Face],
+        faces: Faces<'_>,
         kernel: Kernel,
         (spacing, light): (SampleSpacing, &impl Lit<N>),
         thresholds: Thresholds,

@@ -8,11 +8,10 @@
 //! write      all of it, or where nearer
 //! ```
 //!
-//! An [`EffectBatch`] holds faces of one [`PixelPipeline`]. They are culled as the triangles of a plain batch are, and the
-//! rows of small ones inside the clip rectangle are found by the same set-up, eight faces at a time. The rows of others are
-//! walked down: they are long, so finding them is little of their time.
+//! Faces of one [`PixelPipeline`] are picked and set up as plain ones are, eight at a time. The rows of large ones are walked
+//! down: they are long, so finding them is little of their time. [`EffectBatch`] is the door for faces by vertices.
 //!
-//! A stage is one loop over up to 64 pieces of the batch's faces, so a stage that the pipeline does not have costs one
+//! A stage is one loop over up to 64 pieces of many faces, so a stage that the pipeline does not have costs one
 //! question for all of them. Pieces are written in the order of their faces; so what one face leaves in the frame is what
 //! the next one blends with. Pieces begin at the row's first covered pixel inside the frame and every 64 pixels from there,
 //! where every value is exact; so a pixel's byte depends on no clip rectangle. Without any effect [`Raster::triangle`] gives
@@ -23,6 +22,7 @@
 //! sum leaves the range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a
 //! byte lies in [min >> 8, ⌈max⌉].
 
+mod batch;
 mod curve;
 mod level;
 mod lit;
@@ -33,35 +33,29 @@ mod texture;
 
 use alloc::vec::Vec;
 
-use self::pieces::{CAPACITY, Face, FaceSetup, PIXELS, Piece, Pieces};
+pub use self::batch::EffectBatch;
+use self::pieces::{CAPACITY, FaceSetup, Faces, PIXELS, Piece, Pieces, SetUp, Shaded};
 pub use self::pipeline::{
-    Attributes, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
+    Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
 };
-use super::batch::Batch;
-use super::batch::found::{Coordinates, Finder, Found, FoundRows, MAX_FOUND, Wanted, index};
-use super::batch::texture::TextureCorners;
-use super::cover::{Row, SortedTriangle};
+pub use super::columns::Attributes;
+use super::columns::{Picks, Triangles, Value};
+use super::cover::Row;
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::draw_stats::DrawStats;
+use super::found::{Coordinates, FoundRows, Wanted, find_rows};
 use super::frame::{Frame, Rect};
-use super::interpolation::Interpolation;
-use super::shade::{RESEED, ShadePlane};
+use super::pick::{LANES, Pick, SizeClass};
+use super::shade::RESEED;
 use super::triangle::Raster;
-use super::vertex::Vertex;
-use crate::lanes::three;
+use crate::fixed::HAS_F64;
 use crate::simd::at_best_level;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
-/// Faces that are drawn by one pixel pipeline, and room for their pieces. Filled and drawn again and again it allocates
-/// nothing.
-#[derive(Clone, Debug)]
-pub struct EffectBatch {
-    /// Room for all; those that are in the batch come first.
-    faces: Vec<Face>,
-    /// Their corners once more, as culling and set-up take them.
-    corners: Batch,
-    texture: TextureCorners<MAX_FOUND>,
+/// Memory of the stages: pieces of rows, and what passes through. Used again and again it allocates nothing.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EffectScratch {
     /// Room for rows of eight faces.
     rows: Vec<FoundRows>,
     pieces: Pieces,
@@ -84,14 +78,6 @@ struct Buffers {
 }
 
 impl Buffers {
-    const EMPTY: Self = Self {
-        bytes: Vec::new(),
-        other: Vec::new(),
-        channels: [const { Vec::new() }; 3],
-        shades: [const { Vec::new() }; 3],
-        places: Vec::new(),
-    };
-
     /// Makes room for as many pixels as there may be.
     fn make_room(&mut self) {
         let Self { bytes, other, channels, shades, places } = self;
@@ -113,113 +99,59 @@ impl Buffers {
     }
 }
 
-impl Default for EffectBatch {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl EffectBatch {
-    /// Faces that it holds at most.
-    pub const CAPACITY: usize = MAX_FOUND;
-
-    /// A batch without faces. When it is drawn for the first time it takes 90 kB.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            faces: Vec::new(),
-            corners: Batch::new(),
-            texture: TextureCorners::NONE,
-            rows: Vec::new(),
-            pieces: Pieces::EMPTY,
-            buffers: Buffers::EMPTY,
-        }
-    }
-
+impl EffectScratch {
     /// Bytes that it holds.
     pub(crate) fn bytes(&self) -> usize {
-        self.faces.capacity() * size_of::<Face>()
-            + self.rows.capacity() * size_of::<FoundRows>()
-            + self.pieces.bytes()
-            + self.buffers.bytes()
+        self.rows.capacity() * size_of::<FoundRows>() + self.pieces.bytes() + self.buffers.bytes()
     }
 
-    /// Returns whether the batch holds no face.
-    #[must_use]
+    /// Takes the memory, 90 kB, the first time.
     #[inline]
-    pub fn is_empty(&self) -> bool {
-        self.corners.is_empty()
-    }
-
-    /// Returns whether the batch has no room for another face.
-    #[must_use]
-    #[inline]
-    pub fn is_full(&self) -> bool {
-        self.corners.len() >= Self::CAPACITY
-    }
-
-    /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing.
-    /// Returns `false`, and adds nothing, if there is no room.
-    #[inline]
-    pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
-        if self.is_full() {
-            return false;
+    fn make_room(&mut self) {
+        if self.buffers.bytes.is_empty() {
+            self.rows.push(FoundRows::NONE);
+            self.pieces.make_room();
+            self.buffers.make_room();
         }
-        if self.faces.is_empty() {
-            self.make_room_for_faces();
-        }
-        let number = self.corners.len();
-        // In its place, and not by `Vec::push`: a face that was put together on the stack is read again before its stores are
-        // done, which took a fifth of the time of faces of ten pixels.
-        let Some(face) = self.faces.get_mut(number) else { return false };
-        face.vertices = *vertices;
-        face.attributes = *attributes;
-        self.texture.put(number, three(attributes.each_ref(), |corner| corner.texture));
-        self.corners.push(vertices, Interpolation::GouraudReseeded)
     }
 
-    #[cold]
-    fn make_room_for_faces(&mut self) {
-        self.faces.resize(Self::CAPACITY, Face::default());
-    }
-
-    /// The pieces of one row of a triangle that another method found, painted into `pixels`, the frame's whole row.
+    /// The pieces of one row of pick `k` that another method found, painted into `pixels`, the frame's whole row.
     pub(crate) fn paint_row(
         &mut self,
-        (vertices, attributes): (&[Vertex; 3], &[Attributes; 3]),
+        (triangles, picks, k): (&Triangles<'_>, Picks<'_>, usize),
         pipeline: &PixelPipeline<'_>,
         row: &Row,
         pixels: &mut [u8],
         kernel: Kernel,
         drawn: &mut DrawStats,
     ) {
-        self.clear();
-        self.push(vertices, attributes);
-        let Self { faces, pieces, buffers, .. } = self;
-        make_room(pieces, buffers);
+        self.make_room();
+        let Self { pieces, buffers, .. } = self;
         let (rows, depth) = (OneRow(pixels), None::<&mut DepthBuffer<'_, u32>>);
+        let faces = Faces { triangles, picks };
         let mut drawing =
             Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn: DrawStats::default() };
-        drawing.add_row(row, 0);
-        drawing.pieces.close(0, None);
+        let set_up = SetUp::Walked(faces.sorted(k));
+        drawing.add_row(row, (k, &set_up));
+        drawing.pieces.close(k, &set_up);
         // The caller has counted what is covered.
         *drawn += DrawStats { covered: 0, ..drawing.finish((row.x1 - row.x0) as u32) };
-        self.clear();
-    }
-
-    /// Takes all faces out.
-    fn clear(&mut self) {
-        self.corners.clear();
     }
 }
 
-/// Makes room, the first time, for as many pieces as there may be.
-#[inline]
-fn make_room(pieces: &mut Pieces, buffers: &mut Buffers) {
-    if buffers.bytes.is_empty() {
-        pieces.make_room();
-        buffers.make_room();
+/// Linear values that the stages of a pipeline ask for, each in its slot.
+fn values(pipeline: &PixelPipeline<'_>) -> [Option<Value>; Value::MAX_COUNT] {
+    let mut values = [None; Value::MAX_COUNT];
+    let mut want =
+        |value: Value, is_wanted: bool| values[value.slot()] = is_wanted.then_some(value).or(values[value.slot()]);
+    want(Value::Fog, pipeline.fog().is_some());
+    let channels = pipeline.channels().is_some();
+    let by_table = matches!(pipeline.source, ShadeSource::NormalTable(_));
+    for i in 0..3 {
+        want(Value::Channel(i), channels && (by_table || matches!(pipeline.source, ShadeSource::Shaded(_))));
+        want(Value::Slope(i), by_table && !channels && i < 2);
     }
+    values
 }
 
 /// Counts what was done to so many pixels, whatever the depth test said of them.
@@ -264,7 +196,7 @@ struct Drawing<'a, 'b, R, D: Cell> {
     depth: Option<&'a mut DepthBuffer<'b, D>>,
     kernel: Kernel,
     pipeline: &'a PixelPipeline<'a>,
-    faces: &'a [Face],
+    faces: Faces<'a>,
     pieces: &'a mut Pieces,
     buffers: &'a mut Buffers,
     drawn: DrawStats,
@@ -273,22 +205,22 @@ struct Drawing<'a, 'b, R, D: Cell> {
 impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     /// Adds the drawn part of a row of a face, cut into pieces.
     #[inline(always)]
-    fn add_row(&mut self, row: &Row, face: usize) {
+    fn add_row(&mut self, row: &Row, face: (usize, &SetUp)) {
         if row.x1 - row.origin > RESEED {
             return self.add_pieces(row, face);
         }
-        self.make_space(face, None);
+        self.make_space(face);
         self.pieces.push(row, row.origin, row.x0..row.x1, 0);
     }
 
     /// Adds more than one.
     #[inline(never)]
-    fn add_pieces(&mut self, row: &Row, face: usize) {
+    fn add_pieces(&mut self, row: &Row, face: (usize, &SetUp)) {
         let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
         let mut x = row.x0;
         while x < row.x1 {
             let end = row.x1.min(seed + RESEED);
-            self.make_space(face, None);
+            self.make_space(face);
             self.pieces.push(row, seed, x..end, 0);
             seed += RESEED;
             x = end;
@@ -297,16 +229,17 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
 
     /// Adds the rows of a small face that lies inside the clip rectangle. Returns how many pixels are covered.
     #[inline(always)]
-    fn add_small(&mut self, face: usize, rows: &FoundRows, lane: usize, wanted: Wanted<'_>) -> u32 {
-        let mut setup = FaceSetup { affine: None, perspective: [0.0; 3], depth: 0 };
+    fn add_small(&mut self, face: usize, rows: &FoundRows, lane: usize, wanted: Wanted) -> u32 {
+        let mut setup = FaceSetup { affine: None, perspective: None, depth: 0 };
         match wanted.texture {
             None => {}
-            Some((Coordinates::Affine, _)) => setup.affine = rows.affine_step(lane),
-            Some((Coordinates::Perspective, _)) => setup.perspective = rows.perspective_step(lane),
+            Some(Coordinates::Affine) => setup.affine = rows.affine_step(lane),
+            Some(Coordinates::Perspective) => setup.perspective = Some(rows.perspective_step(lane)),
         }
         if wanted.depths {
             setup.depth = rows.depth_step(lane);
         }
+        let set_up = SetUp::Lanes(setup);
         let mut covered = 0;
         for j in 0..rows.count(lane) {
             let (row, paint) = rows.row(lane, j);
@@ -315,55 +248,51 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
                 continue;
             }
             covered += (end - x) as u32;
-            self.make_space(face, Some(&setup));
+            self.make_space((face, &set_up));
             let Some(start) = self.pieces.push(&row, x, x..end, paint) else { continue };
             match wanted.texture {
                 None => {}
-                Some((Coordinates::Affine, _)) => start.affine = rows.affine_start(lane, j),
-                Some((Coordinates::Perspective, _)) => start.perspective = rows.perspective_start(lane, j),
+                Some(Coordinates::Affine) => start.affine = rows.affine_start(lane, j),
+                Some(Coordinates::Perspective) => start.perspective = rows.perspective_start(lane, j),
+            }
+            if wanted.slots > 0 {
+                start.values = rows.values(lane, j);
             }
             if wanted.depths {
                 start.depth = rows.depth(lane, j, x);
             }
         }
-        self.pieces.close(face, Some(&setup));
+        self.pieces.close(face, &set_up);
         covered
     }
 
     /// Adds the rows of a face, walking down its edges. Returns how many pixels are covered.
     #[inline(never)]
-    fn add_large<const CLIPS: bool>(&mut self, face: usize, width: u32, clip: Rect) -> u32 {
-        let (triangle, _) = SortedTriangle::with_order(&self.faces[face].vertices);
+    fn add_large(&mut self, face: usize, width: u32, clip: Rect) -> u32 {
         let mut covered = 0;
-        let each_row = |row: Row| {
+        let sorted = self.faces.sorted(face);
+        let set_up = SetUp::Walked(sorted);
+        sorted.triangle.rows(width, clip, |row: Row| {
             covered += (row.x1 - row.x0) as u32;
-            // Columns of a frame, of which there are at most 4,096.
-            if CLIPS || (row.x0 >= 0 && row.x1 <= width as i32) {
-                self.add_row(&row, face);
-            }
-        };
-        if CLIPS {
-            triangle.rows(width, clip, each_row);
-        } else {
-            triangle.rows_inside(each_row);
-        }
-        self.pieces.close(face, None);
+            self.add_row(&row, (face, &set_up));
+        });
+        self.pieces.close(face, &set_up);
         covered
     }
 
     /// Draws the pieces that wait if there is no room for one more of a face.
     #[inline(always)]
-    fn make_space(&mut self, face: usize, setup: Option<&FaceSetup>) {
+    fn make_space(&mut self, face: (usize, &SetUp)) {
         if self.pieces.len() == CAPACITY {
-            self.draw_full(face, setup);
+            self.draw_full(face);
         }
     }
 
     /// Draws the pieces that wait, of which the last are this face's.
     #[cold]
     #[inline(never)]
-    fn draw_full(&mut self, face: usize, setup: Option<&FaceSetup>) {
-        self.pieces.close(face, setup);
+    fn draw_full(&mut self, (face, set_up): (usize, &SetUp)) {
+        self.pieces.close(face, set_up);
         self.draw();
     }
 
@@ -374,15 +303,10 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
         if pieces.len() == 0 {
             return;
         }
-        pieces.shade(faces, buffers, pipeline, *kernel);
+        pieces.shade(*faces, buffers, pipeline, *kernel);
         if let Some(table) = pipeline.fog() {
-            let plane = |triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]| {
-                ShadePlane::of_values(triangle, three([a, b, c], |corner| i64::from(corner.fog.to_bits())))
-            };
             let Buffers { bytes, other: levels, .. } = &mut **buffers;
-            pieces.each(faces, levels, plane, |plane, piece, levels| {
-                kernel.fill(levels, plane.start(piece.seed, piece.row.y), plane.step());
-            });
+            pieces.fill(Shaded::linear(Value::Fog), *faces, levels, *kernel);
             lookup(&mut bytes[..pieces.pixels()], levels, table);
         }
         match pipeline.blend() {
@@ -395,7 +319,7 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
     /// Writes pieces, all of each or where it is nearer.
     #[inline(never)]
     fn write<const BLENDS: bool>(&mut self) {
-        let Self { rows, pieces, faces, drawn, pipeline, kernel, .. } = self;
+        let Self { rows, pieces, drawn, pipeline, kernel, .. } = self;
         let bytes = &mut self.buffers.bytes[..];
         let blend = pipeline.blend().filter(|_| BLENDS);
         *drawn += match &mut self.depth {
@@ -415,11 +339,9 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
                 drawn
             }
             Some(depth) if pipeline.keeps_depth => {
-                write_nearer::<R, D, BLENDS, true>(*kernel, *kernel, rows, depth, (pieces, faces), bytes, blend)
+                write_nearer::<R, D, BLENDS, true>(*kernel, *kernel, rows, depth, pieces, bytes, blend)
             }
-            Some(depth) => {
-                write_nearer::<R, D, BLENDS, false>(*kernel, *kernel, rows, depth, (pieces, faces), bytes, blend)
-            }
+            Some(depth) => write_nearer::<R, D, BLENDS, false>(*kernel, *kernel, rows, depth, pieces, bytes, blend),
         };
     }
 
@@ -440,7 +362,7 @@ at_best_level! {
         kernel: Kernel,
         rows: &mut R,
         depth: &mut DepthBuffer<'_, D>,
-        pieces: (&Pieces, &[Face]),
+        pieces: &Pieces,
         bytes: &mut [u8],
         blend: Option<&[u8; 65_536]>,
     ) -> DrawStats {
@@ -453,7 +375,7 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
     kernel: Kernel,
     rows: &mut R,
     depth: &mut DepthBuffer<'_, D>,
-    (pieces, faces): (&Pieces, &[Face]),
+    pieces: &Pieces,
     bytes: &mut [u8],
     blend: Option<&[u8; 65_536]>,
 ) -> DrawStats {
@@ -463,11 +385,12 @@ fn write_each<R: Rows, D: Cell, const BLENDS: bool, const KEEPS: bool>(
     for covered in pieces.triangles() {
         let range = first..covered.end;
         first = covered.end;
-        let plane = if covered.setup.is_none() { Some(DepthPlane::new(&covered.triangle(faces).0)) } else { None };
-        let dz = match (&plane, &covered.setup) {
-            (Some(plane), _) => plane.step(),
-            (None, Some(setup)) => setup.depth,
-            (None, None) => 0,
+        let (plane, dz) = match &covered.set_up {
+            SetUp::Lanes(setup) => (None, setup.depth),
+            SetUp::Walked(face) => {
+                let plane = DepthPlane::new(&face.triangle);
+                (Some(plane), plane.step())
+            }
         };
         let (of_face, starts) = pieces.with_starts(range);
         for (i, piece) in of_face.iter().enumerate() {
@@ -550,46 +473,21 @@ fn blended<const N: usize>(mut bytes: [u8; N], there: [u8; N], table: Option<&[u
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
-    /// triangle without area draws nothing. Many triangles are drawn sooner by
-    /// [`batch_with_effects`](Self::batch_with_effects), by which this is drawn, too.
-    #[doc(hidden)]
-    pub fn triangle_with_effects(
-        &mut self,
-        vertices: &[Vertex; 3],
-        attributes: &[Attributes; 3],
-        pipeline: &PixelPipeline<'_>,
-    ) -> DrawStats {
-        let mut batch = EffectBatch::new();
-        batch.push(vertices, attributes);
-        self.batch_with_effects(&mut batch, pipeline)
-    }
-
-    /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
-    #[doc(hidden)]
-    pub fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
-        self.draw_effects::<true>(batch, pipeline)
-    }
-
-    /// Draws a batch whose faces lie wholly inside the frame.
-    ///
-    /// Parts that lie outside are treated as by [`triangle_inside`](Self::triangle_inside).
-    #[doc(hidden)]
-    pub fn batch_with_effects_inside(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
-        self.draw_effects::<false>(batch, pipeline)
-    }
-
+    /// Draws triangles that were picked inside the clip rectangle, one after the other, by one pixel pipeline.
     #[inline(never)]
-    fn draw_effects<const CLIPS: bool>(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
-        let (width, clip, bounds) = (self.frame.width(), self.clip, self.frame.bounds());
+    pub(crate) fn picks_with_effects(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: Picks<'_>,
+        pipeline: &PixelPipeline<'_>,
+        scratch: &mut EffectScratch,
+    ) -> DrawStats {
+        let (width, clip) = (self.frame.width(), self.clip);
         let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-        let EffectBatch { faces, corners, texture, rows: found_rows, pieces, buffers } = &mut *batch;
-        make_room(pieces, buffers);
-        if found_rows.is_empty() {
-            found_rows.push(FoundRows::NONE);
-        }
-        let Some(found_rows) = found_rows.first_mut() else { return DrawStats::default() };
-        let coordinates = match pipeline.texture() {
+        scratch.make_room();
+        let EffectScratch { rows, pieces, buffers } = scratch;
+        let Some(found) = rows.first_mut() else { return DrawStats::default() };
+        let texture = match pipeline.texture() {
             Some(stage) if pipeline.levels().is_none() => match stage.mapping {
                 TextureMapping::Affine => Some(Coordinates::Affine),
                 TextureMapping::Perspective => Some(Coordinates::Perspective),
@@ -597,24 +495,27 @@ impl<D: Cell> Raster<'_, D> {
             },
             _ => None,
         };
-        let wanted = Wanted { depths: depth.is_some(), texture: coordinates.map(|which| (which, &*texture)) };
+        let values = values(pipeline);
+        let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        let wanted = Wanted { depths: depth.is_some(), texture, values, slots };
         let (rows, kernel, drawn) = (&mut self.frame, self.kernel, DrawStats::default());
+        let faces = Faces { triangles, picks };
         let mut drawing = Drawing { rows, depth, kernel, pipeline, faces, pieces, buffers, drawn };
-        let mut finder =
-            Finder::new(kernel.simd_level(), corners, wanted, if CLIPS { clip } else { bounds }, found_rows);
-        let mut covered = 0;
-        while let Some(found) = finder.next() {
-            match found {
-                Found::Small(triangles, rows) => {
-                    for (lane, &number) in triangles.iter().enumerate() {
-                        covered += drawing.add_small(index(number), rows, lane, wanted);
-                    }
-                }
-                Found::Another(face) => covered += drawing.add_large::<CLIPS>(face, width, clip),
+        let (mut first, mut covered) = (0, 0);
+        while first < picks.picks.len() {
+            let is_small = |pick: &&u32| HAS_F64 && Pick(**pick).class() == SizeClass::Small;
+            let small = picks.picks[first..].iter().take(LANES).take_while(is_small).count();
+            if small == 0 {
+                covered += drawing.add_large(first, width, clip);
+                first += 1;
+                continue;
             }
+            find_rows(kernel.simd_level(), triangles, &picks.range(first, first + small), wanted, found);
+            for lane in 0..small {
+                covered += drawing.add_small(first + lane, found, lane, wanted);
+            }
+            first += small;
         }
-        let drawn = drawing.finish(covered);
-        batch.clear();
-        drawn
+        drawing.finish(covered)
     }
 }

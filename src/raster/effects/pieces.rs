@@ -2,13 +2,16 @@
 
 use alloc::vec::Vec;
 
-use super::pipeline::Attributes;
+use crate::fixed::U8F8;
+use crate::lanes::three;
+use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
 use crate::raster::cover::{Row, SortedTriangle};
+use crate::raster::interpolation::Interpolation;
+use crate::raster::paint::RowShader;
 use crate::raster::shade::{RESEED, ShadePlane};
-use crate::raster::vertex::Vertex;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
-use crate::span::dither::{ThresholdRow, Thresholds};
+use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::texture::LANES;
 
 /// Pixels in a piece, at most.
@@ -20,11 +23,64 @@ pub(super) const CAPACITY: usize = 64;
 /// Room for a number for each pixel of all pieces, which lie one behind the other, and for what is written eight at a time.
 pub(super) const PIXELS: usize = CAPACITY * PIECE + LANES;
 
-/// A face: its corners, and what they carry.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Face {
-    pub(super) vertices: [Vertex; 3],
-    pub(super) attributes: [Attributes; 3],
+/// Triangles as the stages read them: those that were picked, by their index among these.
+#[derive(Clone, Copy)]
+pub(super) struct Faces<'a> {
+    pub(super) triangles: &'a Triangles<'a>,
+    pub(super) picks: Picks<'a>,
+}
+
+impl<'a> Faces<'a> {
+    /// Face `k` in the order of its heights, and where its corners' values are.
+    #[inline]
+    pub(super) fn sorted(&self, k: usize) -> SortedFace {
+        let pick = self.picks.get(k);
+        let (triangle, order) = SortedTriangle::with_order(&self.triangles.vertices(&self.picks, k));
+        let of = self.triangles.corners(pick);
+        let flat = self.picks.flat.get(k).copied();
+        SortedFace { triangle, corners: three(order, |corner| of[corner]), side: pick.side(), flat }
+    }
+}
+
+/// A face in the order of its heights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SortedFace {
+    pub(super) triangle: SortedTriangle,
+    /// Indices of its vertices.
+    corners: [usize; 3],
+    side: usize,
+    /// The channels that all corners have.
+    flat: Option<[U8F8; 3]>,
+}
+
+/// A face, and the values of its corners from top to bottom.
+pub(super) struct FaceCorners<'a> {
+    pub(super) triangle: &'a SortedTriangle,
+    face: &'a SortedFace,
+    columns: &'a EffectColumns<'a>,
+}
+
+impl FaceCorners<'_> {
+    /// Texture coordinates: `i` is 0 for u, 1 for v.
+    #[inline]
+    pub(super) fn texture(&self, i: usize) -> [i32; 3] {
+        three(self.face.corners, |vertex| self.columns.texture[vertex][i])
+    }
+
+    /// A linear value.
+    #[inline]
+    pub(super) fn value(&self, value: Value) -> [i64; 3] {
+        if let (Value::Channel(i), Some(flat)) = (value, self.face.flat) {
+            return [i64::from(flat[i].to_bits()); 3];
+        }
+        three(self.face.corners, |vertex| i64::from(self.columns.value(value, vertex, self.face.side)))
+    }
+
+    /// Input of light, or the shades of a curve.
+    #[inline]
+    pub(super) fn lit(&self) -> [[f32; 6]; 3] {
+        three(self.face.corners, |vertex| self.columns.lit.get(vertex, self.face.side))
+    }
 }
 
 /// Up to 64 pixels of a row. Every value is exact at the first of them, which lies a multiple of 64 pixels from the row's
@@ -109,28 +165,32 @@ impl Piece {
 /// A face that has pieces, and what is known of its values.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Covered {
-    /// The index of the face.
+    /// The face's index among those that are drawn.
     pub(super) face: usize,
     /// The index of the piece behind its last one.
     pub(super) end: usize,
-    /// Steps of its values; `None` where stages have to set them up.
-    pub(super) setup: Option<FaceSetup>,
+    pub(super) set_up: SetUp,
 }
 
 impl Covered {
-    /// Its triangle, and which corner of the face stands in each place.
-    #[inline]
-    pub(super) fn triangle(&self, faces: &[Face]) -> (SortedTriangle, [usize; 3]) {
-        SortedTriangle::with_order(&faces[self.face].vertices)
+    /// The face, and its corners' values. `room` is for a face that nobody has put in order yet.
+    #[inline(always)]
+    pub(super) fn corners<'a>(&'a self, faces: Faces<'a>, room: &'a mut Option<SortedFace>) -> FaceCorners<'a> {
+        let face = match &self.set_up {
+            SetUp::Walked(face) => face,
+            SetUp::Lanes(_) => room.insert(faces.sorted(self.face)),
+        };
+        FaceCorners { triangle: &face.triangle, face, columns: &faces.triangles.columns.effects }
     }
+}
 
-    /// Its triangle, and what the corners carry, in their order.
-    #[inline]
-    pub(super) fn corners<'a>(&self, faces: &'a [Face]) -> (SortedTriangle, [&'a Attributes; 3]) {
-        let (triangle, order) = self.triangle(faces);
-        let attributes = &faces[self.face].attributes;
-        (triangle, [&attributes[order[0]], &attributes[order[1]], &attributes[order[2]]])
-    }
+/// What is known of a face that has pieces.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum SetUp {
+    /// It was set up together with others.
+    Lanes(FaceSetup),
+    /// Its rows were walked down.
+    Walked(SortedFace),
 }
 
 /// A small face that was set up together with others: its pieces have their [paint](Piece::paint), and change by as much from
@@ -139,8 +199,8 @@ impl Covered {
 pub(super) struct FaceSetup {
     /// The step of [`PieceStart::affine`]; `None` if stages have to set it up.
     pub(super) affine: Option<[u32; 2]>,
-    /// The step of [`PieceStart::perspective`].
-    pub(super) perspective: [f64; 3],
+    /// The step of [`PieceStart::perspective`]; `None` likewise.
+    pub(super) perspective: Option<[f64; 3]>,
     /// The step of depths.
     pub(super) depth: i64,
 }
@@ -148,6 +208,8 @@ pub(super) struct FaceSetup {
 /// Values at the first pixel of a piece whose face is set up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PieceStart {
+    /// Other linear values, as they were wanted, each with its step above it.
+    pub(super) values: [u32; Value::MAX_COUNT],
     /// Texture coordinates that are linear on the screen, 16.16.
     pub(super) affine: [u32; 2],
     /// The numerators and the divisor of those that are linear on the face.
@@ -157,7 +219,8 @@ pub(super) struct PieceStart {
 }
 
 impl PieceStart {
-    pub(super) const NONE: Self = Self { affine: [0; 2], perspective: [0.0; 3], depth: 0 };
+    pub(super) const NONE: Self =
+        Self { values: [0; Value::MAX_COUNT], affine: [0; 2], perspective: [0.0; 3], depth: 0 };
 }
 
 /// Pieces of faces, in the order in which they are drawn.
@@ -174,9 +237,6 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    pub(super) const EMPTY: Self =
-        Self { triangles: Vec::new(), pieces: Vec::new(), count: 0, starts: Vec::new(), pixels: 0 };
-
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.triangles.capacity() * size_of::<Covered>()
@@ -228,32 +288,31 @@ impl Pieces {
 
     /// Makes the pieces behind those of the last face this face's, if there are any.
     #[inline]
-    pub(super) fn close(&mut self, face: usize, setup: Option<&FaceSetup>) {
+    pub(super) fn close(&mut self, face: usize, set_up: &SetUp) {
         let end = self.count;
         if self.triangles.last().map_or(0, |last| last.end) != end {
-            self.triangles.push(Covered { face, end, setup: setup.copied() });
+            self.triangles.push(Covered { face, end, set_up: *set_up });
         }
     }
 
-    /// The stage of linear shades that start anew with every piece.
-    pub(super) fn fill_linear(&self, faces: &[Face], out: &mut [u8], kernel: Kernel) {
-        fill_linear_at_best(kernel, kernel, self, faces, out);
+    /// A stage of shades, or of another value.
+    pub(super) fn fill(&self, shaded: Shaded, faces: Faces<'_>, out: &mut [u8], kernel: Kernel) {
+        fill_at_best(kernel, kernel, self, shaded, faces, out);
     }
 
     /// One stage: for every triangle `plane` makes what its values are over it, from its corners top to bottom; for every
     /// piece `fill` makes its part of `out` from that.
     #[inline(always)]
-    pub(super) fn each<'a, P, T>(
+    pub(super) fn each<P, T>(
         &self,
-        faces: &'a [Face],
+        faces: Faces<'_>,
         out: &mut [T],
-        plane: impl Fn(&SortedTriangle, [&'a Attributes; 3]) -> P,
+        plane: impl Fn(&FaceCorners<'_>) -> P,
         mut fill: impl FnMut(&P, &Piece, &mut [T]),
     ) {
         let mut first = 0;
         for covered in &self.triangles {
-            let (triangle, corners) = covered.corners(faces);
-            let plane = plane(&triangle, corners);
+            let plane = plane(&covered.corners(faces, &mut None));
             for piece in &self.pieces[first..covered.end] {
                 fill(&plane, piece, &mut out[piece.pixels()]);
             }
@@ -280,30 +339,93 @@ impl Pieces {
     }
 }
 
+/// A shade or another value of the corners, as bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Shaded {
+    /// `None` for the shade.
+    pub(super) value: Option<Value>,
+    pub(super) interpolation: Interpolation,
+    pub(super) dither: Option<Thresholds>,
+}
+
+impl Shaded {
+    /// A value that starts anew with every piece.
+    pub(super) fn linear(value: Value) -> Self {
+        Self { value: Some(value), interpolation: Interpolation::GouraudReseeded, dither: None }
+    }
+}
+
 at_best_level! {
     #[inline]
-    fn fill_linear_at_best[][](level: Kernel, kernel: Kernel, pieces: &Pieces, faces: &[Face], out: &mut [u8]) {
-        fill_each_linear(kernel, pieces, faces, out)
+    fn fill_at_best[][](
+        level: Kernel,
+        kernel: Kernel,
+        pieces: &Pieces,
+        shaded: Shaded,
+        faces: Faces<'_>,
+        out: &mut [u8],
+    ) {
+        fill_each(kernel, pieces, shaded, faces, out)
     }
 }
 
 #[inline(always)]
-fn fill_each_linear(kernel: Kernel, pieces: &Pieces, faces: &[Face], out: &mut [u8]) {
+fn fill_each(kernel: Kernel, all: &Pieces, shaded: Shaded, faces: Faces<'_>, out: &mut [u8]) {
+    let reseeds = shaded.interpolation == Interpolation::GouraudReseeded;
+    let is_linear = matches!(shaded.interpolation, Interpolation::Gouraud | Interpolation::GouraudReseeded);
     let mut first = 0;
-    for covered in &pieces.triangles {
-        let pieces = &pieces.pieces[first..covered.end];
+    for covered in &all.triangles {
+        let range = first..covered.end;
         first = covered.end;
-        if covered.setup.is_some() {
-            for piece in pieces {
-                // The halves.
-                fill_blocks(&mut out[piece.first()..], piece.len(), piece.paint as u16, (piece.paint >> 16) as u16);
+        let (pieces, starts) = all.with_starts(range);
+        if !is_linear || matches!(covered.set_up, SetUp::Walked(_)) {
+            let mut room = None;
+            let face = &covered.corners(faces, &mut room);
+            let values = match shaded.value {
+                None => face.triangle.shades(),
+                Some(value) => face.value(value),
+            };
+            if !reseeds || shaded.dither.is_some() {
+                fill_walked(kernel, pieces, shaded, (face, values), out);
+                continue;
             }
-        } else {
-            let plane = ShadePlane::new(&covered.triangle(faces).0);
+            let plane = ShadePlane::of_values(face.triangle, values);
             for piece in pieces {
                 kernel.fill(&mut out[piece.pixels()], plane.start(piece.seed, piece.row.y), plane.step());
             }
+            continue;
         }
+        for (i, piece) in pieces.iter().enumerate() {
+            let paint = match shaded.value {
+                None => piece.paint,
+                Some(value) => starts[i].values[value.slot()],
+            };
+            // The halves.
+            let (start, step) = (paint as u16, (paint >> 16) as u16);
+            match shaded.dither {
+                None => fill_blocks(&mut out[piece.first()..], piece.len(), start, step),
+                Some(thresholds) => {
+                    let row = piece.thresholds(thresholds);
+                    fill_dithered(&mut out[piece.pixels()], start.wrapping_sub(128), step, row, piece.column());
+                }
+            }
+        }
+    }
+}
+
+/// Fills the pieces of a face by a shader of their own.
+#[inline(never)]
+fn fill_walked(
+    kernel: Kernel,
+    pieces: &[Piece],
+    shaded: Shaded,
+    (face, values): (&FaceCorners<'_>, [i64; 3]),
+    out: &mut [u8],
+) {
+    let shader = RowShader::of_values(face.triangle, values, shaded.interpolation);
+    for piece in pieces {
+        let thresholds = shaded.dither.map(|dither| piece.thresholds(dither));
+        shader.piece(&piece.row, piece.seed, &mut out[piece.pixels()], thresholds, kernel);
     }
 }
 

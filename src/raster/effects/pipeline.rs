@@ -6,26 +6,6 @@ use crate::raster::interpolation::Interpolation;
 use crate::span::dither::Thresholds;
 use crate::span::texture::{Levels, Texels};
 
-/// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
-/// anything.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Attributes {
-    /// Texture coordinates, across and down, in texels with 16 fraction bits.
-    pub texture: [i32; 2],
-    /// Density of the fog, 0 to 0xFF00.
-    pub fog: U8F8,
-    /// Red, green and blue, each 0 to 0xFF00.
-    pub channels: [U8F8; 3],
-    /// The column and the row in the table of [`ShadeSource::NormalTable`], each 0 to 0xFF00.
-    pub slope: [U8F8; 2],
-    /// Input of [`Lighting`]: a normal and a position.
-    ///
-    /// For [`ShadeSource::Curved`] it is the shade at the corner, or its three channels, and then those at the middle
-    /// (on the screen) of the edge opposite to it. They are in 8.8, and may lie beyond what can be shown, where the
-    /// limits cut them off.
-    pub lit: [f32; 6],
-}
-
 /// Light at every pixel.
 pub trait Lighting: core::fmt::Debug {
     /// The shade at each point (normal and position, perspective-correct, the normal of any length), in

@@ -2,27 +2,19 @@
 
 use super::Buffers;
 use super::curve::CurvePlane;
-use super::pieces::{Face, Pieces};
-use super::pipeline::{Attributes, Mix, PixelPipeline, ShadeSource};
-use crate::fixed::U8F8;
-use crate::lanes::three;
-use crate::raster::cover::SortedTriangle;
+use super::pieces::{FaceCorners, Faces, Pieces, Shaded};
+use super::pipeline::{Mix, PixelPipeline, ShadeSource};
+use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
-use crate::raster::paint::{RowShader, to_bytes};
-use crate::raster::shade::ShadePlane;
+use crate::raster::paint::{to_bytes, to_nearest_bytes};
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::dither::Thresholds;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
-/// A value of the three corners, as planes take them.
-fn values(corners: [&Attributes; 3], value: impl Fn(&Attributes) -> U8F8) -> [i64; 3] {
-    three(corners, |corner| i64::from(value(corner).to_bits()))
-}
-
 impl Pieces {
     /// The bytes of all pieces before fog and blending.
-    pub(super) fn shade(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+    pub(super) fn shade(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let n = self.pixels();
         let Some(stage) = pipeline.texture() else {
             match pipeline.channels() {
@@ -65,30 +57,15 @@ impl Pieces {
 
     /// The bytes of shades, of which there is one at a pixel.
     #[inline(never)]
-    fn shade_bytes(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+    fn shade_bytes(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
         match pipeline.source {
             ShadeSource::Shaded(interpolation) => {
-                let plane = |triangle: &SortedTriangle, _: [&Attributes; 3]| RowShader::new(triangle, interpolation);
-                match (interpolation, pipeline.dither()) {
-                    (Interpolation::GouraudReseeded, None) => self.fill_linear(faces, bytes, kernel),
-                    (_, None) => self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        shader.piece(&piece.row, piece.seed, bytes, None, kernel);
-                    }),
-                    (_, Some(dither)) => self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        let thresholds = Some(piece.thresholds(dither));
-                        shader.piece(&piece.row, piece.seed, bytes, thresholds, kernel);
-                    }),
-                }
+                self.fill(Shaded { value: None, interpolation, dither: pipeline.dither() }, faces, bytes, kernel);
             }
             ShadeSource::NormalTable(table) => {
                 for (i, out) in [&mut *bytes, other].into_iter().enumerate() {
-                    let plane = |triangle: &SortedTriangle, corners| {
-                        ShadePlane::of_values(triangle, values(corners, |corner| corner.slope[i]))
-                    };
-                    self.each(faces, out, plane, |plane, piece, out| {
-                        kernel.fill(out, plane.start(piece.seed, piece.row.y), plane.step());
-                    });
+                    self.fill(Shaded::linear(Value::Slope(i)), faces, out, kernel);
                 }
                 lookup(&mut bytes[..self.pixels()], other, table);
             }
@@ -101,7 +78,7 @@ impl Pieces {
                 self.light_some::<1>(faces, kernel, (spacing, &light), thresholds, [bytes]);
             }
             ShadeSource::Curved(limits) => {
-                let plane = |triangle: &SortedTriangle, corners| CurvePlane::new(triangle, corners, limits, 1);
+                let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 1);
                 self.each(faces, shades, plane, |plane, piece, shades| {
                     plane.fill(piece.place(), 0, shades, kernel);
                 });
@@ -112,7 +89,7 @@ impl Pieces {
 
     /// The bytes of three channels.
     #[inline(never)]
-    fn shade_channels(&self, faces: &[Face], buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+    fn shade_channels(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { channels, shades, .. } = buffers;
         let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
         let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
@@ -124,12 +101,8 @@ impl Pieces {
                     _ => Interpolation::default(),
                 };
                 for (i, bytes) in bytes.iter_mut().enumerate() {
-                    let plane = |triangle: &SortedTriangle, corners| {
-                        RowShader::of_values(triangle, values(corners, |corner| corner.channels[i]), interpolation)
-                    };
-                    self.each(faces, bytes, plane, |shader, piece, bytes| {
-                        shader.piece(&piece.row, piece.seed, bytes, None, kernel);
-                    });
+                    let value = Some(Value::Channel(i));
+                    self.fill(Shaded { value, interpolation, dither: None }, faces, bytes, kernel);
                 }
                 return;
             }
@@ -141,7 +114,7 @@ impl Pieces {
             }
             ShadeSource::Curved(limits) => {
                 for (i, shades) in shades.iter_mut().enumerate() {
-                    let plane = |triangle: &SortedTriangle, corners| CurvePlane::new(triangle, corners, limits, 3);
+                    let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 3);
                     self.each(faces, shades, plane, |plane, piece, shades| {
                         plane.fill(piece.place(), i, shades, kernel);
                     });
@@ -157,7 +130,7 @@ impl Pieces {
     fn round(&self, shades: &[u16], dither: Option<Thresholds>, bytes: &mut [u8]) {
         let Some(dither) = dither else {
             let n = self.pixels();
-            return to_bytes(&shades[..n], Thresholds::HALVES.row(0), 0, &mut bytes[..n]);
+            return to_nearest_bytes(&shades[..n], &mut bytes[..n]);
         };
         for piece in self.pieces() {
             let pixels = piece.pixels();

@@ -4,8 +4,8 @@
 //! a guess of the processor that costs as much as several pixels.
 
 use super::level::{self, LevelPlane};
-use super::pieces::{Covered, Face, FaceSetup, PIECE, Piece, Pieces};
-use super::pipeline::{Attributes, TextureMapping, TextureStage};
+use super::pieces::{Covered, FaceCorners, FaceSetup, Faces, PIECE, Piece, Pieces, SetUp};
+use super::pipeline::{TextureMapping, TextureStage};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::raster::cover::SortedTriangle;
 use crate::raster::quotient::Divisor;
@@ -27,7 +27,7 @@ impl Pieces {
     pub(super) fn texels(
         &self,
         shown: impl Shown,
-        faces: &[Face],
+        faces: Faces<'_>,
         (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
         (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
@@ -57,11 +57,11 @@ impl Pieces {
     fn affine_levels(
         &self,
         shown: impl Shown,
-        faces: &[Face],
+        faces: Faces<'_>,
         image: Image<'_>,
         (out, places): (&mut [u8], &mut [i32]),
     ) {
-        let plane = |triangle: &SortedTriangle, corners| AffineTexture::new(triangle, corners, image);
+        let plane = |face: &FaceCorners<'_>| AffineTexture::new(face, image);
         self.each(faces, out, plane, |texture, piece, pixels| {
             let lines = AffineLines::new(BASELINE, texture.texels, texture.steps());
             lines.places(places, pixels.len(), texture.start(piece));
@@ -73,22 +73,22 @@ impl Pieces {
     fn perspective_levels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
-        faces: &[Face],
+        faces: Faces<'_>,
         (image, levels): Image<'_>,
         (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
-        let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| PerspectiveTexture::new(triangle, corners);
         let Some(levels) = levels else {
-            return self.each(faces, out, plane, |plane, piece, pixels| {
+            return self.each(faces, out, PerspectiveTexture::new, |plane, piece, pixels| {
                 plane.places::<EVERY_16>((image, 0), piece, piece.seed, (&mut *places, pixels.len()), kernel);
                 show(shown, pixels, image, places);
             });
         };
-        let plane = |triangle: &SortedTriangle, corners: [&Attributes; 3]| {
-            let depths = |corner: usize| i128::from(depth(triangle, corner));
-            let levels = LevelPlane::new(triangle, corners.map(|c| c.texture), [depths(0), depths(1), depths(2)]);
-            (plane(triangle, corners), levels)
+        let plane = |face: &FaceCorners<'_>| {
+            let depths = |corner: usize| i128::from(depth(face.triangle, corner));
+            let texture = [face.texture(0), face.texture(1)];
+            let levels = LevelPlane::new(face.triangle, texture, [depths(0), depths(1), depths(2)]);
+            (PerspectiveTexture::new(face), levels)
         };
         self.each(faces, out, plane, |(plane, of_pixels), piece, pixels| {
             plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, piece, (pixels, &mut *places), kernel);
@@ -98,17 +98,17 @@ impl Pieces {
 
 compiled_for_each_level! {
     #[inline(never)]
-    fn find_affine[][](pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) = find_affine_by;
+    fn find_affine[][](pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) = find_affine_by;
 }
 
 /// Places of texels whose coordinates are linear on the screen.
 #[inline(always)]
-fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) {
+fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) {
     let mut first = 0;
     for covered in pieces.triangles() {
         let range = first..covered.end;
         first = covered.end;
-        if let Some(FaceSetup { affine: Some(steps), .. }) = covered.setup {
+        if let SetUp::Lanes(FaceSetup { affine: Some(steps), .. }) = covered.set_up {
             let lines = AffineLines::new(s, image, steps);
             let (of_face, starts) = pieces.with_starts(range);
             for (i, piece) in of_face.iter().enumerate() {
@@ -125,24 +125,23 @@ fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texel
 }
 
 #[inline(never)]
-fn affine_texture<'a>(covered: &Covered, faces: &[Face], image: Image<'a>) -> AffineTexture<'a> {
-    let (triangle, corners) = covered.corners(faces);
-    AffineTexture::new(&triangle, corners, image)
+fn affine_texture<'a>(covered: &Covered, faces: Faces<'_>, image: Image<'a>) -> AffineTexture<'a> {
+    AffineTexture::new(&covered.corners(faces, &mut None), image)
 }
 
 compiled_for_each_level! {
     #[inline(never)]
-    fn find_perspective[][](pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
+    fn find_perspective[][](pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
 }
 
 /// Places of texels whose coordinates are linear on the face, exact at every pixel.
 #[inline(always)]
-fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: Texels<'_>, places: &mut [i32]) {
+fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) {
     let mut first = 0;
     for covered in pieces.triangles() {
         let range = first..covered.end;
         first = covered.end;
-        let Some(FaceSetup { perspective: [du, dv, dd], .. }) = covered.setup else {
+        let SetUp::Lanes(FaceSetup { perspective: Some([du, dv, dd]), .. }) = covered.set_up else {
             let plane = perspective_texture(covered, faces);
             for piece in &pieces.pieces()[range] {
                 plane.exact(s, (image, 0), piece.place(), (&mut places[piece.first()..], piece.len()));
@@ -161,9 +160,8 @@ fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: &[Face], image: 
 }
 
 #[inline(never)]
-fn perspective_texture(covered: &Covered, faces: &[Face]) -> PerspectiveTexture {
-    let (triangle, corners) = covered.corners(faces);
-    PerspectiveTexture::new(&triangle, corners)
+fn perspective_texture(covered: &Covered, faces: Faces<'_>) -> PerspectiveTexture {
+    PerspectiveTexture::new(&covered.corners(faces, &mut None))
 }
 
 /// The depth of a corner, at least 1.
@@ -181,13 +179,9 @@ struct AffineTexture<'a> {
 
 impl<'a> AffineTexture<'a> {
     #[inline]
-    fn new(
-        triangle: &SortedTriangle,
-        [a, b, c]: [&Attributes; 3],
-        (image, levels): (Texels<'a>, Option<Levels<'a>>),
-    ) -> Self {
-        let area = Divisor::new(triangle.area());
-        let plane = |i: usize| AffinePlane::new(triangle, area, [a.texture[i], b.texture[i], c.texture[i]]);
+    fn new(face: &FaceCorners<'_>, (image, levels): Image<'a>) -> Self {
+        let area = Divisor::new(face.triangle.area());
+        let plane = |i: usize| AffinePlane::new(face.triangle, area, face.texture(i));
         let planes = [plane(0), plane(1)];
         let Some(levels) = levels else { return Self { texels: image, planes } };
         let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient[direction]));
@@ -346,11 +340,12 @@ fn floor(estimate: f64, n: i128, d: i128) -> i64 {
 
 impl PerspectiveTexture {
     #[inline]
-    fn new(triangle: &SortedTriangle, [a, b, c]: [&Attributes; 3]) -> Self {
+    fn new(face: &FaceCorners<'_>) -> Self {
+        let triangle = face.triangle;
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
         let times =
             |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
-        let of = |i: usize| times([a.texture[i], b.texture[i], c.texture[i]]);
+        let of = |i: usize| times(face.texture(i));
         let values = [of(0), of(1), depths];
         let weights = WholeWeights::new(triangle);
         let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
@@ -512,14 +507,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use alloc::vec::Vec;
+
     use crate::fixed::{I24F8, U8F8};
-    use crate::raster::Interpolation;
-    use crate::raster::batch::Batch;
-    use crate::raster::batch::found::{Coordinates, Finder, Found, FoundRows, Wanted, index};
-    use crate::raster::batch::texture::TextureCorners;
+    use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
     use crate::raster::cover::Row;
+    use crate::raster::cull::{PickList, cull, pick};
     use crate::raster::depth::DepthPlane;
+    use crate::raster::found::{Coordinates, FoundRows, Wanted, find_rows};
     use crate::raster::frame::Rect;
+    use crate::raster::pick::{LANES, Pick, SizeClass};
     use crate::raster::vertex::Vertex;
 
     /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
@@ -611,29 +608,41 @@ mod tests {
         /// to the bit, the sums of perspective ones within the four roundings of their terms.
         #[test]
         fn eight_triangles_are_each_its_own(given in given()) {
-            let mut batch = Batch::new();
-            let mut corners = TextureCorners::NONE;
-            let mut triangles = std::vec::Vec::new();
-            for (i, (points, texture)) in given.iter().enumerate() {
+            let (mut at, mut depth, mut shade) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut coordinates, mut indices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+            for (points, texture) in &given {
                 let vertices = points.map(|(x, y, depth)| {
                     Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth).expect("inside")
                 });
-                batch.push(&vertices, Interpolation::GouraudReseeded);
-                corners.put(i, *texture);
+                let first = at.len() as u32;
+                indices.push([first, first + 1, first + 2]);
+                for (vertex, texture) in vertices.iter().zip(texture) {
+                    at.push(ScreenPos::of(vertex));
+                    depth.push(vertex.depth());
+                    shade.push([vertex.shade(); 2]);
+                    coordinates.push(*texture);
+                }
                 let (triangle, order) = SortedTriangle::with_order(&vertices);
                 triangles.push((triangle, order.map(|corner| texture[corner])));
             }
+            let effects = EffectColumns { texture: &coordinates, ..EffectColumns::default() };
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
+            let all = Triangles { columns, indices: &indices };
             let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
             for (kernel, which) in
                 Kernel::available().flat_map(|k| [(k, Coordinates::Affine), (k, Coordinates::Perspective)])
             {
-                let wanted = Wanted { depths: true, texture: Some((which, &corners)) };
+                let wanted = Wanted { depths: true, texture: Some(which), values: [None; 4], slots: 0 };
                 let mut rows = FoundRows::NONE;
-                let mut finder = Finder::new(kernel.simd_level(), &batch, wanted, clip, &mut rows);
-                while let Some(found) = finder.next() {
-                    let Found::Small(numbers, rows) = found else { continue };
+                let masks = cull(kernel.simd_level(), &at, &indices, clip, false);
+                let mut list = PickList::<16>::new();
+                pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
+                let is_small = |pick: &u32| Pick(*pick).class() == SizeClass::Small;
+                let small: Vec<u32> = list.as_slice().iter().copied().filter(is_small).collect();
+                for numbers in small.chunks(LANES) {
+                    find_rows(kernel.simd_level(), &all, &Picks { picks: numbers, flat: &[] }, wanted, &mut rows);
                     for (lane, &number) in numbers.iter().enumerate() {
-                        let (triangle, texture) = &triangles[index(number)];
+                        let (triangle, texture) = &triangles[Pick(number).index()];
                         let of = |i: usize| texture.map(|corner| corner[i]);
                         let is_near = |[a, b, c]: [i32; 3]| {
                             i64::from(a.max(b).max(c)) - i64::from(a.min(b).min(c)) < 1 << 22

@@ -15,7 +15,7 @@ use crate::lanes::LANES;
 use crate::light::{Beam, Cone, ConeBeam, LampBeam, Lights, Reflectance, widen};
 use crate::mesh::normals::unit;
 use crate::random::Random;
-use crate::render::vertex::Geometry;
+use crate::render::geometry::Geometry;
 
 /// What faces and light are made of.
 struct Chance(Random);

@@ -6,9 +6,8 @@ use super::ranges::{EightClusters, EightFaces, Patches, ZERO, dot, greater, less
 use super::{Budget, EXACT_ROUNDING, FLOAT, LINEAR_ROUNDING, PHONG};
 use crate::lanes::{LANES, Lanes, each};
 use crate::plan::FaceShading;
-use crate::render::cull;
-use crate::render::faces::Faces;
-use crate::render::lit::Face;
+use crate::raster::pick::CHUNK;
+use crate::render::faces::{Face, Faces};
 use crate::view::ObjectView;
 
 /// Classes of the faces of a chunk, a bit for each.
@@ -19,7 +18,7 @@ pub(in crate::render) struct Classes {
     /// Others that are linear on the face.
     pub(in crate::render) float: u64,
     /// Bounds of the others, of shades that are linear on the face, in shares of full intensity.
-    pub(in crate::render) errors: [f32; cull::CHUNK],
+    pub(in crate::render) errors: [f32; CHUNK],
 }
 
 /// Share of a shade's range that perspective moves it along on each of eight clusters: (ρ − 1) / 4 (Lemma 9). Nothing that
@@ -99,13 +98,13 @@ impl Faces<'_> {
     /// those that show their other side.
     #[inline]
     pub(in crate::render) fn classify(&self, budget: &Budget, (first, back): (usize, u64), left: u64) -> Classes {
-        let mut classes = Classes { linear: 0, float: 0, errors: [0.0; cull::CHUNK] };
+        let mut classes = Classes { linear: 0, float: 0, errors: [0.0; CHUNK] };
         if budget.spare(EXACT_ROUNDING) <= 0.0 {
             return classes;
         }
         for (side, of_side) in [(false, left & !back), (true, left & back)] {
             if of_side != 0 {
-                classes.linear |= of_side & self.linear_by_clusters(budget, first / cull::CHUNK, side);
+                classes.linear |= of_side & self.linear_by_clusters(budget, first / CHUNK, side);
             }
         }
         if left & !classes.linear != 0 {

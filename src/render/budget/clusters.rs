@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::ranges::{EightClusters, ZERO};
 use crate::lanes::{LANES, Lanes};
-use crate::render::cull;
-use crate::render::vertex::Geometry;
+use crate::raster::pick::CHUNK;
+use crate::render::geometry::Geometry;
 
 /// Radii of a face (Lemma 1), whatever the light.
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,8 +89,8 @@ impl Clusters {
         let facet =
             |&i: &[u32; 3]| Facet { spread: radius(corners(normals, i)).min(1.0), edge: radius(corners(positions, i)) };
         let facets: Vec<Facet> = triangles.iter().map(facet).collect();
-        let chunks = facets.chunks(cull::CHUNK).zip(triangles.chunks(cull::CHUNK));
-        let chunks = chunks.zip(triangle_surfaces.chunks(cull::CHUNK));
+        let chunks = facets.chunks(CHUNK).zip(triangles.chunks(CHUNK));
+        let chunks = chunks.zip(triangle_surfaces.chunks(CHUNK));
         let chunk = |((facets, triangles), surfaces)| Chunk::new(facets, triangles, surfaces, geometry);
         let chunks = chunks.map(chunk).collect();
         let extent = positions.iter().fold(0.0, |most: f32, at| most.max(at.abs().max_element()));

@@ -14,9 +14,8 @@ use crate::light::Reflectance;
 use crate::plan::FaceShading;
 use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
-use crate::raster::effects::{Attributes, Limits, SampleSpacing};
-use crate::render::faces::Faces;
-use crate::render::lit::Face;
+use crate::raster::effects::{Limits, SampleSpacing};
+use crate::render::faces::{Face, Faces};
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
@@ -323,16 +322,18 @@ impl Faces<'_> {
         None
     }
 
-    /// Puts the quadratic attributes of a face's corners: see `Attributes::lit`.
-    pub(in crate::render) fn put_curve(&self, attributes: &mut [Attributes; 3], surface: u16, nodes: &Nodes) {
+    /// The shades that a quadratic face goes through, at each of its corners: see `Attributes::lit`.
+    pub(in crate::render) fn curve(&self, surface: u16, nodes: &Nodes) -> [[f32; 6]; 3] {
         let ramp = self.paints[usize::from(surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);
-        for (corner, attributes) in attributes.iter_mut().enumerate() {
+        let mut curve = [[0.0; 6]; 3];
+        for (corner, values) in curve.iter_mut().enumerate() {
             for (channel, light) in nodes.iter().enumerate() {
-                attributes.lit[channel] = first + light[corner] * units;
-                attributes.lit[channel + 3] = first + light[corner + 3] * units;
+                values[channel] = first + light[corner] * units;
+                values[channel + 3] = first + light[corner + 3] * units;
             }
         }
+        curve
     }
 }
 

@@ -23,8 +23,8 @@ mod ranges;
 
 use self::clusters::Clusters;
 pub(super) use self::fit::{Fit, limits};
+use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::vertex::Geometry;
 use crate::light::Lights;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;

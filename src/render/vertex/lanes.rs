@@ -10,7 +10,7 @@ use super::Geometry;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
-use crate::render::lit::{ScreenPos, ShadedVertices};
+use crate::render::columns::{ScreenPos, VertexColumns};
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::{Singles8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
@@ -21,7 +21,7 @@ compiled_for_each_level! {
         view: &ObjectView,
         narrow: &Narrow,
         positions: &[Vec3],
-        lit: &mut ShadedVertices,
+        vertices: &mut VertexColumns,
     ) = project_by;
 }
 
@@ -31,11 +31,11 @@ fn project_by<S: Singles8, const TESTED: bool>(
     view: &ObjectView,
     narrow: &Narrow,
     positions: &[Vec3],
-    lit: &mut ShadedVertices,
+    vertices: &mut VertexColumns,
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
-    let (places, _) = lit.places.as_chunks_mut::<LANES>();
-    let (depths, _) = lit.depths.as_chunks_mut::<LANES>();
+    let (places, _) = vertices.at.as_chunks_mut::<LANES>();
+    let (depths, _) = vertices.depth.as_chunks_mut::<LANES>();
     let n = eights.len().min(places.len()).min(depths.len());
     let (places, depths) = (&mut places[..n], &mut depths[..n]);
     for (i, points) in eights[..n].iter().enumerate() {
@@ -43,8 +43,8 @@ fn project_by<S: Singles8, const TESTED: bool>(
     }
     // Those that are left; or, of an object that is said to lie inside and does not, all.
     let whole = positions.len() - rest.len();
-    let strays = !TESTED && lit.places[..whole].iter().any(|place| place.needs_clipping());
-    one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, lit);
+    let strays = !TESTED && vertices.at[..whole].iter().any(|place| place.needs_clipping());
+    one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, vertices);
 }
 
 /// Eight vertices, with a mark on those that need clipping.
@@ -127,10 +127,10 @@ pub(super) fn one_by_one<const TESTED: bool>(
     view: &ObjectView,
     positions: &[Vec3],
     first: usize,
-    lit: &mut ShadedVertices,
+    vertices: &mut VertexColumns,
 ) {
     for (i, &position) in positions.iter().enumerate().skip(first) {
-        lit.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
+        vertices.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
     }
 }
 
@@ -140,7 +140,7 @@ compiled_for_each_level! {
         geometry: &Geometry<'_>,
         paints: &[SurfaceMaterial],
         lights: &Lights<'_>,
-        lit: &mut ShadedVertices,
+        vertices: &mut VertexColumns,
     ) = light_suns_by;
 }
 
@@ -150,10 +150,10 @@ fn light_suns_by<S: Singles8, const BOTH: bool>(
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
-    lit: &mut ShadedVertices,
+    vertices: &mut VertexColumns,
 ) {
     let (eights, rest) = geometry.normals.as_chunks::<LANES>();
-    let (shades, rest_shades) = lit.shades.as_chunks_mut::<LANES>();
+    let (shades, rest_shades) = vertices.shade.as_chunks_mut::<LANES>();
     let (surfaces, rest_surfaces) = geometry.vertex_surfaces.as_chunks::<LANES>();
     let n = eights.len().min(shades.len()).min(surfaces.len());
     let (shades, surfaces) = (&mut shades[..n], &surfaces[..n]);
@@ -310,18 +310,22 @@ mod tests {
         ) {
             let geometry = geometry(&positions, &[], &[]);
             for kernel in kernels() {
-                let mut lit = ShadedVertices::default();
-                lit.begin(positions.len());
-                project_tested(&view, &geometry, kernel, &mut lit);
+                let mut vertices = VertexColumns::default();
+                vertices.begin(positions.len());
+                project_tested(&view, &geometry, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
                     let alone = view.project(position);
-                    prop_assert_eq!(lit.get(i).needs_clipping, alone.is_none(), "{:?}", position);
-                    prop_assert_eq!(lit.get(i).vertex, alone.unwrap_or_default(), "{:?}", position);
+                    prop_assert_eq!(vertices.at[i].needs_clipping(), alone.is_none(), "{:?}", position);
+                    if let Some(alone) = alone {
+                        prop_assert_eq!(vertices.at[i], ScreenPos::of(&alone), "{:?}", position);
+                    }
+                    prop_assert_eq!(vertices.depth[i], alone.unwrap_or_default().depth(), "{:?}", position);
                 }
-                project_inside(&view, &geometry, kernel, &mut lit);
+                project_inside(&view, &geometry, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
-                    prop_assert!(!lit.get(i).needs_clipping);
-                    prop_assert_eq!(lit.get(i).vertex, view.project_inside(position), "{:?}", position);
+                    prop_assert!(!vertices.at[i].needs_clipping());
+                    let alone = view.project_inside(position);
+                    prop_assert_eq!((vertices.at[i], vertices.depth[i]), (ScreenPos::of(&alone), alone.depth()));
                 }
             }
         }
@@ -342,14 +346,14 @@ mod tests {
             let geometry = geometry(&[], &normals, &vertex_surfaces);
             for kernel in kernels() {
                 for both in [true, false] {
-                    let mut lit = ShadedVertices::default();
-                    lit.begin(normals.len());
-                    light_suns(&geometry, &paints, &lights, (both, kernel), &mut lit);
+                    let mut vertices = VertexColumns::default();
+                    vertices.begin(normals.len());
+                    light_suns(&geometry, &paints, &lights, (both, kernel), &mut vertices);
                     for (i, &normal) in normals.iter().enumerate() {
                         let paint = &paints[usize::from(vertex_surfaces[i])];
                         let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, &suns, normal);
                         let back = if both { paint.shade(back) } else { U8F8::default() };
-                        prop_assert_eq!(lit.shades[i], [paint.shade(front), back], "{:?}", normal);
+                        prop_assert_eq!(vertices.shade[i], [paint.shade(front), back], "{:?}", normal);
                     }
                 }
             }

@@ -3,110 +3,68 @@
 
 use core::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
-use super::lit::{ScreenPos, ShadedVertices};
+use super::columns::{ScreenPos, VertexColumns};
+use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, each};
 use crate::light::Lights;
 use crate::palette::Ramp;
-use crate::raster::effects::Attributes;
 use crate::scene::Fog;
 use crate::span::Kernel;
 use crate::view::ObjectView;
 
 mod lanes;
 
-/// Geometry drawn of an object: its mesh, or the result of tessellation.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Geometry<'a> {
-    pub(super) positions: &'a [Vec3],
-    pub(super) normals: &'a [Vec3],
-    pub(super) texcoords: Option<&'a [Vec2]>,
-    pub(super) vertex_surfaces: &'a [u16],
-    pub(super) triangles: &'a [[u32; 3]],
-    pub(super) triangle_surfaces: &'a [u16],
-}
-
-/// Attributes of a vertex for effects, on its front; and the channels of its back.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct VertexAttributes {
-    pub(super) front: Attributes,
-    pub(super) back_channels: [U8F8; 3],
-}
-
-impl VertexAttributes {
-    /// The attributes of one side: the back sees the normal from behind.
-    pub(super) fn side(&self, turned: bool) -> Attributes {
-        if !turned {
-            return self.front;
-        }
-        let [x, y, z, px, py, pz] = self.front.lit;
-        let mirrored = |slope: U8F8| U8F8::from_bits(U8F8::MAX_VERTEX.to_bits() - slope.to_bits());
-        Attributes {
-            channels: self.back_channels,
-            slope: self.front.slope.map(mirrored),
-            lit: [-x, -y, -z, px, py, pz],
-            ..self.front
-        }
-    }
-}
-
 /// Gives each vertex the shade that its material's own answer to light makes of what it has.
 #[inline(never)]
-pub(super) fn respond(
-    geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
-    lit: &mut ShadedVertices,
-    extras: &mut [VertexAttributes],
-) {
+pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {
     for (i, &surface) in geometry.vertex_surfaces.iter().enumerate() {
         let paint = &paints[usize::from(surface)];
-        lit.shades[i] = lit.shades[i].map(|shade| paint.respond(shade));
-        if let Some(extra) = extras.get_mut(i) {
-            let answered = |channels: [U8F8; 3]| channels.map(|channel| paint.respond_on_channel(channel));
-            extra.front.channels = answered(extra.front.channels);
-            extra.back_channels = answered(extra.back_channels);
+        vertices.shade[i] = vertices.shade[i].map(|shade| paint.respond(shade));
+        if let Some(sides) = vertices.channels.get_mut(i) {
+            *sides = sides.map(|channels| channels.map(|channel| paint.respond_on_channel(channel)));
         }
     }
 }
 
 /// Every vertex on the screen, none of which can need clipping.
 #[inline(never)]
-pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut ShadedVertices) {
-    project::<false>(view, geometry.positions, kernel, lit);
+pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
+    project::<false>(view, geometry.positions, kernel, vertices);
 }
 
 /// Every vertex on the screen, with a mark on those that need clipping.
 #[inline(never)]
-pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, lit: &mut ShadedVertices) {
-    project::<true>(view, geometry.positions, kernel, lit);
+pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
+    project::<true>(view, geometry.positions, kernel, vertices);
 }
 
 #[inline(always)]
-fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, lit: &mut ShadedVertices) {
+fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Kernel, vertices: &mut VertexColumns) {
     let Some(narrow) = view.narrow() else {
-        return lanes::one_by_one::<TESTED>(view, positions, 0, lit);
+        return lanes::one_by_one::<TESTED>(view, positions, 0, vertices);
     };
-    lanes::project::<TESTED>(kernel.simd_level(), view, &narrow, positions, lit);
+    lanes::project::<TESTED>(kernel.simd_level(), view, &narrow, positions, vertices);
 }
 
 /// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
 #[cold]
-pub(super) fn round_further(bits: u32, lit: &mut ShadedVertices) {
+pub(super) fn round_further(bits: u32, vertices: &mut VertexColumns) {
     let unit = 1 << (8 - bits.min(8));
     // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
-    for place in lit.places.iter_mut().filter(|place| !place.needs_clipping()) {
-        *place = ScreenPos::new(round(place.x()), round(place.y()));
+    for at in vertices.at.iter_mut().filter(|at| !at.needs_clipping()) {
+        *at = ScreenPos::new(round(at.x()), round(at.y()));
     }
 }
 
 /// No light: each surface has one shade.
 #[inline(never)]
-pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], lit: &mut ShadedVertices) {
-    for (shades, &surface) in lit.shades.iter_mut().zip(geometry.vertex_surfaces) {
+pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {
+    for (shades, &surface) in vertices.shade.iter_mut().zip(geometry.vertex_surfaces) {
         *shades = [paints[usize::from(surface)].constant(); 2];
     }
 }
@@ -118,12 +76,12 @@ pub(super) fn light_suns(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    lit: &mut ShadedVertices,
+    vertices: &mut VertexColumns,
 ) {
     let level = kernel.simd_level();
     match both {
-        true => lanes::light_suns::<true>(level, geometry, paints, lights, lit),
-        false => lanes::light_suns::<false>(level, geometry, paints, lights, lit),
+        true => lanes::light_suns::<true>(level, geometry, paints, lights, vertices),
+        false => lanes::light_suns::<false>(level, geometry, paints, lights, vertices),
     }
 }
 
@@ -134,11 +92,11 @@ pub(super) fn light_all(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    lit: &mut ShadedVertices,
+    vertices: &mut VertexColumns,
 ) {
-    each_eight(geometry, |vertices, surface, points| {
+    each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
-        let lit = &mut lit.shades[vertices];
+        let lit = &mut vertices.shade[eight];
         let fronts = lights.unit_front_of_one_channel(&paint.answer, points, kernel);
         for ([shade, _], front) in lit.iter_mut().zip(paint.shade_of_eight(&fronts)) {
             *shade = front;
@@ -159,21 +117,21 @@ pub(super) fn light_channels(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    extras: &mut [VertexAttributes],
+    channels: &mut [[[U8F8; 3]; 2]],
 ) {
-    each_eight(geometry, |vertices, surface, points| {
+    each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
-        let extras = &mut extras[vertices];
+        let channels = &mut channels[eight];
         let fronts = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
         let [red, green, blue] = SurfaceMaterial::channels_of_eight(&fronts);
-        for (lane, extra) in extras.iter_mut().enumerate() {
-            extra.front.channels = [red[lane], green[lane], blue[lane]];
+        for (lane, [front, _]) in channels.iter_mut().enumerate() {
+            *front = [red[lane], green[lane], blue[lane]];
         }
         if both {
             let backs = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
             let [red, green, blue] = SurfaceMaterial::channels_of_eight(&backs);
-            for (lane, extra) in extras.iter_mut().enumerate() {
-                extra.back_channels = [red[lane], green[lane], blue[lane]];
+            for (lane, [_, back]) in channels.iter_mut().enumerate() {
+                *back = [red[lane], green[lane], blue[lane]];
             }
         }
     });
@@ -206,15 +164,11 @@ fn from_behind(points: &Points) -> Points {
 
 /// Texture coordinates in texels, for surfaces that have an image.
 #[inline(never)]
-pub(super) fn texture_coordinates(
-    geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
-    extras: &mut [VertexAttributes],
-) {
+pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], texture: &mut [[i32; 2]]) {
     let Some(texcoords) = geometry.texcoords else { return };
-    for ((extra, uv), &surface) in extras.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
+    for ((texture, uv), &surface) in texture.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].texture_size {
-            extra.front.texture = [texels(uv.x, width), texels(uv.y, height)];
+            *texture = [texels(uv.x, width), texels(uv.y, height)];
         }
     }
 }
@@ -236,24 +190,24 @@ pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,
     view: &ObjectView,
     paints: &[SurfaceMaterial],
-    extras: &mut [VertexAttributes],
+    texture: &mut [[i32; 2]],
 ) {
     let to_eye = view.directions_to_eye();
-    for ((extra, &normal), &surface) in extras.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
+    for ((texture, &normal), &surface) in texture.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].environment_size {
             let seen = to_eye * normal;
             // To the centres of the outermost texels, so that no coordinate is another image's.
             let within = |c: f32, size: u32| texels(0.5 + 0.5 * c * (1.0 - 1.0 / size as f32), size);
-            extra.front.texture = [within(seen.x, width), within(seen.y, height)];
+            *texture = [within(seen.x, width), within(seen.y, height)];
         }
     }
 }
 
 /// Density of the fog before every vertex.
 #[inline(never)]
-pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, extras: &mut [VertexAttributes]) {
-    for (extra, &position) in extras.iter_mut().zip(geometry.positions) {
-        extra.front.fog = fog_level(fog, view.homogeneous(position).w);
+pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, levels: &mut [U8F8]) {
+    for (level, &position) in levels.iter_mut().zip(geometry.positions) {
+        *level = fog_level(fog, view.homogeneous(position).w);
     }
 }
 
@@ -264,19 +218,11 @@ pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
 
 /// The normals' x and y as the eye sees them, for a table.
 #[inline(never)]
-pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, extras: &mut [VertexAttributes]) {
+pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, slopes: &mut [[U8F8; 2]]) {
     let to_eye = view.directions_to_eye();
-    for (extra, &normal) in extras.iter_mut().zip(geometry.normals) {
+    for (slopes, &normal) in slopes.iter_mut().zip(geometry.normals) {
         let seen = to_eye * normal;
         let slope = |c: f32| U8F8::from_intensity(0.5 + 0.5 * c, 0, Ramp::WHOLE.entries());
-        extra.front.slope = [slope(seen.x), slope(seen.y)];
-    }
-}
-
-/// Normals and positions, for light at every pixel.
-#[inline(never)]
-pub(super) fn lit_points(geometry: &Geometry<'_>, extras: &mut [VertexAttributes]) {
-    for ((extra, n), p) in extras.iter_mut().zip(geometry.normals).zip(geometry.positions) {
-        extra.front.lit = [n.x, n.y, n.z, p.x, p.y, p.z];
+        *slopes = [slope(seen.x), slope(seen.y)];
     }
 }

@@ -8,47 +8,27 @@
 //! whole numbers below 2⁴⁴, times values that are rounded once each. So a sum is off by at most 4 parts in 2⁵³ of what
 //! its terms are without their signs.
 
+use super::columns::{Picks, Triangles};
+use super::pick::{LANES, Pick};
 use super::rows::RowEnds;
 use super::setup::{Basis, Corners8, Floats, Ints};
-use super::triangles::LANES;
 use crate::fixed::ROUND_MAGIC;
-use crate::lanes::each;
 use crate::simd::Lanes8;
 
-/// Texture coordinates of the corners of many triangles, in texels with 16 fraction bits.
-#[derive(Clone, Debug)]
-pub(in crate::raster) struct TextureCorners<const N: usize> {
-    /// u and v, of each corner, of all triangles.
-    of: [[[i32; N]; 3]; 2],
-}
-
-impl<const N: usize> TextureCorners<N> {
-    pub(in crate::raster) const NONE: Self = Self { of: [[[0; N]; 3]; 2] };
-
-    /// Puts in the coordinates of triangle `at`, if there is room for it.
-    #[inline(always)]
-    pub(in crate::raster) fn put(&mut self, at: usize, corners: [[i32; 2]; 3]) {
-        for (corner, texture) in corners.into_iter().enumerate() {
-            for (all, coordinate) in self.of.iter_mut().zip(texture) {
-                if let Some(of_triangle) = all[corner].get_mut(at) {
-                    *of_triangle = coordinate;
-                }
-            }
+/// Texture coordinates, u and v, of each corner of up to eight triangles, in texels with 16 fraction bits. Lanes without a
+/// triangle have 0.
+#[inline(always)]
+pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -> [[Ints; 3]; 2] {
+    let mut gathered = [[[0; LANES]; 3]; 2];
+    let column = triangles.columns.effects.texture;
+    for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+        let indices = triangles.indices[Pick(pick).index()];
+        for (corner, vertex) in indices.into_iter().enumerate() {
+            let [u, v] = column[vertex as usize];
+            (gathered[0][corner][lane], gathered[1][corner][lane]) = (u, v);
         }
     }
-
-    /// One coordinate of up to eight triangles. Lanes without a triangle have 0.
-    #[inline(always)]
-    pub(super) fn gather(&self, triangles: &[usize; LANES]) -> [[Ints; 3]; 2] {
-        let mut gathered = [[[0; LANES]; 3]; 2];
-        for (i, to) in gathered.iter_mut().enumerate() {
-            for (corner, to) in to.iter_mut().enumerate() {
-                let from = &self.of[i][corner];
-                *to = each!(lane => from[triangles[lane] % N]);
-            }
-        }
-        gathered
-    }
+    gathered
 }
 
 /// Planes of coordinates that are linear on the screen, of eight triangles.

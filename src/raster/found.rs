@@ -1,23 +1,17 @@
-//! Rows of a batch's triangles for stages that paint more than a linear shade: culling, set-up and row ends are those of
-//! plain triangles.
+//! Rows of small triangles for stages that paint more than a linear shade: set-up and row ends are those of plain triangles.
 
-use super::class::{ClassedIndex, SizeClass};
-use super::cull::{Survivors, cull};
+use super::columns::{Picks, Triangles, Value};
+use super::cover::Row;
+use super::pick::{LANES, MAX_ROWS, Pick};
 use super::rows::find_row;
-use super::setup::{Corners8, Floats, Ints, TriangleSetup8};
-use super::texture::{AffinePlanes8, PerspectivePlanes8, TextureCorners};
-use super::triangles::{Batch, FrameLayout, LANES, MAX_ROWS};
+use super::setup::{Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
+use super::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::fixed::HAS_F64;
-use crate::raster::cover::Row;
-use crate::raster::frame::Rect;
-use crate::simd::{Lanes8, Level, compiled_for_each_level};
-
-/// Triangles that are found together, at most.
-pub(in crate::raster) const MAX_FOUND: usize = 64;
+use crate::simd::{Lanes8, compiled_for_each_level};
 
 /// Interpolation of texture coordinates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::raster) enum Coordinates {
+pub(super) enum Coordinates {
     /// Linear on the screen.
     Affine,
     /// Linear on the face.
@@ -26,13 +20,16 @@ pub(in crate::raster) enum Coordinates {
 
 /// Rows of eight small triangles.
 #[derive(Clone, Debug)]
-pub(in crate::raster) struct FoundRows {
+pub(super) struct FoundRows {
     setup: TriangleSetup8,
     affine: AffinePlanes8,
     perspective: PerspectivePlanes8,
     /// First column that is covered, the one behind the last, and the first shade with the step above it: of each row, of
     /// all triangles.
     rows: [[Ints; 3]; MAX_ROWS as usize],
+    /// Other values, each with its step above it.
+    values: [ValuePlanes8; Value::MAX_COUNT],
+    value_starts: [[Ints; Value::MAX_COUNT]; MAX_ROWS as usize],
     /// Their texture coordinates, ...
     affine_starts: [[Ints; 2]; MAX_ROWS as usize],
     /// ... or the sums that these are quotients of.
@@ -40,24 +37,26 @@ pub(in crate::raster) struct FoundRows {
 }
 
 impl FoundRows {
-    pub(in crate::raster) const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         setup: TriangleSetup8::NONE,
         affine: AffinePlanes8::NONE,
         perspective: PerspectivePlanes8::NONE,
         rows: [[[0; LANES]; 3]; MAX_ROWS as usize],
+        values: [ValuePlanes8::NONE; Value::MAX_COUNT],
+        value_starts: [[[0; LANES]; Value::MAX_COUNT]; MAX_ROWS as usize],
         affine_starts: [[[0; LANES]; 2]; MAX_ROWS as usize],
         perspective_starts: [[[0.0; LANES]; 3]; MAX_ROWS as usize],
     };
 
     /// Number of rows of triangle `lane`. Some have no pixel.
     #[inline(always)]
-    pub(in crate::raster) fn count(&self, lane: usize) -> usize {
+    pub(super) fn count(&self, lane: usize) -> usize {
         self.setup.rows[lane % LANES].clamp(0, MAX_ROWS) as usize
     }
 
     /// Row `j`, the first shade, and above it the step.
     #[inline(always)]
-    pub(in crate::raster) fn row(&self, lane: usize, j: usize) -> (Row, u32) {
+    pub(super) fn row(&self, lane: usize, j: usize) -> (Row, u32) {
         let lane = lane % LANES;
         let [x0, x1, paint] = &self.rows[j % MAX_ROWS as usize];
         let (x0, x1) = (x0[lane], x1[lane]);
@@ -66,10 +65,21 @@ impl FoundRows {
         (Row { y, origin: x0, x0, x1, last: x1 - 1 }, paint[lane].cast_unsigned())
     }
 
+    /// Values at the first pixel of row `j`, as they were wanted, each with its step above it.
+    #[inline(always)]
+    pub(super) fn values(&self, lane: usize, j: usize) -> [u32; Value::MAX_COUNT] {
+        let (lane, starts) = (lane % LANES, &self.value_starts[j % MAX_ROWS as usize]);
+        let mut values = [0; Value::MAX_COUNT];
+        for (value, of) in values.iter_mut().zip(starts) {
+            *value = of[lane].cast_unsigned();
+        }
+        values
+    }
+
     /// Change of the affine texture coordinates from a pixel to the next one. `None` if those of the corners lie too far from
     /// each other.
     #[inline(always)]
-    pub(in crate::raster) fn affine_step(&self, lane: usize) -> Option<[u32; 2]> {
+    pub(super) fn affine_step(&self, lane: usize) -> Option<[u32; 2]> {
         let [u, v] = &self.affine.step;
         let lane = lane % LANES;
         (self.affine.fits >> lane & 1 != 0).then_some([u[lane].cast_unsigned(), v[lane].cast_unsigned()])
@@ -77,34 +87,34 @@ impl FoundRows {
 
     /// The affine texture coordinates at the first pixel of row `j`.
     #[inline(always)]
-    pub(in crate::raster) fn affine_start(&self, lane: usize, j: usize) -> [u32; 2] {
+    pub(super) fn affine_start(&self, lane: usize, j: usize) -> [u32; 2] {
         let [u, v] = &self.affine_starts[j % MAX_ROWS as usize];
         [u[lane % LANES].cast_unsigned(), v[lane % LANES].cast_unsigned()]
     }
 
     /// Change of the numerators of the perspective texture coordinates, and of their divisor, from a pixel to the next one.
     #[inline(always)]
-    pub(in crate::raster) fn perspective_step(&self, lane: usize) -> [f64; 3] {
+    pub(super) fn perspective_step(&self, lane: usize) -> [f64; 3] {
         let [u, v, d] = &self.perspective.step;
         [u[lane % LANES], v[lane % LANES], d[lane % LANES]]
     }
 
     /// The numerators and the divisor at the first pixel of row `j`.
     #[inline(always)]
-    pub(in crate::raster) fn perspective_start(&self, lane: usize, j: usize) -> [f64; 3] {
+    pub(super) fn perspective_start(&self, lane: usize, j: usize) -> [f64; 3] {
         let [u, v, d] = &self.perspective_starts[j % MAX_ROWS as usize];
         [u[lane % LANES], v[lane % LANES], d[lane % LANES]]
     }
 
     /// Change of the depth from a pixel to the next one, as [`DepthPlane::step`](crate::raster::depth::DepthPlane::step).
     #[inline(always)]
-    pub(in crate::raster) fn depth_step(&self, lane: usize) -> i64 {
+    pub(super) fn depth_step(&self, lane: usize) -> i64 {
         self.setup.z_per_column[lane % LANES] >> 8
     }
 
     /// The depth at pixel `x` of row `j`, as [`DepthPlane::fixed_at`](crate::raster::depth::DepthPlane::fixed_at) modulo 2⁵⁶.
     #[inline(always)]
-    pub(in crate::raster) fn depth(&self, lane: usize, j: usize, x: i32) -> i64 {
+    pub(super) fn depth(&self, lane: usize, j: usize, x: i32) -> i64 {
         let (setup, lane) = (&self.setup, lane % LANES);
         let columns = i64::from(x.wrapping_sub(setup.column[lane]));
         // At most 15.
@@ -115,81 +125,54 @@ impl FoundRows {
 
 /// Values that are found of each row beside its ends and its shades.
 #[derive(Clone, Copy)]
-pub(in crate::raster) struct Wanted<'a> {
+pub(super) struct Wanted {
     /// Depths.
-    pub(in crate::raster) depths: bool,
-    /// Texture coordinates, and those of the corners.
-    pub(in crate::raster) texture: Option<(Coordinates, &'a TextureCorners<MAX_FOUND>)>,
+    pub(super) depths: bool,
+    /// Texture coordinates.
+    pub(super) texture: Option<Coordinates>,
+    /// Other values, each in its slot.
+    pub(super) values: [Option<Value>; Value::MAX_COUNT],
+    /// Slots up to the last that is taken.
+    pub(super) slots: usize,
 }
 
-/// Triangles of a batch that may cover a pixel, in their order, and the rows of small ones.
-pub(in crate::raster) struct Finder<'a> {
-    level: Level,
-    batch: &'a Batch,
-    wanted: Wanted<'a>,
-    kept: Survivors,
-    /// How many of those that are kept have been asked for.
-    done: usize,
-    rows: &'a mut FoundRows,
-}
-
-/// Triangles that come next.
-pub(in crate::raster) enum Found<'a> {
-    /// Triangles whose rows are found: lane i has those of the i-th.
-    Small(&'a [u32], &'a FoundRows),
-    /// One that is large, or crosses an edge of the clip rectangle.
-    Another(usize),
-}
-
-/// The index in its batch of a triangle of [`Found::Small`].
+/// A value of the corners of up to eight triangles. Lanes without a triangle have 0.
 #[inline(always)]
-pub(in crate::raster) fn index(triangle: u32) -> usize {
-    ClassedIndex(triangle).index()
-}
-
-impl<'a> Finder<'a> {
-    /// Culls the triangles of a batch.
-    pub(in crate::raster) fn new(
-        level: Level,
-        batch: &'a Batch,
-        wanted: Wanted<'a>,
-        clip: Rect,
-        rows: &'a mut FoundRows,
-    ) -> Self {
-        let mut kept = Survivors::new();
-        cull(level, batch, clip, &mut kept);
-        Self { level, batch, wanted, kept, done: 0, rows }
-    }
-
-    /// The next triangles; `None` when there is none left.
-    pub(in crate::raster) fn next(&mut self) -> Option<Found<'_>> {
-        let left = &self.kept.as_slice()[self.done..];
-        let first = left.first()?;
-        let is_small = |triangle: &&u32| HAS_F64 && ClassedIndex(**triangle).class() == SizeClass::Small;
-        let small = left.iter().take(LANES).take_while(is_small).count();
-        if small == 0 {
-            self.done += 1;
-            return Some(Found::Another(index(*first)));
+fn value_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>, value: Value) -> [Ints; 3] {
+    let mut gathered = [[0; LANES]; 3];
+    let columns = &triangles.columns.effects;
+    for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+        let pick = Pick(pick);
+        // The channels of a face that is lit as one.
+        if let (Value::Channel(i), Some(flat)) = (value, picks.flat.get(lane)) {
+            for corner in &mut gathered {
+                corner[lane] = i32::from(flat[i].to_bits());
+            }
+            continue;
         }
-        self.done += small;
-        find_rows(self.level, self.batch, self.wanted, &left[..small], self.rows);
-        Some(Found::Small(&left[..small], self.rows))
+        let indices = triangles.indices[pick.index()];
+        for (corner, vertex) in indices.into_iter().enumerate() {
+            gathered[corner][lane] = i32::from(columns.value(value, vertex as usize, pick.side()));
+        }
     }
+    gathered
 }
 
 compiled_for_each_level! {
-    fn find_rows[][](batch: &Batch, wanted: Wanted<'_>, triangles: &[u32], found: &mut FoundRows) = find_rows_by;
+    /// Finds the rows of up to eight small triangles.
+    pub(super) fn find_rows[][](triangles: &Triangles<'_>, picks: &Picks<'_>, wanted: Wanted, found: &mut FoundRows)
+        = find_rows_by;
 }
 
 #[inline(always)]
-fn find_rows_by<S: Lanes8>(s: S, batch: &Batch, wanted: Wanted<'_>, triangles: &[u32], found: &mut FoundRows) {
+fn find_rows_by<S: Lanes8>(s: S, triangles: &Triangles<'_>, picks: &Picks<'_>, wanted: Wanted, found: &mut FoundRows) {
     // Nobody comes here then, and a chip's program must not hold what follows.
     if !HAS_F64 {
         return;
     }
-    let FoundRows { setup, affine, perspective, rows, affine_starts, perspective_starts } = found;
+    let FoundRows { setup, affine, perspective, rows, values, value_starts, affine_starts, perspective_starts } = found;
     let mut corners = Corners8::NONE;
-    corners.gather::<true>(batch, triangles);
+    corners.gather::<true>(triangles, picks);
     // Offsets are not asked for.
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
     let basis = if wanted.depths {
@@ -197,19 +180,20 @@ fn find_rows_by<S: Lanes8>(s: S, batch: &Batch, wanted: Wanted<'_>, triangles: &
     } else {
         setup.set_up::<S, false>(s, &corners, layout)
     };
-    if let Some((coordinates, of_corners)) = wanted.texture {
-        let mut numbers = [0; LANES];
-        for (lane, &triangle) in triangles.iter().take(LANES).enumerate() {
-            numbers[lane] = index(triangle);
-        }
-        let of_corners = of_corners.gather(&numbers);
+    if let Some(coordinates) = wanted.texture {
+        let of_corners = texture_of_corners(triangles, picks);
         match coordinates {
             Coordinates::Affine => affine.set_up(s, &basis, &of_corners),
             Coordinates::Perspective => perspective.set_up(s, &basis, &corners, &of_corners),
         }
     }
+    for (planes, value) in values.iter_mut().zip(wanted.values) {
+        if let Some(value) = value {
+            planes.set_up(s, &basis, &value_of_corners(triangles, picks, value));
+        }
+    }
     let mut count = 0;
-    for &rows in setup.rows.iter().take(triangles.len()) {
+    for &rows in setup.rows.iter().take(picks.picks.len()) {
         count = if rows > count { rows } else { count };
     }
     let count = count.min(MAX_ROWS);
@@ -220,14 +204,19 @@ fn find_rows_by<S: Lanes8>(s: S, batch: &Batch, wanted: Wanted<'_>, triangles: &
         for (i, to) in rows[number].iter_mut().enumerate() {
             s.put_i32s(row[i], to);
         }
+        for (slot, planes) in values[..wanted.slots].iter().enumerate() {
+            if wanted.values[slot].is_some() {
+                s.put_i32s(ends.value(s, (planes, &setup.inverse), j), &mut value_starts[number][slot]);
+            }
+        }
         match wanted.texture {
             None => {}
-            Some((Coordinates::Affine, _)) => {
+            Some(Coordinates::Affine) => {
                 let [u, v] = affine.start(s, j, &ends);
                 s.put_i32s(u, &mut affine_starts[number][0]);
                 s.put_i32s(v, &mut affine_starts[number][1]);
             }
-            Some((Coordinates::Perspective, _)) => {
+            Some(Coordinates::Perspective) => {
                 let [u, v, d] = perspective.start(s, j, &ends);
                 s.put_f64s(u, &mut perspective_starts[number][0]);
                 s.put_f64s(v, &mut perspective_starts[number][1]);

@@ -5,10 +5,10 @@
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
-use super::setup::{Edges, Floats, Ints, TriangleSetup8};
-use super::triangles::LANES;
+use super::frame::Rect;
+use super::pick::{LANES, NUMBERS};
+use super::setup::{Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
-use crate::raster::frame::Rect;
 use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanList, Spans8};
 
@@ -76,18 +76,38 @@ impl<S: Lanes8> RowEnds<S> {
         let long = edge(s, lane, &setup.long, j);
         let (upper, lower) = (edge(s, lane, &setup.upper, j), edge(s, lane, &setup.lower, j));
         let short = s.select(s.is_greater(lane.i32s(s, &setup.split), number), upper, lower);
-        let shade_n = s.mul_add(lane.f64s(s, &setup.shade_per_row), j, lane.f64s(s, &setup.shade_n));
+        let shade_n = s.mul_add(lane.f64s(s, &setup.shade.per_row), j, lane.f64s(s, &setup.shade.n));
         Self { left: s.min(long, short), right: s.max(long, short), shade_n }
     }
 
     /// The shade at these columns, and above it the step.
     #[inline(always)]
     fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
-        let magic = s.all_f64(ROUND_MAGIC);
-        let n = s.mul_add(lane.f64s(s, &setup.shade_per_column), s.sub(columns, magic), self.shade_n);
-        let shade = s.low_bits(s.mul_add(n, lane.f64s(s, &setup.shade_inverse), magic));
-        s.or_i32(s.and_i32(shade, s.all_i32(0xFFFF)), lane.i32s(s, &setup.step))
+        value_at(s, lane, (&setup.shade, &setup.inverse), self.shade_n, columns)
     }
+
+    /// Another value at the first pixels of row `j` of each of eight triangles, and above it the step.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(super) fn value(&self, s: S, planes: (&ValuePlanes8, &Floats), j: S::F64) -> S::I32 {
+        let n = s.mul_add(s.f64s(&planes.0.per_row), j, s.f64s(&planes.0.n));
+        value_at(s, EachTriangle, planes, n, self.left)
+    }
+}
+
+/// A value at these columns, and above it the step, from the numerator at the first column.
+#[inline(always)]
+fn value_at<S: Lanes8>(
+    s: S,
+    lane: impl Lane<S>,
+    (planes, inverse): (&ValuePlanes8, &Floats),
+    n: S::F64,
+    columns: S::F64,
+) -> S::I32 {
+    let magic = s.all_f64(ROUND_MAGIC);
+    let n = s.mul_add(lane.f64s(s, &planes.per_column), s.sub(columns, magic), n);
+    let value = s.low_bits(s.mul_add(n, lane.f64s(s, inverse), magic));
+    s.or_i32(s.and_i32(value, s.all_i32(0xFFFF)), lane.i32s(s, &planes.step))
 }
 
 /// The first pixels on edges or right of them, as sums with `ROUND_MAGIC`.
@@ -189,9 +209,6 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
     }
 }
 
-/// Numbers of lanes.
-const NUMBERS: Ints = [0, 1, 2, 3, 4, 5, 6, 7];
-
 /// Eight rows of triangle `i` from number `first` on. Beyond its last row they have no length.
 #[inline(always)]
 fn eight_rows<S: Lanes8, const DEPTHS: bool>(
@@ -272,7 +289,7 @@ pub(super) fn list_pieces<S: Lanes8, const DEPTHS: bool>(
         is_row = s.both(is_row, s.is_greater(number, s.all_i32(clip.y0 as i32 - 1)));
         is_row = s.both(is_row, s.is_greater(s.all_i32(clip.y1 as i32), number));
     }
-    let (step, dz) = (lane.i32s(s, &setup.step), lane.i64s(s, &setup.z_per_column));
+    let (step, dz) = (lane.i32s(s, &setup.shade.step), lane.i64s(s, &setup.z_per_column));
     for _ in 0..pieces {
         let end = s.add(left, s.all_f64(longest.into()));
         let (mut start, mut right) = (left, s.min(ends.right, end));

@@ -35,64 +35,63 @@
 //! quotient is taken of 2²⁴·r + ¼, which is exact, too, so that what is rounded lies at least 1/(4A), more than 2⁻²⁸·¹², from
 //! the middle between two integers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
 
-use super::class::ClassedIndex;
-use super::triangles::{Batch, FrameLayout, LANES};
+use super::columns::{Columns, Picks, Triangles};
+use super::depth::DepthPlane;
+use super::pick::{LANES, Pick};
 use crate::fixed::ROUND_MAGIC;
-use crate::lanes::each;
-use crate::raster::depth::DepthPlane;
 use crate::simd::Lanes8;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use crate::span::LargeTriangle;
+
+/// Where the pixels of a frame lie.
+#[derive(Clone, Copy)]
+pub(super) struct FrameLayout {
+    /// The row whose pixels come first.
+    pub(super) first_row: u32,
+    /// Pixels from one row to the next, at most 2¹⁶, ...
+    pub(super) pitch: u32,
+    /// ... and cells of the depth buffer.
+    pub(super) width: u32,
+}
 
 pub(super) type Floats = [f64; LANES];
 pub(super) type Ints = [i32; LANES];
 
 /// Corners of eight triangles. Lanes without a triangle hold any values.
 pub(super) struct Corners8 {
-    pub(super) x: [Ints; 3],
-    pub(super) y: [Ints; 3],
-    pub(super) shade: [Ints; 3],
+    /// A [`ScreenPos`](super::columns::ScreenPos) each.
+    at: [[i64; LANES]; 3],
+    shade: [Ints; 3],
     /// The bits of u32.
     pub(super) depth: [Ints; 3],
 }
 
 impl Corners8 {
-    pub(super) const NONE: Self =
-        Self { x: [[0; LANES]; 3], y: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
+    pub(super) const NONE: Self = Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
 
-    /// Reads the first eight of these triangles, a [`ClassedIndex`] each, their depths only with `DEPTHS`.
+    /// Reads the first eight of these triangles, their depths only with `DEPTHS`.
     #[inline(always)]
-    pub(super) fn gather<const DEPTHS: bool>(&mut self, batch: &Batch, triangles: &[u32]) {
-        // Faces that were culled before are mostly all kept.
-        if let Some([first, .., last]) = triangles.first_chunk::<LANES>()
-            && ClassedIndex(*last).index() == ClassedIndex(*first).index() + LANES - 1
-        {
-            let first = ClassedIndex(*first).index().min(Batch::CAPACITY - LANES);
-            for corner in 0..3 {
-                if let Some(x) = batch.x[corner][first..].first_chunk() {
-                    self.x[corner] = *x;
-                }
-                if let Some(y) = batch.y[corner][first..].first_chunk() {
-                    self.y[corner] = *y;
-                }
-                if let Some(shades) = batch.shade[corner][first..].first_chunk::<LANES>() {
-                    self.shade[corner] = each!(lane => i32::from(shades[lane]));
-                }
-                if DEPTHS && let Some(depths) = batch.depth[corner][first..].first_chunk::<LANES>() {
-                    self.depth[corner] = each!(lane => depths[lane].cast_signed());
+    pub(super) fn gather<const DEPTHS: bool>(&mut self, triangles: &Triangles<'_>, picks: &Picks<'_>) {
+        let Columns { at, depth, shade, .. } = triangles.columns;
+        // Cut to one length, so that a vertex's index is compared with it once.
+        let vertices = at.len().min(depth.len()).min(shade.len());
+        let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
+        for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+            let pick = Pick(pick);
+            let indices = triangles.indices[pick.index()];
+            for (corner, vertex) in indices.into_iter().enumerate() {
+                let vertex = vertex as usize;
+                self.at[corner][lane] = u64::from(at[vertex]).cast_signed();
+                self.shade[corner][lane] = i32::from(shade[vertex][pick.side()].to_bits());
+                if DEPTHS {
+                    self.depth[corner][lane] = depth[vertex].cast_signed();
                 }
             }
-            return;
         }
-        for (lane, &triangle) in triangles.iter().take(LANES).enumerate() {
-            let at = ClassedIndex(triangle).index();
+        // The one shade of each.
+        for (lane, flat) in picks.flat.iter().take(LANES).enumerate() {
             for corner in 0..3 {
-                self.x[corner][lane] = batch.x[corner][at];
-                self.y[corner][lane] = batch.y[corner][at];
-                self.shade[corner][lane] = i32::from(batch.shade[corner][at]);
-                if DEPTHS {
-                    self.depth[corner][lane] = batch.depth[corner][at].cast_signed();
-                }
+                self.shade[corner][lane] = i32::from(flat[0].to_bits());
             }
         }
     }
@@ -124,6 +123,47 @@ impl Edges {
     }
 }
 
+/// Planes of a value of 0 to 0xFF00 over eight triangles: `nearest((n + j·per_row + i·per_column) · inverse)` at column i of
+/// row j, the half included, with the inverse of the triangle's set-up.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct ValuePlanes8 {
+    pub(super) n: Floats,
+    pub(super) per_row: Floats,
+    pub(super) per_column: Floats,
+    /// Change from a pixel to the next one, in the upper half.
+    pub(super) step: Ints,
+}
+
+impl ValuePlanes8 {
+    pub(super) const NONE: Self =
+        Self { n: [0.0; LANES], per_row: [0.0; LANES], per_column: [0.0; LANES], step: [0; LANES] };
+
+    /// Sets up the planes of these values at the corners.
+    #[inline(always)]
+    pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &[Ints; 3]) {
+        let [v0, v1, v2] = basis.order.sort(s, [s.i32s(&corners[0]), s.i32s(&corners[1]), s.i32s(&corners[2])]);
+        let ([x, y], area) = (basis.first, basis.area);
+        let value = s.to_f64(v0);
+        let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(v1, v0)), s.to_f64(s.sub_i32(v2, v0))]);
+        // +0 and no −0: its sign chooses the rounding.
+        let gx = s.add(gx, s.all_f64(0.0));
+        // `ShadePlane::start`: the floor, or the ceiling of falling values, and half a shade.
+        let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
+        let n = s.mul(s.add(value, s.all_f64(128.0)), area);
+        let n = s.neg_mul_add(gx, x, n);
+        let n = s.neg_mul_add(gy, y, n);
+        s.put_f64s(s.sub(n, s.flip(half, gx)), &mut self.n);
+        let pixel = s.all_f64(256.0);
+        let per_column = s.mul(gx, pixel);
+        s.put_f64s(per_column, &mut self.per_column);
+        s.put_f64s(s.mul(gy, pixel), &mut self.per_row);
+        // Toward zero. The sum wraps, as in `ShadePlane`.
+        let step = s.mul_add(s.sub(per_column, s.flip(half, gx)), basis.inverse, s.all_f64(ROUND_MAGIC));
+        s.put_i32s(s.shl_i32(s.low_bits(step), 16), &mut self.step);
+    }
+}
+
 /// Eight triangles, ready for their rows.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -131,11 +171,9 @@ pub(super) struct TriangleSetup8 {
     pub(super) long: Edges,
     pub(super) upper: Edges,
     pub(super) lower: Edges,
-    /// Shades: `nearest((n + j·per_row + i·per_column) · inverse)`.
-    pub(super) shade_n: Floats,
-    pub(super) shade_per_row: Floats,
-    pub(super) shade_per_column: Floats,
-    pub(super) shade_inverse: Floats,
+    pub(super) shade: ValuePlanes8,
+    /// 1 over twice the area.
+    pub(super) inverse: Floats,
     /// Depth at the box's first pixel, with 32 fraction bits modulo 2⁶⁴, the half included.
     pub(super) z: [i64; LANES],
     pub(super) z_per_column: [i64; LANES],
@@ -149,8 +187,6 @@ pub(super) struct TriangleSetup8 {
     pub(super) rows: Ints,
     /// The first row of the lower edge.
     pub(super) split: Ints,
-    /// In the upper half.
-    pub(super) step: Ints,
 }
 
 impl TriangleSetup8 {
@@ -158,10 +194,8 @@ impl TriangleSetup8 {
         long: Edges::NONE,
         upper: Edges::NONE,
         lower: Edges::NONE,
-        shade_n: [0.0; LANES],
-        shade_per_row: [0.0; LANES],
-        shade_per_column: [0.0; LANES],
-        shade_inverse: [0.0; LANES],
+        shade: ValuePlanes8::NONE,
+        inverse: [0.0; LANES],
         z: [0; LANES],
         z_per_column: [0; LANES],
         z_per_row: [0; LANES],
@@ -171,7 +205,6 @@ impl TriangleSetup8 {
         cell: [0; LANES],
         rows: [0; LANES],
         split: [0; LANES],
-        step: [0; LANES],
     };
 
     /// Puts the depth plane of triangle `i`, which is too large for eight at a time, in its place.
@@ -191,15 +224,15 @@ impl TriangleSetup8 {
             long: edge(&self.long),
             upper: edge(&self.upper),
             lower: edge(&self.lower),
-            shade: [self.shade_n[i], self.shade_per_row[i], self.shade_inverse[i]],
-            per_column: self.shade_per_column[i],
+            shade: [self.shade.n[i], self.shade.per_row[i], self.inverse[i]],
+            per_column: self.shade.per_column[i],
             at: self.at[i],
             // At most 2¹⁶.
             pitch: layout.pitch as i32,
             rows: self.rows[i],
             split: self.split[i],
             // The upper half.
-            step: (self.step[i] >> 16) as u16,
+            step: (self.shade.step[i] >> 16) as u16,
             reseeds,
         }
     }
@@ -213,8 +246,9 @@ impl TriangleSetup8 {
         corners: &Corners8,
         layout: FrameLayout,
     ) -> Basis<S> {
-        let [ax, bx, cx] = [s.i32s(&corners.x[0]), s.i32s(&corners.x[1]), s.i32s(&corners.x[2])];
-        let [ay, by, cy] = [s.i32s(&corners.y[0]), s.i32s(&corners.y[1]), s.i32s(&corners.y[2])];
+        let [ax, ay] = s.halves_of_i64(s.i64s(&corners.at[0]));
+        let [bx, by] = s.halves_of_i64(s.i64s(&corners.at[1]));
+        let [cx, cy] = s.halves_of_i64(s.i64s(&corners.at[2]));
         // The box of culling, found again by eight operations for eight triangles. To hand it on, culling would pack three
         // more lists, and these would be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
@@ -244,8 +278,6 @@ impl TriangleSetup8 {
         let above = s.add_i32(s.shl_i32(row, 8), half);
         let [x0, x1, x2] = order.sort(s, [ax, bx, cx]);
         let [y0, y1, y2] = order.sort(s, [ay, by, cy]);
-        let [s0, s1, s2] =
-            order.sort(s, [s.i32s(&corners.shade[0]), s.i32s(&corners.shade[1]), s.i32s(&corners.shade[2])]);
         // From the first pixel's centre, within ±2²⁰.
         let (x0, x1, x2) = (s.sub_i32(x0, left), s.sub_i32(x1, left), s.sub_i32(x2, left));
         let (y0, y1, y2) = (s.sub_i32(y0, above), s.sub_i32(y1, above), s.sub_i32(y2, above));
@@ -262,25 +294,8 @@ impl TriangleSetup8 {
         let area = s.flip(signed, signed);
         let inverse = s.div(s.all_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
-        let shade = s.to_f64(s0);
-        let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(s1, s0)), s.to_f64(s.sub_i32(s2, s0))]);
-        // +0 and no −0: its sign chooses the rounding.
-        let gx = s.add(gx, s.all_f64(0.0));
-        // `ShadePlane::start`: the floor, or the ceiling of falling shades, and half a shade.
-        let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
-        let n = s.mul(s.add(shade, s.all_f64(128.0)), area);
-        let n = s.neg_mul_add(gx, fx0, n);
-        let n = s.neg_mul_add(gy, fy0, n);
-        s.put_f64s(s.sub(n, s.flip(half, gx)), &mut self.shade_n);
-        let pixel = s.all_f64(256.0);
-        let per_column = s.mul(gx, pixel);
-        s.put_f64s(per_column, &mut self.shade_per_column);
-        s.put_f64s(s.mul(gy, pixel), &mut self.shade_per_row);
-        s.put_f64s(inverse, &mut self.shade_inverse);
-        // Toward zero. The wrap is meant, as in `ShadePlane`.
-        let magic = s.all_f64(ROUND_MAGIC);
-        let step = s.mul_add(s.sub(per_column, s.flip(half, gx)), inverse, magic);
-        s.put_i32s(s.shl_i32(s.low_bits(step), 16), &mut self.step);
+        self.shade.set_up(s, &basis, &corners.shade);
+        s.put_f64s(inverse, &mut self.inverse);
         // Without an area no rows.
         let has_area = s.is_less(s.all_f64(0.0), area);
         s.put_i32s(s.select_i32(has_area, rows, s.all_i32(0)), &mut self.rows);
@@ -308,7 +323,6 @@ impl TriangleSetup8 {
 }
 
 /// Numbers that planes over eight triangles are set up from. All numbers are integers, but for the last.
-#[cfg_attr(not(feature = "alloc"), expect(dead_code, reason = "texture coordinates are set up from it"))]
 pub(super) struct Basis<S: Lanes8> {
     pub(super) order: Order<S>,
     /// The first corner by height, from the centre of the box's first pixel, ...
@@ -374,8 +388,9 @@ fn depth_gradient<S: Lanes8>(s: S, n: S::F64, area: S::F64, inverse: S::F64) -> 
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::triangles::{MAX_COLUMNS, MAX_ROWS};
+    use super::super::pick::{MAX_COLUMNS, MAX_ROWS};
     use super::*;
+    use crate::raster::columns::ScreenPos;
     use crate::simd::compiled_for_each_level;
     use crate::span::Kernel;
 
@@ -409,7 +424,7 @@ mod tests {
             let mut corners = Corners8::NONE;
             for (lane, of_triangle) in triangles.iter().enumerate() {
                 for (corner, &(x, y, d)) in of_triangle.iter().enumerate() {
-                    (corners.x[corner][lane], corners.y[corner][lane]) = (x, y);
+                    corners.at[corner][lane] = u64::from(ScreenPos::new(x, y)).cast_signed();
                     corners.depth[corner][lane] = d.cast_signed();
                 }
             }

@@ -1,0 +1,287 @@
+//! Triangles as indices into columns of vertex values: the form in which the raster takes them.
+//!
+//! A triangle is three indices, always. Nothing copies it: culling, set-up and the pixel stages each read the values that
+//! they need from the columns. A [`Pick`] says which triangle to draw, which side of it is seen, and what class
+//! culling found it to be.
+
+#[cfg(feature = "alloc")]
+use glam::Vec3;
+
+use super::pick::{MAX_PIECES, Pick};
+use super::shade::RESEED;
+use super::vertex::Vertex;
+use crate::fixed::{I24F8, U8F8};
+use crate::lanes::three;
+
+/// Place of a vertex on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. It is one
+/// number, so that it is read at once.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(transparent)]
+pub(crate) struct ScreenPos(u64);
+
+impl ScreenPos {
+    /// The x of those that need clipping: far outside of the guard band.
+    pub(crate) const BEYOND: i32 = i32::MIN;
+    #[cfg(feature = "alloc")]
+    pub(crate) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
+
+    #[inline(always)]
+    pub(crate) const fn new(x: i32, y: i32) -> Self {
+        Self(x.cast_unsigned() as u64 | (y.cast_unsigned() as u64) << 32)
+    }
+
+    /// The position of a vertex.
+    #[inline(always)]
+    pub(crate) fn of(vertex: &Vertex) -> Self {
+        Self::new(vertex.x().to_bits(), vertex.y().to_bits())
+    }
+
+    #[inline(always)]
+    pub(crate) const fn x(self) -> i32 {
+        // The lower half.
+        self.0 as i32
+    }
+
+    #[inline(always)]
+    pub(crate) const fn y(self) -> i32 {
+        // The upper half.
+        (self.0 >> 32) as i32
+    }
+
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(crate) const fn needs_clipping(self) -> bool {
+        self.x() == Self::BEYOND
+    }
+}
+
+/// x in the lower half, y in the upper.
+impl From<ScreenPos> for u64 {
+    #[inline(always)]
+    fn from(pos: ScreenPos) -> Self {
+        pos.0
+    }
+}
+
+/// Values of vertices, an array for each. Those of effects are empty where nothing asks for them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns<'a> {
+    pub(crate) at: &'a [ScreenPos],
+    pub(crate) depth: &'a [u32],
+    /// Front and back.
+    pub(crate) shade: &'a [[U8F8; 2]],
+    #[cfg(feature = "alloc")]
+    pub(crate) effects: EffectColumns<'a>,
+}
+
+/// Values that effects need.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct EffectColumns<'a> {
+    /// Texture coordinates in texels, 16.16.
+    pub(crate) texture: &'a [[i32; 2]],
+    /// Density of the fog, 0 to 0xFF00.
+    pub(crate) fog: &'a [U8F8],
+    /// Red, green and blue, front and back.
+    pub(crate) channels: &'a [[[U8F8; 3]; 2]],
+    /// Column and row in a table of normals, of the front.
+    pub(crate) slope: &'a [[U8F8; 2]],
+    pub(crate) lit: LitColumn<'a>,
+}
+
+/// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
+/// anything.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Attributes {
+    /// Texture coordinates, across and down, in texels with 16 fraction bits.
+    pub texture: [i32; 2],
+    /// Density of the fog, 0 to 0xFF00.
+    pub fog: U8F8,
+    /// Red, green and blue, each 0 to 0xFF00.
+    pub channels: [U8F8; 3],
+    /// The column and the row in the table of [`ShadeSource::NormalTable`](super::effects::ShadeSource::NormalTable), each 0 to 0xFF00.
+    pub slope: [U8F8; 2],
+    /// Input of [`Lighting`](super::effects::Lighting): a normal and a position.
+    ///
+    /// For [`ShadeSource::Curved`](super::effects::ShadeSource::Curved) it is the shade at the corner, or its three channels, and then those at the middle
+    /// (on the screen) of the edge opposite to it. They are in 8.8, and may lie beyond what can be shown, where the
+    /// limits cut them off.
+    pub lit: [f32; 6],
+}
+
+/// A value of 0 to 0xFF00 that is linear over a triangle, beside its shade.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Value {
+    /// Density of the fog.
+    Fog,
+    /// Red, green or blue.
+    Channel(usize),
+    /// Column or row in a table of normals.
+    Slope(usize),
+}
+
+#[cfg(feature = "alloc")]
+impl Value {
+    /// Values that one pipeline asks for, at most.
+    pub(crate) const MAX_COUNT: usize = 4;
+
+    /// Its place among those of a pipeline, which has channels or a table of normals.
+    #[inline(always)]
+    pub(crate) const fn slot(self) -> usize {
+        match self {
+            Self::Fog => 0,
+            Self::Channel(i) | Self::Slope(i) => (1 + i) % Self::MAX_COUNT,
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl EffectColumns<'_> {
+    /// A value at a vertex as one side sees it.
+    #[inline(always)]
+    pub(crate) fn value(&self, value: Value, vertex: usize, side: usize) -> u16 {
+        match value {
+            Value::Fog => self.fog[vertex].to_bits(),
+            Value::Channel(i) => self.channels[vertex][side][i].to_bits(),
+            Value::Slope(i) => seen_slope(self.slope[vertex], side)[i].to_bits(),
+        }
+    }
+}
+
+/// Input of light at the pixels.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LitColumn<'a> {
+    /// Normals, of the front, and positions, of a mesh.
+    Points(&'a [Vec3], &'a [Vec3]),
+    /// Normal and position, or a curve, of the side that is seen; see [`Attributes::lit`].
+    Values(&'a [[f32; 6]]),
+}
+
+#[cfg(feature = "alloc")]
+impl Default for LitColumn<'_> {
+    fn default() -> Self {
+        Self::Values(&[])
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl LitColumn<'_> {
+    /// The values at a vertex as one side sees them.
+    #[inline]
+    pub(crate) fn get(&self, vertex: usize, side: usize) -> [f32; 6] {
+        match self {
+            Self::Points(normals, positions) => {
+                let (n, p) = (normals[vertex], positions[vertex]);
+                let n = if side == 0 { n } else { -n };
+                [n.x, n.y, n.z, p.x, p.y, p.z]
+            }
+            Self::Values(values) => values[vertex],
+        }
+    }
+}
+
+/// Triangles of vertices in columns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangles<'a> {
+    pub(crate) columns: Columns<'a>,
+    pub(crate) indices: &'a [[u32; 3]],
+}
+
+/// Triangles to be drawn, in order. None of them needs clipping.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Picks<'a> {
+    /// A [`Pick`] each.
+    pub(crate) picks: &'a [u32],
+    /// The one shade of each triangle, or its three channels; empty where the corners have their own.
+    pub(crate) flat: &'a [[U8F8; 3]],
+}
+
+impl<'a> Picks<'a> {
+    /// Those from `first` to `end`, which are there.
+    #[inline(always)]
+    pub(crate) fn range(&self, first: usize, end: usize) -> Self {
+        let flat = if self.flat.is_empty() { self.flat } else { &self.flat[first..end] };
+        Self { picks: &self.picks[first..end], flat }
+    }
+
+    /// Pick `k`.
+    #[inline(always)]
+    pub(crate) fn get(&self, k: usize) -> Pick {
+        Pick(self.picks[k])
+    }
+
+    /// The one shade of pick `k`, if its triangle has one.
+    #[inline(always)]
+    pub(crate) fn flat_shade(&self, k: usize) -> Option<U8F8> {
+        if self.flat.is_empty() { None } else { Some(self.flat[k][0]) }
+    }
+}
+
+impl Triangles<'_> {
+    /// None at all.
+    #[cfg(feature = "alloc")]
+    pub(crate) const NONE: Self = {
+        let lit = LitColumn::Values(&[]);
+        let effects = EffectColumns { texture: &[], fog: &[], channels: &[], slope: &[], lit };
+        Self { columns: Columns { at: &[], depth: &[], shade: &[], effects }, indices: &[] }
+    };
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub(crate) fn corners(&self, pick: Pick) -> [usize; 3] {
+        three(self.indices[pick.index()], |i| i as usize)
+    }
+
+    /// The most pieces, each of which starts anew, of a row of a triangle that is not larger than the lanes take.
+    #[inline(always)]
+    pub(crate) fn pieces(&self, pick: Pick) -> usize {
+        let [a, b, c] = three(self.corners(pick), |i| self.columns.at[i].x());
+        // As in `cull`; at most 1,024 pixels.
+        let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
+        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
+    }
+
+    /// The vertices of pick `k`.
+    #[inline]
+    pub(crate) fn vertices(&self, picks: &Picks<'_>, k: usize) -> [Vertex; 3] {
+        let pick = picks.get(k);
+        let flat = picks.flat_shade(k);
+        three(self.corners(pick), |i| self.columns.vertex(i, pick.side(), flat))
+    }
+}
+
+impl Columns<'_> {
+    /// Vertex `i`, which needs no clipping, as one side sees it, or with another shade.
+    #[inline]
+    pub(crate) fn vertex(&self, i: usize, side: usize, shade: Option<U8F8>) -> Vertex {
+        let at = self.at[i];
+        let shade = shade.unwrap_or(self.shade[i][side]);
+        Vertex::of_projected(I24F8::from_bits(at.x()), I24F8::from_bits(at.y()), shade, self.depth[i])
+    }
+
+    /// The values of vertex `i` beyond those as one side sees them, those that there are, with `lit` the input of light, too.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn attributes(&self, i: usize, side: usize, lit: bool) -> Attributes {
+        let EffectColumns { texture, fog, channels, slope, lit: points } = self.effects;
+        Attributes {
+            texture: texture.get(i).copied().unwrap_or_default(),
+            fog: fog.get(i).copied().unwrap_or_default(),
+            channels: channels.get(i).map(|sides| sides[side]).unwrap_or_default(),
+            slope: slope.get(i).map(|slope| seen_slope(*slope, side)).unwrap_or_default(),
+            lit: if lit { points.get(i, side) } else { [0.0; 6] },
+        }
+    }
+}
+
+/// Column and row in a table of normals from one side: the back sees the normal from behind.
+#[cfg(feature = "alloc")]
+#[inline]
+pub(crate) fn seen_slope(slope: [U8F8; 2], side: usize) -> [U8F8; 2] {
+    match side {
+        0 => slope,
+        _ => slope.map(|slope| U8F8::from_bits(U8F8::MAX_VERTEX.to_bits() - slope.to_bits())),
+    }
+}

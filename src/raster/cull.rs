@@ -1,0 +1,382 @@
+//! Culling of many triangles at a time, by the positions of their corners alone: back faces, and triangles that cover no
+//! pixel centre. Most of a fine model's triangles end here. The others get the class that they are set up by.
+
+use super::columns::ScreenPos;
+use super::frame::Rect;
+use super::pick::{CHUNK, LANES, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, NUMBERS, Pick};
+use super::setup::first_centre;
+use crate::simd::{Lanes8, Packed, compiled_for_each_level};
+
+/// The longer side of the box of a triangle whose pixels are looked at one by one.
+pub(crate) const TINY_SIDE: i32 = 2;
+
+/// Results for up to 64 triangles: a bit for each, the first lowest.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) struct CullMasks {
+    /// A corner needs clipping. The other bits of such a triangle are 0.
+    pub(crate) clipped: u64,
+    /// Turned towards the eye.
+    pub(crate) front: u64,
+    /// Back faces. A triangle that is neither has no area.
+    pub(crate) back: u64,
+    /// A pixel centre of the clip rectangle lies in the triangle's box, its left and top sides included; and if the box has
+    /// only 2 × 2, one of them in the triangle.
+    pub(crate) covers: u64,
+    /// The class; of those that cover nothing it means nothing.
+    pub(crate) large: u64,
+    pub(crate) crosses: u64,
+    pub(crate) unbatched: u64,
+}
+
+compiled_for_each_level! {
+    /// Culls up to 64 triangles. The cover of pixels is found for those that have an area, and if it `culls`, only for those
+    /// that are turned towards the eye.
+    ///
+    /// # Panics
+    /// If a triangle has a corner that is not in `at`.
+    pub(crate) fn cull[][](at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks = cull_by;
+}
+
+#[inline(always)]
+fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks {
+    let mut masks = CullMasks::default();
+    let triangles = &triangles[..triangles.len().min(CHUNK)];
+    let (eights, rest) = triangles.as_chunks::<LANES>();
+    for (number, eight) in eights.iter().enumerate() {
+        masks.add(LANES * number, u64::MAX, cull_eight(s, at, eight, clip, culls));
+    }
+    if let Some(&first) = rest.first() {
+        let mut eight = [first; LANES];
+        eight[..rest.len()].copy_from_slice(rest);
+        let are_triangles = (1 << rest.len()) - 1;
+        masks.add(LANES * eights.len(), are_triangles, cull_eight(s, at, &eight, clip, culls));
+    }
+    masks
+}
+
+/// Bits of eight triangles, in the order of the fields of [`CullMasks`].
+#[inline(always)]
+fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], clip: Rect, culls: bool) -> [u32; 7] {
+    let [a, b, c] = s.gather(at, triangles);
+    let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
+    // The mark is the least number there is. Of such a triangle the other numbers mean nothing.
+    let least = s.min_i32(s.min_i32(ax, bx), cx);
+    let clipped = s.mask_bits(s.is_equal(least, s.all_i32(ScreenPos::BEYOND)));
+    // Exact in f64: differences are at most 2²¹, products 2⁴².
+    let (dx1, dy1) = (s.to_f64(s.sub_i32(bx, ax)), s.to_f64(s.sub_i32(by, ay)));
+    let (dx2, dy2) = (s.to_f64(s.sub_i32(cx, ax)), s.to_f64(s.sub_i32(cy, ay)));
+    let area = s.neg_mul_add(dx2, dy1, s.mul(dx1, dy2));
+    let zero = s.all_f64(0.0);
+    let front = s.mask_bits(s.is_less(area, zero)) & !clipped;
+    let back = s.mask_bits(s.is_less(zero, area)) & !clipped;
+    // Neighbours mostly turn the same way.
+    let seen = if culls { front } else { front | back };
+    if seen == 0 {
+        return [clipped, front, back, 0, 0, 0, 0];
+    }
+    let (x, y) = ([ax, bx, cx], [ay, by, cy]);
+    let bounds = Bounds::of(s, x, y);
+    // Eight bits.
+    let covers = s.both(bounds.overlap(s, clip), s.mask_of_bits(seen as u8));
+    let covers = s.mask_bits(bounds.but_empty(s, covers, x, y));
+    let small = s.mask_bits(bounds.are_small(s));
+    let crosses = s.mask_bits(bounds.cross(s, clip));
+    // Neighbours are mostly of one size.
+    let large = if covers & (!small | crosses) == 0 { 0xFF } else { s.mask_bits(bounds.are_batched(s)) };
+    [clipped, front, back, covers, large & !small & !crosses, large & crosses, !large & 0xFF]
+}
+
+impl CullMasks {
+    /// Puts in bits of up to eight triangles, from number `first` on.
+    #[inline(always)]
+    fn add(&mut self, first: usize, are_triangles: u64, found: [u32; 7]) {
+        let [clipped, front, back, covers, large, crosses, unbatched] = found;
+        self.clipped |= (u64::from(clipped) & are_triangles) << first;
+        self.front |= (u64::from(front) & are_triangles) << first;
+        self.back |= (u64::from(back) & are_triangles) << first;
+        self.covers |= (u64::from(covers) & are_triangles) << first;
+        self.large |= (u64::from(large) & are_triangles) << first;
+        self.crosses |= (u64::from(crosses) & are_triangles) << first;
+        self.unbatched |= (u64::from(unbatched) & are_triangles) << first;
+    }
+
+    /// All triangles as seen from the front.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn front_only(self) -> Self {
+        Self { back: 0, ..self }
+    }
+
+    /// The pick of triangle `at` of the 64, whose index is `index`.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn pick(&self, at: usize, index: usize, back: bool) -> u32 {
+        let bit = |mask: u64, value: u32| if mask >> at & 1 == 1 { value } else { 0 };
+        // Below `Pick::MAX_COUNT`.
+        index as u32
+            | bit(self.large, Pick::LARGE)
+            | bit(self.crosses, Pick::CROSSES_CLIP)
+            | bit(self.unbatched, Pick::UNBATCHED)
+            | if back { Pick::BACK } else { 0 }
+    }
+}
+
+/// Room for at most `N` − 8 picks.
+pub(crate) type PickList<const N: usize> = Packed<N>;
+
+compiled_for_each_level! {
+    /// Puts those of 64 triangles behind the other picks whose bits are set in `chosen`, from index `first` on.
+    pub(crate) fn pick[const N: usize][N](list: &mut PickList<N>, first: u32, masks: &CullMasks, chosen: u64) = pick_by;
+}
+
+#[inline(always)]
+fn pick_by<S: Lanes8, const N: usize>(s: S, list: &mut PickList<N>, first: u32, masks: &CullMasks, chosen: u64) {
+    let &CullMasks { back, large, crosses, unbatched, .. } = masks;
+    let is_plain = (back | large | crosses | unbatched) & chosen == 0;
+    for part in 0..LANES {
+        // The low bytes.
+        let of_part = (chosen >> (LANES * part)) as u8;
+        if of_part == 0 {
+            continue;
+        }
+        let mut picks = s.add_i32(s.all_i32((first + (LANES * part) as u32).cast_signed()), s.i32s(&NUMBERS));
+        if !is_plain {
+            picks = s.or_i32(picks, bit(s, back, part, Pick::BACK));
+            picks = s.or_i32(picks, bit(s, large, part, Pick::LARGE));
+            picks = s.or_i32(picks, bit(s, crosses, part, Pick::CROSSES_CLIP));
+            picks = s.or_i32(picks, bit(s, unbatched, part, Pick::UNBATCHED));
+        }
+        list.append(s, s.mask_of_bits(of_part), picks);
+    }
+}
+
+/// `value` where the bits of a part are set.
+#[inline(always)]
+fn bit<S: Lanes8>(s: S, bits: u64, part: usize, value: u32) -> S::I32 {
+    // The low byte.
+    let mask = s.mask_of_bits((bits >> (LANES * part)) as u8);
+    s.select_i32(mask, s.all_i32(value.cast_signed()), s.all_i32(0))
+}
+
+/// The bounds of eight triangles: of their corners in 1/256 pixel, and the box of pixel centres between these, its ends
+/// excluded.
+struct Bounds<S: Lanes8> {
+    x: [S::I32; 2],
+    y: [S::I32; 2],
+    columns: [S::I32; 2],
+    rows: [S::I32; 2],
+}
+
+impl<S: Lanes8> Bounds<S> {
+    #[inline(always)]
+    fn of(s: S, x: [S::I32; 3], y: [S::I32; 3]) -> Self {
+        let (x, y) = (ends(s, x), ends(s, y));
+        let columns = [first_centre(s, x[0]), first_centre(s, x[1])];
+        let rows = [first_centre(s, y[0]), first_centre(s, y[1])];
+        Self { x, y, columns, rows }
+    }
+
+    /// A pixel centre of the rectangle, which lies inside a frame, is in the box.
+    #[inline(always)]
+    fn overlap(&self, s: S, clip: Rect) -> S::Mask {
+        // Sides are at most 4,096.
+        let side = |side: u32| s.all_i32(side as i32);
+        let first = s.max_i32(self.columns[0], side(clip.x0));
+        let in_columns = s.is_greater(s.min_i32(self.columns[1], side(clip.x1)), first);
+        let first = s.max_i32(self.rows[0], side(clip.y0));
+        s.both(in_columns, s.is_greater(s.min_i32(self.rows[1], side(clip.y1)), first))
+    }
+
+    /// The box does not lie inside the rectangle.
+    #[inline(always)]
+    fn cross(&self, s: S, clip: Rect) -> S::Mask {
+        let side = |side: u32| s.all_i32(side as i32);
+        // Negative where a side is crossed.
+        let left = s.sub_i32(self.columns[0], side(clip.x0));
+        let right = s.sub_i32(side(clip.x1), self.columns[1]);
+        let top = s.sub_i32(self.rows[0], side(clip.y0));
+        let bottom = s.sub_i32(side(clip.y1), self.rows[1]);
+        s.is_greater(s.all_i32(0), s.or_i32(s.or_i32(left, right), s.or_i32(top, bottom)))
+    }
+
+    #[inline(always)]
+    fn are_small(&self, s: S) -> S::Mask {
+        let few_columns = s.is_greater(s.all_i32(MAX_COLUMNS + 1), s.sub_i32(self.columns[1], self.columns[0]));
+        s.both(few_columns, s.is_greater(s.all_i32(MAX_ROWS + 1), s.sub_i32(self.rows[1], self.rows[0])))
+    }
+
+    /// They are small enough for set-up in f64.
+    #[inline(always)]
+    fn are_batched(&self, s: S) -> S::Mask {
+        // Differences are at most 2²¹.
+        let (width, height) = (s.sub_i32(self.x[1], self.x[0]), s.sub_i32(self.y[1], self.y[0]));
+        let fours = |units: S::I32| s.sar_i32(s.add_i32(units, s.all_i32(1_023)), 10);
+        let squares = s.mul_i32(fours(width), fours(height));
+        let sides =
+            s.both(s.is_greater(s.all_i32(MAX_WIDTH + 1), width), s.is_greater(s.all_i32(MAX_HEIGHT + 1), height));
+        s.both(sides, s.is_greater(s.all_i32(MAX_AREA_4X4 + 1), squares))
+    }
+
+    /// Those of `triangles` that cover a pixel, as far as it is found out: if a box has at most 2 × 2 pixels, one of them
+    /// lies in the triangle.
+    #[inline(always)]
+    fn but_empty(&self, s: S, triangles: S::Mask, x: [S::I32; 3], y: [S::I32; 3]) -> S::Mask {
+        let end = s.all_i32(TINY_SIDE + 1);
+        let few_columns = s.is_greater(end, s.sub_i32(self.columns[1], self.columns[0]));
+        let few_rows = s.is_greater(end, s.sub_i32(self.rows[1], self.rows[0]));
+        let tiny = s.both(triangles, s.both(few_columns, few_rows));
+        if s.mask_bits(tiny) == 0 {
+            return triangles;
+        }
+        let half = s.all_i32(128);
+        let left = s.add_i32(s.shl_i32(self.columns[0], 8), half);
+        let top = s.add_i32(s.shl_i32(self.rows[0], 8), half);
+        let [a, b, c] = [
+            (s.sub_i32(x[0], left), s.sub_i32(y[0], top)),
+            (s.sub_i32(x[1], left), s.sub_i32(y[1], top)),
+            (s.sub_i32(x[2], left), s.sub_i32(y[2], top)),
+        ];
+        s.but_not(triangles, s.both(tiny, cover_none_of_four(s, a, b, c)))
+    }
+}
+
+/// The least and the greatest.
+#[inline(always)]
+fn ends<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 2] {
+    [s.min_i32(s.min_i32(a, b), c), s.max_i32(s.max_i32(a, b), c)]
+}
+
+/// Triangles that have none of four pixels: that at the origin, the next, and the two below. The answer is right only where
+/// corners are less than 1,024 units away.
+///
+/// ```text
+/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
+/// ```
+///
+/// A point on an edge lies inside if the edge is a left or a top one; otherwise one step of E more makes it negative.
+#[inline(always)]
+fn cover_none_of_four<S: Lanes8>(s: S, a: (S::I32, S::I32), b: (S::I32, S::I32), c: (S::I32, S::I32)) -> S::Mask {
+    let (ab, bc, ca) = (cross(s, a, b), cross(s, b, c), cross(s, c, a));
+    // Twice the area; −1 if it is negative.
+    let turned = s.sar_i32(s.add_i32(s.add_i32(ab, bc), ca), 31);
+    let ab = at_four(s, ab, a, b, turned);
+    let bc = at_four(s, bc, b, c, turned);
+    let ca = at_four(s, ca, c, a, turned);
+    let mut none = s.all_i32(-1);
+    for pixel in 0..4 {
+        none = s.and_i32(none, s.or_i32(s.or_i32(ab[pixel], bc[pixel]), ca[pixel]));
+    }
+    s.is_greater(s.all_i32(0), none)
+}
+
+/// An edge at the origin.
+#[inline(always)]
+fn cross<S: Lanes8>(s: S, (ax, ay): (S::I32, S::I32), (bx, by): (S::I32, S::I32)) -> S::I32 {
+    s.sub_i32(s.mul_i32(ax, by), s.mul_i32(ay, bx))
+}
+
+/// An edge at the four pixels, negative where they lie outside.
+#[inline(always)]
+fn at_four<S: Lanes8>(s: S, e: S::I32, from: (S::I32, S::I32), to: (S::I32, S::I32), turned: S::I32) -> [S::I32; 4] {
+    let dx = turn(s, s.sub_i32(to.0, from.0), turned);
+    let dy = turn(s, s.sub_i32(to.1, from.1), turned);
+    // Up, or level and to the right: −1.
+    let is_in = s.sar_i32(s.sub_i32(s.shl_i32(dy, 10), dx), 31);
+    let first = s.sub_i32(s.sub_i32(turn(s, e, turned), s.all_i32(1)), is_in);
+    let (right, down) = (s.shl_i32(dy, 8), s.shl_i32(dx, 8));
+    let below = s.add_i32(first, down);
+    [first, s.sub_i32(first, right), below, s.sub_i32(below, right)]
+}
+
+/// `n`, negated where `turned` is −1.
+#[inline(always)]
+fn turn<S: Lanes8>(s: S, n: S::I32, turned: S::I32) -> S::I32 {
+    s.sub_i32(s.xor_i32(n, turned), turned)
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+    use crate::fixed::{I24F8, U8F8};
+    use crate::raster::clip::doubled_area;
+    use crate::raster::{Frame, Interpolation, Raster, Vertex};
+    use crate::span::Kernel;
+    use alloc::vec::Vec;
+    use proptest::prelude::*;
+
+    const MAX_UNITS: i32 = Vertex::GUARD_BAND;
+
+    fn place() -> impl Strategy<Value = ScreenPos> {
+        let near = (-300_i32..9_000, -300_i32..9_000);
+        let on_centres = (-2_i32..34, -2_i32..34).prop_map(|(x, y)| (x * 256 + 128, y * 256 + 128));
+        let far = (-MAX_UNITS..=MAX_UNITS, -MAX_UNITS..=MAX_UNITS);
+        let end = prop::sample::select(vec![-MAX_UNITS, MAX_UNITS, 0]);
+        let ends = (end.clone(), end);
+        let tiny = (2_000_i32..2_800, 2_000_i32..2_800);
+        let on_halves = (15_i32..23, 15_i32..23).prop_map(|(x, y)| (x * 128, y * 128));
+        let legal = prop_oneof![4 => near, 2 => on_centres, 8 => tiny, 8 => on_halves, 1 => far, 1 => ends]
+            .prop_map(|(x, y)| ScreenPos::new(x, y));
+        prop_oneof![30 => legal, 1 => Just(ScreenPos::NEEDS_CLIPPING)]
+    }
+
+    fn kernels() -> Vec<Kernel> {
+        // Every level that the processor has, the lower ones too: `simd` alone is the highest.
+        Kernel::available().collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3_000))]
+        /// Every kernel finds the sign of the raster's area of every face, and leaves out no face that the raster draws
+        /// a pixel of.
+        #[test]
+        fn what_is_left_out_covers_nothing(
+            culls: bool,
+            places in prop::collection::vec(place(), 1..60),
+            corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=CHUNK),
+            clip in prop_oneof![Just((0, 0, 32, 32)), (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32)],
+        ) {
+            let index = |i: u32| i % places.len() as u32;
+            let triangles: Vec<[u32; 3]> = corners.iter().map(|&(a, b, c)| [index(a), index(b), index(c)]).collect();
+            let clip = Rect { x0: clip.0, y0: clip.1, x1: clip.2, y1: clip.3 };
+            let mut pixels = vec![0; 32 * 32];
+            let frame = Frame::new(&mut pixels, 32, 32, 32).expect("a legal frame");
+            let mut raster = Raster::new(frame).with_clip(clip);
+            let clip = raster.clip();
+            let all = kernels().into_iter().map(|kernel| cull(kernel.simd_level(), &places, &triangles, clip, culls));
+            let all: Vec<CullMasks> = all.collect();
+            for masks in &all {
+                prop_assert_eq!(*masks, all[0]);
+            }
+            for (i, triangle) in triangles.iter().enumerate() {
+                let is = |bits: u64| bits >> i & 1 == 1;
+                let CullMasks { clipped, front, back, covers, .. } = all[0];
+                let corners = triangle.map(|i| places[i as usize]);
+                prop_assert_eq!(is(clipped), corners.contains(&ScreenPos::NEEDS_CLIPPING));
+                if is(clipped) {
+                    prop_assert!(!is(front) && !is(back) && !is(covers));
+                    continue;
+                }
+                let vertices = corners.map(|place| {
+                    Vertex::new(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), U8F8::default(), 1).expect("legal")
+                });
+                let area = doubled_area(&vertices);
+                prop_assert_eq!((is(front), is(back)), (area < 0, area > 0));
+                let drawn = raster.triangle(&vertices, Interpolation::Flat(1));
+                if culls && area >= 0 {
+                    prop_assert!(!is(covers));
+                    continue;
+                }
+                if !is(covers) {
+                    prop_assert_eq!(drawn, Default::default());
+                }
+                let centres = |units: fn(&Vertex) -> I24F8| {
+                    let centres = vertices.each_ref().map(|v| units(v).first_centre());
+                    centres.iter().max().zip(centres.iter().min()).map(|(max, min)| max - min)
+                };
+                let is_tiny = centres(Vertex::x) <= Some(TINY_SIDE) && centres(Vertex::y) <= Some(TINY_SIDE);
+                if is_tiny && clip == (Rect { x0: 0, y0: 0, x1: 32, y1: 32 }) {
+                    prop_assert_eq!(is(covers), drawn.covered > 0, "{:?}", vertices);
+                    prop_assert!(!is(covers) || area != 0);
+                }
+            }
+        }
+    }
+}

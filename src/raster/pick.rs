@@ -1,0 +1,93 @@
+//! Triangles that are to be drawn, each in one number; and what bounds their sizes.
+
+use super::shade::RESEED;
+
+/// Triangles that are culled at a time.
+pub(crate) const CHUNK: usize = 64;
+/// Triangles, or rows of one, that are set up at a time.
+pub(crate) const LANES: usize = 8;
+/// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
+pub(super) const MAX_COLUMNS: i32 = 64;
+/// The highest.
+pub(super) const MAX_ROWS: i32 = 16;
+/// The widest that the box of a large triangle is, in 1/256 pixel, and the highest.
+pub(super) const MAX_WIDTH: i32 = 1_024 * 256;
+/// Pieces of a row, each of which starts anew.
+pub(super) const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
+pub(super) const MAX_HEIGHT: i32 = 4_096 * 256;
+/// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
+pub(super) const MAX_AREA_4X4: i32 = 1 << 14;
+
+/// Numbers of lanes.
+pub(super) const NUMBERS: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+/// The class of a triangle, by its size and position.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum SizeClass {
+    /// Lies inside the clip rectangle, and is small enough for a span of each row.
+    Small,
+    /// Lies inside the clip rectangle. Its rows are of up to 1,024 pixels.
+    Large,
+    /// Reaches over the clip rectangle's edge, and is no larger than `Large` allows.
+    CrossesClip,
+    /// Too large for set-up in f64.
+    Unbatched,
+}
+
+/// A triangle that is to be drawn: its index, the side that is seen, and its class for one clip rectangle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(transparent)]
+pub(crate) struct Pick(pub(crate) u32);
+
+impl Pick {
+    /// Triangles that a list of them may have at most.
+    #[cfg(feature = "alloc")]
+    pub(crate) const MAX_COUNT: usize = 1 << 28;
+
+    const INDEX: u32 = (1 << 28) - 1;
+    pub(super) const LARGE: u32 = 1 << 28;
+    pub(super) const CROSSES_CLIP: u32 = 2 << 28;
+    pub(super) const UNBATCHED: u32 = 4 << 28;
+    /// The back is seen.
+    pub(super) const BACK: u32 = 1 << 31;
+
+    /// The index of the triangle.
+    #[inline(always)]
+    pub(crate) const fn index(self) -> usize {
+        (self.0 & Self::INDEX) as usize
+    }
+
+    /// The side that is seen: 0 the front, 1 the back.
+    #[inline(always)]
+    pub(crate) const fn side(self) -> usize {
+        (self.0 >> 31) as usize
+    }
+
+    /// The class.
+    #[inline(always)]
+    pub(crate) const fn class(self) -> SizeClass {
+        match self.0 & Self::CLASS {
+            0 => SizeClass::Small,
+            Self::LARGE => SizeClass::Large,
+            Self::CROSSES_CLIP => SizeClass::CrossesClip,
+            _ => SizeClass::Unbatched,
+        }
+    }
+
+    const CLASS: u32 = Self::LARGE | Self::CROSSES_CLIP | Self::UNBATCHED;
+
+    /// Counts those, from the first on, that are not unbatched.
+    #[inline(always)]
+    pub(super) fn count_batched(picks: &[u32]) -> usize {
+        // Mostly all, so eight at a time.
+        let none = |eight: &&[u32; LANES]| eight.iter().fold(0, |any, pick| any | pick) & Self::UNBATCHED == 0;
+        let first = picks.as_chunks::<LANES>().0.iter().take_while(none).count() * LANES;
+        first + picks[first..].iter().take_while(|pick| **pick & Self::UNBATCHED == 0).count()
+    }
+
+    /// Returns whether all of these are small.
+    #[inline(always)]
+    pub(super) fn are_small(picks: &[u32]) -> bool {
+        picks.iter().fold(0, |any, pick| any | pick) & Self::CLASS == 0
+    }
+}

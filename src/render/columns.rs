@@ -1,0 +1,199 @@
+//! An object's vertices, lit and projected, in columns; and those that a frame adds, by clipping or for a curve of shades.
+
+use alloc::vec::Vec;
+
+use super::geometry::Geometry;
+use crate::fixed::U8F8;
+use crate::raster::Vertex;
+pub(super) use crate::raster::columns::ScreenPos;
+use crate::raster::columns::{Columns, EffectColumns, LitColumn, Triangles};
+use crate::raster::effects::Attributes;
+
+/// Values of all vertices of an object. Those of effects are there only where the plan asks for them.
+#[derive(Debug, Default)]
+pub(super) struct VertexColumns {
+    pub(super) at: Vec<ScreenPos>,
+    /// 0 of those that need clipping.
+    pub(super) depth: Vec<u32>,
+    /// Front and back.
+    pub(super) shade: Vec<[U8F8; 2]>,
+    /// Texture coordinates in texels, 16.16.
+    pub(super) texture: Vec<[i32; 2]>,
+    /// Density of the fog.
+    pub(super) fog: Vec<U8F8>,
+    /// Red, green and blue, front and back.
+    pub(super) channels: Vec<[[U8F8; 3]; 2]>,
+    /// Column and row in a table of normals, of the front.
+    pub(super) slope: Vec<[U8F8; 2]>,
+}
+
+impl VertexColumns {
+    /// Makes room for `count` vertices of which nothing is known yet. They are to be put on the screen, and lit or left
+    /// without light.
+    pub(super) fn begin(&mut self, count: usize) {
+        self.at.resize(count, ScreenPos::NEEDS_CLIPPING);
+        self.depth.resize(count, 0);
+        self.shade.resize(count, [U8F8::default(); 2]);
+        self.texture.clear();
+        self.fog.clear();
+        self.channels.clear();
+        self.slope.clear();
+    }
+
+    /// Leaves vertices without shades: faces or pixels are lit.
+    pub(super) fn leave_without_light(&mut self) {
+        self.shade.fill([U8F8::default(); 2]);
+    }
+
+    /// Puts a vertex on the screen, or says that it needs clipping.
+    #[inline]
+    pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
+        (self.at[i], self.depth[i]) = match vertex {
+            Some(v) => (ScreenPos::of(&v), v.depth()),
+            None => (ScreenPos::NEEDS_CLIPPING, 0),
+        };
+    }
+
+    /// The values, with input of light at the pixels.
+    #[inline]
+    pub(super) fn columns<'a>(&'a self, lit: LitColumn<'a>) -> Columns<'a> {
+        let Self { at, depth, shade, texture, fog, channels, slope } = self;
+        Columns { at, depth, shade, effects: EffectColumns { texture, fog, channels, slope, lit } }
+    }
+
+    /// The triangles of an object's geometry.
+    #[inline]
+    pub(super) fn triangles<'a>(&'a self, geometry: &Geometry<'a>) -> Triangles<'a> {
+        let lit = LitColumn::Points(geometry.normals, geometry.positions);
+        Triangles { columns: self.columns(lit), indices: geometry.triangles }
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        let Self { at, depth, shade, texture, fog, channels, slope } = self;
+        at.capacity() * size_of::<ScreenPos>()
+            + depth.capacity() * size_of::<u32>()
+            + shade.capacity() * size_of::<[U8F8; 2]>()
+            + texture.capacity() * size_of::<[i32; 2]>()
+            + fog.capacity() * size_of::<U8F8>()
+            + channels.capacity() * size_of::<[[U8F8; 3]; 2]>()
+            + slope.capacity() * size_of::<[U8F8; 2]>()
+    }
+}
+
+/// Triangles whose vertices are no mesh's: parts of faces that were clipped, faces whose shades are a curve, and those of
+/// the 16.16 path. Their values are those of the side that is seen.
+#[derive(Debug, Default)]
+pub(super) struct AddedTriangles {
+    vertices: VertexColumns,
+    lit: Vec<[f32; 6]>,
+    indices: Vec<[u32; 3]>,
+    /// The face that each is part of.
+    faces: Vec<u32>,
+    /// Vertices and triangles that stay until the frame is drawn.
+    kept: (usize, usize),
+}
+
+impl AddedTriangles {
+    /// Triangles that are added before those that wait are drawn, at most, but for the parts of one more face.
+    pub(super) const MAX_WAITING: usize = 64;
+    /// Corners and triangles that one face adds at most, see `raster::clip`.
+    const MAX_OF_FACE: usize = 8;
+
+    /// Takes memory for as many as may wait.
+    pub(super) fn make_room(&mut self) {
+        let most = 3 * Self::MAX_WAITING + Self::MAX_OF_FACE;
+        let Self { vertices, lit, indices, faces, .. } = self;
+        let VertexColumns { at, depth, shade, texture, fog, channels, slope } = vertices;
+        if at.capacity() >= most {
+            return;
+        }
+        at.reserve(most);
+        depth.reserve(most);
+        shade.reserve(most);
+        texture.reserve(most);
+        fog.reserve(most);
+        channels.reserve(most);
+        slope.reserve(most);
+        lit.reserve(most);
+        indices.reserve(most);
+        faces.reserve(most);
+    }
+
+    /// Adds a vertex, and returns its index.
+    pub(super) fn vertex(&mut self, vertex: &Vertex, attributes: &Attributes) -> u32 {
+        let Self { vertices, lit, .. } = self;
+        // Fewer than 2³²: memory for as many is not there.
+        let index = vertices.at.len() as u32;
+        vertices.at.push(ScreenPos::of(vertex));
+        vertices.depth.push(vertex.depth());
+        vertices.shade.push([vertex.shade(); 2]);
+        vertices.texture.push(attributes.texture);
+        vertices.fog.push(attributes.fog);
+        vertices.channels.push([attributes.channels; 2]);
+        vertices.slope.push(attributes.slope);
+        lit.push(attributes.lit);
+        index
+    }
+
+    /// Adds a triangle of vertices that were added, part of this face.
+    pub(super) fn triangle(&mut self, corners: [u32; 3], face: u32) {
+        self.indices.push(corners);
+        self.faces.push(face);
+    }
+
+    /// Number of triangles.
+    pub(super) fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Triangles that have been added since others were kept or taken out.
+    pub(super) fn waiting(&self) -> usize {
+        self.indices.len() - self.kept.1
+    }
+
+    /// The triangles.
+    pub(super) fn triangles(&self) -> Triangles<'_> {
+        Triangles { columns: self.vertices.columns(LitColumn::Values(&self.lit)), indices: &self.indices }
+    }
+
+    /// The face that each is part of.
+    pub(super) fn faces(&self) -> &[u32] {
+        &self.faces
+    }
+
+    /// Keeps all until the frame is drawn.
+    pub(super) fn keep(&mut self) {
+        self.kept = (self.vertices.at.len(), self.indices.len());
+    }
+
+    /// Takes those out that are not kept.
+    pub(super) fn drop_waiting(&mut self) {
+        let (vertices, triangles) = self.kept;
+        let VertexColumns { at, depth, shade, texture, fog, channels, slope } = &mut self.vertices;
+        at.truncate(vertices);
+        depth.truncate(vertices);
+        shade.truncate(vertices);
+        texture.truncate(vertices);
+        fog.truncate(vertices);
+        channels.truncate(vertices);
+        slope.truncate(vertices);
+        self.lit.truncate(vertices);
+        self.indices.truncate(triangles);
+        self.faces.truncate(triangles);
+    }
+
+    /// Takes all out.
+    pub(super) fn clear(&mut self) {
+        self.kept = (0, 0);
+        self.drop_waiting();
+    }
+
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.vertices.bytes()
+            + self.lit.capacity() * size_of::<[f32; 6]>()
+            + self.indices.capacity() * size_of::<[u32; 3]>()
+            + self.faces.capacity() * size_of::<u32>()
+    }
+}

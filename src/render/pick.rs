@@ -1,0 +1,567 @@
+//! Picking: which faces of an object are drawn, and how. Each is culled or clipped where it must be, and gets a shading:
+//! the object's, or within an error budget the one that is decided for it.
+
+use alloc::vec::Vec;
+
+use super::Stats;
+use super::budget::{Budget, FLOAT, Fit, LINEAR};
+use super::clip::{Corner, Progressions, clip};
+use super::columns::AddedTriangles;
+use super::faces::{Face, Faces};
+use super::geometry::Geometry;
+use super::stats::Shares;
+use crate::fixed::U8F8;
+use crate::lanes::three;
+use crate::light::Blend;
+use crate::mesh::Mesh;
+use crate::plan::FaceShading;
+use crate::raster::columns::{Picks, ScreenPos, Triangles};
+use crate::raster::cull::{CullMasks, PickList, cull, pick};
+use crate::raster::effects::Attributes;
+use crate::raster::pick::{CHUNK, LANES, Pick};
+use crate::raster::{Interpolation, Rect, Vertex};
+use crate::simd::Level;
+use crate::span::Kernel;
+use crate::view::Homogeneous;
+
+const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has its bits in a pick");
+
+/// Picks that wait to be drawn together, at most.
+const CAPACITY: usize = 512;
+
+/// What faces that are drawn together have in common.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Look {
+    /// The surface, where pixels pass through stages; otherwise it does not matter.
+    pub(super) surface: u16,
+    pub(super) shading: FaceShading,
+    /// True if pixels pass through stages.
+    pub(super) effects: bool,
+    pub(super) transparent: bool,
+    /// True if each has one shade for all of its pixels.
+    pub(super) one_shade: bool,
+    /// True if they are triangles that the frame adds, and not the object's.
+    pub(super) added: bool,
+}
+
+impl Look {
+    /// The interpolation of the corners' shades.
+    pub(super) fn interpolation(&self) -> Interpolation {
+        // Between corners that agree any will do.
+        if self.one_shade { Interpolation::Gouraud } else { self.shading.interpolation() }
+    }
+}
+
+/// Faces that are drawn together, in order.
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub(super) look: Look,
+    pub(super) triangles: Triangles<'a>,
+    pub(super) picks: Picks<'a>,
+    /// The face that each triangle is part of, if the frame adds them.
+    faces: &'a [u32],
+}
+
+impl Run<'_> {
+    /// The vertices of a pick, and the interpolation of their shades.
+    pub(super) fn vertices(&self, k: usize) -> ([Vertex; 3], Interpolation) {
+        let vertices = self.triangles.vertices(&self.picks, k);
+        let flat = || Interpolation::Flat(vertices[0].shade().nearest());
+        let interpolation = if self.look.one_shade { flat() } else { self.look.shading.interpolation() };
+        (vertices, interpolation)
+    }
+
+    /// The values of a pick's corners beyond their shades.
+    pub(super) fn attributes(&self, k: usize) -> [Attributes; 3] {
+        let pick = self.picks.get(k);
+        let attributes = three(self.triangles.corners(pick), |i| {
+            self.triangles.columns.attributes(i, pick.side(), self.look.shading.lights_pixels())
+        });
+        match self.picks.flat.get(k) {
+            Some(&channels) => attributes.map(|corner| Attributes { channels, ..corner }),
+            None => attributes,
+        }
+    }
+
+    /// The picks' faces by their index in the mesh, or in what splitting made of it.
+    pub(super) fn face(&self, k: usize) -> usize {
+        let index = self.picks.get(k).index();
+        if self.look.added { self.faces[index] as usize } else { index }
+    }
+}
+
+/// Culling of triangles that cover no pixel: the pixels that are drawn, and the level that decides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Culler {
+    pub(super) clip: Rect,
+    pub(super) level: Level,
+}
+
+/// Memory of picking. It is taken when it is first needed, and is then enough.
+#[derive(Debug, Default)]
+pub(super) struct PickScratch {
+    picks: PickList<{ CAPACITY + CHUNK + LANES }>,
+    flat: Vec<[U8F8; 3]>,
+    /// The end of each run.
+    runs: Vec<(usize, Look)>,
+    pub(super) added: AddedTriangles,
+}
+
+impl PickScratch {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        self.flat.capacity() * size_of::<[U8F8; 3]>()
+            + self.runs.capacity() * size_of::<(usize, Look)>()
+            + self.added.bytes()
+    }
+}
+
+/// Collects picks, and has them drawn when there are enough.
+pub(super) struct Picker<'a> {
+    /// `None` where all faces are asked for.
+    culler: Option<Culler>,
+    /// True if triangles that are added stay until the frame is drawn.
+    keeps: bool,
+    scratch: &'a mut PickScratch,
+    /// The look of triangles that are no mesh's and not yet culled, and the first of them.
+    pending: Option<(Look, usize)>,
+    draw: &'a mut dyn FnMut(&Run<'_>),
+}
+
+impl<'a> Picker<'a> {
+    pub(super) fn new(
+        culler: Option<Culler>,
+        keeps: bool,
+        scratch: &'a mut PickScratch,
+        draw: &'a mut dyn FnMut(&Run<'_>),
+    ) -> Self {
+        scratch.runs.reserve(CAPACITY + CHUNK);
+        scratch.picks.clear();
+        Self { culler, keeps, scratch, pending: None, draw }
+    }
+
+    /// Culls up to 64 triangles. `exact_cover` is false where those that cover no pixel centre may draw something.
+    fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
+        // Nowhere a pixel is covered.
+        const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
+        let (level, clip) = self.culler.map_or((Kernel::PORTABLE.simd_level(), NOWHERE), |c| (c.level, c.clip));
+        let masks = cull(level, at, triangles, clip, culls);
+        if self.culler.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
+    }
+
+    /// Begins a run of another look, if it is another.
+    fn begin(&mut self, look: Look) {
+        let end = self.scratch.picks.as_slice().len();
+        if self.scratch.runs.last().is_none_or(|(_, last)| *last != look) {
+            self.scratch.runs.push((end, look));
+        }
+    }
+
+    /// Ends the last run behind the last pick.
+    #[inline]
+    fn end(&mut self) {
+        let end = self.scratch.picks.as_slice().len();
+        if let Some((last_end, _)) = self.scratch.runs.last_mut() {
+            *last_end = end;
+        }
+    }
+
+    /// Adds those of 64 faces whose bits are set, all of one look.
+    #[inline]
+    fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
+        self.begin(look);
+        let level = self.culler.map_or(Kernel::PORTABLE.simd_level(), |culler| culler.level);
+        // Below `Pick::MAX_COUNT`.
+        pick(level, &mut self.scratch.picks, first as u32, masks, chosen);
+        self.end();
+    }
+
+    /// Adds one face, or one triangle that the frame adds.
+    #[inline]
+    fn push(&mut self, look: Look, pick: u32, flat: Option<[U8F8; 3]>) {
+        self.begin(look);
+        self.scratch.picks.push(pick);
+        self.scratch.flat.extend(flat);
+        self.end();
+    }
+
+    /// Adds the triangles that the frame has added from `first` on.
+    pub(super) fn push_added(&mut self, look: Look, first: usize, flat: Option<[U8F8; 3]>) {
+        let look = Look { added: true, ..look };
+        let end = self.scratch.added.len();
+        let exact_cover = look.interpolation().has_exact_cover();
+        for from in (first..end).step_by(CHUNK) {
+            let Triangles { columns, indices } = self.scratch.added.triangles();
+            let masks = self.cull(columns.at, &indices[from..end.min(from + CHUNK)], false, exact_cover);
+            for at in 0..end.min(from + CHUNK) - from {
+                if masks.covers >> at & 1 == 1 {
+                    self.push(look, masks.pick(at, from + at, false), flat);
+                }
+            }
+        }
+    }
+
+    /// Adds a triangle that is no mesh's.
+    pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: FaceShading) {
+        let flat = match interpolation {
+            Interpolation::Flat(index) => Some(U8F8::from(index)),
+            _ => None,
+        };
+        let (effects, transparent, one_shade) = (false, false, flat.is_some());
+        let look = Look { surface: 0, shading, effects, transparent, one_shade, added: true };
+        let added = &self.scratch.added;
+        if self.pending.is_none_or(|(of, first)| of != look || added.len() - first >= CHUNK) {
+            self.push_pending();
+            self.pending = Some((look, self.scratch.added.len()));
+        }
+        let added = &mut self.scratch.added;
+        let corners = three(vertices.each_ref(), |vertex| {
+            added.vertex(&flat.map_or(*vertex, |shade| vertex.with_shade(shade)), &Attributes::default())
+        });
+        added.triangle(corners, 0);
+    }
+
+    /// Picks those among the triangles that are no mesh's.
+    fn push_pending(&mut self) {
+        if let Some((look, first)) = self.pending.take() {
+            self.push_added(look, first, None);
+            self.make_space(&Triangles::NONE);
+        }
+    }
+
+    /// Draws triangles that are no mesh's.
+    pub(super) fn finish_vertices(&mut self) {
+        self.push_pending();
+        self.finish(&Triangles::NONE);
+    }
+
+    /// Memory of triangles that the frame adds.
+    pub(super) fn added(&mut self) -> &mut AddedTriangles {
+        &mut self.scratch.added
+    }
+
+    /// Draws what waits if there is no room for 64 more, or for the parts of one more face.
+    #[inline]
+    fn make_space(&mut self, triangles: &Triangles<'_>) {
+        if self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
+        {
+            self.finish(triangles);
+        }
+    }
+
+    /// Draws what waits. `triangles` are the object's.
+    #[inline(never)]
+    pub(super) fn finish(&mut self, triangles: &Triangles<'_>) {
+        let (mut first, mut keeps) = (0, self.keeps);
+        let PickScratch { picks: list, flat, runs, added } = &mut *self.scratch;
+        let picks = Picks { picks: list.as_slice(), flat };
+        for &(end, look) in &*runs {
+            let triangles = if look.added { added.triangles() } else { *triangles };
+            keeps |= look.transparent && look.added;
+            if first < end {
+                (self.draw)(&Run { look, triangles, picks: picks.range(first, end), faces: added.faces() });
+            }
+            first = end;
+        }
+        list.clear();
+        flat.clear();
+        runs.clear();
+        if keeps {
+            added.keep();
+        } else {
+            added.drop_waiting();
+        }
+    }
+}
+
+impl Faces<'_> {
+    /// Picks the faces that are to be drawn. Within a budget the shading of each is decided on; returns the counts of that.
+    pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
+        stats.faces += self.geometry.triangles.len() as u64;
+        if self.lit_by_face {
+            picker.scratch.flat.reserve(CAPACITY + CHUNK);
+        }
+        if self.culls { self.each::<true>(budget, stats, picker) } else { self.each::<false>(budget, stats, picker) }
+    }
+
+    #[inline(never)]
+    fn each<const CULLS: bool>(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        let all = self.triangles();
+        // Every shading that a budget chooses has exact cover, and one shade has.
+        let has_one_shade = self.lit_by_face || !self.runs;
+        let exact_cover = budget.is_some() || has_one_shade || self.shading.interpolation().has_exact_cover();
+        let common = if budget.is_some() { LINEAR } else { self.shading.into() };
+        let one_look = self.one_look(common, budget.is_some());
+        stats.decided += u64::from(budget.is_some());
+        let (mut counts, before, mut linear) = (Shares::default(), stats.drawn, 0);
+        for (chunk, triangles) in triangles.chunks(CHUNK).enumerate() {
+            let first = chunk * CHUNK;
+            let masks = picker.cull(&self.columns.at, triangles, CULLS, exact_cover);
+            let mut left = self.drawn::<CULLS>(chunk, triangles.len(), &masks, stats);
+            let unclipped = left & !masks.clipped;
+            let classes =
+                budget.map(|budget| self.classify(budget, (first, if CULLS { 0 } else { masks.back }), unclipped));
+            let of_common = classes.as_ref().map_or(unclipped, |classes| classes.linear);
+            linear += u64::from(of_common.count_ones());
+            if let Some(look) = one_look.filter(|_| of_common == left) {
+                picker.add(look, first, &masks, left);
+                self.light_faces(picker, stats);
+                picker.make_space(&all);
+                continue;
+            }
+            while left != 0 {
+                let at = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let is = |bits: u64| bits >> at & 1 == 1;
+                let face = Face {
+                    // Below `Pick::MAX_COUNT`.
+                    index: (first + at) as u32,
+                    indices: triangles[at],
+                    surface: triangle_surfaces[first + at],
+                    back_facing: !CULLS && is(masks.back),
+                };
+                if is(of_common) {
+                    let look = self.look(face.surface, common, budget.is_some());
+                    let flat = self.lit_face(face, stats);
+                    picker.push(look, masks.pick(at, first + at, face.back_facing), flat);
+                    continue;
+                }
+                if is(masks.clipped) {
+                    let culls = CULLS || is(self.twins_of(chunk));
+                    let shading = self.clipped(culls, face, budget, stats, picker);
+                    if budget.is_some() {
+                        counts.add(shading, 1);
+                    }
+                } else if let (Some(budget), Some(classes)) = (budget, &classes) {
+                    let error = (!is(classes.float)).then_some(classes.errors[at]);
+                    let pick = masks.pick(at, first + at, face.back_facing);
+                    counts.add(self.decided((face, pick), (budget, error), stats, picker), 1);
+                }
+                picker.make_space(&all);
+            }
+            picker.make_space(&all);
+        }
+        picker.finish(&all);
+        if budget.is_some() {
+            stats.shares.add(LINEAR, linear);
+            counts.add(LINEAR, linear);
+        } else {
+            stats.shares.add(self.shading.into(), stats.drawn - before);
+        }
+        counts
+    }
+
+    /// Finds those of a chunk of up to 64 triangles that lie back to back with others.
+    #[inline]
+    fn twins_of(&self, chunk: usize) -> u64 {
+        self.twins.get(chunk).copied().unwrap_or(0)
+    }
+
+    /// Those of up to 64 faces that are to be drawn, those that need clipping included. A face that covers no pixel centre
+    /// is left out, though it counts as drawn.
+    #[inline]
+    fn drawn<const CULLS: bool>(&self, chunk: usize, count: usize, masks: &CullMasks, stats: &mut Stats) -> u64 {
+        let drawn = if CULLS { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
+        let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(masks.clipped.count_ones()));
+        stats.drawn += drawn_here;
+        stats.clipped += clipped;
+        stats.culled += count as u64 - drawn_here - clipped;
+        (drawn & masks.covers) | masks.clipped
+    }
+
+    /// What faces of a surface have in common that are drawn by one shading.
+    #[inline]
+    fn look(&self, surface: u16, shading: FaceShading, is_decided: bool) -> Look {
+        let material = &self.paints[usize::from(surface)];
+        let effects = material.has_effects || (is_decided && shading.lights_pixels());
+        Look {
+            surface: if effects { surface } else { 0 },
+            shading,
+            effects,
+            transparent: material.blend != Blend::Opaque,
+            one_shade: !effects && !is_decided && (self.lit_by_face || !self.runs),
+            added: false,
+        }
+    }
+
+    /// That of all faces, if they have one.
+    fn one_look(&self, shading: FaceShading, is_decided: bool) -> Option<Look> {
+        let plain = self.paints.iter().all(|material| !material.has_effects);
+        (self.paints.len() == 1 || (plain && !self.paints.is_empty())).then(|| self.look(0, shading, is_decided))
+    }
+
+    /// The one shade of a face, or its channels, if that is what is lit.
+    #[inline]
+    fn lit_face(&self, face: Face, stats: &mut Stats) -> Option<[U8F8; 3]> {
+        if !self.lit_by_face {
+            return None;
+        }
+        stats.lit += 1;
+        Some(self.flat(face))
+    }
+
+    /// Lights the faces that were picked last, if that is what is lit.
+    fn light_faces(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        if !self.lit_by_face {
+            return;
+        }
+        let PickScratch { picks, flat, .. } = &mut *picker.scratch;
+        for &number in &picks.as_slice()[flat.len()..] {
+            let pick = Pick(number);
+            let index = pick.index();
+            let face = Face {
+                index: index as u32,
+                indices: self.geometry.triangles[index],
+                surface: self.geometry.triangle_surfaces[index],
+                back_facing: pick.side() != 0,
+            };
+            stats.lit += 1;
+            flat.push(self.flat(face));
+        }
+    }
+
+    /// A face that bounds alone do not make linear on the screen. `error` is its bound, if it is not linear on the face
+    /// either.
+    #[inline(never)]
+    fn decided(
+        &self,
+        (face, pick): (Face, u32),
+        (budget, error): (&Budget, Option<f32>),
+        stats: &mut Stats,
+        picker: &mut Picker<'_>,
+    ) -> FaceShading {
+        let side = usize::from(face.back_facing);
+        let columns = self.triangles().columns;
+        let vertices = three(face.indices, |i| columns.vertex(i as usize, side, None));
+        let fit = error.map_or(Fit::of(FLOAT), |error| self.fit(budget, (face, error), &vertices));
+        let look = self.look(face.surface, fit.shading, true);
+        stats.shares.add(fit.shading, 1);
+        if fit.shading != FaceShading::Quadratic {
+            picker.push(look, pick, None);
+            return fit.shading;
+        }
+        // A curve of its own.
+        let curve = self.curve(face.surface, &fit.nodes);
+        let first = picker.added().len();
+        let mut corners = [0; 3];
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let mut attributes = self.attributes(face.indices[k], face.back_facing, false);
+            attributes.lit = curve[k];
+            *corner = picker.added().vertex(&vertices[k], &attributes);
+        }
+        picker.added().triangle(corners, face.index);
+        picker.push_added(look, first, None);
+        fit.shading
+    }
+
+    /// A face that reaches beyond the near plane or the guard band. Apart: it is rare.
+    #[cold]
+    #[inline(never)]
+    fn clipped(
+        &self,
+        culls: bool,
+        face: Face,
+        budget: Option<&Budget>,
+        stats: &mut Stats,
+        picker: &mut Picker<'_>,
+    ) -> FaceShading {
+        let at = three(face.indices, |i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        let face = Face { back_facing: !culls && is_turned_away(&at), ..face };
+        let (shading, before) =
+            (budget.map_or(self.shading.into(), |budget| self.decide_clipped(budget, face)), stats.drawn);
+        let look = self.look(face.surface, shading, budget.is_some());
+        let flat = self.lit_face(face, stats);
+        picker.added().make_room();
+        let first = picker.added().len();
+        self.add_parts((face, at), (culls, shading), picker.added(), stats);
+        picker.push_added(look, first, flat);
+        if budget.is_some() {
+            stats.shares.add(shading, stats.drawn - before);
+        }
+        shading
+    }
+
+    /// Adds the triangles that clipping leaves of a face.
+    fn add_parts(
+        &self,
+        (face, at): (Face, [Homogeneous; 3]),
+        (culls, shading): (bool, FaceShading),
+        added: &mut AddedTriangles,
+        stats: &mut Stats,
+    ) {
+        let columns = self.triangles().columns;
+        let corner = |k: usize| {
+            let i = face.indices[k] as usize;
+            let shade = columns.shade[i][usize::from(face.back_facing)];
+            let is_projected = !columns.at[i].needs_clipping();
+            Corner {
+                at: at[k],
+                shade: f64::from(shade.to_bits()),
+                vertex: is_projected.then(|| columns.vertex(i, 0, Some(shade))),
+                attributes: self.attributes(face.indices[k], face.back_facing, shading.lights_pixels()),
+            }
+        };
+        let progressions = Progressions { interpolation: shading.interpolation(), affine: self.affine };
+        let Some((polygon, corners)) = clip(self.view, progressions, [corner(0), corner(1), corner(2)]) else {
+            return;
+        };
+        let area = polygon.doubled_area();
+        if area == 0 || (culls && area > 0) {
+            stats.culled += 1;
+            return;
+        }
+        let mut first = None;
+        for (vertex, corner) in polygon.vertices().iter().zip(corners.as_slice()) {
+            let index = added.vertex(vertex, &corner.attributes);
+            first.get_or_insert(index);
+        }
+        let first = first.unwrap_or(0);
+        for part in polygon.part_corners() {
+            stats.drawn += 1;
+            // Fewer than eight corners more.
+            added.triangle(three(part, |corner| first + corner as u32), face.index);
+        }
+    }
+
+    /// Attributes of a vertex as one side sees them, those that there are, with its normal and position if pixels are lit.
+    fn attributes(&self, vertex: u32, back: bool, lights_pixels: bool) -> Attributes {
+        self.triangles().columns.attributes(vertex as usize, usize::from(back), lights_pixels)
+    }
+}
+
+/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume
+/// between the eye and the three corners.
+fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
+    let [a, b, c] = at;
+    let volume = a.w * (b.x * c.y - c.x * b.y) + b.w * (c.x * a.y - a.x * c.y) + c.w * (a.x * b.y - b.x * a.y);
+    volume > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Every level picks the faces whose bits are set, in order, with their sides.
+        #[test]
+        fn faces_are_picked_in_order(
+            chosen in prop::collection::vec((any::<u64>(), any::<u64>(), any::<u64>(), any::<bool>()), 0..8),
+        ) {
+            for kernel in Kernel::available() {
+                let (mut list, mut expected) = (PickList::<{ CAPACITY + LANES }>::new(), Vec::new());
+                for (chunk, &(bits, fewer, back, all)) in (0_u32..).zip(&chosen) {
+                    let chosen = if all { !0 } else { bits & fewer };
+                    let masks = CullMasks { back, ..CullMasks::default() };
+                    pick(kernel.simd_level(), &mut list, chunk * 64, &masks, chosen);
+                    let is = |bits: u64, at: usize| bits >> at & 1 == 1;
+                    let of_chunk = (0..64).filter(|&at| is(chosen, at));
+                    expected.extend(of_chunk.map(|at| masks.pick(at, chunk as usize * 64 + at, is(back, at))));
+                }
+                prop_assert_eq!(list.as_slice(), &expected);
+            }
+        }
+    }
+}
