@@ -64,10 +64,13 @@ pub(super) struct Corners8 {
     shade: [Ints; 3],
     /// The bits of u32.
     pub(super) depth: [Ints; 3],
+    /// True if the first corner's shade is that of all.
+    are_flat: bool,
 }
 
 impl Corners8 {
-    pub(super) const NONE: Self = Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
+    pub(super) const NONE: Self =
+        Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
 
     /// Reads the first eight of these triangles, their depths only with `DEPTHS`.
     #[inline(always)]
@@ -76,23 +79,23 @@ impl Corners8 {
         // Cut to one length, so that a vertex's index is compared with it once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
+        self.are_flat = !picks.flat.is_empty();
         for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
             let pick = Pick(pick);
             let indices = triangles.indices[pick.index()];
             for (corner, vertex) in indices.into_iter().enumerate() {
                 let vertex = vertex as usize;
                 self.at[corner][lane] = u64::from(at[vertex]).cast_signed();
-                self.shade[corner][lane] = i32::from(shade[vertex][pick.side()].to_bits());
+                if !self.are_flat {
+                    self.shade[corner][lane] = i32::from(shade[vertex][pick.side()].to_bits());
+                }
                 if DEPTHS {
                     self.depth[corner][lane] = depth[vertex].cast_signed();
                 }
             }
         }
-        // The one shade of each.
         for (lane, flat) in picks.flat.iter().take(LANES).enumerate() {
-            for corner in 0..3 {
-                self.shade[corner][lane] = i32::from(flat[0].to_bits());
-            }
+            self.shade[0][lane] = i32::from(flat[0].to_bits());
         }
     }
 }
@@ -138,6 +141,18 @@ pub(super) struct ValuePlanes8 {
 impl ValuePlanes8 {
     pub(super) const NONE: Self =
         Self { n: [0.0; LANES], per_row: [0.0; LANES], per_column: [0.0; LANES], step: [0; LANES] };
+
+    /// Sets up the planes of one value for each triangle.
+    #[inline(always)]
+    fn set_up_constant<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, values: &Ints) {
+        let (area, zero) = (basis.area, s.all_f64(0.0));
+        let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
+        let n = s.mul(s.add(s.to_f64(s.i32s(values)), s.all_f64(128.0)), area);
+        s.put_f64s(s.sub(n, half), &mut self.n);
+        s.put_f64s(zero, &mut self.per_column);
+        s.put_f64s(zero, &mut self.per_row);
+        s.put_i32s(s.all_i32(0), &mut self.step);
+    }
 
     /// Sets up the planes of these values at the corners.
     #[inline(always)]
@@ -294,7 +309,11 @@ impl TriangleSetup8 {
         let area = s.flip(signed, signed);
         let inverse = s.div(s.all_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
-        self.shade.set_up(s, &basis, &corners.shade);
+        if corners.are_flat {
+            self.shade.set_up_constant(s, &basis, &corners.shade[0]);
+        } else {
+            self.shade.set_up(s, &basis, &corners.shade);
+        }
         s.put_f64s(inverse, &mut self.inverse);
         // Without an area no rows.
         let has_area = s.is_less(s.all_f64(0.0), area);

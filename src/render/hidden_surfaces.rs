@@ -181,7 +181,7 @@ impl Renderer {
                 lists.reserve(faces.capacity());
             }
         }
-        let culler = Some(Culler { clip: raster.clip(), level: settings.kernel.simd_level() });
+        let culler = Some(Culler { clip: raster.clip(), kernel: settings.kernel });
         let pipelines = cache.pipelines(scene, settings.kernel);
         let mut painter = Painter { pipelines, raster: &mut raster, scratch: effects };
         let mut drawn = DrawStats::default();

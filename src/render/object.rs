@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::Stats;
 use super::budget::Budget;
 use super::columns::VertexColumns;
-use super::faces::Faces;
+use super::faces::{Faces, face_normals};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
@@ -148,6 +148,8 @@ pub(super) struct ObjectState {
     is_tessellated: bool,
     /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
+    /// The normal of each face, and the mesh whose they are, where faces are lit.
+    face_normals: Option<(Shared<Mesh>, Vec<Vec3>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be made from now.
@@ -221,6 +223,7 @@ impl ObjectState {
         self.project(&made, stats);
         self.light_vertices(&made, stats);
         self.add_attributes(&made);
+        self.keep_face_normals(&made);
         self.bound_errors(&made);
         self.prepare_pixels(&made);
         true
@@ -333,6 +336,18 @@ impl ObjectState {
         {
             vertex::fog_levels(&geometry, &source.view, fog, &mut self.columns.fog);
         }
+    }
+
+    /// Makes the normals of the faces, if these are lit and the mesh is another one.
+    fn keep_face_normals(&mut self, &Made { object, plan, .. }: &Made<'_>) {
+        let is_known = matches!(&self.face_normals, Some((mesh, _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
+        if plan.stages().lit_at != LitAt::Faces || (is_known && !self.is_tessellated) {
+            return;
+        }
+        let (_, mut normals) = self.face_normals.take().unzip();
+        let normals = normals.get_or_insert_default();
+        face_normals(&drawn_geometry(self.is_tessellated, &self.tessellated, object), normals);
+        self.face_normals = Some((Shared::clone(object.shared_mesh()), core::mem::take(normals)));
     }
 
     /// Prepares a budget's decisions on faces, if there is one.
@@ -449,6 +464,7 @@ impl ObjectState {
             lights: self.lights(plan),
             paints: &self.paints,
             columns: &self.columns,
+            face_normals: self.face_normals.as_ref().map_or(&[], |(_, normals)| normals),
             culls: plan.is_on(Effect::BackFaceCulling),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             runs: plan.is_on(Effect::Gouraud),
@@ -494,6 +510,7 @@ impl ObjectState {
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
+            + self.face_normals.as_ref().map_or(0, |(_, normals)| normals.capacity() * size_of::<Vec3>())
             + self.normal_tables.len() * Lut64K::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()

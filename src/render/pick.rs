@@ -20,7 +20,6 @@ use crate::raster::cull::{CullMasks, PickList, cull, pick};
 use crate::raster::effects::Attributes;
 use crate::raster::pick::{CHUNK, LANES, Pick};
 use crate::raster::{Interpolation, Rect, Vertex};
-use crate::simd::Level;
 use crate::span::Kernel;
 use crate::view::Homogeneous;
 
@@ -94,7 +93,7 @@ impl Run<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Culler {
     pub(super) clip: Rect,
-    pub(super) level: Level,
+    pub(super) kernel: Kernel,
 }
 
 /// Memory of picking. It is taken when it is first needed, and is then enough.
@@ -144,7 +143,8 @@ impl<'a> Picker<'a> {
     fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
         // Nowhere a pixel is covered.
         const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
-        let (level, clip) = self.culler.map_or((Kernel::PORTABLE.simd_level(), NOWHERE), |c| (c.level, c.clip));
+        let (level, clip) =
+            self.culler.map_or((Kernel::PORTABLE.simd_level(), NOWHERE), |c| (c.kernel.simd_level(), c.clip));
         let masks = cull(level, at, triangles, clip, culls);
         if self.culler.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
@@ -170,7 +170,7 @@ impl<'a> Picker<'a> {
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
         self.begin(look);
-        let level = self.culler.map_or(Kernel::PORTABLE.simd_level(), |culler| culler.level);
+        let level = self.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel).simd_level();
         // Below `Pick::MAX_COUNT`.
         pick(level, &mut self.scratch.picks, first as u32, masks, chosen);
         self.end();
@@ -406,18 +406,31 @@ impl Faces<'_> {
         if !self.lit_by_face {
             return;
         }
+        let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
         let PickScratch { picks, flat, .. } = &mut *picker.scratch;
-        for &number in &picks.as_slice()[flat.len()..] {
-            let pick = Pick(number);
-            let index = pick.index();
-            let face = Face {
-                index: index as u32,
-                indices: self.geometry.triangles[index],
-                surface: self.geometry.triangle_surfaces[index],
-                back_facing: pick.side() != 0,
-            };
-            stats.lit += 1;
-            flat.push(self.flat(face));
+        let picks = &picks.as_slice()[flat.len()..];
+        stats.lit += picks.len() as u64;
+        for eight in picks.chunks(LANES) {
+            let mut faces = [Pick(eight[0]); LANES];
+            for (face, &pick) in faces.iter_mut().zip(eight) {
+                *face = Pick(pick);
+            }
+            let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
+            let first = surface(&faces[0]);
+            if !self.channels && faces.iter().all(|face| surface(face) == first) {
+                let shades = self.flat_of_eight(kernel, first, &faces);
+                flat.extend(shades[..eight.len()].iter().map(|&shade| [shade; 3]));
+                continue;
+            }
+            flat.extend(faces[..eight.len()].iter().map(|face| {
+                self.flat(Face {
+                    // Below `Pick::MAX_COUNT`.
+                    index: face.index() as u32,
+                    indices: self.geometry.triangles[face.index()],
+                    surface: surface(face),
+                    back_facing: face.side() != 0,
+                })
+            }));
         }
     }
 

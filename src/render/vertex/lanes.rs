@@ -168,6 +168,27 @@ fn light_suns_by<S: Singles8, const BOTH: bool>(
     light_one_by_one::<BOTH>(rest, rest_surfaces, paints, lights, rest_shades);
 }
 
+compiled_for_each_level! {
+    /// The shades of eight faces of one surface by the normals of the sides that are seen: suns, and no highlights.
+    pub(in crate::render) fn light_faces[][](
+        paint: &SurfaceMaterial,
+        lights: &Lights<'_>,
+        normals: &[Vec3; LANES],
+    ) -> [U8F8; LANES] = light_faces_by;
+}
+
+#[inline(always)]
+fn light_faces_by<S: Singles8>(
+    s: S,
+    paint: &SurfaceMaterial,
+    lights: &Lights<'_>,
+    normals: &[Vec3; LANES],
+) -> [U8F8; LANES] {
+    let mut sides = [[U8F8::default(); 2]; LANES];
+    light_eight::<S, false>(s, paint, lights, normals, &mut sides);
+    each!(lane => sides[lane][0])
+}
+
 /// The definition.
 #[inline(never)]
 fn light_one_by_one<const BOTH: bool>(

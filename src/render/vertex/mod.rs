@@ -18,6 +18,8 @@ use crate::view::ObjectView;
 
 mod lanes;
 
+pub(super) use lanes::light_faces;
+
 /// Gives each vertex the shade that its material's own answer to light makes of what it has.
 #[inline(never)]
 pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {

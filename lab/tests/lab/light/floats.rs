@@ -266,9 +266,17 @@ pub(crate) fn every_float_near_zero_is_zero(tried: &mut Tried) {
             let is_other = tiny != 0.0 && NOT_ZERO.iter().any(|(other, _)| *other == name);
             let is_right = match (&shown, &with_zero) {
                 (Ok(_), Ok(_)) => shown == with_zero || is_other,
-                (Err(text), Ok(_)) => tiny < 0.0 && text.contains("must not be negative"),
+                (Err(text), Ok(_)) => {
+                    tiny < 0.0 && ["must not be negative", "must be 0 <= "].iter().any(|why| text.contains(why))
+                }
                 (Ok(_), Err(text)) => {
-                    let above = ["must be above 0", "must lie between 0", "it looks at the point where it is"];
+                    let above = [
+                        "outer above 0",
+                        "must be above 0",
+                        "must lie between 0",
+                        "must not be zero",
+                        "it looks at the point where it is",
+                    ];
                     tiny != 0.0 && above.iter().any(|why| text.contains(why))
                 }
                 (Err(_), Err(_)) => shown == with_zero,
