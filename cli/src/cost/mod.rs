@@ -154,7 +154,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     verdict(&study)
 }
 
-/// Fails where a budget or a shading has not kept its promise, of accuracy or of time.
+/// Fails where a budget or a shading is less accurate than it promises.
 fn verdict(study: &Study) -> Result<(), Failure> {
     match cost::promises_are_kept(study) {
         true => Ok(()),
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     /// A study in which all promises are kept, then with the promise of a budget or of a shading broken by hand: each is
-    /// one warning more, in the JSON too, and the exit status 1.
+    /// one warning more, in the JSON too, and the exit status 1. A budget that takes long is a warning alone.
     #[test]
     fn a_broken_promise_of_a_budget_or_a_shading_is_a_warning_and_status_1() {
         let frames = [Scene::showing(shapes::wall(3, 2))];
@@ -240,14 +240,15 @@ mod tests {
         (late.budget[1].best_single_shading, late.budget[1].ratio) = (Some(Shading::Phong), Some((1.2, (1.1, 1.3))));
         for (study, says) in [
             (budget, "the budget of 16 keeps 99.00 % of the pixels within 16 shades, not 100 %"),
-            (late, "the budget of 8 takes 1.20 times as long as phong, not 1.05 at most"),
+            (late, "the budget of 8 takes 1.20 times as long as phong, where 1.05 is the aim"),
             (shading, "gouraud-8.8 is off by 0.25 shades more than its bound"),
         ] {
             let warnings = cost::warnings(&study);
             assert_eq!(warnings, [says]);
             let json = output::json(&json::json(&study, &warnings)).expect("JSON");
             assert!(json.contains(says));
-            assert_eq!(verdict(&study).map_err(|failure| failure.status()), Err(1));
+            let status = verdict(&study).map_err(|failure| failure.status());
+            assert_eq!(status, if says.contains("the aim") { Ok(()) } else { Err(1) });
         }
     }
 }

@@ -67,12 +67,11 @@ fn everything_is_measured_and_written() {
     let words = ["torus", "--frames", "3", "--seconds", "0", "--json", "-o", "out"];
     let output = run(&directory, &words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    // The time limit is a matter of the machine; the status says what the verdicts say.
+    // The time is the machine's matter; the status says what the verdicts say of accuracy.
     let verdicts: Vec<&str> =
         json["budget"].as_array().expect("a list").iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert!(verdicts.len() == 6 && verdicts.iter().all(|verdict| verdict.starts_with("accuracy kept")), "{verdicts:?}");
-    let is_broken = verdicts.iter().any(|verdict| verdict.contains("not kept"));
-    assert_eq!(output.status.code(), Some(i32::from(is_broken)), "{output:?}");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&2.into(), &"torus".into(), &3.into()));
     for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
         assert!(named.as_str().is_some_and(|name| !name.is_empty()), "{json}");
