@@ -103,6 +103,8 @@ pub mod hooks;
 #[cfg(feature = "alloc")]
 pub mod light;
 #[cfg(feature = "alloc")]
+mod mapping;
+#[cfg(feature = "alloc")]
 pub mod mesh;
 #[cfg(feature = "alloc")]
 pub mod plan;

@@ -1,8 +1,8 @@
 //! Levels of the processor, as values. A token exists only where the processor has its level, so code that takes one
 //! needs no other proof.
 //!
-//! The span kernels and the batches use intrinsics of a level. All else is written once, in plain arrays of eight lanes,
-//! and is compiled anew for a level by [`Avx2::run`].
+//! The span kernels use intrinsics of a level. All else is written once, over [`Lanes8`] or plain arrays of eight lanes, and
+//! is compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
 
 #![cfg_attr(
     all(feature = "simd", target_arch = "x86_64"),

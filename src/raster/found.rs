@@ -7,16 +7,8 @@ use super::rows::find_row;
 use super::setup::{Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use super::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::fixed::HAS_F64;
+use crate::mapping::Mapping;
 use crate::simd::{Lanes8, compiled_for_each_level};
-
-/// Interpolation of texture coordinates.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Coordinates {
-    /// Linear on the screen.
-    Affine,
-    /// Linear on the face.
-    Perspective,
-}
 
 /// Rows of eight small triangles.
 #[derive(Clone, Debug)]
@@ -128,8 +120,8 @@ impl FoundRows {
 pub(super) struct Wanted {
     /// Depths.
     pub(super) depths: bool,
-    /// Texture coordinates.
-    pub(super) texture: Option<Coordinates>,
+    /// Texture coordinates that are linear on the screen, or on the face.
+    pub(super) texture: Option<Mapping>,
     /// Other values, each in its slot.
     pub(super) values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last that is taken.
@@ -183,8 +175,8 @@ fn find_rows_by<S: Lanes8>(s: S, triangles: &Triangles<'_>, picks: &Picks<'_>, w
     if let Some(coordinates) = wanted.texture {
         let of_corners = texture_of_corners(triangles, picks);
         match coordinates {
-            Coordinates::Affine => affine.set_up(s, &basis, &of_corners),
-            Coordinates::Perspective => perspective.set_up(s, &basis, &corners, &of_corners),
+            Mapping::Affine => affine.set_up(s, &basis, &of_corners),
+            _ => perspective.set_up(s, &basis, &corners, &of_corners),
         }
     }
     for (planes, value) in values.iter_mut().zip(wanted.values) {
@@ -211,12 +203,12 @@ fn find_rows_by<S: Lanes8>(s: S, triangles: &Triangles<'_>, picks: &Picks<'_>, w
         }
         match wanted.texture {
             None => {}
-            Some(Coordinates::Affine) => {
+            Some(Mapping::Affine) => {
                 let [u, v] = affine.start(s, j, &ends);
                 s.put_i32s(u, &mut affine_starts[number][0]);
                 s.put_i32s(v, &mut affine_starts[number][1]);
             }
-            Some(Coordinates::Perspective) => {
+            Some(_) => {
                 let [u, v, d] = perspective.start(s, j, &ends);
                 s.put_f64s(u, &mut perspective_starts[number][0]);
                 s.put_f64s(v, &mut perspective_starts[number][1]);

@@ -11,7 +11,7 @@ use crate::plan::FaceShading;
 use crate::plan::stages::Dither;
 use crate::plan::{Effect, ObjectPlan, Plan};
 use crate::raster::DrawStats;
-use crate::raster::effects::{PixelPipeline, ShadeSource, TextureMapping, TextureStage};
+use crate::raster::effects::{PixelPipeline, ShadeSource, TextureStage};
 use crate::scene::{Mapping, Scene, Shading};
 use crate::span::Kernel;
 use crate::span::dither::Thresholds;
@@ -126,11 +126,7 @@ impl Pipelines<'_> {
                 let tables =
                     if channels.is_some() { self.tables.channels(image) } else { self.tables.shades(Some(image)) };
                 texels.zip(tables).map(|(texels, tables)| {
-                    let mapping = if paint.texture_size.is_some() {
-                        plan.stages().mapping.into()
-                    } else {
-                        TextureMapping::Affine
-                    };
+                    let mapping = if paint.texture_size.is_some() { plan.stages().mapping } else { Mapping::Affine };
                     TextureStage { texels, levels: self.tables.levels(image), mapping, tables }
                 })
             }
@@ -139,7 +135,7 @@ impl Pipelines<'_> {
                 texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureStage {
                     texels,
                     levels: None,
-                    mapping: TextureMapping::Affine,
+                    mapping: Mapping::Affine,
                     tables,
                 })
             }
@@ -182,14 +178,4 @@ fn source<'a>(
         };
     }
     ShadeSource::Shaded(shading.interpolation())
-}
-
-impl From<Mapping> for TextureMapping {
-    fn from(mapping: Mapping) -> Self {
-        match mapping {
-            Mapping::Affine => Self::Affine,
-            Mapping::Every16 => Self::Every16,
-            Mapping::Perspective => Self::Perspective,
-        }
-    }
 }

@@ -35,6 +35,7 @@ use glam::Vec3;
 
 use crate::angle::Angle;
 use crate::light::Light;
+pub use crate::mapping::Mapping;
 use crate::palette::{Palette, Rgb, builtin};
 pub use crate::shading::Shading;
 pub use crate::shared::Shared;
@@ -46,7 +47,7 @@ pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use preferences::{HiddenSurfaces, Mapping, Preferences};
+pub use preferences::{HiddenSurfaces, Preferences};
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

@@ -1,5 +1,6 @@
 //! Rendering preferences of a scene. The plan chooses those that are `None`.
 
+use crate::mapping::Mapping;
 use crate::names::named;
 use crate::shading::Shading;
 use crate::span::dither::DitherPattern;
@@ -18,20 +19,6 @@ named! {
         /// All faces of the frame at once, row by row, each pixel written once
         /// ([`raster::scan_line`](crate::raster::scan_line)). The bytes equal those with the depth buffer.
         ScanLine = "scan-line",
-    }
-}
-
-named! {
-    /// The interpolation of a texture's coordinates over a face.
-    #[derive(Default)]
-    pub enum Mapping, "mapping" {
-        /// Linear on the screen, as for a face that is seen straight on.
-        #[default]
-        Affine = "affine",
-        /// Right at every sixteenth pixel, linear between.
-        Every16 = "every-16",
-        /// Right at every pixel: two quotients each.
-        Perspective = "perspective",
     }
 }
 

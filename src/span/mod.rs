@@ -120,6 +120,7 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 pub struct Kernel {
     name: &'static str,
     level: Level,
+    /// By what every processor of the target has. A level that not every processor has is a proof, and has its own.
     fill: Fill,
 }
 
@@ -203,14 +204,14 @@ fn find_wasm() -> Option<Found> {
 
 fn find_avx2() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::avx2::fill as Fill));
+    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::sse2::fill as Fill));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
 
 fn find_avx512() -> Option<Found> {
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    return Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::avx512::fill as Fill));
+    return Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::sse2::fill as Fill));
     #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     return None;
 }
@@ -244,7 +245,13 @@ impl Kernel {
     /// `shade` is the first pixel's shade, `step` what each pixel adds to it, both in 8.8.
     #[inline]
     pub fn fill(self, row: &mut [u8], shade: u16, step: u16) {
-        (self.fill)(row, shade, step);
+        match self.level {
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Level::Avx2(avx2) => simd::avx2::fill(avx2, row, shade, step),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            Level::Avx512(avx512) => simd::avx512::fill(avx512, row, shade, step),
+            _ => (self.fill)(row, shade, step),
+        }
     }
 
     /// Fills every span, in order, as [`fill`](Self::fill) does.
@@ -265,7 +272,7 @@ impl Kernel {
             #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
             Level::Wasm => simd::wasm::fill_spans(pixels, spans),
             #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
-            _ => spans.each(pixels, self.fill),
+            _ => spans.each(pixels, |row, shade, step| self.fill(row, shade, step)),
         }
     }
 

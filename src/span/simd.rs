@@ -270,9 +270,10 @@ pub(crate) mod avx2 {
     use crate::simd::Avx2;
     use core::arch::x86_64::*;
 
-    /// Only for a processor that has [`Avx2`](crate::simd::Avx2).
-    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the table gives this function out only where AVX2 was found.
+    /// [`Kernel::fill`](super::super::Kernel::fill).
+    #[inline]
+    pub(crate) fn fill(_: Avx2, row: &mut [u8], shade: u16, step: u16) {
+        // SAFETY: the processor has AVX2, says the token.
         unsafe { vectors(row, shade, step) }
     }
 

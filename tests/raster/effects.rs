@@ -7,8 +7,7 @@ use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::lanes::{Lanes, Points};
 use mode13h::raster::effects::{
-    Attributes, EffectBatch, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping,
-    TextureStage,
+    Attributes, EffectBatch, Lighting, Limits, Mapping, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
 };
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
@@ -165,7 +164,7 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> PixelPipeline<'a> {
                 let levels = &stock.levels[..Levels::length(ubits, vbits)];
                 Levels::new(levels, ubits, vbits).expect("as many texels")
             }),
-            mapping: random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]),
+            mapping: random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]),
             tables: [&stock.tables[1], &stock.tables[2], &stock.tables[3]],
         }),
         fog: fog.then_some(&stock.tables[4]),
@@ -252,8 +251,8 @@ impl<'a> Naive<'a> {
     }
 
     /// The level of a mipmap at a pixel: of the coordinates' exact derivatives, with the depth in whole sixteenths.
-    fn level(&self, mapping: TextureMapping, last: u32, x: i32, y: i32) -> u32 {
-        let depths = if mapping == TextureMapping::Affine { [1; 3] } else { self.depths() };
+    fn level(&self, mapping: Mapping, last: u32, x: i32, y: i32) -> u32 {
+        let depths = if mapping == Mapping::Affine { [1; 3] } else { self.depths() };
         let at = |values: [i128; 3], x, y| oracle::interpolate(self.corners, values, oracle::centre(x, y)).n;
         // By the quotient's rule, times the divisor's square.
         let derivative = |of: usize, dx: i32, dy: i32| {
@@ -284,14 +283,15 @@ impl<'a> Naive<'a> {
             let values = self.attributes.each_ref().map(|a| i128::from(a.texture[i]));
             let on_face = |x: i32| of_level(self.on_face(values, x, y)).floor();
             match texture.mapping {
-                TextureMapping::Affine => {
+                Mapping::Affine => {
                     let exact = of_level(oracle::interpolate(self.corners, values, oracle::centre(seed, y)));
                     let step = of_level(oracle::per_pixel(self.corners, values));
                     let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
                     start + step.truncate() * i128::from(x - seed)
                 }
-                TextureMapping::Perspective => on_face(x),
-                TextureMapping::Every16 => {
+                Mapping::Perspective => on_face(x),
+                // `every-16`.
+                _ => {
                     let to = (from + 16).min(last).max(from);
                     let (a, b) = (on_face(from), on_face(to));
                     let step = if to == from { 0 } else { (b - a) / i128::from(to - from) };
@@ -771,7 +771,7 @@ fn levels_are_the_definition() {
     let levels = Levels::new(&numbers, ubits, vbits).expect("as many texels");
     let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
     let kernels: Vec<Kernel> = Kernel::available().collect();
-    let mappings = [TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective];
+    let mappings = [Mapping::Affine, Mapping::Every16, Mapping::Perspective];
     let mut pixels = [[0_u32; 9]; 3];
     while tried.more() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
@@ -831,7 +831,7 @@ fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
     let at = |x: i32, y: i32| Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth);
     let vertices = [at(0, 0), at(40 * 256, 0), at(0, 40 * 256)].map(|vertex| vertex.expect("in range"));
     while tried.more() {
-        let mapping = random.one_of(&[TextureMapping::Affine, TextureMapping::Every16, TextureMapping::Perspective]);
+        let mapping = random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]);
         // Texels to a pixel, some turn of the image, and a shear.
         let reach = 0.05 * 2_f64.powf(13.0 * random.unit());
         let [across, down] = [0, 1].map(|_| {

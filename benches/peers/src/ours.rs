@@ -1,6 +1,6 @@
 //! Our raster: a triangle a call, in batches, and in batches with effects.
 
-use mode13h::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureMapping, TextureStage};
+use mode13h::raster::effects::{Attributes, EffectBatch, Mapping, PixelPipeline, ShadeSource, TextureStage};
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
 use mode13h::span::Kernel;
 use mode13h::span::texture::Texels;
@@ -134,7 +134,7 @@ impl Candidate for Batches {
 pub struct Effects<'a> {
     faces: Vec<([Vertex; 3], [Attributes; 3])>,
     drawing: Drawing,
-    mapping: TextureMapping,
+    mapping: Mapping,
     material: &'a Material,
     target: Target,
     batch: EffectBatch,
@@ -151,7 +151,7 @@ impl<'a> Effects<'a> {
         Self {
             faces: triangles.iter().map(face).collect(),
             drawing,
-            mapping: if drawing.is_perspective() { TextureMapping::Perspective } else { TextureMapping::Affine },
+            mapping: if drawing.is_perspective() { Mapping::Perspective } else { Mapping::Affine },
             material,
             target: Target::new(drawing, kernel),
             batch: EffectBatch::new(),
@@ -163,13 +163,13 @@ impl Effects<'_> {
     /// Texture coordinates exact at every sixteenth pixel, as the renderer's plan has them where that shows nothing.
     /// Allegro, too, draws affine where distances are alike.
     pub fn every_16(self) -> Self {
-        Self { mapping: TextureMapping::Every16, ..self }
+        Self { mapping: Mapping::Every16, ..self }
     }
 }
 
 impl Candidate for Effects<'_> {
     fn name(&self) -> String {
-        let every = if self.mapping == TextureMapping::Every16 { "every 16th, " } else { "" };
+        let every = if self.mapping == Mapping::Every16 { "every 16th, " } else { "" };
         format!("batches, {every}{}", self.target.kernel)
     }
 

@@ -35,20 +35,19 @@ use alloc::vec::Vec;
 
 pub use self::batch::EffectBatch;
 use self::pieces::{CAPACITY, FaceSetup, Faces, PIXELS, Piece, Pieces, SetUp, Shaded};
-pub use self::pipeline::{
-    Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureMapping, TextureStage,
-};
+pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
 use super::cover::Row;
 use super::depth::{Cell, DepthBuffer, DepthPlane};
 use super::draw_stats::DrawStats;
-use super::found::{Coordinates, FoundRows, Wanted, find_rows};
+use super::found::{FoundRows, Wanted, find_rows};
 use super::frame::{Frame, Rect};
 use super::pick::{LANES, Pick, SizeClass};
 use super::shade::RESEED;
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
+pub use crate::mapping::Mapping;
 use crate::simd::at_best_level;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
@@ -233,8 +232,8 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
         let mut setup = FaceSetup { affine: None, perspective: None, depth: 0 };
         match wanted.texture {
             None => {}
-            Some(Coordinates::Affine) => setup.affine = rows.affine_step(lane),
-            Some(Coordinates::Perspective) => setup.perspective = Some(rows.perspective_step(lane)),
+            Some(Mapping::Affine) => setup.affine = rows.affine_step(lane),
+            Some(Mapping::Perspective | Mapping::Every16) => setup.perspective = Some(rows.perspective_step(lane)),
         }
         if wanted.depths {
             setup.depth = rows.depth_step(lane);
@@ -252,8 +251,8 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
             let Some(start) = self.pieces.push(&row, x, x..end, paint) else { continue };
             match wanted.texture {
                 None => {}
-                Some(Coordinates::Affine) => start.affine = rows.affine_start(lane, j),
-                Some(Coordinates::Perspective) => start.perspective = rows.perspective_start(lane, j),
+                Some(Mapping::Affine) => start.affine = rows.affine_start(lane, j),
+                Some(Mapping::Perspective | Mapping::Every16) => start.perspective = rows.perspective_start(lane, j),
             }
             if wanted.slots > 0 {
                 start.values = rows.values(lane, j);
@@ -488,11 +487,7 @@ impl<D: Cell> Raster<'_, D> {
         let EffectScratch { rows, pieces, buffers } = scratch;
         let Some(found) = rows.first_mut() else { return DrawStats::default() };
         let texture = match pipeline.texture() {
-            Some(stage) if pipeline.levels().is_none() => match stage.mapping {
-                TextureMapping::Affine => Some(Coordinates::Affine),
-                TextureMapping::Perspective => Some(Coordinates::Perspective),
-                TextureMapping::Every16 => None,
-            },
+            Some(stage) if pipeline.levels().is_none() && stage.mapping != Mapping::Every16 => Some(stage.mapping),
             _ => None,
         };
         let values = values(pipeline);

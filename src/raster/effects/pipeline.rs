@@ -2,6 +2,7 @@
 
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
+use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
 use crate::span::dither::Thresholds;
 use crate::span::texture::{Levels, Texels};
@@ -25,15 +26,15 @@ pub enum ShadeSource<'a> {
     /// [`GouraudVintage`](Interpolation::GouraudVintage) gives the shades alone: exact cover decides which pixels,
     /// for there the values of all stages are in range.
     Shaded(Interpolation),
-    /// [`Attributes::slope`], linear on the screen, looked up: row and column give the shade.
+    /// [`Attributes::slope`](super::Attributes::slope), linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
-    /// [`Attributes::lit`], linear on the face, lit.
+    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit.
     Lit(&'a dyn Lighting),
-    /// [`Attributes::lit`], linear on the face, lit at some pixels of a row; shades are linear between.
+    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a row; shades are linear between.
     ///
     /// These pixels are the row's first inside the frame, some from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
-    /// Quadratic on the screen, through the six shades of [`Attributes::lit`]: those at the corners and at the middles of
+    /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): those at the corners and at the middles of
     /// the edges. Held within these limits, one for each channel; the first counts for one shade.
     Curved([Limits; 3]),
 }
@@ -74,17 +75,6 @@ impl SampleSpacing {
     }
 }
 
-/// Progression of texture coordinates along a row.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum TextureMapping {
-    /// Linear on the screen.
-    Affine,
-    /// Exact at every sixteenth pixel, linear between.
-    Every16,
-    /// Exact at every pixel.
-    Perspective,
-}
-
 /// Result of mixing three channels.
 #[derive(Clone, Copy, Debug)]
 pub enum Mix<'a> {
@@ -109,7 +99,7 @@ pub struct TextureStage<'a> {
     /// Its smaller copies, from which one is taken where more than √2 texels go to a pixel; `None` for the image alone.
     pub levels: Option<Levels<'a>>,
     /// Progression of its coordinates.
-    pub mapping: TextureMapping,
+    pub mapping: Mapping,
     /// The byte for a shade (row) and a texel (column); of channels, one table each.
     pub tables: [&'a [u8; 65_536]; 3],
 }

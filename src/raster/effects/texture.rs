@@ -5,8 +5,9 @@
 
 use super::level::{self, LevelPlane};
 use super::pieces::{Covered, FaceCorners, FaceSetup, Faces, PIECE, Piece, Pieces, SetUp};
-use super::pipeline::{TextureMapping, TextureStage};
+use super::pipeline::TextureStage;
 use crate::fixed::{HAS_F64, nearest_whole};
+use crate::mapping::Mapping;
 use crate::raster::cover::SortedTriangle;
 use crate::raster::quotient::Divisor;
 use crate::raster::weights::WholeWeights;
@@ -14,7 +15,7 @@ use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{AffineLines, Levels, Shown, Texels, exact_places, perspective_places, show};
 
-/// Pixels between two exact texture coordinates of [`TextureMapping::Every16`], and between two choices of a level.
+/// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
 
@@ -35,17 +36,15 @@ impl Pieces {
         let image = (stage.texels, levels);
         // A function for each, so that none is compiled otherwise where another is left out.
         match (stage.mapping, levels) {
-            (TextureMapping::Affine, None) => find_affine(kernel.simd_level(), self, faces, stage.texels, places),
-            (TextureMapping::Affine, Some(_)) => {
+            (Mapping::Affine, None) => find_affine(kernel.simd_level(), self, faces, stage.texels, places),
+            (Mapping::Affine, Some(_)) => {
                 return self.affine_levels(shown, faces, image, (out, places));
             }
-            (TextureMapping::Perspective, None) => {
-                find_perspective(kernel.simd_level(), self, faces, stage.texels, places)
-            }
-            (TextureMapping::Perspective, Some(_)) => {
+            (Mapping::Perspective, None) => find_perspective(kernel.simd_level(), self, faces, stage.texels, places),
+            (Mapping::Perspective, Some(_)) => {
                 return self.perspective_levels::<false>(shown, faces, image, (out, places), kernel);
             }
-            (TextureMapping::Every16, _) => {
+            (Mapping::Every16, _) => {
                 return self.perspective_levels::<true>(shown, faces, image, (out, places), kernel);
             }
         }
@@ -514,7 +513,7 @@ mod tests {
     use crate::raster::cover::Row;
     use crate::raster::cull::{PickList, cull, pick};
     use crate::raster::depth::DepthPlane;
-    use crate::raster::found::{Coordinates, FoundRows, Wanted, find_rows};
+    use crate::raster::found::{FoundRows, Wanted, find_rows};
     use crate::raster::frame::Rect;
     use crate::raster::pick::{LANES, Pick, SizeClass};
     use crate::raster::vertex::Vertex;
@@ -630,7 +629,7 @@ mod tests {
             let all = Triangles { columns, indices: &indices };
             let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
             for (kernel, which) in
-                Kernel::available().flat_map(|k| [(k, Coordinates::Affine), (k, Coordinates::Perspective)])
+                Kernel::available().flat_map(|k| [(k, Mapping::Affine), (k, Mapping::Perspective)])
             {
                 let wanted = Wanted { depths: true, texture: Some(which), values: [None; 4], slots: 0 };
                 let mut rows = FoundRows::NONE;
@@ -648,7 +647,7 @@ mod tests {
                             i64::from(a.max(b).max(c)) - i64::from(a.min(b).min(c)) < 1 << 22
                         };
                         let step = rows.affine_step(lane);
-                        if which == Coordinates::Affine {
+                        if which == Mapping::Affine {
                             prop_assert_eq!(step.is_some(), is_near(of(0)) && is_near(of(1)));
                         }
                         for j in 0..rows.count(lane) {
@@ -660,9 +659,9 @@ mod tests {
                                 prop_assert_eq!(depth.map(|z| z << 8), right.map(|z| z << 8));
                                 let is_row = x0 + 1 < x1;
                                 match which {
-                                    Coordinates::Affine => affine_is_right(triangle, texture, step, is_row,
+                                    Mapping::Affine => affine_is_right(triangle, texture, step, is_row,
                                         rows.affine_start(lane, j), (x0, y))?,
-                                    Coordinates::Perspective => sums_are_right(triangle, texture,
+                                    _ => sums_are_right(triangle, texture,
                                         rows.perspective_start(lane, j), rows.perspective_step(lane), (x0, y))?,
                                 }
                             }

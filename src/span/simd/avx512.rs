@@ -56,9 +56,10 @@ fn opaque<T, const N: usize>(numbers: &'static [T; N]) -> __m512i {
     unsafe { _mm512_loadu_si512(black_box(numbers).as_ptr().cast()) }
 }
 
-/// Only for a processor that has [`Avx512`].
-pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
-    // SAFETY: the table gives this function out only where `simd::Avx512` was found; the row is that long.
+/// [`Kernel::fill`](super::super::Kernel::fill).
+#[inline]
+pub(crate) fn fill(_: Avx512, row: &mut [u8], shade: u16, step: u16) {
+    // SAFETY: the processor has AVX-512, says the token; the row is that long.
     unsafe { row_of(row.as_mut_ptr(), row.len(), shade, step) }
 }
 
