@@ -98,7 +98,7 @@ impl AddedTriangles {
     /// Triangles that are added before those that wait are drawn, at most, but for the parts of one more face.
     pub(super) const MAX_WAITING: usize = 64;
     /// Corners and triangles that one face adds at most, see `raster::clip`.
-    const MAX_OF_FACE: usize = 8;
+    pub(super) const MAX_OF_FACE: usize = 8;
 
     /// Takes memory for as many as may wait.
     pub(super) fn make_room(&mut self) {

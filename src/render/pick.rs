@@ -25,8 +25,11 @@ use crate::view::Homogeneous;
 
 const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has its bits in a pick");
 
-/// Picks that wait to be drawn together, at most.
+/// Picks from which on those that wait are drawn.
 const CAPACITY: usize = 512;
+
+/// Room for picks: at the capacity 64 faces more may come, of which the last has eight parts.
+const ROOM: usize = CAPACITY + CHUNK + AddedTriangles::MAX_OF_FACE;
 
 /// What faces that are drawn together have in common.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -99,7 +102,7 @@ pub(super) struct Culler {
 /// Memory of picking. It is taken when it is first needed, and is then enough.
 #[derive(Debug, Default)]
 pub(super) struct PickScratch {
-    picks: PickList<{ CAPACITY + CHUNK + LANES }>,
+    picks: PickList<{ ROOM + LANES }>,
     flat: Vec<[U8F8; 3]>,
     /// The end of each run.
     runs: Vec<(usize, Look)>,
@@ -134,7 +137,7 @@ impl<'a> Picker<'a> {
         scratch: &'a mut PickScratch,
         draw: &'a mut dyn FnMut(&Run<'_>),
     ) -> Self {
-        scratch.runs.reserve(CAPACITY + CHUNK);
+        scratch.runs.reserve(ROOM);
         scratch.picks.clear();
         Self { culler, keeps, scratch, pending: None, draw }
     }
@@ -279,7 +282,7 @@ impl Faces<'_> {
     pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
         stats.faces += self.geometry.triangles.len() as u64;
         if self.lit_by_face {
-            picker.scratch.flat.reserve(CAPACITY + CHUNK);
+            picker.scratch.flat.reserve(ROOM);
         }
         if self.culls { self.each::<true>(budget, stats, picker) } else { self.each::<false>(budget, stats, picker) }
     }

@@ -38,6 +38,7 @@ impl<const N: usize> Packed<N> {
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn push(&mut self, number: u32) {
+        debug_assert!(self.count < Self::CAPACITY, "there is room");
         if self.count < Self::CAPACITY {
             self.numbers[self.count] = number;
             self.count += 1;

@@ -5,10 +5,12 @@
 
 use crate::support::tried::Tried;
 use mode13h::Angle;
+use mode13h::glam::Vec3;
+use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading};
-use mode13h::scene::Scene;
+use mode13h::scene::{Object, Scene};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_conformance::oracle;
@@ -137,4 +139,29 @@ fn d4_back_faces_alone_give_the_depth_buffers_frame() {
             tried.add(1);
         }
     }
+}
+
+/// A face that is cut in parts comes just where the list of faces that are drawn together is full.
+#[test]
+fn a_face_in_parts_is_whole_where_the_list_is_full() {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    let mut face = |corners: [[f32; 3]; 3]| {
+        let first = positions.len() as u32;
+        positions.extend(corners.map(Vec3::from_array));
+        triangles.push([first, first + 1, first + 2]);
+    };
+    // Nine times 64 faces, of which the last reaches behind the eye.
+    for i in 0..575_u16 {
+        let (x, y) = (f32::from(i % 24) / 12.0 - 1.0, f32::from(i / 24) / 12.0 - 1.0);
+        face([[x, y, 0.0], [x + 0.08, y, 0.0], [x, y + 0.08, 0.0]]);
+    }
+    face([[-0.3, -0.3, 0.5], [0.3, -0.3, 0.5], [0.0, 0.2, 10.0]]);
+    let mut scene = Scene::new();
+    scene.camera.eye = Vec3::new(0.0, 0.0, 3.0);
+    scene.add(Object::new(Mesh::new(positions, triangles).expect("a mesh")));
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let stats = Renderer::new().draw(&scene, &mut Vga::new()).expect("a legal scene");
+    assert_eq!((stats.faces, stats.clipped), (576, 1));
+    assert!(stats.drawn > 576, "{} are drawn", stats.drawn);
+    assert!(check(&scene, Shading::default()) > 10_000);
 }
