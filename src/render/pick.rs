@@ -309,7 +309,9 @@ impl Faces<'_> {
             linear += u64::from(of_common.count_ones());
             if let Some(look) = one_look.filter(|_| of_common == left) {
                 picker.add(look, first, &masks, left);
-                self.light_faces(picker, stats);
+                if self.lit_by_face {
+                    self.light_faces(picker, stats);
+                }
                 picker.make_space(&all);
                 continue;
             }
@@ -404,11 +406,9 @@ impl Faces<'_> {
         Some(self.flat(face))
     }
 
-    /// Lights the faces that were picked last, if that is what is lit.
+    /// Lights the faces that were picked last, each as one.
+    #[inline(never)]
     fn light_faces(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        if !self.lit_by_face {
-            return;
-        }
         let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
         let PickScratch { picks, flat, .. } = &mut *picker.scratch;
         let picks = &picks.as_slice()[flat.len()..];
