@@ -22,7 +22,7 @@ pub(crate) struct ScreenPos(u64);
 impl ScreenPos {
     /// The x of those that need clipping: far outside of the guard band.
     pub(crate) const BEYOND: i32 = i32::MIN;
-    #[cfg(feature = "alloc")]
+    #[cfg(any(feature = "alloc", test))]
     pub(crate) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
 
     #[inline(always)]
@@ -48,7 +48,6 @@ impl ScreenPos {
         (self.0 >> 32) as i32
     }
 
-    #[cfg(feature = "alloc")]
     #[inline]
     pub(crate) const fn needs_clipping(self) -> bool {
         self.x() == Self::BEYOND

@@ -5,6 +5,8 @@ use super::columns::ScreenPos;
 use super::frame::Rect;
 use super::pick::{CHUNK, LANES, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, NUMBERS, Pick};
 use super::setup::first_centre;
+use crate::fixed::HAS_F64;
+use crate::lanes::three;
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 
 /// The longer side of the box of a triangle whose pixels are looked at one by one.
@@ -39,6 +41,10 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks {
+    // Not by f64, so that a chip's program holds no soft-float code.
+    if !HAS_F64 {
+        return cull_in_integers(at, triangles, culls);
+    }
     let mut masks = CullMasks::default();
     let triangles = &triangles[..triangles.len().min(CHUNK)];
     let (eights, rest) = triangles.as_chunks::<LANES>();
@@ -51,6 +57,27 @@ fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect
         let are_triangles = (1 << rest.len()) - 1;
         masks.add(LANES * eights.len(), are_triangles, cull_eight(s, at, &eight, clip, culls));
     }
+    masks
+}
+
+/// Culls up to 64 triangles by the side that they show. All that are seen may cover something, and are drawn one by one.
+fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> CullMasks {
+    let mut masks = CullMasks::default();
+    for (i, triangle) in triangles.iter().take(CHUNK).enumerate() {
+        let [a, b, c] = three(*triangle, |corner| at[corner as usize]);
+        if a.needs_clipping() || b.needs_clipping() || c.needs_clipping() {
+            masks.clipped |= 1 << i;
+            continue;
+        }
+        // At most 2²¹ each.
+        let from_a = |p: ScreenPos| (i64::from(p.x() - a.x()), i64::from(p.y() - a.y()));
+        let ((dx1, dy1), (dx2, dy2)) = (from_a(b), from_a(c));
+        let area = dx1 * dy2 - dx2 * dy1;
+        masks.front |= u64::from(area < 0) << i;
+        masks.back |= u64::from(area > 0) << i;
+    }
+    masks.covers = if culls { masks.front } else { masks.front | masks.back };
+    masks.unbatched = masks.covers;
     masks
 }
 
@@ -320,6 +347,29 @@ mod tests {
     fn kernels() -> Vec<Kernel> {
         // Every level that the processor has, the lower ones too: `simd` alone is the highest.
         Kernel::available().collect()
+    }
+
+    /// The sides of random triangles in integers are those of the lanes.
+    #[test]
+    fn sides_in_integers_are_those_of_lanes() {
+        let mut seed = 1_u64;
+        let mut next = |most: i32| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 33) as i32 % most
+        };
+        for _ in 0..200 {
+            let at: Vec<ScreenPos> = (0..40)
+                .map(|i| if i == 7 { ScreenPos::NEEDS_CLIPPING } else { ScreenPos::new(next(900), next(900)) })
+                .collect();
+            let triangles: Vec<[u32; 3]> = (0..CHUNK).map(|_| [0; 3].map(|_| next(40) as u32)).collect();
+            for culls in [false, true] {
+                let clip = Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
+                let lanes = cull(Kernel::PORTABLE.simd_level(), &at, &triangles, clip, culls);
+                let integers = cull_in_integers(&at, &triangles, culls);
+                assert_eq!((integers.clipped, integers.front, integers.back), (lanes.clipped, lanes.front, lanes.back));
+                assert_eq!(lanes.covers & !integers.covers, 0);
+            }
+        }
     }
 
     proptest! {
