@@ -38,7 +38,7 @@ impl Switch {
         }
     }
 
-    /// What the last frame had of it: "off", "on", or for dither the pattern's name.
+    /// State in the last frame: "off", "on", or for dither the pattern's name.
     pub(crate) fn state(self, renderer: &Renderer) -> &'static str {
         let plan = renderer.plan();
         let pattern = (self == Switch::Dither).then(|| dither(plan)).flatten();

@@ -199,7 +199,7 @@ pub(crate) struct Picks<'a> {
 }
 
 impl<'a> Picks<'a> {
-    /// Those from `first` to `end`, which are there.
+    /// Picks `first` to `end`, which are there.
     #[inline(always)]
     pub(crate) fn range(&self, first: usize, end: usize) -> Self {
         let flat = if self.flat.is_empty() { self.flat } else { &self.flat[first..end] };

@@ -95,7 +95,7 @@ pub(super) struct AddedTriangles {
 }
 
 impl AddedTriangles {
-    /// Triangles that are added before those that wait are drawn, at most, but for the parts of one more face.
+    /// Added triangles from which on the pending ones are drawn. The parts of one more face may come on top.
     pub(super) const MAX_WAITING: usize = 64;
     /// Corners and triangles that one face adds at most, see `raster::clip`.
     pub(super) const MAX_OF_FACE: usize = 8;

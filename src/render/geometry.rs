@@ -1,4 +1,4 @@
-//! What is drawn of an object.
+//! Geometry of an object: its mesh, or the result of tessellation, as slices.
 
 use glam::{Vec2, Vec3};
 

@@ -100,7 +100,7 @@ impl DeferredFace {
     }
 }
 
-/// What faces are drawn with.
+/// Draws faces: their pipelines, the raster, and the memory of the stages.
 struct Painter<'a, 'b> {
     pipelines: Pipelines<'a>,
     raster: &'a mut Raster<'b>,

@@ -25,7 +25,7 @@ use crate::view::Homogeneous;
 
 const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has its bits in a pick");
 
-/// Picks from which on those that wait are drawn.
+/// Number of pending picks above which they are drawn.
 const CAPACITY: usize = 512;
 
 /// Room for picks: at the capacity 64 faces more may come, of which the last has eight parts.

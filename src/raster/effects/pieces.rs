@@ -184,7 +184,7 @@ impl Covered {
     }
 }
 
-/// What is known of a face that has pieces.
+/// Set-up of a face that has pieces.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SetUp {
     /// It was set up together with others.

@@ -889,7 +889,7 @@ fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
     }
 }
 
-/// The same with the cone of a spot light, which one of the lamps is made.
+/// Changes the cone of a spot light, which one of the lamps becomes.
 fn cone(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut Cone)) {
     lamp(world, random, |_, _, _, _, _| {});
     for light in world.scene.lights_mut() {
