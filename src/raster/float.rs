@@ -82,6 +82,11 @@ impl FloatPlane {
         Self { weights, values, steps: [dn, dd], range: [a.min(b).min(c), a.max(b).max(c)] }
     }
 
+    /// Change of n and of d from one pixel to the next.
+    pub(super) fn steps(&self) -> [f32; 2] {
+        self.steps
+    }
+
     /// A row of the triangle.
     pub(super) fn row(&self, row: &Row) -> FloatRow {
         let start = if self.steps[1] < 0.0 { row.last } else { row.origin };

@@ -93,8 +93,6 @@ impl HyperbolicPlane {
     ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
     ///    multiples.
     fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
-        const MAX_RATIO: f64 = 32_768.0;
-
         if !HAS_F64 {
             return false;
         }
@@ -106,10 +104,7 @@ impl HyperbolicPlane {
             (a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2])
         };
         let ((n, d), (dn, dd)) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));
-        // At most 4,096 pixels.
-        let last = d + pixels.len().saturating_sub(1) as f64 * dd;
-        // False for what is not a number, too.
-        let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
+        let is_sure = Self::is_sure(d, dd, pixels.len());
         if is_sure {
             fill_estimated_quotients(pixels, [n, dn], [d, dd], |k| {
                 // A column.
@@ -119,6 +114,17 @@ impl HyperbolicPlane {
             });
         }
         is_sure
+    }
+
+    /// Returns whether divisors of so many pixels, the first one and its change from one to the next, lie near enough to each
+    /// other for quotients in f64.
+    #[inline(always)]
+    pub(super) fn is_sure(d: f64, dd: f64, pixels: usize) -> bool {
+        const MAX_RATIO: f64 = 32_768.0;
+        // At most 4,096 pixels.
+        let last = d + pixels.saturating_sub(1) as f64 * dd;
+        // False for what is not a number, too.
+        d.min(last) * MAX_RATIO >= d.max(last)
     }
 }
 

@@ -84,6 +84,7 @@ pub mod shade;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod shade_trace;
+mod shaded;
 mod spans;
 pub mod triangle;
 mod triangles;

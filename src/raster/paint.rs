@@ -98,7 +98,9 @@ impl RowShader {
             Self::Ramp(ramp) => ramp.spans(row.x0..row.x1, |range, shade, step| {
                 span(pixels, range, drawn, |pixels| kernel.fill(pixels, shade, step));
             }),
-            _ => span(pixels, row.range(), drawn, |pixels| self.fill(row, row.x0, pixels)),
+            _ => pieces(row, |_, x, end| {
+                span(pixels, x as usize..end as usize, drawn, |pixels| self.fill(row, x, pixels));
+            }),
         }
     }
 
@@ -133,16 +135,13 @@ impl RowShader {
             Self::Ramp(ramp) => {
                 ramp.spans(row.x0..row.x1, |range, shade, step| tested.linear_span(range, shade, step));
             }
-            _ => {
-                let mut bytes = [0; 64];
-                for x in row.range().step_by(bytes.len()) {
-                    let end = row.range().end.min(x + bytes.len());
-                    let bytes = &mut bytes[..end - x];
-                    // A column is below 4,096.
-                    self.fill(row, x as i32, bytes);
-                    tested.span(x..end, |pixels, depths, z, dz| depth::copy_nearer(pixels, depths, bytes, z, dz));
-                }
-            }
+            _ => pieces(row, |_, x, end| {
+                let mut bytes = [0; RESEED as usize];
+                let bytes = &mut bytes[..(end - x) as usize];
+                self.fill(row, x, bytes);
+                let range = x as usize..end as usize;
+                tested.span(range, |pixels, depths, z, dz| depth::copy_nearer(pixels, depths, bytes, z, dz));
+            }),
         }
     }
 
@@ -324,11 +323,18 @@ fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Ra
         let start = shade.start(row.origin, row.y);
         return span(row.range(), advance(start, row.x0 - row.origin));
     }
+    pieces(row, |seed, x, end| span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed)));
+}
+
+/// Cuts the drawn part of a row every 64 pixels from its origin on. `piece` gets the column of each cut, or of the origin, and
+/// the columns from and to which its pixels are drawn.
+#[inline]
+fn pieces(row: &Row, mut piece: impl FnMut(i32, i32, i32)) {
     let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
     let mut x = row.x0;
     while x < row.x1 {
         let end = row.x1.min(seed + RESEED);
-        span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed));
+        piece(seed, x, end);
         seed += RESEED;
         x = end;
     }

@@ -2,24 +2,30 @@
 //!
 //! One row of each of eight triangles, or eight rows of one: both are lanes of the same formula, and [`Lane`] says which.
 //!
+//! What fills a span is a parameter: [`Shades8`].
+//!
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
+use super::depth::Cell;
 use super::frame::Rect;
 use super::pick::{LANES, NUMBERS};
-use super::setup::{Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
+use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
+use crate::span::Kernel;
 use crate::span::list::{DepthSteps, SpanList, Spans8};
 
 /// Most rows of eight small triangles that are found row by row, and put into the triangles' order afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
 
 /// What the eight lanes of a vector are.
-trait Lane<S: Lanes8>: Copy {
+pub(super) trait Lane<S: Lanes8>: Copy {
     fn f64s(self, s: S, from: &Floats) -> S::F64;
     fn i32s(self, s: S, from: &Ints) -> S::I32;
     fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64;
+    /// The triangles' numbers.
+    fn numbers(self, s: S) -> S::I32;
 }
 
 /// Lanes are the same row of each of eight triangles.
@@ -39,6 +45,10 @@ impl<S: Lanes8> Lane<S> for EachTriangle {
     fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64 {
         s.i64s(from)
     }
+    #[inline(always)]
+    fn numbers(self, s: S) -> S::I32 {
+        s.i32s(&NUMBERS)
+    }
 }
 
 /// Lanes are eight rows of this triangle, whose number is below 8.
@@ -57,6 +67,125 @@ impl<S: Lanes8> Lane<S> for OneTriangle {
     #[inline(always)]
     fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64 {
         s.all_i64(from[self.0 % LANES])
+    }
+    #[inline(always)]
+    fn numbers(self, s: S) -> S::I32 {
+        // Below 8.
+        s.all_i32((self.0 % LANES) as i32)
+    }
+}
+
+/// Drawn parts of eight rows, in columns from the box's first on, as sums with `ROUND_MAGIC`.
+pub(super) struct Parts<S: Lanes8> {
+    /// The row's first covered pixel inside the frame, or where it starts anew, ...
+    pub(super) origin: S::F64,
+    /// ... the one behind its last, ...
+    pub(super) end: S::F64,
+    /// ... and the first that is drawn.
+    pub(super) start: S::F64,
+}
+
+/// Shades of eight triangles, and of spans in their rows.
+pub(super) trait Shades8 {
+    /// False where a shade with its step above it is all that fills a span.
+    const STARTS: bool;
+
+    /// Returns whether spans have to be drawn before eight more triangles are set up.
+    fn is_full(&self) -> bool;
+
+    /// Begins the eight triangles from pick `first` on.
+    fn begin(&mut self, first: usize);
+
+    /// Sets up eight triangles. Their edges and linear shades are set up.
+    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
+
+    /// What fills spans of the rows `j`: the list's columns for it.
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        setup: &TriangleSetup8,
+        rows: (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
+    ) -> (S::I32, [S::I64; 2]);
+
+    /// Puts eight spans into a list.
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S>,
+        dz: DepthSteps<S>,
+    );
+
+    /// Sets up what is left to do of triangle `i` of the eight, which is no small one.
+    fn set_up_large(&mut self, i: usize);
+
+    /// Draws the spans of a list, with `DEPTHS` where they are nearer than cells. The list is then empty.
+    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        kernel: Kernel,
+        pixels: &mut [u8],
+        cells: &mut [D],
+    );
+}
+
+/// Linear shades in 8.8.
+pub(super) struct Linear;
+
+impl Shades8 for Linear {
+    const STARTS: bool = false;
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn set_up<S: Lanes8>(&mut self, _: S, _: &Basis<S>, _: &Corners8, _: &TriangleSetup8) {}
+
+    #[inline(always)]
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        setup: &TriangleSetup8,
+        (ends, _): (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
+    ) -> (S::I32, [S::I64; 2]) {
+        let zero = s.all_i64(0);
+        (ends.paint(s, lane, setup, parts.origin), [zero, zero])
+    }
+
+    #[inline(always)]
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S>,
+        dz: DepthSteps<S>,
+    ) {
+        list.append::<S, DEPTHS>(s, spans, dz);
+    }
+
+    #[inline(always)]
+    fn set_up_large(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
+        &mut self,
+        _: S,
+        list: &mut SpanList,
+        kernel: Kernel,
+        pixels: &mut [u8],
+        cells: &mut [D],
+    ) {
+        list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
     }
 }
 
@@ -80,6 +209,12 @@ impl<S: Lanes8> RowEnds<S> {
         Self { left: s.min(long, short), right: s.max(long, short), shade_n }
     }
 
+    /// The numerator of the shade at these columns; see [`ValuePlanes8`].
+    #[inline(always)]
+    pub(super) fn shade_numerator(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::F64 {
+        numerator_at(s, lane, &setup.shade, self.shade_n, columns)
+    }
+
     /// The shade at these columns, and above it the step.
     #[inline(always)]
     fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
@@ -95,6 +230,12 @@ impl<S: Lanes8> RowEnds<S> {
     }
 }
 
+/// A numerator at these columns, from that at the first column.
+#[inline(always)]
+fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, n: S::F64, columns: S::F64) -> S::F64 {
+    s.mul_add(lane.f64s(s, &planes.per_column), s.sub(columns, s.all_f64(ROUND_MAGIC)), n)
+}
+
 /// A value at these columns, and above it the step, from the numerator at the first column.
 #[inline(always)]
 fn value_at<S: Lanes8>(
@@ -104,9 +245,8 @@ fn value_at<S: Lanes8>(
     n: S::F64,
     columns: S::F64,
 ) -> S::I32 {
-    let magic = s.all_f64(ROUND_MAGIC);
-    let n = s.mul_add(lane.f64s(s, &planes.per_column), s.sub(columns, magic), n);
-    let value = s.low_bits(s.mul_add(n, lane.f64s(s, inverse), magic));
+    let n = numerator_at(s, lane, planes, n, columns);
+    let value = s.low_bits(s.mul_add(n, lane.f64s(s, inverse), s.all_f64(ROUND_MAGIC)));
     s.or_i32(s.and_i32(value, s.all_i32(0xFFFF)), lane.i32s(s, &planes.step))
 }
 
@@ -137,7 +277,14 @@ impl<S: Lanes8> RowCursor8<S> {
 
     /// Row `number`, and goes on to the next.
     #[inline(always)]
-    fn row<const DEPTHS: bool>(&mut self, s: S, setup: &TriangleSetup8, list: &SpanList, number: i32) -> Spans8<S> {
+    fn row<const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        setup: &TriangleSetup8,
+        shades: &impl Shades8,
+        list: &SpanList,
+        number: i32,
+    ) -> Spans8<S> {
         let lane = EachTriangle;
         let j = s.all_f64(f64::from(number));
         let number = s.all_i32(number);
@@ -149,12 +296,15 @@ impl<S: Lanes8> RowCursor8<S> {
             z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), s.i64s(&setup.z_per_column)));
             self.z = s.add_i64(self.z, s.i64s(&setup.z_per_row));
         }
+        let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
+        let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
             length: s.select_i32(is_row, s.sub_i32(right, left), s.all_i32(0)),
-            paint: ends.paint(s, lane, setup, ends.left),
+            paint,
             z,
+            starts,
         };
         self.at = s.add_i32(self.at, s.all_i32(list.pitch));
         if DEPTHS {
@@ -166,9 +316,10 @@ impl<S: Lanes8> RowCursor8<S> {
 
 /// Lists all rows of eight small triangles of at most [`MAX_SHORT_ROWS`] rows each, triangle by triangle. There is room.
 #[inline(always)]
-pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
+pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
+    shades: &mut P,
     most_rows: i32,
     list: &mut SpanList,
 ) {
@@ -177,34 +328,34 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
     if most_rows <= 0 {
         return;
     }
-    let first = cursor.row::<DEPTHS>(s, setup, list, 0);
+    let first = cursor.row::<DEPTHS>(s, setup, shades, list, 0);
     if most_rows == 1 {
         let dz = if DEPTHS { DepthSteps::Each(s.i64s(&setup.z_per_column)) } else { DepthSteps::All(0) };
-        list.append::<S, DEPTHS>(s, &first, dz);
+        shades.append::<S, DEPTHS>(s, list, &first, dz);
         return;
     }
-    let second = cursor.row::<DEPTHS>(s, setup, list, 1);
+    let second = cursor.row::<DEPTHS>(s, setup, shades, list, 1);
     if most_rows == 2 {
-        let [low, high] = first.zip::<DEPTHS>(s, &second, list);
+        let [low, high] = first.zip(s, &second, list, (DEPTHS, P::STARTS));
         let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
         if DEPTHS {
             let dz = s.i64s(&setup.z_per_column);
             let [low, high] = s.zip_i64(dz, dz);
             (of_low, of_high) = (DepthSteps::Each(low), DepthSteps::Each(high));
         }
-        list.append::<S, DEPTHS>(s, &low, of_low);
-        list.append::<S, DEPTHS>(s, &high, of_high);
+        shades.append::<S, DEPTHS>(s, list, &low, of_low);
+        shades.append::<S, DEPTHS>(s, list, &high, of_high);
         return;
     }
-    let third = cursor.row::<DEPTHS>(s, setup, list, 2);
-    let fourth = cursor.row::<DEPTHS>(s, setup, list, 3);
-    let even = first.zip::<DEPTHS>(s, &third, list);
-    let odd = second.zip::<DEPTHS>(s, &fourth, list);
+    let third = cursor.row::<DEPTHS>(s, setup, shades, list, 2);
+    let fourth = cursor.row::<DEPTHS>(s, setup, shades, list, 3);
+    let even = first.zip(s, &third, list, (DEPTHS, P::STARTS));
+    let odd = second.zip(s, &fourth, list, (DEPTHS, P::STARTS));
     for (half, even) in even.iter().enumerate() {
-        for (quarter, spans) in even.zip::<DEPTHS>(s, &odd[half], list).iter().enumerate() {
+        for (quarter, spans) in even.zip(s, &odd[half], list, (DEPTHS, P::STARTS)).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
             let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
-            list.append::<S, DEPTHS>(s, spans, dz);
+            shades.append::<S, DEPTHS>(s, list, spans, dz);
         }
     }
 }
@@ -214,12 +365,14 @@ pub(super) fn list_short<S: Lanes8, const DEPTHS: bool>(
 fn eight_rows<S: Lanes8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
+    shades: &impl Shades8,
     (i, first): (usize, i32),
     list: &SpanList,
-) -> (RowEnds<S>, Spans8<S>) {
+) -> (RowEnds<S>, S::F64, Spans8<S>) {
     let lane = OneTriangle(i);
     let number = s.add_i32(s.all_i32(first), s.i32s(&NUMBERS));
-    let ends = RowEnds::of(s, lane, setup, s.to_f64(number), number);
+    let j = s.to_f64(number);
+    let ends = RowEnds::of(s, lane, setup, j, number);
     let is_row = s.is_greater(lane.i32s(s, &setup.rows), number);
     let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
     let at = s.add_i32(lane.i32s(s, &setup.at), s.mul_i32(number, s.all_i32(list.pitch)));
@@ -230,14 +383,17 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
         z = s.add_i64(z, lane.i64s(s, &setup.z));
         z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.i64s(s, &setup.z_per_column)));
     }
+    let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
+    let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
     let spans = Spans8 {
         at: s.add_i32(at, left),
         cell: s.add_i32(cell, left),
         length: s.select_i32(is_row, s.sub_i32(right, left), s.all_i32(0)),
-        paint: ends.paint(s, lane, setup, ends.left),
+        paint,
         z,
+        starts,
     };
-    (ends, spans)
+    (ends, j, spans)
 }
 
 /// Row `number` of each of eight small triangles: its ends, and the first column that is covered, the one behind the last,
@@ -255,49 +411,58 @@ pub(super) fn find_row<S: Lanes8>(s: S, setup: &TriangleSetup8, number: i32) -> 
 
 /// Lists eight rows of small triangle `i` from number `first` on. There is room for eight.
 #[inline(always)]
-pub(super) fn list_eight_rows<S: Lanes8, const DEPTHS: bool>(
+pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
+    shades: &mut P,
     (i, first): (usize, i32),
     list: &mut SpanList,
 ) {
-    let (_, spans) = eight_rows::<S, DEPTHS>(s, setup, (i, first), list);
-    list.append::<S, DEPTHS>(s, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+    let (_, _, spans) = eight_rows::<S, DEPTHS>(s, setup, shades, (i, first), list);
+    shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
 /// Lists eight rows of triangle `i` from number `first` on, each in so many pieces of up to `longest` pixels, which begin
 /// anew. Parts outside `clip`, if there is one, are left out. There is room for eight spans a piece.
 #[inline(always)]
-pub(super) fn list_pieces<S: Lanes8, const DEPTHS: bool>(
+pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
+    shades: &mut P,
     (i, first): (usize, i32),
     (pieces, longest): (usize, i32),
-    clip: Option<Rect>,
+    (clip, width): (Option<Rect>, u32),
     list: &mut SpanList,
 ) {
     let lane = OneTriangle(i);
-    let (ends, rows) = eight_rows::<S, DEPTHS>(s, setup, (i, first), list);
+    let (ends, j, rows) = eight_rows::<S, DEPTHS>(s, setup, shades, (i, first), list);
     let mut is_row = s.is_greater(rows.length, s.all_i32(0));
     // Columns of the frame from the box's first on. All are below 4,096.
     let side = |column: u32| s.all_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
-    let mut left = ends.left;
+    let (mut left, mut last) = (ends.left, ends.right);
     if let Some(clip) = clip {
         // A row that begins left of the frame begins anew at its side.
         left = s.max(left, side(0));
+        last = s.min(last, side(width));
         let number = s.add_i32(s.all_i32(setup.row[i % LANES] + first), s.i32s(&NUMBERS));
         is_row = s.both(is_row, s.is_greater(number, s.all_i32(clip.y0 as i32 - 1)));
         is_row = s.both(is_row, s.is_greater(s.all_i32(clip.y1 as i32), number));
     }
+    let row_origin = left;
     let (step, dz) = (lane.i32s(s, &setup.shade.step), lane.i64s(s, &setup.z_per_column));
     for _ in 0..pieces {
         let end = s.add(left, s.all_f64(longest.into()));
         let (mut start, mut right) = (left, s.min(ends.right, end));
-        let mut paint = ends.paint(s, lane, setup, left);
         if let Some(clip) = clip {
-            // A piece that begins left of the rectangle goes on from its start.
             start = s.max(left, side(clip.x0));
             right = s.min(right, side(clip.x1));
+        }
+        // Linear shades start anew with each piece.
+        let origin = if P::STARTS { row_origin } else { left };
+        let parts = Parts { origin, end: last, start };
+        let (mut paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+        if !P::STARTS && clip.is_some() {
+            // A piece that begins left of the rectangle goes on from its start.
             let skipped = s.sub_i32(s.low_bits(start), s.low_bits(left));
             // Both in upper halves, as the step is.
             let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, skipped));
@@ -311,8 +476,9 @@ pub(super) fn list_pieces<S: Lanes8, const DEPTHS: bool>(
             length: s.select_i32(is_row, length, s.all_i32(0)),
             paint,
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
+            starts,
         };
-        list.append::<S, DEPTHS>(s, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
         if s.mask_bits(s.is_less(left, ends.right)) == 0 {
             break;

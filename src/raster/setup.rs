@@ -61,7 +61,7 @@ pub(super) type Ints = [i32; LANES];
 pub(super) struct Corners8 {
     /// A [`ScreenPos`](super::columns::ScreenPos) each.
     at: [[i64; LANES]; 3],
-    shade: [Ints; 3],
+    pub(super) shade: [Ints; 3],
     /// The bits of u32.
     pub(super) depth: [Ints; 3],
     /// True if the first corner's shade is that of all.
@@ -362,6 +362,20 @@ impl<S: Lanes8> Basis<S> {
         let ([dx1, dy1], [dx2, dy2]) = (self.second, self.third);
         let gx = s.flip(s.neg_mul_add(d2, dy1, s.mul(d1, dy2)), self.signed);
         [gx, s.flip(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
+    }
+
+    /// Change of a corner's weight from 1/256 pixel to the next; and its weight at the box's first pixel, with its change from
+    /// a row and from a column to the next. All are whole numbers, exact. Corners are counted by height.
+    #[inline(always)]
+    pub(super) fn weight(&self, s: S, corner: usize) -> (S::F64, [S::F64; 3]) {
+        let ([x, y], pixel, zero) = (self.first, s.all_f64(256.0), s.all_f64(0.0));
+        let (one, minus_one) = (s.all_f64(1.0), s.all_f64(-1.0));
+        // How it differs at the second and the third from that at the first.
+        let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
+        let [gx, gy] = self.gradient(s, differences[corner % 3]);
+        let at_first = if corner == 0 { self.area } else { zero };
+        let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, at_first));
+        (gx, [n, s.mul(gy, pixel), s.mul(gx, pixel)])
     }
 }
 

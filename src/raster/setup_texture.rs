@@ -138,20 +138,14 @@ impl PerspectivePlanes8 {
         let u = basis.order.sort(s, [s.i32s(&u[0]), s.i32s(&u[1]), s.i32s(&u[2])]);
         let v = basis.order.sort(s, [s.i32s(&v[0]), s.i32s(&v[1]), s.i32s(&v[2])]);
         let depth = basis.order.sort(s, [s.i32s(depth_a), s.i32s(depth_b), s.i32s(depth_c)]);
-        let ([x, y], pixel, zero) = (basis.first, s.all_f64(256.0), s.all_f64(0.0));
         let one = s.all_f64(1.0);
-        let mut sums = [zero; 3];
-        // How the weight of each corner differs at the second and the third from that at the first.
-        let minus_one = s.all_f64(-1.0);
-        let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
+        let mut sums = [s.all_f64(0.0); 3];
         for corner in 0..3 {
-            let [gx, gy] = basis.gradient(s, differences[corner]);
-            let at_first = if corner == 0 { basis.area } else { zero };
-            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, at_first));
-            let per_column = s.mul(gx, pixel);
-            s.put_f64s(n, &mut self.weights[corner][0]);
-            s.put_f64s(s.mul(gy, pixel), &mut self.weights[corner][1]);
-            s.put_f64s(per_column, &mut self.weights[corner][2]);
+            let (_, weight) = basis.weight(s, corner);
+            for (i, to) in self.weights[corner].iter_mut().enumerate() {
+                s.put_f64s(weight[i], to);
+            }
+            let [_, _, per_column] = weight;
             // A depth counts as 1 at least.
             let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
             let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];

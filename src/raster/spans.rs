@@ -9,7 +9,7 @@
 //! | `cull` | triangles | which have a pixel centre in their box, and if that is tiny in themselves; their size class |
 //! | `setup` | triangles | edges, shade plane and depth plane |
 //! | `rows` | triangles, or rows of one | ends and first shades of rows, into a list of spans |
-//! | `span::list` | pixels | the bytes |
+//! | `span::list`, or `shaded` | pixels | the bytes |
 //!
 //! Each stage is one function over `simd::Lanes8`, compiled for each level of the processor; only the last
 //! one, the span kernel, is a level's own.
@@ -23,9 +23,10 @@ use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::pick::{LANES, MAX_WIDTH, Pick, SizeClass};
-use super::rows;
+use super::rows::{self, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shade::RESEED;
+use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 use crate::lanes::three;
@@ -33,12 +34,12 @@ use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::list::SpanList;
 
-/// Triangles with linear shades, which start anew every 64 pixels or do not.
+/// Triangles, and whether their rows are cut into pieces of 64 pixels, with which linear shades start anew.
 #[derive(Clone, Copy)]
 struct Drawn<'a> {
     triangles: &'a Triangles<'a>,
     picks: Picks<'a>,
-    reseeds: bool,
+    in_pieces: bool,
 }
 
 impl Drawn<'_> {
@@ -50,10 +51,10 @@ impl Drawn<'_> {
         }))
     }
 
-    /// The most pieces that start anew in a row of a large triangle.
+    /// The most pieces of a row of a large triangle.
     #[inline(always)]
     fn pieces(&self, pick: Pick) -> usize {
-        if !self.reseeds {
+        if !self.in_pieces {
             return 1;
         }
         self.triangles.pieces(pick)
@@ -74,9 +75,13 @@ impl<D: Cell> Raster<'_, D> {
         let (width, rows) = (self.frame.width(), self.frame.rows());
         // Offsets of pixels are kept in 32 bits, and a depth buffer has to hold the frame's rows and no others.
         let fits = pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows));
-        let reseeds = match interpolation {
+        // Cells of 16 bits are for small machines: other shadings are drawn one by one there.
+        let has_cells = self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some());
+        let kind = Kind::of(interpolation).filter(|_| has_cells && picks.flat.is_empty());
+        let in_pieces = match interpolation {
             Interpolation::GouraudReseeded if HAS_F64 && fits => picks.flat.is_empty(),
             Interpolation::Gouraud | Interpolation::Flat(_) if HAS_F64 && fits => false,
+            _ if HAS_F64 && fits && kind.is_some() => true,
             _ => {
                 for k in 0..picks.picks.len() {
                     drawn += self.triangle(&triangles.vertices(&picks, k), interpolation);
@@ -98,8 +103,14 @@ impl<D: Cell> Raster<'_, D> {
             // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let target = (layout, self.clip, self.kernel);
-            let of = Drawn { triangles, picks: picks.range(first, first + together), reseeds };
+            let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match depth.map(DepthBuffer::values_mut) {
+                cells if kind.is_some() => match kind {
+                    Some(kind) => {
+                        draw_shaded(level, of, kind, target, pixels, cells.and_then(D::as_u32).unwrap_or_default())
+                    }
+                    None => DrawStats::default(),
+                },
                 None => draw_all(level, of, target, pixels),
                 Some(cells) => draw_where_nearer(of, target, pixels, cells),
             };
@@ -120,7 +131,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8]) -> DrawStats {
-    draw_triangles::<S, u32, false>(s, of, target, pixels, &mut [])
+    draw_triangles::<S, u32, Linear, false>(s, of, target, (pixels, &mut []), &mut Linear)
 }
 
 /// Likewise, where they are nearer than cells.
@@ -141,47 +152,80 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats {
-    draw_triangles::<S, u32, true>(s, of, target, pixels, cells)
+    draw_triangles::<S, u32, Linear, true>(s, of, target, (pixels, cells), &mut Linear)
 }
 
 /// Cells of 16 bits are for small machines: by what every processor of the target has.
 #[inline(never)]
 fn draw_nearer_in_16_bits(of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u16]) -> DrawStats {
-    draw_triangles::<_, u16, true>(BASELINE, of, target, pixels, cells)
+    draw_triangles::<_, u16, Linear, true>(BASELINE, of, target, (pixels, cells), &mut Linear)
+}
+
+compiled_for_each_level! {
+    /// Draws triangles by another shading than a linear one in 8.8, where there are cells those that are nearer.
+    #[inline(never)]
+    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats
+        = draw_shaded_by;
 }
 
 #[inline(always)]
-fn draw_triangles<S: Lanes8, D: Cell, const DEPTHS: bool>(
+fn draw_shaded_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    kind: Kind,
+    target: Target,
+    pixels: &mut [u8],
+    cells: &mut [u32],
+) -> DrawStats {
+    // A chip's program must not hold what follows.
+    if !HAS_F64 {
+        return DrawStats::default();
+    }
+    let has_cells = !cells.is_empty();
+    let mut shades = Shaded8::new(kind, of.triangles, of.picks, target.0);
+    let drawn = draw_triangles::<S, u32, _, true>(s, of, target, (pixels, cells), &mut shades);
+    if has_cells { drawn } else { DrawStats { pixels: drawn.covered, tested: 0, ..drawn } }
+}
+
+#[inline(always)]
+fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
     (layout, clip, kernel): Target,
-    pixels: &mut [u8],
-    cells: &mut [D],
+    (pixels, cells): (&mut [u8], &mut [D]),
+    shades: &mut P,
 ) -> DrawStats {
     // Nobody comes here then, and a chip's program must not hold what follows.
     if !HAS_F64 {
         return DrawStats::default();
     }
-    let mut list = SpanList::new((pixels.len(), layout.pitch), (cells.len(), layout.width));
+    // Depths without cells are not looked at.
+    let of_cells = if cells.is_empty() { (pixels.len(), layout.pitch) } else { (cells.len(), layout.width) };
+    let mut list = SpanList::new((pixels.len(), layout.pitch), of_cells);
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
     let count = picks.picks.len();
     corners.gather::<DEPTHS>(triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
-        setup.set_up::<S, DEPTHS>(s, &corners, layout);
+        if shades.is_full() {
+            shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+        }
+        shades.begin(number * LANES);
+        let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout);
+        shades.set_up(s, &basis, &corners, &setup);
         // The next before this one's rows enter the list: vectors that are read just after their numbers were stored
         // one by one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels.)
         corners.gather::<DEPTHS>(triangles, &picks.range(count.min((number + 1) * LANES), count));
         setup.rows[eight.len().min(LANES)..].fill(0);
         if !list.has_room(LANES * LANES) {
-            list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+            shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
         }
         let are_small = Pick::are_small(eight);
         if are_small {
             let most = setup.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
             if most <= rows::MAX_SHORT_ROWS {
-                rows::list_short::<S, DEPTHS>(s, &setup, most, &mut list);
+                rows::list_short::<S, P, DEPTHS>(s, &setup, shades, most, &mut list);
                 continue;
             }
         }
@@ -190,9 +234,9 @@ fn draw_triangles<S: Lanes8, D: Cell, const DEPTHS: bool>(
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
                     if !list.has_room(LANES) {
-                        list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+                        shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
                     }
-                    rows::list_eight_rows::<S, DEPTHS>(s, &setup, (i, first), &mut list);
+                    rows::list_eight_rows::<S, P, DEPTHS>(s, &setup, shades, (i, first), &mut list);
                 }
                 continue;
             }
@@ -203,9 +247,10 @@ fn draw_triangles<S: Lanes8, D: Cell, const DEPTHS: bool>(
             if DEPTHS {
                 setup.put_depth_plane(i, &of.depth_plane(pick));
             }
+            shades.set_up_large(i);
             let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
             let pieces = of.pieces(pick);
-            // A row that does not start anew is one piece, however long.
+            // Otherwise a row is one piece, however long.
             let longest = if pieces > 1 { RESEED } else { MAX_WIDTH / 256 };
             let (mut first, mut end) = (0, rows);
             if let Some(clip) = clip {
@@ -215,24 +260,29 @@ fn draw_triangles<S: Lanes8, D: Cell, const DEPTHS: bool>(
             }
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             if !DEPTHS
+                && !P::STARTS
                 && pick.class() == SizeClass::Large
                 && let Some(avx512) = kernel.avx512()
             {
-                list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
-                list.count(crate::span::fill_large(avx512, pixels, &setup.large_triangle(i, layout, of.reseeds)));
+                shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+                list.count_drawn(crate::span::fill_large(
+                    avx512,
+                    pixels,
+                    &setup.large_triangle(i, layout, of.in_pieces),
+                ));
                 continue;
             }
             while first < end {
                 if !list.has_room(LANES * pieces) {
-                    list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+                    shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
-                rows::list_pieces::<S, DEPTHS>(s, &setup, part, cut, clip, &mut list);
+                rows::list_pieces::<S, P, DEPTHS>(s, &setup, shades, part, cut, (clip, layout.width), &mut list);
                 first += LANES as i32;
             }
         }
     }
-    list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+    shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
     let (spans, covered, nearer) = list.counts();
     let (pixels, tested) = if DEPTHS { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }

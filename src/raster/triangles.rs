@@ -52,12 +52,12 @@ impl Batch {
         }
     }
 
-    /// Returns whether triangles of this shading can be put into a batch: flat ones, and those linear in 8.8.
+    /// Returns whether triangles of this shading can be put into a batch: those that have exact cover.
     #[must_use]
     #[inline]
     #[doc(hidden)]
     pub const fn takes(interpolation: Interpolation) -> bool {
-        matches!(interpolation, Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded)
+        interpolation.has_exact_cover()
     }
 
     /// Puts a triangle behind the others. Returns `false`, and leaves it out, if the batch is full or does not
@@ -114,10 +114,13 @@ impl Batch {
     /// The end of the triangles from `first` on that are drawn together, and the shading of all of them: a flat one is like
     /// one whose rows do not start anew.
     fn run(&self, first: usize) -> (usize, Interpolation) {
-        let reseeds = |at: &usize| self.interpolation[*at] == Interpolation::GouraudReseeded;
-        let is = reseeds(&first);
-        let end = (first..self.count).find(|at| reseeds(at) != is).unwrap_or(self.count);
-        (end, if is { Interpolation::GouraudReseeded } else { Interpolation::Gouraud })
+        let drawn_by = |at: usize| match self.interpolation[at] {
+            Interpolation::Flat(_) => Interpolation::Gouraud,
+            interpolation => interpolation,
+        };
+        let of_first = drawn_by(first);
+        let end = (first..self.count).find(|at| drawn_by(*at) != of_first).unwrap_or(self.count);
+        (end, of_first)
     }
 }
 
@@ -129,8 +132,8 @@ impl Default for Batch {
 
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles in the order in which they come: bytes, depths and counts are those of
-    /// [`triangle`](Self::triangle) called for each. Flat triangles and those in 8.8 are culled and set up 128 at a time,
-    /// which is several times as fast where they are small.
+    /// [`triangle`](Self::triangle) called for each. All but vintage ones are culled 128 and set up eight at a time, which is
+    /// several times as fast where they are small.
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};

@@ -140,6 +140,11 @@ impl Lanes8 for Avx2 {
         fn i32s(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
         fn all_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
         fn put_i32s(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn low_bytes(from: __m256i) -> [u8; 8] {
+            let fours = _mm256_shuffle_epi8(from, _mm256_set1_epi32(0x0C08_0400));
+            let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256::<1>(fours));
+            _mm_cvtsi128_si64(eight).to_le_bytes()
+        }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }
         fn mul_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_mullo_epi32(a, b) }

@@ -46,6 +46,13 @@ pub(crate) trait Lanes8: Copy {
     fn i32s(self, from: &[i32; 8]) -> Self::I32;
     fn all_i32(self, value: i32) -> Self::I32;
     fn put_i32s(self, from: Self::I32, to: &mut [i32; 8]);
+    /// The lowest byte of each.
+    #[inline(always)]
+    fn low_bytes(self, from: Self::I32) -> [u8; 8] {
+        let mut lanes = [0; 8];
+        self.put_i32s(from, &mut lanes);
+        crate::lanes::each!(lane => lanes[lane] as u8)
+    }
     fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;

@@ -7,8 +7,10 @@
 //! or, with a depth test, `fill_nearer`. The rows of triangles are put in eight at a time; lanes without a pixel, and spans
 //! that do not lie inside the pixels, are left out by compression, so no branch asks how many there are.
 
+use core::ops::Range;
+
 use super::Kernel;
-use super::depth::{Cell, fill_nearer};
+use super::depth::{Cell, copy_nearer, fill_nearer};
 use crate::simd::{Lanes8, Portable};
 
 /// Spans that a list has room for.
@@ -56,6 +58,8 @@ pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) paint: S::I32,
     /// Depths, as those of the list.
     pub(crate) z: S::I64,
+    /// What their fill begins with, where there is such.
+    pub(crate) starts: [S::I64; 2],
 }
 
 /// The changes of depth of eight spans from one pixel to the next, as those of the list.
@@ -69,16 +73,29 @@ pub(crate) enum DepthSteps<S: Lanes8> {
 impl<S: Lanes8> Spans8<S> {
     /// Spans 0 of both, spans 1 of both, and so on.
     #[inline(always)]
-    pub(crate) fn zip<const DEPTHS: bool>(&self, s: S, other: &Self, list: &SpanList) -> [Self; 2] {
+    pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, (has_depths, has_starts): (bool, bool)) -> [Self; 2] {
         let [at, more_at] = s.zip_i32(self.at, other.at);
         let [cell, more_cell] =
-            if DEPTHS && !list.cells_are_pixels() { s.zip_i32(self.cell, other.cell) } else { [at, more_at] };
+            if has_depths && !list.cells_are_pixels() { s.zip_i32(self.cell, other.cell) } else { [at, more_at] };
         let [length, more_length] = s.zip_i32(self.length, other.length);
         let [paint, more_paint] = s.zip_i32(self.paint, other.paint);
-        let [z, more_z] = if DEPTHS { s.zip_i64(self.z, other.z) } else { [self.z, other.z] };
+        let [z, more_z] = if has_depths { s.zip_i64(self.z, other.z) } else { [self.z, other.z] };
+        let (mut starts, mut more_starts) = (self.starts, other.starts);
+        if has_starts {
+            for i in 0..2 {
+                [starts[i], more_starts[i]] = s.zip_i64(self.starts[i], other.starts[i]);
+            }
+        }
         [
-            Self { at, cell, length, paint, z },
-            Self { at: more_at, cell: more_cell, length: more_length, paint: more_paint, z: more_z },
+            Self { at, cell, length, paint, z, starts },
+            Self {
+                at: more_at,
+                cell: more_cell,
+                length: more_length,
+                paint: more_paint,
+                z: more_z,
+                starts: more_starts,
+            },
         ]
     }
 }
@@ -116,7 +133,7 @@ impl SpanList {
 
     /// Counts spans and their pixels that were drawn without the list.
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-    pub(crate) fn count(&mut self, (spans, covered): (u32, u32)) {
+    pub(crate) fn count_drawn(&mut self, (spans, covered): (u32, u32)) {
         self.drawn = self.drawn.wrapping_add(spans);
         self.covered[0] = self.covered[0].wrapping_add(covered.cast_signed());
     }
@@ -153,10 +170,15 @@ impl SpanList {
     }
 
     /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
-    /// left out.
+    /// left out. Returns which they are, and the number of the first.
     #[inline(always)]
-    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, spans: &Spans8<S>, dz: DepthSteps<S>) {
-        let &Spans8 { at, cell, length, paint, z } = spans;
+    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        spans: &Spans8<S>,
+        dz: DepthSteps<S>,
+    ) -> (S::Mask, usize) {
+        let &Spans8 { at, cell, length, paint, z, .. } = spans;
         let mask = self.inside::<S, DEPTHS>(s, spans);
         let covered = s.select_i32(mask, length, s.all_i32(0));
         s.put_i32s(s.add_i32(s.i32s(&self.covered), covered), &mut self.covered);
@@ -181,6 +203,7 @@ impl SpanList {
             }
         }
         self.count = (count + s.mask_bits(mask).count_ones() as usize).min(CAPACITY);
+        (mask, count)
     }
 
     /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. With fewer pixels or cells than
@@ -198,6 +221,32 @@ impl SpanList {
         }
         // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
+        self.count = 0;
+    }
+
+    /// Number of spans.
+    #[inline(always)]
+    pub(crate) fn count(&self) -> usize {
+        self.count.min(CAPACITY)
+    }
+
+    /// The length and the paint of span `k`, which is below [`count`](Self::count).
+    #[inline(always)]
+    pub(crate) fn fill_of(&self, k: usize) -> (usize, u32) {
+        let k = k.min(CAPACITY);
+        (self.length[k] as usize, self.paint[k])
+    }
+
+    /// The offset of the first pixel of span `k`, likewise.
+    pub(crate) fn offset(&self, k: usize) -> u32 {
+        self.at[k.min(CAPACITY)]
+    }
+
+    /// Empties the list, whose spans have been drawn, with so many pixels that were nearer.
+    pub(crate) fn clear(&mut self, nearer: u32) {
+        // As in `draw_by`.
+        self.drawn = self.drawn.wrapping_add(self.count as u32);
+        self.nearer = self.nearer.wrapping_add(nearer);
         self.count = 0;
     }
 
@@ -236,8 +285,14 @@ impl SpanList {
     /// The spans, in order, with their depths.
     #[inline(always)]
     pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
+        self.tested_spans_of(0..self.count())
+    }
+
+    /// Some of the spans, in order, with their depths.
+    #[inline(always)]
+    pub(super) fn tested_spans_of(&self, range: Range<usize>) -> impl Iterator<Item = (Span, SpanDepth)> {
         let (Self { at, length, paint, z, dz, count, .. }, cell) = (self, self.cell());
-        (0..(*count).min(CAPACITY)).map(|k| {
+        (range.start..range.end.min(*count).min(CAPACITY)).map(|k| {
             (Span { at: at[k], length: length[k], paint: paint[k] }, SpanDepth { cell: cell[k], z: z[k], dz: dz[k] })
         })
     }
@@ -282,6 +337,70 @@ impl SpanList {
             }
         }
         written
+    }
+
+    /// Copies the bytes of some where they are nearer. Returns the number of pixels written.
+    #[inline(never)]
+    pub(super) fn each_copied(
+        &self,
+        range: Range<usize>,
+        pixels: &mut [u8],
+        cells: &mut [u32],
+        bytes: &SpanBytes,
+    ) -> u32 {
+        let mut written = 0;
+        for (k, (Span { at, length, .. }, SpanDepth { cell, z, dz })) in self.tested_spans_of(range).enumerate() {
+            // As above.
+            let (at, cell, length) = (at as usize, cell as usize, length as usize);
+            if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
+                written += copy_nearer(row, cells, bytes.of(k), z >> 8, dz >> 8);
+            }
+        }
+        written
+    }
+}
+
+/// What the fill of each span of a list begins with, where it is more than a linear shade.
+pub(crate) struct SpanStarts([Depths; 2]);
+
+impl SpanStarts {
+    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; 2]);
+
+    /// Puts those of the mask into the places from `at` on.
+    #[inline(always)]
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: [S::I64; 2]) {
+        let [first, second] = &mut self.0;
+        s.compact_i64(mask, starts, [eight(first, at), eight(second, at)]);
+    }
+
+    /// Those of span `k`.
+    #[inline(always)]
+    pub(crate) fn of(&self, k: usize) -> [i64; 2] {
+        let k = k.min(CAPACITY);
+        [self.0[0][k], self.0[1][k]]
+    }
+}
+
+/// Bytes of some spans of a list, 64 each.
+pub(crate) struct SpanBytes([[u8; SpanBytes::LENGTH]; SpanBytes::COUNT]);
+
+impl SpanBytes {
+    /// The most pixels of a span.
+    pub(crate) const LENGTH: usize = 64;
+    /// Spans at a time.
+    pub(crate) const COUNT: usize = 16;
+
+    pub(crate) const NONE: Self = Self([[0; Self::LENGTH]; Self::COUNT]);
+
+    /// Those of span `k` of these.
+    #[inline(always)]
+    pub(crate) fn of(&self, k: usize) -> &[u8; Self::LENGTH] {
+        &self.0[k % Self::COUNT]
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_mut(&mut self, k: usize) -> &mut [u8; Self::LENGTH] {
+        &mut self.0[k % Self::COUNT]
     }
 }
 
@@ -378,8 +497,14 @@ pub fn fill_where_nearer<D: Cell>(
 }
 
 fn lanes(spans: &[Listed]) -> Spans8<Portable> {
-    let mut eight: Spans8<Portable> =
-        Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], paint: [0; LANES], z: [0; LANES] };
+    let mut eight: Spans8<Portable> = Spans8 {
+        at: [0; LANES],
+        cell: [0; LANES],
+        length: [0; LANES],
+        paint: [0; LANES],
+        z: [0; LANES],
+        starts: [[0; LANES]; 2],
+    };
     for (i, span) in spans.iter().enumerate() {
         eight.at[i] = span.at.cast_signed();
         eight.length[i] = span.length.cast_signed();

@@ -46,6 +46,7 @@
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
+use core::ops::Range;
 use core::str::FromStr;
 
 use crate::names::{KERNELS, UnknownName};
@@ -291,6 +292,49 @@ impl Kernel {
         spans.each_nearer(pixels, cells)
     }
 
+    /// Copies the bytes of some spans of a list to the pixels, where there are cells those that are nearer. Of the spans none has
+    /// more than 64 pixels. Returns the number of pixels that were nearer.
+    #[inline]
+    pub(crate) fn copy_spans(
+        self,
+        pixels: &mut [u8],
+        cells: Option<&mut [u32]>,
+        (spans, range): (&list::SpanList, Range<usize>),
+        bytes: &list::SpanBytes,
+    ) -> u32 {
+        let Some(cells) = cells else {
+            for (k, (span, _)) in spans.tested_spans_of(range).enumerate() {
+                let row = pixels.get_mut(span.at as usize..).unwrap_or_default();
+                self.copy(span.length as usize, row, bytes.of(k));
+            }
+            return 0;
+        };
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return simd::nearer::copy_spans(avx2, pixels, cells, (spans, range), bytes);
+        }
+        spans.each_copied(range, pixels, cells, bytes)
+    }
+
+    /// Fills every span, in order, with shades in 16.16 where they are nearer: `shades` gives the first one and the step of a
+    /// span, by its number and its paint. Returns the number of pixels written; `None`, with nothing done, where this kernel
+    /// has no loop for it.
+    #[inline(always)]
+    pub(crate) fn fill_spans_16_16(
+        self,
+        pixels: &mut [u8],
+        cells: Option<&mut [u32]>,
+        spans: &list::SpanList,
+        shades: impl Fn(usize, u32) -> (u32, u32),
+    ) -> Option<u32> {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(avx2) = self.avx2() {
+            return cells.map(|cells| simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades));
+        }
+        let _ = (pixels, cells, spans, shades);
+        None
+    }
+
     /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as [`depth::copy_before`]. Returns the
     /// number of pixels written.
     ///
@@ -316,6 +360,29 @@ impl Kernel {
         }
         let bytes = &bytes[..length.min(bytes.len())];
         if KEEPS { depth::copy_nearer(row, cells, bytes, z, dz) } else { depth::copy_before(row, cells, bytes, z, dz) }
+    }
+
+    /// Copies the first `length` bytes, of which the row has as many. What lies behind them stays as it was.
+    #[inline(always)]
+    pub(crate) fn copy(self, length: usize, row: &mut [u8], bytes: &[u8]) {
+        // Usually few, and their number unpredictable: trailing bytes are rewritten unchanged.
+        if (1..=8).contains(&length)
+            && let (Some(row), Some(bytes)) = (row.first_chunk_mut(), bytes.first_chunk())
+        {
+            let mask = !(u64::MAX << 1 << (8 * length - 1));
+            *row = (u64::from_le_bytes(*bytes) & mask | u64::from_le_bytes(*row) & !mask).to_le_bytes();
+        } else if let (Some(row), Some(bytes)) = (row.get_mut(..length), bytes.get(..length)) {
+            // A copy by a function of the C library takes as long as some tens of pixels.
+            let blocks = bytes.as_chunks::<8>().0;
+            for (to, from) in row.as_chunks_mut::<8>().0.iter_mut().zip(blocks) {
+                *to = *from;
+            }
+            match (row.last_chunk_mut::<8>(), bytes.last_chunk::<8>()) {
+                (Some(to), Some(from)) => *to = *from,
+                // At the frame's end.
+                _ => row.copy_from_slice(bytes),
+            }
+        }
     }
 
     /// The level that it draws with.

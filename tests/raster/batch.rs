@@ -12,12 +12,19 @@ use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
 /// Shadings that a batch takes.
+/// An interpolation with exact cover.
 fn interpolation(random: &mut Random) -> Interpolation {
-    match random.within(0, 2) {
-        0 => Interpolation::Flat(random.within(0, 255) as u8),
-        1 => Interpolation::Gouraud,
-        _ => Interpolation::GouraudReseeded,
+    let interpolated = random.one_of(Interpolation::INTERPOLATED);
+    if random.within(0, 3) == 0 || !interpolated.has_exact_cover() {
+        return Interpolation::Flat(random.within(0, 255) as u8);
     }
+    interpolated
+}
+
+/// An interpolation for each triangle, or one for all.
+fn interpolations(random: &mut Random) -> impl FnMut(&mut Random) -> Interpolation + use<> {
+    let all = (random.within(0, 1) == 0).then(|| interpolation(random));
+    move |random| all.unwrap_or_else(|| interpolation(random))
 }
 
 /// A triangle of at most `reach` units about somewhere in or near the frame; one in four on whole or half pixels.
@@ -157,6 +164,7 @@ fn batches_draw_what_single_triangles_do() {
             depth: round % 2 == 0,
         };
         let count = random.within(0, Batch::CAPACITY as i64);
+        let mut interpolation = interpolations(&mut random);
         let triangles: Vec<([Vertex; 3], Interpolation)> =
             (0..count).map(|_| (any(&mut random, width, height), interpolation(&mut random))).collect();
         let mut batch = Batch::new();
@@ -359,7 +367,7 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
 fn a_batch_takes_what_it_has_room_for() {
     let vertices = [vertex(0, 0, 0, 0), vertex(512, 0, 0, 0), vertex(0, 512, 0, 0)];
     let mut batch = Batch::default();
-    assert!(!batch.push(&vertices, Interpolation::GouraudHyperbolic) && batch.is_empty());
+    assert!(!batch.push(&vertices, Interpolation::GouraudVintage) && batch.is_empty());
     for _ in 0..Batch::CAPACITY {
         assert!(!batch.is_full() && batch.push(&vertices, Interpolation::Flat(3)));
     }

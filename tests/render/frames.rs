@@ -82,6 +82,22 @@ fn every_shape_on_every_shading_is_the_oracles_frame() {
     }
 }
 
+/// One shade half a step below the next: where quotients are estimated, not one pixel can be decided so. There are more
+/// faces than are listed at a time.
+#[test]
+fn many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles() {
+    let mut tried = Tried::new("many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles", 2);
+    for shading in [Shading::GouraudHyperbolic, Shading::Float] {
+        let mut scene = turned(shapes::sphere(48, 24), 20.0);
+        scene.ambient = 64.5 / 255.0;
+        for material in &mut scene.objects_mut()[0].materials {
+            (material.ambient, material.diffuse) = (1.0, 0.0);
+        }
+        assert!(check(&scene, shading) > 5000);
+        tried.add(1);
+    }
+}
+
 #[test]
 fn close_up_the_clipped_frame_is_the_oracles() {
     let mut tried = Tried::new("close_up_the_clipped_frame_is_the_oracles", 12);

@@ -4,7 +4,7 @@ use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raste
 use mode13h::span::Kernel;
 use mode13h::span::depth::Cell;
 
-use super::interpolation;
+use super::interpolations;
 use super::shapes::{CLASSES, shape};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
@@ -166,6 +166,7 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
         let is_mixed = random.within(0, 1) == 0;
         let least = |of_class: &[u64; 3]| (0..3).min_by_key(|&i| of_class[i]).expect("three");
         let first = least(&of_class);
+        let mut interpolation = interpolations(&mut random);
         // Until the frame is full, so that not much of what is drawn is drawn over.
         while expected.covered < place.width * place.height && triangles.len() < Batch::CAPACITY {
             let class = if is_mixed { least(&of_class) } else { first };
@@ -205,6 +206,7 @@ pub(crate) fn orders_and_windings(mut tried: Tried) {
     while tried.more() {
         let place = Place::random(&mut random);
         let size = (place.width.into(), place.height.into());
+        let mut interpolation = interpolations(&mut random);
         let mut triangles = Vec::new();
         while triangles.len() < Batch::CAPACITY / 2 {
             let class = random.one_of(&CLASSES);

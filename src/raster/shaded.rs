@@ -1,0 +1,497 @@
+//! Shades of eight triangles that are more than a linear shade in 8.8: set-up, starts of rows, and the bytes of spans.
+//!
+//! | shading | a row starts with | its bytes |
+//! |---|---|---|
+//! | 16.16 | the shade of [`fixed16`](super::fixed16) | sums of 32 bits |
+//! | perspective-correct | numerator and divisor of [`hyperbolic`](super::hyperbolic) in f64 | quotients, exact where they cannot decide |
+//! | in f32 | numerator and divisor of [`float`](super::float) | quotients |
+//!
+//! # 16.16 in two quotients
+//!
+//! With N the numerator of a shade in 1/256, half a shade included, A twice the area, and h = A/2 − ½ with the sign of the
+//! shade's change, the start is N · 256 / A, rounded down, or up where shades fall. The set-up of linear shades
+//! has M = N − h, and
+//!
+//! ```text
+//! q = nearest(M / A)        r = M − q·A        256·q + nearest((256·r + 255·h) / A)
+//! ```
+//!
+//! since 256·N − h = 256·(M + h) − h. M is a multiple of ½ below 2⁵², q·A as well, so r is exact; it is at most 0.51·A, and
+//! 256·r + 255·h is below 2⁴³ and exact, too. The last quotient is below 2⁹, so it is off by 2⁻⁴³, and what is rounded lies
+//! at least 1/(2A) ≥ 2⁻³⁶ from the middle between two integers. A step is found in the same way, toward zero.
+//!
+//! # Perspective-correct shades
+//!
+//! Weights of corners are whole numbers below 2⁴⁴ in a box of 2¹⁸ pixels, and so exact, whatever pixel they are counted from.
+//! The estimate's bound in [`hyperbolic`](super::hyperbolic) asks for no more than three products and two sums, each
+//! rounded at most once.
+//!
+//! Bytes in f32 depend on the order in which three products are added: that of the corners by height, and of two at one
+//! height the left one first. Which of the first two comes first does not matter to their sum. No product is fused
+//! with a sum. The changes from a pixel to the next are exact sums: of a small triangle, whose differences of y are at most
+//! 2¹², in 64 bits, as products of depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
+
+use super::columns::{Picks, Triangles};
+use super::cover::SortedTriangle;
+use super::depth::Cell;
+#[cfg(feature = "alloc")]
+use super::float::FloatPlane;
+use super::hyperbolic::HyperbolicPlane;
+use super::interpolation::Interpolation;
+use super::pick::{LANES, NUMBERS};
+use super::rows::{Lane, Parts, RowEnds, Shades8};
+use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
+use super::shade::RESEED;
+use crate::fixed::ROUND_MAGIC;
+use crate::simd::Lanes8;
+use crate::span::Kernel;
+#[cfg(feature = "alloc")]
+use crate::span::float::fill_float;
+use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8};
+
+/// Shadings that are set up and filled here.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Fixed16,
+    Hyperbolic,
+    #[cfg(feature = "alloc")]
+    Float,
+}
+
+impl Kind {
+    pub(super) fn of(interpolation: Interpolation) -> Option<Self> {
+        match interpolation {
+            Interpolation::Gouraud1616 => Some(Self::Fixed16),
+            Interpolation::GouraudHyperbolic => Some(Self::Hyperbolic),
+            #[cfg(feature = "alloc")]
+            Interpolation::Float => Some(Self::Float),
+            _ => None,
+        }
+    }
+}
+
+/// Changes along the rows of eight triangles, and their shades' range.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Steps8 {
+    /// Changes of the numerator and of the divisor, from a pixel to the next.
+    sums: [Floats; 2],
+    /// Steps in 16.16.
+    fixed16: Ints,
+    least: Ints,
+    greatest: Ints,
+}
+
+/// Batches of eight triangles whose steps are kept until their spans are filled.
+const BATCHES: usize = 8;
+const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
+
+/// Triangles whose spans may be listed.
+struct Listed<'a> {
+    triangles: &'a Triangles<'a>,
+    picks: Picks<'a>,
+    layout: FrameLayout,
+    steps: [Steps8; BATCHES],
+    /// The batch that is set up, and the number of the first pick of batch 0.
+    batch: usize,
+    first: usize,
+}
+
+impl Listed<'_> {
+    fn triangle(&self, face: usize) -> SortedTriangle {
+        SortedTriangle::new(&self.triangles.vertices(&self.picks, self.first + face))
+    }
+
+    /// The step of a triangle in 16.16.
+    #[inline(always)]
+    fn step_16_16(&self, face: usize) -> u32 {
+        self.steps[face / LANES % BATCHES].fixed16[face % LANES].cast_unsigned()
+    }
+}
+
+/// Triangles, the planes of eight of them, and the steps of those whose spans are listed.
+pub(super) struct Shaded8<'a> {
+    kind: Kind,
+    listed: Listed<'a>,
+    starts: SpanStarts,
+    bytes: SpanBytes,
+    /// 16.16: 255·h, and A.
+    fraction: Floats,
+    area: Floats,
+    /// The weight of each corner, by height: at the box's first pixel, its change from a row to the next, and from a column to
+    /// the next.
+    weights: [[Floats; 3]; 3],
+    /// Each corner's depth times its shade, and its depth.
+    values: [[Floats; 2]; 3],
+}
+
+impl<'a> Shaded8<'a> {
+    #[inline(always)]
+    pub(super) fn new(kind: Kind, triangles: &'a Triangles<'a>, picks: Picks<'a>, layout: FrameLayout) -> Self {
+        let (floats, ints) = ([0.0; LANES], [0; LANES]);
+        let steps = Steps8 { sums: [floats; 2], fixed16: ints, least: ints, greatest: ints };
+        Self {
+            kind,
+            listed: Listed { triangles, picks, layout, steps: [steps; BATCHES], batch: 0, first: 0 },
+            starts: SpanStarts::NONE,
+            bytes: SpanBytes::NONE,
+            fraction: floats,
+            area: floats,
+            weights: [[floats; 3]; 3],
+            values: [[floats; 2]; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn set_up_16_16<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, setup: &TriangleSetup8) {
+        let magic = s.all_f64(ROUND_MAGIC);
+        let per_column = s.f64s(&setup.shade.per_column);
+        let half = s.flip(s.mul_add(basis.area, s.all_f64(0.5), s.all_f64(-0.5)), per_column);
+        let fraction = s.mul(half, s.all_f64(255.0));
+        s.put_f64s(fraction, &mut self.fraction);
+        s.put_f64s(basis.area, &mut self.area);
+        let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
+        s.put_i32s(step, &mut self.listed.steps[self.listed.batch].fixed16);
+    }
+
+    #[inline(always)]
+    fn set_up_perspective<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
+        let (pixel, zero, one) = (s.all_f64(256.0), s.all_f64(0.0), s.all_f64(1.0));
+        let [shade_a, shade_b, shade_c] = &corners.shade;
+        let [depth_a, depth_b, depth_c] = &corners.depth;
+        let shades = basis.order.sort(s, [s.i32s(shade_a), s.i32s(shade_b), s.i32s(shade_c)]);
+        let depths = basis.order.sort(s, [s.i32s(depth_a), s.i32s(depth_b), s.i32s(depth_c)]);
+        let is_estimate = self.kind == Kind::Hyperbolic;
+        // 2¹⁶ times a byte with its half; or shades as they are.
+        let (half, scale) = if is_estimate { (128.0, 256.0) } else { (0.0, 1.0) };
+        let (half, scale) = (s.all_f64(half), s.all_f64(scale));
+        let mut sums = [zero; 2];
+        let mut changes = [zero; 3];
+        let mut values = [[zero; 2]; 3];
+        for corner in 0..3 {
+            let (gradient, weight) = basis.weight(s, corner);
+            for (i, to) in self.weights[corner].iter_mut().enumerate() {
+                s.put_f64s(weight[i], to);
+            }
+            // A depth counts as 1 at least.
+            let depth = s.max(s.unsigned_to_f64(depths[corner]), one);
+            let shade = s.mul(s.add(s.to_f64(shades[corner]), half), scale);
+            values[corner] = [s.mul(shade, depth), depth];
+            changes[corner] = gradient;
+            for i in 0..2 {
+                s.put_f64s(values[corner][i], &mut self.values[corner][i]);
+                sums[i] = s.mul_add(s.mul(gradient, pixel), values[corner][i], sums[i]);
+            }
+        }
+        let steps = &mut self.listed.steps[self.listed.batch];
+        if is_estimate {
+            s.put_f64s(sums[0], &mut steps.sums[0]);
+            s.put_f64s(sums[1], &mut steps.sums[1]);
+            return;
+        }
+        // Of two last corners at one height the left one comes first.
+        let is_last_second =
+            s.but_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
+        for i in 0..3 {
+            let [_, second, third] = &mut self.weights;
+            let (at_second, at_third) = (s.f64s(&second[i]), s.f64s(&third[i]));
+            s.put_f64s(s.select(is_last_second, at_third, at_second), &mut second[i]);
+            s.put_f64s(s.select(is_last_second, at_second, at_third), &mut third[i]);
+        }
+        let [first, second, third] = values;
+        for (i, (unit, sums)) in [1.0, 256.0].into_iter().zip(&mut steps.sums).enumerate() {
+            s.put_f64s(s.select(is_last_second, third[i], second[i]), &mut self.values[1][i]);
+            s.put_f64s(s.select(is_last_second, second[i], third[i]), &mut self.values[2][i]);
+            // Whole numbers below 2⁴⁸ and 2¹², exact in sums with the magic number.
+            let mut exact = [0; LANES];
+            s.put_i64s(
+                s.add_i64(
+                    s.add_i64(product(s, changes[0], first[i]), product(s, changes[1], second[i])),
+                    product(s, changes[2], third[i]),
+                ),
+                &mut exact,
+            );
+            // 2⁸ for a pixel's width, and of shades 2⁻⁸ for their unit: no rounding but the first.
+            for (step, exact) in sums.iter_mut().zip(exact) {
+                *step = f64::from(exact as f32 * unit);
+            }
+        }
+        let [a, b, c] = shades;
+        s.put_i32s(s.min_i32(s.min_i32(a, b), c), &mut steps.least);
+        s.put_i32s(s.max_i32(s.max_i32(a, b), c), &mut steps.greatest);
+    }
+
+    #[inline(always)]
+    fn draw_by<S: Lanes8>(
+        &mut self,
+        s: S,
+        stage: &impl Stage,
+        list: &mut SpanList,
+        kernel: Kernel,
+        (pixels, mut cells): (&mut [u8], Option<&mut [u32]>),
+    ) {
+        let (count, mut first, mut nearer) = (list.count(), 0, 0);
+        while first < count {
+            let end = count.min(first + SpanBytes::COUNT);
+            for k in first..end {
+                let ((length, paint), starts) = (list.fill_of(k), self.starts.of(k));
+                // Its halves.
+                let fill = Fill {
+                    face: (paint & 0xFFFF) as usize,
+                    #[cfg(feature = "alloc")]
+                    first: paint.cast_signed() >> 16,
+                    starts,
+                    length: length.min(SpanBytes::LENGTH),
+                };
+                let bytes = self.bytes.of_mut(k - first);
+                if !stage.fill(s, &self.listed, &fill, bytes) {
+                    exact_bytes(&self.listed, &fill, list.offset(k), bytes);
+                }
+            }
+            nearer += kernel.copy_spans(pixels, cells.as_deref_mut(), (list, first..end), &self.bytes);
+            first = end;
+        }
+        list.clear(nearer);
+    }
+}
+
+/// `256·q + nearest((256·r + 255·h) / A)`, modulo 2³²: see the module's head.
+#[inline(always)]
+fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), fraction: S::F64, magic: S::F64) -> S::I32 {
+    let whole = s.mul_add(n, inverse, magic);
+    let rest = s.neg_mul_add(s.sub(whole, magic), area, n);
+    let part = s.mul_add(s.mul_add(rest, s.all_f64(256.0), fraction), inverse, magic);
+    s.add_i32(s.shl_i32(s.low_bits(whole), 8), s.low_bits(part))
+}
+
+/// The product of whole numbers.
+#[inline(always)]
+fn product<S: Lanes8>(s: S, a: S::F64, b: S::F64) -> S::I64 {
+    let magic = s.all_f64(ROUND_MAGIC);
+    let whole = |value: S::F64| s.sub_i64(s.bits(s.add(value, magic)), s.bits(magic));
+    s.mul_i64(whole(a), whole(b))
+}
+
+impl Shades8 for Shaded8<'_> {
+    const STARTS: bool = true;
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.listed.batch + 1 >= BATCHES
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, first: usize) {
+        let starts_anew = first == 0 || self.is_full();
+        (self.listed.batch, self.listed.first) =
+            if starts_anew { (0, first) } else { (self.listed.batch + 1, self.listed.first) };
+    }
+
+    #[inline(always)]
+    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
+        match self.kind {
+            Kind::Fixed16 => self.set_up_16_16(s, basis, setup),
+            _ => self.set_up_perspective(s, basis, corners),
+        }
+    }
+
+    #[inline(always)]
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        setup: &TriangleSetup8,
+        (ends, j): (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
+    ) -> (S::I32, [S::I64; 2]) {
+        let magic = s.all_f64(ROUND_MAGIC);
+        // At most 255.
+        let face = s.add_i32(s.all_i32((self.listed.batch * LANES) as i32), lane.numbers(s));
+        let steps = &self.listed.steps[self.listed.batch];
+        if self.kind == Kind::Fixed16 {
+            let n = ends.shade_numerator(s, lane, setup, parts.origin);
+            let quotient = (lane.f64s(s, &self.area), lane.f64s(s, &setup.inverse));
+            let start = sum_16_16(s, n, quotient, lane.f64s(s, &self.fraction), magic);
+            let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.origin));
+            let start = s.add_i32(start, s.mul_i32(lane.i32s(s, &steps.fixed16), skipped));
+            return (face, [s.to_i64(start), s.all_i64(0)]);
+        }
+        let (mut at, mut paint) = (parts.start, face);
+        if self.kind != Kind::Hyperbolic {
+            let falls = s.is_less(lane.f64s(s, &steps.sums[1]), s.all_f64(0.0));
+            at = s.select(falls, s.sub(parts.end, s.all_f64(1.0)), parts.origin);
+            let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
+            paint = s.or_i32(face, s.shl_i32(first, 16));
+        }
+        let columns = s.sub(at, magic);
+        let mut sums = [s.all_f64(0.0); 2];
+        for (weights, values) in self.weights.iter().zip(&self.values) {
+            // Whole numbers: exact.
+            let weight = s.mul_add(lane.f64s(s, &weights[1]), j, lane.f64s(s, &weights[0]));
+            let weight = s.mul_add(lane.f64s(s, &weights[2]), columns, weight);
+            for (i, sum) in sums.iter_mut().enumerate() {
+                // Rounded twice at every level.
+                *sum = s.add(*sum, s.mul(weight, lane.f64s(s, &values[i])));
+            }
+        }
+        (paint, [s.bits(sums[0]), s.bits(sums[1])])
+    }
+
+    #[inline(always)]
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S>,
+        dz: DepthSteps<S>,
+    ) {
+        let places = list.append::<S, DEPTHS>(s, spans, dz);
+        self.starts.put(s, places, spans.starts);
+    }
+
+    /// The exact steps in f32 of a triangle that is too large for sums of 64 bits.
+    #[inline(never)]
+    fn set_up_large(&mut self, i: usize) {
+        #[cfg(feature = "alloc")]
+        if self.kind == Kind::Float {
+            let triangle = self.listed.triangle(self.listed.batch * LANES + i);
+            let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps();
+            for (to, step) in self.listed.steps[self.listed.batch].sums.iter_mut().zip(steps) {
+                to[i % LANES] = step.into();
+            }
+        }
+        let _ = i;
+    }
+
+    #[inline(always)]
+    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        kernel: Kernel,
+        pixels: &mut [u8],
+        cells: &mut [D],
+    ) {
+        // Without a depth buffer there are none.
+        let mut cells = D::as_u32(cells).filter(|cells| !cells.is_empty());
+        match self.kind {
+            Kind::Fixed16 => {
+                let shades = |k: usize, face: u32| (self.starts.of(k)[0] as u32, self.listed.step_16_16(face as usize));
+                match kernel.fill_spans_16_16(pixels, cells.as_deref_mut(), list, shades) {
+                    Some(nearer) => list.clear(nearer),
+                    None => self.draw_by(s, &Fixed16, list, kernel, (pixels, cells)),
+                }
+            }
+            Kind::Hyperbolic => self.draw_by(s, &Hyperbolic, list, kernel, (pixels, cells)),
+            #[cfg(feature = "alloc")]
+            Kind::Float => self.draw_by(s, &Float, list, kernel, (pixels, cells)),
+        }
+    }
+}
+
+/// What fills a span.
+struct Fill {
+    /// The triangle, among those whose steps are kept.
+    face: usize,
+    /// The number of its first pixel, counted from where its sums are.
+    #[cfg(feature = "alloc")]
+    first: i32,
+    starts: [i64; 2],
+    /// At most [`SpanBytes::LENGTH`].
+    length: usize,
+}
+
+type Bytes = [u8; SpanBytes::LENGTH];
+
+/// A pixel stage: the bytes of a span.
+trait Stage {
+    /// The bytes of a span, and anything behind them in blocks of eight. Returns false where it cannot decide on all of them.
+    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
+}
+
+struct Fixed16;
+
+impl Stage for Fixed16 {
+    #[inline(always)]
+    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
+        let step = s.all_i32(all.step_16_16(span.face).cast_signed());
+        // The lower half.
+        let mut sums = s.add_i32(s.all_i32(span.starts[0] as i32), s.mul_i32(step, s.i32s(&NUMBERS)));
+        let next = s.shl_i32(step, 3);
+        for block in blocks(bytes, span.length) {
+            *block = s.low_bytes(s.sar_i32(sums, 16));
+            sums = s.add_i32(sums, next);
+        }
+        true
+    }
+}
+
+/// Blocks of eight that hold so many bytes.
+#[inline(always)]
+fn blocks(bytes: &mut Bytes, length: usize) -> impl Iterator<Item = &mut [u8; LANES]> {
+    bytes.as_chunks_mut().0.iter_mut().take(length.div_ceil(LANES))
+}
+
+struct Hyperbolic;
+
+impl Stage for Hyperbolic {
+    #[inline(always)]
+    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
+        let [dn, dd] = &all.steps[span.face / LANES % BATCHES].sums;
+        let (dn, dd) = (dn[span.face % LANES], dd[span.face % LANES]);
+        let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
+        if !HyperbolicPlane::is_sure(d0, dd, span.length) {
+            return false;
+        }
+        let (n0, dn, d0, dd) = (s.all_f64(n0), s.all_f64(dn), s.all_f64(d0), s.all_f64(dd));
+        let mut k = s.to_f64(s.i32s(&NUMBERS));
+        let mut left = span.length as i32;
+        let mut undecided = 0;
+        for block in blocks(bytes, span.length) {
+            let quotient = s.div(s.mul_add(k, dn, n0), s.mul_add(k, dd, d0));
+            let estimate = s.low_bits(s.add(quotient, s.all_f64(ROUND_MAGIC)));
+            *block = s.low_bytes(s.sar_i32(estimate, 16));
+            // As in `fill_estimated_quotients`.
+            let is_whole = s.is_equal(s.and_i32(estimate, s.all_i32(0xFFFF)), s.all_i32(0));
+            let is_there = s.is_greater(s.all_i32(left), s.i32s(&NUMBERS));
+            undecided |= s.mask_bits(s.both(is_whole, is_there));
+            left -= LANES as i32;
+            k = s.add(k, s.all_f64(LANES as f64));
+        }
+        undecided == 0
+    }
+}
+
+/// Bytes of a span in exact arithmetic, perspective-correct.
+#[cold]
+#[inline(never)]
+fn exact_bytes(all: &Listed<'_>, span: &Fill, offset: u32, bytes: &mut Bytes) {
+    let triangle = all.triangle(span.face);
+    let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
+    let FrameLayout { first_row, pitch, .. } = all.layout;
+    // Of a frame: below 4,096.
+    let (x, y) = ((offset % pitch) as i32, (first_row + offset / pitch) as i32);
+    plane.fill(x, y, &mut bytes[..span.length]);
+}
+
+#[cfg(feature = "alloc")]
+struct Float;
+
+#[cfg(feature = "alloc")]
+impl Stage for Float {
+    #[inline(always)]
+    fn fill<S: Lanes8>(&self, _: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
+        let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[span.face / LANES % BATCHES];
+        let lane = span.face % LANES;
+        let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
+        // Rounded once: a division by 256 changes no bit of them.
+        let (n_and_step, d_and_step) = ([(n0 / 256.0) as f32, dn[lane] as f32], [d0 as f32, dd[lane] as f32]);
+        let range = [least[lane] as f32 / 256.0, greatest[lane] as f32 / 256.0];
+        let mut first = span.first;
+        for block in blocks(bytes, span.length) {
+            fill_float(block, first, n_and_step, d_and_step, range);
+            first += LANES as i32;
+        }
+        true
+    }
+}
