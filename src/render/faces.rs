@@ -9,7 +9,7 @@ use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::vertex::light_faces;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, three};
+use crate::lanes::{LANES, each, three};
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::columns::Triangles;
@@ -29,6 +29,13 @@ pub(super) struct Face {
     pub(super) back_facing: bool,
 }
 
+/// The point of a face at which it is lit as one: its middle, and its normal there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FacePoint {
+    normal: Vec3,
+    centre: Vec3,
+}
+
 /// One object in one frame: what its faces are made from.
 pub(super) struct Faces<'a> {
     pub(super) shading: Shading,
@@ -38,8 +45,8 @@ pub(super) struct Faces<'a> {
     /// One for each surface of the mesh.
     pub(super) paints: &'a [SurfaceMaterial],
     pub(super) columns: &'a VertexColumns,
-    /// The normal of each face, if faces are lit.
-    pub(super) face_normals: &'a [Vec3],
+    /// Where each face is lit, if faces are lit.
+    pub(super) face_points: &'a [FacePoint],
     /// True if back faces are left out.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. As a back face it
@@ -68,7 +75,7 @@ impl<'a> Faces<'a> {
 
     /// The one shade of a face, or its three channels: at its middle, by its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
-        let (centre, normal) = (self.centre(face.indices), self.face_normals[face.index as usize]);
+        let FacePoint { normal, centre } = self.face_points[face.index as usize];
         let paint = &self.paints[usize::from(face.surface)];
         if self.channels {
             let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
@@ -86,42 +93,36 @@ impl<'a> Faces<'a> {
     /// The one shade of each of eight faces of one surface.
     pub(super) fn flat_of_eight(&self, kernel: Kernel, surface: u16, faces: &[Pick; LANES]) -> [U8F8; LANES] {
         let paint = &self.paints[usize::from(surface)];
-        let (mut points, mut normals) = ([[0.0; LANES]; 6], [Vec3::ZERO; LANES]);
-        for (lane, face) in faces.iter().enumerate() {
-            let normal = self.face_normals[face.index()];
-            // The side that is seen.
-            normals[lane] = if face.side() == 0 { normal } else { -normal };
-            if self.full {
-                let n = normals[lane];
-                let centre = self.centre(self.geometry.triangles[face.index()]);
+        // Of the side that is seen.
+        let seen = |face: Pick| {
+            let FacePoint { normal, centre } = self.face_points[face.index()];
+            (if face.side() == 0 { normal } else { -normal }, centre)
+        };
+        let shades = if self.full {
+            let mut points = [[0.0; LANES]; 6];
+            for (lane, face) in faces.iter().enumerate() {
+                let (n, centre) = seen(*face);
                 for (axis, value) in [n.x, n.y, n.z, centre.x, centre.y, centre.z].into_iter().enumerate() {
                     points[axis][lane] = value;
                 }
             }
-        }
-        let shades = if self.full {
             let front = self.lights.unit_front_of_one_channel(&paint.answer, &points, kernel);
             paint.shade_of_eight(&front)
         } else {
-            light_faces(kernel.simd_level(), paint, &self.lights, &normals)
+            light_faces(kernel.simd_level(), paint, &self.lights, &each!(lane => seen(faces[lane]).0))
         };
         if paint.response.is_some() { shades.map(|shade| paint.respond(shade)) } else { shades }
     }
-
-    /// The middle of a face.
-    fn centre(&self, indices: [u32; 3]) -> Vec3 {
-        let [a, b, c] = three(indices, |i| self.geometry.positions[i as usize]);
-        // Each third by itself: the sum of three might overflow.
-        a / 3.0 + b / 3.0 + c / 3.0
-    }
 }
 
-/// The normal of each face. One without area has none, but rounded it may still cover a pixel: it gets that of its first
-/// corner.
-pub(super) fn face_normals(geometry: &Geometry<'_>, normals: &mut Vec<Vec3>) {
-    normals.clear();
-    normals.extend(geometry.triangles.iter().map(|indices| {
+/// The points at which faces are lit. One without area has no normal, but rounded it may still cover a pixel: it gets that of
+/// its first corner.
+pub(super) fn face_points(geometry: &Geometry<'_>, points: &mut Vec<FacePoint>) {
+    points.clear();
+    points.extend(geometry.triangles.iter().map(|indices| {
         let [a, b, c] = three(*indices, |i| geometry.positions[i as usize]);
-        face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize])
+        let normal = face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize]);
+        // Each third by itself: the sum of three might overflow.
+        FacePoint { normal, centre: a / 3.0 + b / 3.0 + c / 3.0 }
     }));
 }

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::Stats;
 use super::budget::Budget;
 use super::columns::VertexColumns;
-use super::faces::{Faces, face_normals};
+use super::faces::{FacePoint, Faces, face_points};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
@@ -143,13 +143,15 @@ pub(super) struct ObjectState {
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
     columns: VertexColumns,
+    /// True if a vertex may have another shade than 0.
+    has_shades: bool,
     tessellated: Tessellated,
     /// True if the tessellated mesh is drawn. Otherwise it stays for when it is again.
     is_tessellated: bool,
     /// The mesh and the number of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// The normal of each face, and the mesh whose they are, where faces are lit.
-    face_normals: Option<(Shared<Mesh>, Vec<Vec3>)>,
+    face_points: Option<(Shared<Mesh>, Vec<FacePoint>)>,
     /// One for each surface, and what they were made from.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be made from now.
@@ -223,7 +225,7 @@ impl ObjectState {
         self.project(&made, stats);
         self.light_vertices(&made, stats);
         self.add_attributes(&made);
-        self.keep_face_normals(&made);
+        self.keep_face_points(&made);
         self.bound_errors(&made);
         self.prepare_pixels(&made);
         true
@@ -301,9 +303,16 @@ impl ObjectState {
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += geometry.positions.len() as u64;
         }
+        let has_response = self.paints.iter().any(|paint| paint.response.is_some());
+        let leaves = stages.lighting != Lighting::None
+            && (stages.lit_at != LitAt::Vertices || stages.lighting == Lighting::Channels);
+        if leaves && self.has_shades {
+            self.columns.leave_without_light();
+        }
+        self.has_shades = !leaves || has_response;
         match (stages.lighting, stages.lit_at) {
             (Lighting::None, _) => vertex::light_none(&geometry, &self.paints, &mut self.columns),
-            (_, LitAt::Faces | LitAt::Pixels) => self.columns.leave_without_light(),
+            (_, LitAt::Faces | LitAt::Pixels) => {}
             (Lighting::Suns, _) => {
                 vertex::light_suns(&geometry, &self.paints, &lights, (both, kernel), &mut self.columns);
             }
@@ -311,12 +320,11 @@ impl ObjectState {
                 vertex::light_all(&geometry, &self.paints, &lights, (both, kernel), &mut self.columns)
             }
             (Lighting::Channels, _) => {
-                self.columns.leave_without_light();
                 let channels = &mut self.columns.channels;
                 vertex::light_channels(&geometry, &self.paints, &lights, (both, kernel), channels);
             }
         }
-        if self.paints.iter().any(|paint| paint.response.is_some()) {
+        if has_response {
             vertex::respond(&geometry, &self.paints, &mut self.columns);
         }
     }
@@ -338,16 +346,16 @@ impl ObjectState {
         }
     }
 
-    /// Makes the normals of the faces, if these are lit and the mesh is another one.
-    fn keep_face_normals(&mut self, &Made { object, plan, .. }: &Made<'_>) {
-        let is_known = matches!(&self.face_normals, Some((mesh, _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
+    /// Makes the points at which faces are lit, if these are lit and the mesh is another one.
+    fn keep_face_points(&mut self, &Made { object, plan, .. }: &Made<'_>) {
+        let is_known = matches!(&self.face_points, Some((mesh, _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
         if plan.stages().lit_at != LitAt::Faces || (is_known && !self.is_tessellated) {
             return;
         }
-        let (_, mut normals) = self.face_normals.take().unzip();
-        let normals = normals.get_or_insert_default();
-        face_normals(&drawn_geometry(self.is_tessellated, &self.tessellated, object), normals);
-        self.face_normals = Some((Shared::clone(object.shared_mesh()), core::mem::take(normals)));
+        let (_, mut points) = self.face_points.take().unzip();
+        let points = points.get_or_insert_default();
+        face_points(&drawn_geometry(self.is_tessellated, &self.tessellated, object), points);
+        self.face_points = Some((Shared::clone(object.shared_mesh()), core::mem::take(points)));
     }
 
     /// Prepares a budget's decisions on faces, if there is one.
@@ -464,7 +472,7 @@ impl ObjectState {
             lights: self.lights(plan),
             paints: &self.paints,
             columns: &self.columns,
-            face_normals: self.face_normals.as_ref().map_or(&[], |(_, normals)| normals),
+            face_points: self.face_points.as_ref().map_or(&[], |(_, points)| points),
             culls: plan.is_on(Effect::BackFaceCulling),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             runs: plan.is_on(Effect::Gouraud),
@@ -510,7 +518,7 @@ impl ObjectState {
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
-            + self.face_normals.as_ref().map_or(0, |(_, normals)| normals.capacity() * size_of::<Vec3>())
+            + self.face_points.as_ref().map_or(0, |(_, points)| points.capacity() * size_of::<FacePoint>())
             + self.normal_tables.len() * Lut64K::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()

@@ -420,9 +420,10 @@ impl Faces<'_> {
             }
             let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
             let first = surface(&faces[0]);
-            if !self.channels && faces.iter().all(|face| surface(face) == first) {
+            if !self.channels && (self.paints.len() == 1 || faces.iter().all(|face| surface(face) == first)) {
                 let shades = self.flat_of_eight(kernel, first, &faces);
-                flat.extend(shades[..eight.len()].iter().map(|&shade| [shade; 3]));
+                // There is room: it was reserved.
+                flat.extend_from_slice(&shades.map(|shade| [shade; 3])[..eight.len()]);
                 continue;
             }
             flat.extend(faces[..eight.len()].iter().map(|face| {
