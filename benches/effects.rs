@@ -9,7 +9,7 @@
 
 use mode13h::lanes::{LANES, Points};
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
-use mode13h::span::depth::{copy_before, copy_nearer};
+use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth};
 use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered, fill_dithered_portable};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
@@ -87,9 +87,9 @@ const LOOPS: [(&str, Draw); 16] = [
         let (depth, bytes) = (&mut m.depth[start..start + n], &m.channels[0][start..start + n]);
         black_box(copy_nearer as Nearer)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
     }),
-    ("copy_before", |m, start, n| {
+    ("copy_nearer_keep_depth", |m, start, n| {
         let (depth, bytes) = (&m.depth[start..start + n], &m.channels[0][start..start + n]);
-        black_box(copy_before as Before)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
+        black_box(copy_nearer_keep_depth as Before)(&mut m.row[start..start + n], depth, bytes, 1 << 52, 1 << 44);
     }),
     ("quotients", |m, start, n| {
         black_box(fill_quotients as Quotients)(&mut m.row[start..start + n], 13 << 70, 1 << 69, 1 << 70, 1 << 62);

@@ -4,38 +4,28 @@
 //! The span kernels use intrinsics of a level. All else is written once, over [`Lanes8`] or plain arrays of eight lanes, and
 //! is compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
 
-#![cfg_attr(
-    all(feature = "simd", target_arch = "x86_64"),
-    expect(unsafe_code, reason = "code for processors found only when the program runs")
-)]
+#![cfg_attr(simd_x86_64, expect(unsafe_code, reason = "code for processors found only when the program runs"))]
 
 mod lanes;
 mod packed;
 mod portable;
-#[cfg(all(
-    feature = "simd",
-    any(
-        target_arch = "x86_64",
-        all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
-        all(target_arch = "wasm32", target_feature = "simd128")
-    )
-))]
-mod quarters;
 #[cfg(feature = "alloc")]
 mod singles;
 #[cfg(test)]
 mod tests;
+#[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
+mod wide128;
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 mod avx2;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 mod avx512;
-#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+#[cfg(simd_neon)]
 #[expect(unsafe_code, reason = "vector loads and stores")]
 mod neon;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 mod sse2;
-#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+#[cfg(simd_wasm)]
 #[expect(unsafe_code, reason = "vector loads and stores")]
 mod wasm;
 
@@ -43,30 +33,23 @@ pub(crate) use lanes::Lanes8;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
 #[cfg(feature = "alloc")]
-pub(crate) use singles::{Light8, Singles8};
+pub(crate) use singles::{F32Lanes8, Light8};
 
-#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
-pub(crate) const NEON: quarters::Quarters<neon::Neon> = quarters::Quarters(neon::Neon);
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
-pub(crate) const SSE2: quarters::Quarters<sse2::Sse2> = quarters::Quarters(sse2::Sse2);
-#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
-pub(crate) const SIMD128: quarters::Quarters<wasm::Simd128> = quarters::Quarters(wasm::Simd128);
+#[cfg(simd_neon)]
+pub(crate) const NEON: wide128::Wide128<neon::Neon> = wide128::Wide128(neon::Neon);
+#[cfg(simd_x86_64)]
+pub(crate) const SSE2: wide128::Wide128<sse2::Sse2> = wide128::Wide128(sse2::Sse2);
+#[cfg(simd_wasm)]
+pub(crate) const SIMD128: wide128::Wide128<wasm::Simd128> = wide128::Wide128(wasm::Simd128);
 
-#[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+#[cfg(simd_neon)]
 pub(crate) use NEON as BASELINE;
-#[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+#[cfg(simd_wasm)]
 pub(crate) use SIMD128 as BASELINE;
 /// What every processor of the target has.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 pub(crate) use SSE2 as BASELINE;
-#[cfg(not(all(
-    feature = "simd",
-    any(
-        target_arch = "x86_64",
-        all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
-        all(target_arch = "wasm32", target_feature = "simd128")
-    )
-)))]
+#[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
 pub(crate) use portable::Portable as BASELINE;
 
 /// A level that a kernel may use.
@@ -75,28 +58,28 @@ pub(crate) enum Level {
     /// The instructions that every processor has.
     Portable,
     /// Assembly for x86-64.
-    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    #[cfg(asm_x86_64)]
     X86_64,
     /// Assembly for 32-bit x86.
-    #[cfg(all(feature = "asm", target_arch = "x86"))]
+    #[cfg(asm_i686)]
     I686,
     /// Plain arrays that the compiler vectorises.
     #[cfg(feature = "simd")]
     Arrays,
     /// The instructions that every x86-64 has.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     Sse2,
     /// 64-bit ARM, all of which has NEON.
-    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    #[cfg(simd_neon)]
     Neon,
     /// WebAssembly with vectors of 128 bits, known when it is compiled.
-    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    #[cfg(simd_wasm)]
     Wasm,
     /// See [`Avx2`].
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     Avx2(Avx2),
     /// See [`Avx512`].
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     Avx512(Avx512),
 }
 
@@ -105,27 +88,27 @@ impl Level {
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
-            #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+            #[cfg(asm_x86_64)]
             Self::X86_64 => "x86-64",
-            #[cfg(all(feature = "asm", target_arch = "x86"))]
+            #[cfg(asm_i686)]
             Self::I686 => "i686",
             #[cfg(feature = "simd")]
             Self::Arrays => "arrays",
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Self::Sse2 => "sse2",
-            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            #[cfg(simd_neon)]
             Self::Neon => "neon",
-            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            #[cfg(simd_wasm)]
             Self::Wasm => "wasm",
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Self::Avx2(_) => "avx2",
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Self::Avx512(_) => "avx512",
         }
     }
 
     /// The proof of AVX2, if this level has it.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline]
     pub(crate) const fn avx2(self) -> Option<Avx2> {
         match self {
@@ -135,7 +118,7 @@ impl Level {
     }
 
     /// The proof of AVX-512, if this level has it.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline]
     pub(crate) const fn avx512(self) -> Option<Avx512> {
         match self {
@@ -146,11 +129,11 @@ impl Level {
 }
 
 /// Proof that the processor has AVX2, FMA and POPCNT. (Nearly all that have AVX2 have the others.)
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx2(());
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 impl Avx2 {
     /// The proof, if the processor has them.
     pub(crate) fn find() -> Option<Self> {
@@ -165,11 +148,11 @@ impl Avx2 {
 }
 
 /// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2 and what [`Avx2`] stands for.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx512(Avx2);
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 impl Avx512 {
     /// The proof, if the processor has them.
     pub(crate) fn find() -> Option<Self> {
@@ -194,7 +177,7 @@ impl Avx512 {
 /// A function that takes a proof and calls another, which is inlined and so compiled for AVX2.
 ///
 /// Where the portable form is another one; [`at_best_level`] is for one form.
-#[cfg(all(feature = "simd", feature = "alloc", target_arch = "x86_64"))]
+#[cfg(all(feature = "alloc", simd_x86_64))]
 macro_rules! compiled_for_avx2 {
     (fn $name:ident $(<const $constant:ident: bool>)? ($lanes:ident: Avx2, $($argument:ident: $type:ty),*) -> $result:ty { $body:expr }) => {
         #[inline]
@@ -209,7 +192,7 @@ macro_rules! compiled_for_avx2 {
         }
     };
 }
-#[cfg(all(feature = "simd", feature = "alloc", target_arch = "x86_64"))]
+#[cfg(all(feature = "alloc", simd_x86_64))]
 pub(crate) use compiled_for_avx2;
 
 /// A function that is compiled for AVX2, too, and whose kernel says which of both runs.
@@ -221,11 +204,11 @@ macro_rules! at_best_level {
         ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {
         $(#[$attribute])*
         #[cfg_attr(
-            all(feature = "simd", target_arch = "x86_64"),
+            simd_x86_64,
             expect(unsafe_code, reason = "code for processors found only when the program runs")
         )]
         $visibility fn $name<$($parameters)*>($kernel: $kind, $($argument: $type),*) $(-> $result)? {
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             if $kernel.avx2().is_some() {
                 #[target_feature(enable = "avx2")]
                 fn avx2<$($parameters)*>($($argument: $type),*) $(-> $result)? {
@@ -249,11 +232,11 @@ macro_rules! compiled_for_each_level {
         ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {
         $(#[$attribute])*
         #[cfg_attr(
-            all(feature = "simd", target_arch = "x86_64"),
+            simd_x86_64,
             expect(unsafe_code, reason = "code for processors found only when the program runs")
         )]
         $visibility fn $name<$($parameters)*>(level: crate::simd::Level, $($argument: $type),*) $(-> $result)? {
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             {
                 use crate::simd::{Avx2, Avx512, Level};
 

@@ -59,7 +59,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
     let (mut renderer, mut vga) = (shading.renderer(drawing, kernel), Vga::new());
     ShadingOptions::settle(&mut renderer, &frames[1])?;
-    let set_alike = renderer.set_alike();
+    let alike = renderer.with_same_settings();
     let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::from);
     draw(&frames[0])?;
     let stats = draw(&frames[1])?;
@@ -67,7 +67,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
     let effects = rows.len().max(1);
     let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);
-    let meter = EffectCost { renderer: || set_alike.set_alike(), frames: &frames, time: of_one };
+    let meter = EffectCost { renderer: || alike.with_same_settings(), frames: &frames, time: of_one };
     let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
     if *json {
         return output::print_json(&as_json(&name, renderer.plan().near_needed(), &rows, prices.as_deref()));

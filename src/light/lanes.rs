@@ -11,7 +11,7 @@ use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
 use super::{Beam, ConeBeam, LampBeam};
 use crate::lanes::{LANES, Lanes, Points};
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 use crate::simd::compiled_for_avx2;
 use crate::simd::{Lanes8, Light8, Portable};
 use crate::span::Kernel;
@@ -32,7 +32,7 @@ impl<L: Lanes8, const N: usize> Front<L, N> {
     fn add(&mut self, l: L, light: [f64; N], fall_off: Option<L::F64>, cosines: L::F64, highlights: Option<L::F64>) {
         let mut channel = 0;
         while channel < N {
-            let mut lights = l.all_f64(light[channel]);
+            let mut lights = l.splat_f64(light[channel]);
             if let Some(fall_off) = fall_off {
                 lights = l.mul(lights, fall_off);
             }
@@ -49,16 +49,16 @@ impl<L: Lanes8, const N: usize> Front<L, N> {
 /// because their ends cancel.
 #[inline(always)]
 fn normals_of<L: Light8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3] {
-    let [x, y, z] = [l.f32s(&points[0]), l.f32s(&points[1]), l.f32s(&points[2])];
+    let [x, y, z] = [l.load_f32(&points[0]), l.load_f32(&points[1]), l.load_f32(&points[2])];
     if UNIT {
         return [x, y, z];
     }
     let wide = [l.widen(x), l.widen(y), l.widen(z)];
     let lengths = l.sqrt(dot(l, &wide, &wide));
-    let parts = l.if_less(lengths, l.all_f64(f64::INFINITY), l.div(l.all_f64(1.0), lengths));
-    let parts = l.if_less(l.all_f64(0.0), lengths, parts);
+    let parts = l.if_less(lengths, l.splat_f64(f64::INFINITY), l.div(l.splat_f64(1.0), lengths));
+    let parts = l.if_less(l.splat_f64(0.0), lengths, parts);
     // Of −0 too, as where one normal is made unit.
-    let zero = l.all_f32(0.0);
+    let zero = l.splat_f32(0.0);
     [
         l.add_f32(l.narrow(l.mul(wide[0], parts)), zero),
         l.add_f32(l.narrow(l.mul(wide[1], parts)), zero),
@@ -96,7 +96,7 @@ impl Lights<'_> {
     /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of any length, point away
     /// from.
     pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = kernel.avx2() {
             return one_channel_avx2::<false>(avx2, self, answer, points);
         }
@@ -107,7 +107,7 @@ impl Lights<'_> {
     /// Sums all light on one channel for unit normals, which are taken as they are. Otherwise like
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = kernel.avx2() {
             return one_channel_avx2::<true>(avx2, self, answer, points);
         }
@@ -118,7 +118,7 @@ impl Lights<'_> {
     /// Sums all light on three channels: red, green, blue. Otherwise like
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = kernel.avx2() {
             return three_channels_avx2::<false>(avx2, self, answer, points);
         }
@@ -134,7 +134,7 @@ impl Lights<'_> {
         points: &Points,
         kernel: Kernel,
     ) -> [Wides; 3] {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = kernel.avx2() {
             return three_channels_avx2::<true>(avx2, self, answer, points);
         }
@@ -161,18 +161,18 @@ impl Lights<'_> {
         points: &Points,
     ) -> Wides {
         let normals = normals_of::<L, UNIT>(l, points);
-        let (ambient, diffuse) = (l.all_f64(answer.ambient), l.all_f64(answer.diffuse));
+        let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
         let sum = if answer.shines() {
             let Front { diffuse: [body], specular: [highlight] } =
                 self.front::<L, 1, APART, true>(l, answer, &normals, points);
-            l.add(l.add(ambient, l.mul(diffuse, body)), l.mul(l.all_f64(answer.specular), highlight))
+            l.add(l.add(ambient, l.mul(diffuse, body)), l.mul(l.splat_f64(answer.specular), highlight))
         } else {
             let [body] = self.front::<L, 1, APART, false>(l, answer, &normals, points).diffuse;
             // Zero is the highlight: −0 becomes 0, as with one.
-            l.add(l.add(ambient, l.mul(diffuse, body)), l.all_f64(0.0))
+            l.add(l.add(ambient, l.mul(diffuse, body)), l.splat_f64(0.0))
         };
         let mut lanes = [0.0; LANES];
-        l.put_f64s(sum, &mut lanes);
+        l.store_f64(sum, &mut lanes);
         lanes
     }
 
@@ -184,23 +184,23 @@ impl Lights<'_> {
         points: &Points,
     ) -> [Wides; 3] {
         let normals = normals_of::<L, UNIT>(l, points);
-        let (ambient, diffuse) = (l.all_f64(answer.ambient), l.all_f64(answer.diffuse));
+        let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
         let mut lanes = [[0.0; LANES]; 3];
         let mut i = 0;
         if answer.shines() {
             let front = self.front::<L, 3, APART, true>(l, answer, &normals, points);
             while i < 3 {
-                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.all_f64(answer.color[i]));
-                let mirrored = l.mul(l.all_f64(answer.specular), front.specular[i]);
-                l.put_f64s(l.add(own, l.mul(mirrored, l.all_f64(answer.highlight[i]))), &mut lanes[i]);
+                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.splat_f64(answer.color[i]));
+                let mirrored = l.mul(l.splat_f64(answer.specular), front.specular[i]);
+                l.store_f64(l.add(own, l.mul(mirrored, l.splat_f64(answer.highlight[i]))), &mut lanes[i]);
                 i += 1;
             }
         } else {
             let front = self.front::<L, 3, APART, false>(l, answer, &normals, points);
             while i < 3 {
-                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.all_f64(answer.color[i]));
+                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.splat_f64(answer.color[i]));
                 // As on one channel.
-                l.put_f64s(l.add(own, l.all_f64(0.0)), &mut lanes[i]);
+                l.store_f64(l.add(own, l.splat_f64(0.0)), &mut lanes[i]);
                 i += 1;
             }
         }
@@ -221,7 +221,7 @@ impl Lights<'_> {
         Beam: Intensities<N>,
         LampBeam: Intensities<N>,
     {
-        let (zero, one) = (l.all_f64(0.0), l.all_f64(1.0));
+        let (zero, one) = (l.splat_f64(0.0), l.splat_f64(1.0));
         let mut front = Front { diffuse: [zero; N], specular: [zero; N] };
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
@@ -230,27 +230,28 @@ impl Lights<'_> {
         let (mut normals, mut places) = ([zero; 3], [zero; 3]);
         if SHINES || !lamps.is_empty() {
             normals = [l.widen(narrow[0]), l.widen(narrow[1]), l.widen(narrow[2])];
-            places = [l.widen(l.f32s(&points[3])), l.widen(l.f32s(&points[4])), l.widen(l.f32s(&points[5]))];
+            places =
+                [l.widen(l.load_f32(&points[3])), l.widen(l.load_f32(&points[4])), l.widen(l.load_f32(&points[5]))];
         }
         let eye = if SHINES { Some(Eye::new(l, unit(l, &from(l, &self.eye, &places)), &normals)) } else { None };
         for sun in self.suns {
             let [x, y, z] = sun.towards.to_array();
-            let sum = l.add_f32(l.mul_f32(narrow[0], l.all_f32(x)), l.mul_f32(narrow[1], l.all_f32(y)));
-            let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.all_f32(z)))));
+            let sum = l.add_f32(l.mul_f32(narrow[0], l.splat_f32(x)), l.mul_f32(narrow[1], l.splat_f32(y)));
+            let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.splat_f32(z)))));
             // What is added is zero then. Only highlights are worth a branch.
             if SHINES && l.is_zero(cosines) {
                 continue;
             }
             let mut highlights = None;
             if let Some(eye) = &eye {
-                let towards = [l.all_f64(x.into()), l.all_f64(y.into()), l.all_f64(z.into())];
+                let towards = [l.splat_f64(x.into()), l.splat_f64(y.into()), l.splat_f64(z.into())];
                 highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
             }
             front.add(l, sun.intensities(), None, cosines, highlights);
         }
         for lamp in lamps {
             let to_lamp = from(l, &lamp.position, &places);
-            let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.all_f64(lamp.inverse_square));
+            let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.splat_f64(lamp.inverse_square));
             let towards = unit(l, &to_lamp);
             // NaN, of what is too far to be squared, is out of range too.
             let cosines = l.if_less(squares, one, positive(l, dot(l, &normals, &towards)));
@@ -273,7 +274,7 @@ impl Lights<'_> {
 }
 
 // Frames lit at every pixel: `teapot` and `phong` 8 % sooner than by SSE2, the torus, whose rows are of four pixels, no sooner.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 compiled_for_avx2! {
     fn one_channel_avx2<const UNIT: bool>(
         l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
@@ -282,7 +283,7 @@ compiled_for_avx2! {
     }
 }
 
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 compiled_for_avx2! {
     fn three_channels_avx2<const UNIT: bool>(
         l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
@@ -329,9 +330,9 @@ impl<L: Light8> Eye<L> {
     /// max(0, r·v)^s; 0 if the light's own cosine is.
     #[inline(always)]
     fn highlights(&self, l: L, towards: &Vectors<L>, cosines: L::F64, shininess: Shininess) -> L::F64 {
-        let mirrored = l.mul(l.mul(l.all_f64(2.0), cosines), self.cosines);
+        let mirrored = l.mul(l.mul(l.splat_f64(2.0), cosines), self.cosines);
         let mirrored = l.sub(mirrored, dot(l, towards, &self.towards));
-        let along = positive(l, l.if_less(l.all_f64(0.0), cosines, mirrored));
+        let along = positive(l, l.if_less(l.splat_f64(0.0), cosines, mirrored));
         if l.is_zero(along) { along } else { shininess.of_lanes(l, along) }
     }
 }
@@ -339,23 +340,23 @@ impl<L: Light8> Eye<L> {
 /// Replaces values that are not above 0, or not numbers, by zero.
 #[inline(always)]
 fn positive<L: Light8>(l: L, values: L::F64) -> L::F64 {
-    l.if_less(l.all_f64(0.0), values, values)
+    l.if_less(l.splat_f64(0.0), values, values)
 }
 
 /// [`ConeBeam::share`].
 #[inline(always)]
 fn share<L: Light8>(l: L, cone: &ConeBeam, towards: &Vectors<L>) -> L::F64 {
-    let back = [l.all_f64(cone.back[0]), l.all_f64(cone.back[1]), l.all_f64(cone.back[2])];
-    let beyond = l.mul(l.sub(l.all_f64(cone.inner), dot(l, &back, towards)), l.all_f64(cone.inverse_width));
-    let x = positive(l, l.sub(l.all_f64(1.0), positive(l, beyond)));
-    l.mul(l.mul(x, x), l.sub(l.all_f64(3.0), l.mul(l.all_f64(2.0), x)))
+    let back = [l.splat_f64(cone.back[0]), l.splat_f64(cone.back[1]), l.splat_f64(cone.back[2])];
+    let beyond = l.mul(l.sub(l.splat_f64(cone.inner), dot(l, &back, towards)), l.splat_f64(cone.inverse_width));
+    let x = positive(l, l.sub(l.splat_f64(1.0), positive(l, beyond)));
+    l.mul(l.mul(x, x), l.sub(l.splat_f64(3.0), l.mul(l.splat_f64(2.0), x)))
 }
 
 /// The vectors from the points to `to`.
 #[inline(always)]
 fn from<L: Lanes8>(l: L, to: &Wide, points: &Vectors<L>) -> Vectors<L> {
     let [x, y, z] = *points;
-    [l.sub(l.all_f64(to[0]), x), l.sub(l.all_f64(to[1]), y), l.sub(l.all_f64(to[2]), z)]
+    [l.sub(l.splat_f64(to[0]), x), l.sub(l.splat_f64(to[1]), y), l.sub(l.splat_f64(to[2]), z)]
 }
 
 #[inline(always)]
@@ -366,7 +367,7 @@ fn dot<L: Lanes8>(l: L, a: &Vectors<L>, b: &Vectors<L>) -> L::F64 {
 /// The vectors made unit; not a number if there is no direction.
 #[inline(always)]
 fn unit<L: Light8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
-    let parts = l.div(l.all_f64(1.0), l.sqrt(dot(l, vectors, vectors)));
+    let parts = l.div(l.splat_f64(1.0), l.sqrt(dot(l, vectors, vectors)));
     [l.mul(vectors[0], parts), l.mul(vectors[1], parts), l.mul(vectors[2], parts)]
 }
 

@@ -57,20 +57,20 @@ impl Shininess {
     /// base ^ exponent of each base above 0; 0 of any other. Bit by bit what [`of`](Self::of) gives.
     #[inline(always)]
     pub(crate) fn of_lanes<L: Light8>(self, lanes: L, bases: L::F64) -> L::F64 {
-        let zero = lanes.all_f64(0.0);
+        let zero = lanes.splat_f64(0.0);
         let mut bits = match self {
             Self::Whole(exponent) => exponent,
             Self::Other(exponent) => {
                 let (mut powers, mut i) = ([0.0; LANES], 0);
-                lanes.put_f64s(bases, &mut powers);
+                lanes.store_f64(bases, &mut powers);
                 while i < LANES {
                     powers[i] = if powers[i] > 0.0 { libm::pow(powers[i], exponent) } else { 0.0 };
                     i += 1;
                 }
-                return lanes.f64s(&powers);
+                return lanes.load_f64(&powers);
             }
         };
-        let (mut result, mut square) = (lanes.all_f64(1.0), bases);
+        let (mut result, mut square) = (lanes.splat_f64(1.0), bases);
         loop {
             if bits & 1 == 1 {
                 result = lanes.mul(result, square);

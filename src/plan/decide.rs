@@ -76,7 +76,11 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             reach: inputs.views[place].reach(object.mesh().bounds()),
             change: inputs.change.get(place).copied().unwrap_or(Change::New),
             inputs,
-            shading: if inputs.max_error.is_some() && answers_itself(object) { Shading::Phong } else { inputs.shading },
+            shading: if inputs.max_error.is_some() && has_custom_response(object) {
+                Shading::Phong
+            } else {
+                inputs.shading
+            },
             way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
@@ -93,7 +97,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
 }
 
 /// Returns whether any of its materials has an own response to light, for which no bound is known.
-pub(crate) fn answers_itself(object: &Object) -> bool {
+pub(crate) fn has_custom_response(object: &Object) -> bool {
     object.materials.iter().any(|material| material.response.is_some())
 }
 
@@ -198,7 +202,7 @@ impl Rules<'_> {
 
     /// Leaves the shading of faces to a budget, unless one shading is known to be right for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if !plan.is_on(Effect::Lighting) || answers_itself(self.object) {
+        if !plan.is_on(Effect::Lighting) || has_custom_response(self.object) {
             return;
         }
         if self.is_lit_by_face(plan) {

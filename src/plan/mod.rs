@@ -33,7 +33,7 @@ pub(crate) use findings::{FaceCounts, Findings};
 pub use reason::Reason;
 pub use stages::Choice;
 
-pub(crate) use decide::{Change, Inputs, answers_itself, decide};
+pub(crate) use decide::{Change, Inputs, decide, has_custom_response};
 pub(crate) use hidden::far_to_near;
 
 use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, VertexStage};

@@ -88,14 +88,14 @@ fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], 
     let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
     // The mark is the least number there is. Of such a triangle the other numbers mean nothing.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
-    let clipped = s.mask_bits(s.is_equal(least, s.all_i32(ScreenPos::BEYOND)));
+    let clipped = s.to_bitmask(s.is_equal(least, s.splat_i32(ScreenPos::BEYOND)));
     // Exact in f64: differences are at most 2²¹, products 2⁴².
     let (dx1, dy1) = (s.to_f64(s.sub_i32(bx, ax)), s.to_f64(s.sub_i32(by, ay)));
     let (dx2, dy2) = (s.to_f64(s.sub_i32(cx, ax)), s.to_f64(s.sub_i32(cy, ay)));
     let area = s.neg_mul_add(dx2, dy1, s.mul(dx1, dy2));
-    let zero = s.all_f64(0.0);
-    let front = s.mask_bits(s.is_less(area, zero)) & !clipped;
-    let back = s.mask_bits(s.is_less(zero, area)) & !clipped;
+    let zero = s.splat_f64(0.0);
+    let front = s.to_bitmask(s.is_less(area, zero)) & !clipped;
+    let back = s.to_bitmask(s.is_less(zero, area)) & !clipped;
     // Neighbours mostly turn the same way.
     let seen = if culls { front } else { front | back };
     if seen == 0 {
@@ -104,12 +104,12 @@ fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], 
     let (x, y) = ([ax, bx, cx], [ay, by, cy]);
     let bounds = Bounds::of(s, x, y);
     // Eight bits.
-    let covers = s.both(bounds.overlap(s, clip), s.mask_of_bits(seen as u8));
-    let covers = s.mask_bits(bounds.but_empty(s, covers, x, y));
-    let small = s.mask_bits(bounds.are_small(s));
-    let crosses = s.mask_bits(bounds.cross(s, clip));
+    let covers = s.and(bounds.overlap(s, clip), s.mask_from_bits(seen as u8));
+    let covers = s.to_bitmask(bounds.but_empty(s, covers, x, y));
+    let small = s.to_bitmask(bounds.are_small(s));
+    let crosses = s.to_bitmask(bounds.cross(s, clip));
     // Neighbours are mostly of one size.
-    let large = if covers & (!small | crosses) == 0 { 0xFF } else { s.mask_bits(bounds.are_batched(s)) };
+    let large = if covers & (!small | crosses) == 0 { 0xFF } else { s.to_bitmask(bounds.are_batched(s)) };
     [clipped, front, back, covers, large & !small & !crosses, large & crosses, !large & 0xFF]
 }
 
@@ -164,14 +164,14 @@ fn pick_by<S: Lanes8, const N: usize>(s: S, list: &mut PickList<N>, first: u32, 
         if of_part == 0 {
             continue;
         }
-        let mut picks = s.add_i32(s.all_i32((first + (LANES * part) as u32).cast_signed()), s.i32s(&NUMBERS));
+        let mut picks = s.add_i32(s.splat_i32((first + (LANES * part) as u32).cast_signed()), s.load_i32(&NUMBERS));
         if !is_plain {
             picks = s.or_i32(picks, bit(s, back, part, Pick::BACK));
             picks = s.or_i32(picks, bit(s, large, part, Pick::LARGE));
             picks = s.or_i32(picks, bit(s, crosses, part, Pick::CROSSES_CLIP));
             picks = s.or_i32(picks, bit(s, unbatched, part, Pick::UNBATCHED));
         }
-        list.append(s, s.mask_of_bits(of_part), picks);
+        list.append(s, s.mask_from_bits(of_part), picks);
     }
 }
 
@@ -179,8 +179,8 @@ fn pick_by<S: Lanes8, const N: usize>(s: S, list: &mut PickList<N>, first: u32, 
 #[inline(always)]
 fn bit<S: Lanes8>(s: S, bits: u64, part: usize, value: u32) -> S::I32 {
     // The low byte.
-    let mask = s.mask_of_bits((bits >> (LANES * part)) as u8);
-    s.select_i32(mask, s.all_i32(value.cast_signed()), s.all_i32(0))
+    let mask = s.mask_from_bits((bits >> (LANES * part)) as u8);
+    s.select_i32(mask, s.splat_i32(value.cast_signed()), s.splat_i32(0))
 }
 
 /// The bounds of eight triangles: of their corners in 1/256 pixel, and the box of pixel centres between these, its ends
@@ -205,29 +205,29 @@ impl<S: Lanes8> Bounds<S> {
     #[inline(always)]
     fn overlap(&self, s: S, clip: Rect) -> S::Mask {
         // Sides are at most 4,096.
-        let side = |side: u32| s.all_i32(side as i32);
+        let side = |side: u32| s.splat_i32(side as i32);
         let first = s.max_i32(self.columns[0], side(clip.x0));
         let in_columns = s.is_greater(s.min_i32(self.columns[1], side(clip.x1)), first);
         let first = s.max_i32(self.rows[0], side(clip.y0));
-        s.both(in_columns, s.is_greater(s.min_i32(self.rows[1], side(clip.y1)), first))
+        s.and(in_columns, s.is_greater(s.min_i32(self.rows[1], side(clip.y1)), first))
     }
 
     /// The box does not lie inside the rectangle.
     #[inline(always)]
     fn cross(&self, s: S, clip: Rect) -> S::Mask {
-        let side = |side: u32| s.all_i32(side as i32);
+        let side = |side: u32| s.splat_i32(side as i32);
         // Negative where a side is crossed.
         let left = s.sub_i32(self.columns[0], side(clip.x0));
         let right = s.sub_i32(side(clip.x1), self.columns[1]);
         let top = s.sub_i32(self.rows[0], side(clip.y0));
         let bottom = s.sub_i32(side(clip.y1), self.rows[1]);
-        s.is_greater(s.all_i32(0), s.or_i32(s.or_i32(left, right), s.or_i32(top, bottom)))
+        s.is_greater(s.splat_i32(0), s.or_i32(s.or_i32(left, right), s.or_i32(top, bottom)))
     }
 
     #[inline(always)]
     fn are_small(&self, s: S) -> S::Mask {
-        let few_columns = s.is_greater(s.all_i32(MAX_COLUMNS + 1), s.sub_i32(self.columns[1], self.columns[0]));
-        s.both(few_columns, s.is_greater(s.all_i32(MAX_ROWS + 1), s.sub_i32(self.rows[1], self.rows[0])))
+        let few_columns = s.is_greater(s.splat_i32(MAX_COLUMNS + 1), s.sub_i32(self.columns[1], self.columns[0]));
+        s.and(few_columns, s.is_greater(s.splat_i32(MAX_ROWS + 1), s.sub_i32(self.rows[1], self.rows[0])))
     }
 
     /// They are small enough for set-up in f64.
@@ -235,25 +235,25 @@ impl<S: Lanes8> Bounds<S> {
     fn are_batched(&self, s: S) -> S::Mask {
         // Differences are at most 2²¹.
         let (width, height) = (s.sub_i32(self.x[1], self.x[0]), s.sub_i32(self.y[1], self.y[0]));
-        let fours = |units: S::I32| s.sar_i32(s.add_i32(units, s.all_i32(1_023)), 10);
+        let fours = |units: S::I32| s.shr_i32(s.add_i32(units, s.splat_i32(1_023)), 10);
         let squares = s.mul_i32(fours(width), fours(height));
         let sides =
-            s.both(s.is_greater(s.all_i32(MAX_WIDTH + 1), width), s.is_greater(s.all_i32(MAX_HEIGHT + 1), height));
-        s.both(sides, s.is_greater(s.all_i32(MAX_AREA_4X4 + 1), squares))
+            s.and(s.is_greater(s.splat_i32(MAX_WIDTH + 1), width), s.is_greater(s.splat_i32(MAX_HEIGHT + 1), height));
+        s.and(sides, s.is_greater(s.splat_i32(MAX_AREA_4X4 + 1), squares))
     }
 
     /// Those of `triangles` that cover a pixel, as far as it is found out: if a box has at most 2 × 2 pixels, one of them
     /// lies in the triangle.
     #[inline(always)]
     fn but_empty(&self, s: S, triangles: S::Mask, x: [S::I32; 3], y: [S::I32; 3]) -> S::Mask {
-        let end = s.all_i32(TINY_SIDE + 1);
+        let end = s.splat_i32(TINY_SIDE + 1);
         let few_columns = s.is_greater(end, s.sub_i32(self.columns[1], self.columns[0]));
         let few_rows = s.is_greater(end, s.sub_i32(self.rows[1], self.rows[0]));
-        let tiny = s.both(triangles, s.both(few_columns, few_rows));
-        if s.mask_bits(tiny) == 0 {
+        let tiny = s.and(triangles, s.and(few_columns, few_rows));
+        if s.to_bitmask(tiny) == 0 {
             return triangles;
         }
-        let half = s.all_i32(128);
+        let half = s.splat_i32(128);
         let left = s.add_i32(s.shl_i32(self.columns[0], 8), half);
         let top = s.add_i32(s.shl_i32(self.rows[0], 8), half);
         let [a, b, c] = [
@@ -261,7 +261,7 @@ impl<S: Lanes8> Bounds<S> {
             (s.sub_i32(x[1], left), s.sub_i32(y[1], top)),
             (s.sub_i32(x[2], left), s.sub_i32(y[2], top)),
         ];
-        s.but_not(triangles, s.both(tiny, cover_none_of_four(s, a, b, c)))
+        s.and_not(triangles, s.and(tiny, cover_none_of_four(s, a, b, c)))
     }
 }
 
@@ -283,15 +283,15 @@ fn ends<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 2] {
 fn cover_none_of_four<S: Lanes8>(s: S, a: (S::I32, S::I32), b: (S::I32, S::I32), c: (S::I32, S::I32)) -> S::Mask {
     let (ab, bc, ca) = (cross(s, a, b), cross(s, b, c), cross(s, c, a));
     // Twice the area; −1 if it is negative.
-    let turned = s.sar_i32(s.add_i32(s.add_i32(ab, bc), ca), 31);
+    let turned = s.shr_i32(s.add_i32(s.add_i32(ab, bc), ca), 31);
     let ab = at_four(s, ab, a, b, turned);
     let bc = at_four(s, bc, b, c, turned);
     let ca = at_four(s, ca, c, a, turned);
-    let mut none = s.all_i32(-1);
+    let mut none = s.splat_i32(-1);
     for pixel in 0..4 {
         none = s.and_i32(none, s.or_i32(s.or_i32(ab[pixel], bc[pixel]), ca[pixel]));
     }
-    s.is_greater(s.all_i32(0), none)
+    s.is_greater(s.splat_i32(0), none)
 }
 
 /// An edge at the origin.
@@ -306,8 +306,8 @@ fn at_four<S: Lanes8>(s: S, e: S::I32, from: (S::I32, S::I32), to: (S::I32, S::I
     let dx = turn(s, s.sub_i32(to.0, from.0), turned);
     let dy = turn(s, s.sub_i32(to.1, from.1), turned);
     // Up, or level and to the right: −1.
-    let is_in = s.sar_i32(s.sub_i32(s.shl_i32(dy, 10), dx), 31);
-    let first = s.sub_i32(s.sub_i32(turn(s, e, turned), s.all_i32(1)), is_in);
+    let is_in = s.shr_i32(s.sub_i32(s.shl_i32(dy, 10), dx), 31);
+    let first = s.sub_i32(s.sub_i32(turn(s, e, turned), s.splat_i32(1)), is_in);
     let (right, down) = (s.shl_i32(dy, 8), s.shl_i32(dx, 8));
     let below = s.add_i32(first, down);
     [first, s.sub_i32(first, right), below, s.sub_i32(below, right)]

@@ -15,7 +15,7 @@
 //! depth lies within that of its vertices, without a clamp.
 //!
 //! A sliver's gradients don't fit in 64 bits. The *sum* does, so all is taken modulo 2⁶⁴, where
-//! the wrap is meant; only the division needs 128 bits, and only then.
+//! wrapping is intended; only the division needs 128 bits, and only then.
 
 use super::cover::SortedTriangle;
 #[cfg(feature = "alloc")]
@@ -115,7 +115,7 @@ fn gradient(numerator: i64, area: &Divisor) -> i64 {
         area.floor((numerator << 24) + (area.get() >> 1))
     } else {
         let wide = (i128::from(numerator) << 24) + i128::from(area.get() >> 1);
-        // The wrap is meant: see the module's head.
+        // Wrapping is intended: see the module's head.
         wide.div_euclid(i128::from(area.get())) as i64
     }
 }

@@ -40,8 +40,8 @@ impl Edge {
         let denominator = Divisor::new(i64::from(dy) * 256);
         // At most 2²¹ · 2²¹ + 2²¹ · 2²¹ + 2²⁹; the ceiling is the floor of n + d − 1.
         let numerator = i64::from(a.0 - 128) * i64::from(dy) + i64::from(dx) * i64::from(below);
-        let (x, rest) = denominator.floor_and_rest(numerator + denominator.get() - 1);
-        let (step, step_rest) = denominator.floor_and_rest(i64::from(dx) * 256);
+        let (x, rest) = denominator.div_rem_floor(numerator + denominator.get() - 1);
+        let (step, step_rest) = denominator.div_rem_floor(i64::from(dx) * 256);
         // x within ±4,097, step within ±2²¹, the rests below the denominator, at most 2²⁹.
         Self {
             x: x as i32,

@@ -35,9 +35,9 @@ impl ShadePlane16 {
         let plane = ShadePlane::of_values(triangle, shades);
         // 2⁸ · |per_column| / A, by its quotient and its rest: at most 2⁴⁶, and less than A.
         let area = plane.area();
-        let (whole, rest) = area.floor_and_rest(plane.per_column().abs());
+        let (whole, rest) = area.div_rem_floor(plane.per_column().abs());
         let magnitude = (whole << 8) + area.floor(rest << 8);
-        // The wrap is meant: see the module's head.
+        // Wrapping is intended: see the module's head.
         let step = if plane.per_column() < 0 { -magnitude } else { magnitude } as u32;
         Self { plane, step }
     }
@@ -56,7 +56,7 @@ impl ShadePlane16 {
     pub fn start(&self, x: i32, y: i32) -> u32 {
         let area = self.plane.area();
         // N·2⁸ / A, N at most 2⁵⁸, by its quotient and its rest, which is less than A.
-        let (whole, rest) = area.floor_and_rest(self.plane.numerator(x, y));
+        let (whole, rest) = area.div_rem_floor(self.plane.numerator(x, y));
         let bias = if self.plane.per_column() < 0 { area.get() - 1 } else { 0 };
         let exact = (whole << 8) + area.floor((rest << 8) + bias);
         // 0 to 0xFF_0000, by cover.

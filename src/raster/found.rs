@@ -190,29 +190,29 @@ fn find_rows_by<S: Lanes8>(s: S, triangles: &Triangles<'_>, picks: &Picks<'_>, w
     }
     let count = count.min(MAX_ROWS);
     for number in 0..count {
-        let j = s.all_f64(f64::from(number));
+        let j = s.splat_f64(f64::from(number));
         let (ends, row) = find_row(s, setup, number);
         let number = number as usize;
         for (i, to) in rows[number].iter_mut().enumerate() {
-            s.put_i32s(row[i], to);
+            s.store_i32(row[i], to);
         }
         for (slot, planes) in values[..wanted.slots].iter().enumerate() {
             if wanted.values[slot].is_some() {
-                s.put_i32s(ends.value(s, (planes, &setup.inverse), j), &mut value_starts[number][slot]);
+                s.store_i32(ends.value(s, (planes, &setup.inverse), j), &mut value_starts[number][slot]);
             }
         }
         match wanted.texture {
             None => {}
             Some(Mapping::Affine) => {
                 let [u, v] = affine.start(s, j, &ends);
-                s.put_i32s(u, &mut affine_starts[number][0]);
-                s.put_i32s(v, &mut affine_starts[number][1]);
+                s.store_i32(u, &mut affine_starts[number][0]);
+                s.store_i32(v, &mut affine_starts[number][1]);
             }
             Some(_) => {
                 let [u, v, d] = perspective.start(s, j, &ends);
-                s.put_f64s(u, &mut perspective_starts[number][0]);
-                s.put_f64s(v, &mut perspective_starts[number][1]);
-                s.put_f64s(d, &mut perspective_starts[number][2]);
+                s.store_f64(u, &mut perspective_starts[number][0]);
+                s.store_f64(v, &mut perspective_starts[number][1]);
+                s.store_f64(d, &mut perspective_starts[number][2]);
             }
         }
     }

@@ -145,8 +145,8 @@ impl Walk {
     /// All are within 2²²; `below` and `bias` are less than `height`.
     fn new(a: i32, b: i32, below: i64, height: &Divisor, bias: i64) -> Self {
         let change = i64::from(b) - i64::from(a);
-        let (value, rest) = height.floor_and_rest(i64::from(a) * height.get() + change * below + bias);
-        let (step, step_rest) = height.floor_and_rest(change * 256);
+        let (value, rest) = height.div_rem_floor(i64::from(a) * height.get() + change * below + bias);
+        let (step, step_rest) = height.div_rem_floor(change * 256);
         Self { value, rest, step, step_rest, height: height.get() }
     }
 

@@ -50,7 +50,7 @@ impl Divisor {
     /// |n| is below 2⁶² and the quotient within ±[`MAX_QUOTIENT`](Self::MAX_QUOTIENT).
     #[must_use]
     #[inline]
-    pub fn floor_and_rest(&self, n: i64) -> (i64, i64) {
+    pub fn div_rem_floor(&self, n: i64) -> (i64, i64) {
         debug_assert!((n / self.divisor).abs() <= Self::MAX_QUOTIENT, "{n} / {}", self.divisor);
         if !HAS_F64 {
             return (n.div_euclid(self.divisor), n.rem_euclid(self.divisor));
@@ -65,7 +65,7 @@ impl Divisor {
     #[must_use]
     #[inline]
     pub fn floor(&self, n: i64) -> i64 {
-        self.floor_and_rest(n).0
+        self.div_rem_floor(n).0
     }
 
     /// The quotient rounded toward plus infinity.
@@ -92,7 +92,7 @@ mod tests {
 
     fn check(n: i64, d: i64) {
         let divisor = Divisor::new(d);
-        assert_eq!(divisor.floor_and_rest(n), (n.div_euclid(d), n.rem_euclid(d)), "{n} / {d}");
+        assert_eq!(divisor.div_rem_floor(n), (n.div_euclid(d), n.rem_euclid(d)), "{n} / {d}");
         assert_eq!(divisor.truncate(n), n / d, "{n} / {d}");
         assert_eq!(divisor.ceil(n), -((-n).div_euclid(d)), "{n} / {d}");
     }

@@ -21,9 +21,9 @@ pub(super) const MAX_SHORT_ROWS: i32 = 4;
 
 /// What the eight lanes of a vector are.
 pub(super) trait Lane<S: Lanes8>: Copy {
-    fn f64s(self, s: S, from: &Floats) -> S::F64;
-    fn i32s(self, s: S, from: &Ints) -> S::I32;
-    fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64;
+    fn load_f64(self, s: S, from: &Floats) -> S::F64;
+    fn load_i32(self, s: S, from: &Ints) -> S::I32;
+    fn load_i64(self, s: S, from: &[i64; LANES]) -> S::I64;
     /// The triangles' numbers.
     fn numbers(self, s: S) -> S::I32;
 }
@@ -34,20 +34,20 @@ struct EachTriangle;
 
 impl<S: Lanes8> Lane<S> for EachTriangle {
     #[inline(always)]
-    fn f64s(self, s: S, from: &Floats) -> S::F64 {
-        s.f64s(from)
+    fn load_f64(self, s: S, from: &Floats) -> S::F64 {
+        s.load_f64(from)
     }
     #[inline(always)]
-    fn i32s(self, s: S, from: &Ints) -> S::I32 {
-        s.i32s(from)
+    fn load_i32(self, s: S, from: &Ints) -> S::I32 {
+        s.load_i32(from)
     }
     #[inline(always)]
-    fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64 {
-        s.i64s(from)
+    fn load_i64(self, s: S, from: &[i64; LANES]) -> S::I64 {
+        s.load_i64(from)
     }
     #[inline(always)]
     fn numbers(self, s: S) -> S::I32 {
-        s.i32s(&NUMBERS)
+        s.load_i32(&NUMBERS)
     }
 }
 
@@ -57,21 +57,21 @@ struct OneTriangle(usize);
 
 impl<S: Lanes8> Lane<S> for OneTriangle {
     #[inline(always)]
-    fn f64s(self, s: S, from: &Floats) -> S::F64 {
-        s.all_f64(from[self.0 % LANES])
+    fn load_f64(self, s: S, from: &Floats) -> S::F64 {
+        s.splat_f64(from[self.0 % LANES])
     }
     #[inline(always)]
-    fn i32s(self, s: S, from: &Ints) -> S::I32 {
-        s.all_i32(from[self.0 % LANES])
+    fn load_i32(self, s: S, from: &Ints) -> S::I32 {
+        s.splat_i32(from[self.0 % LANES])
     }
     #[inline(always)]
-    fn i64s(self, s: S, from: &[i64; LANES]) -> S::I64 {
-        s.all_i64(from[self.0 % LANES])
+    fn load_i64(self, s: S, from: &[i64; LANES]) -> S::I64 {
+        s.splat_i64(from[self.0 % LANES])
     }
     #[inline(always)]
     fn numbers(self, s: S) -> S::I32 {
         // Below 8.
-        s.all_i32((self.0 % LANES) as i32)
+        s.splat_i32((self.0 % LANES) as i32)
     }
 }
 
@@ -158,7 +158,7 @@ impl Shades8 for Linear {
         (ends, _): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
     ) -> (S::I32, [S::I64; 2]) {
-        let zero = s.all_i64(0);
+        let zero = s.splat_i64(0);
         (ends.paint(s, lane, setup, parts.origin), [zero, zero])
     }
 
@@ -204,8 +204,8 @@ impl<S: Lanes8> RowEnds<S> {
     fn of(s: S, lane: impl Lane<S>, setup: &TriangleSetup8, j: S::F64, number: S::I32) -> Self {
         let long = edge(s, lane, &setup.long, j);
         let (upper, lower) = (edge(s, lane, &setup.upper, j), edge(s, lane, &setup.lower, j));
-        let short = s.select(s.is_greater(lane.i32s(s, &setup.split), number), upper, lower);
-        let shade_n = s.mul_add(lane.f64s(s, &setup.shade.per_row), j, lane.f64s(s, &setup.shade.n));
+        let short = s.select(s.is_greater(lane.load_i32(s, &setup.split), number), upper, lower);
+        let shade_n = s.mul_add(lane.load_f64(s, &setup.shade.per_row), j, lane.load_f64(s, &setup.shade.n));
         Self { left: s.min(long, short), right: s.max(long, short), shade_n }
     }
 
@@ -225,7 +225,7 @@ impl<S: Lanes8> RowEnds<S> {
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(super) fn value(&self, s: S, planes: (&ValuePlanes8, &Floats), j: S::F64) -> S::I32 {
-        let n = s.mul_add(s.f64s(&planes.0.per_row), j, s.f64s(&planes.0.n));
+        let n = s.mul_add(s.load_f64(&planes.0.per_row), j, s.load_f64(&planes.0.n));
         value_at(s, EachTriangle, planes, n, self.left)
     }
 }
@@ -233,7 +233,7 @@ impl<S: Lanes8> RowEnds<S> {
 /// A numerator at these columns, from that at the first column.
 #[inline(always)]
 fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, n: S::F64, columns: S::F64) -> S::F64 {
-    s.mul_add(lane.f64s(s, &planes.per_column), s.sub(columns, s.all_f64(ROUND_MAGIC)), n)
+    s.mul_add(lane.load_f64(s, &planes.per_column), s.sub(columns, s.splat_f64(ROUND_MAGIC)), n)
 }
 
 /// A value at these columns, and above it the step, from the numerator at the first column.
@@ -246,15 +246,15 @@ fn value_at<S: Lanes8>(
     columns: S::F64,
 ) -> S::I32 {
     let n = numerator_at(s, lane, planes, n, columns);
-    let value = s.low_bits(s.mul_add(n, lane.f64s(s, inverse), s.all_f64(ROUND_MAGIC)));
-    s.or_i32(s.and_i32(value, s.all_i32(0xFFFF)), lane.i32s(s, &planes.step))
+    let value = s.low_bits(s.mul_add(n, lane.load_f64(s, inverse), s.splat_f64(ROUND_MAGIC)));
+    s.or_i32(s.and_i32(value, s.splat_i32(0xFFFF)), lane.load_i32(s, &planes.step))
 }
 
 /// The first pixels on edges or right of them, as sums with `ROUND_MAGIC`.
 #[inline(always)]
 fn edge<S: Lanes8>(s: S, lane: impl Lane<S>, edges: &Edges, j: S::F64) -> S::F64 {
-    let n = s.mul_add(lane.f64s(s, &edges.per_row), j, lane.f64s(s, &edges.n));
-    s.mul_add(n, lane.f64s(s, &edges.inverse), s.all_f64(ROUND_MAGIC))
+    let n = s.mul_add(lane.load_f64(s, &edges.per_row), j, lane.load_f64(s, &edges.n));
+    s.mul_add(n, lane.load_f64(s, &edges.inverse), s.splat_f64(ROUND_MAGIC))
 }
 
 /// The next row of each of eight triangles.
@@ -267,11 +267,11 @@ struct RowCursor8<S: Lanes8> {
 impl<S: Lanes8> RowCursor8<S> {
     #[inline(always)]
     fn new<const DEPTHS: bool>(s: S, setup: &TriangleSetup8) -> Self {
-        let at = s.i32s(&setup.at);
+        let at = s.load_i32(&setup.at);
         Self {
             at,
-            cell: if DEPTHS { s.i32s(&setup.cell) } else { at },
-            z: if DEPTHS { s.i64s(&setup.z) } else { s.all_i64(0) },
+            cell: if DEPTHS { s.load_i32(&setup.cell) } else { at },
+            z: if DEPTHS { s.load_i64(&setup.z) } else { s.splat_i64(0) },
         }
     }
 
@@ -286,29 +286,29 @@ impl<S: Lanes8> RowCursor8<S> {
         number: i32,
     ) -> Spans8<S> {
         let lane = EachTriangle;
-        let j = s.all_f64(f64::from(number));
-        let number = s.all_i32(number);
+        let j = s.splat_f64(f64::from(number));
+        let number = s.splat_i32(number);
         let ends = RowEnds::of(s, lane, setup, j, number);
         let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
-        let is_row = s.is_greater(s.i32s(&setup.rows), number);
+        let is_row = s.is_greater(s.load_i32(&setup.rows), number);
         let mut z = self.z;
         if DEPTHS {
-            z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), s.i64s(&setup.z_per_column)));
-            self.z = s.add_i64(self.z, s.i64s(&setup.z_per_row));
+            z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), s.load_i64(&setup.z_per_column)));
+            self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
         let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
         let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
-            length: s.select_i32(is_row, s.sub_i32(right, left), s.all_i32(0)),
+            length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
             paint,
             z,
             starts,
         };
-        self.at = s.add_i32(self.at, s.all_i32(list.pitch));
+        self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
         if DEPTHS {
-            self.cell = s.add_i32(self.cell, s.all_i32(list.width));
+            self.cell = s.add_i32(self.cell, s.splat_i32(list.width));
         }
         spans
     }
@@ -330,7 +330,7 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
     let first = cursor.row::<DEPTHS>(s, setup, shades, list, 0);
     if most_rows == 1 {
-        let dz = if DEPTHS { DepthSteps::Each(s.i64s(&setup.z_per_column)) } else { DepthSteps::All(0) };
+        let dz = if DEPTHS { DepthSteps::Each(s.load_i64(&setup.z_per_column)) } else { DepthSteps::All(0) };
         shades.append::<S, DEPTHS>(s, list, &first, dz);
         return;
     }
@@ -339,8 +339,8 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         let [low, high] = first.zip(s, &second, list, (DEPTHS, P::STARTS));
         let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
         if DEPTHS {
-            let dz = s.i64s(&setup.z_per_column);
-            let [low, high] = s.zip_i64(dz, dz);
+            let dz = s.load_i64(&setup.z_per_column);
+            let [low, high] = s.interleave_i64(dz, dz);
             (of_low, of_high) = (DepthSteps::Each(low), DepthSteps::Each(high));
         }
         shades.append::<S, DEPTHS>(s, list, &low, of_low);
@@ -370,25 +370,25 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
     list: &SpanList,
 ) -> (RowEnds<S>, S::F64, Spans8<S>) {
     let lane = OneTriangle(i);
-    let number = s.add_i32(s.all_i32(first), s.i32s(&NUMBERS));
+    let number = s.add_i32(s.splat_i32(first), s.load_i32(&NUMBERS));
     let j = s.to_f64(number);
     let ends = RowEnds::of(s, lane, setup, j, number);
-    let is_row = s.is_greater(lane.i32s(s, &setup.rows), number);
+    let is_row = s.is_greater(lane.load_i32(s, &setup.rows), number);
     let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
-    let at = s.add_i32(lane.i32s(s, &setup.at), s.mul_i32(number, s.all_i32(list.pitch)));
-    let (mut cell, mut z) = (at, s.all_i64(0));
+    let at = s.add_i32(lane.load_i32(s, &setup.at), s.mul_i32(number, s.splat_i32(list.pitch)));
+    let (mut cell, mut z) = (at, s.splat_i64(0));
     if DEPTHS {
-        cell = s.add_i32(lane.i32s(s, &setup.cell), s.mul_i32(number, s.all_i32(list.width)));
-        z = s.mul_i64(s.to_i64(number), lane.i64s(s, &setup.z_per_row));
-        z = s.add_i64(z, lane.i64s(s, &setup.z));
-        z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.i64s(s, &setup.z_per_column)));
+        cell = s.add_i32(lane.load_i32(s, &setup.cell), s.mul_i32(number, s.splat_i32(list.width)));
+        z = s.mul_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
+        z = s.add_i64(z, lane.load_i64(s, &setup.z));
+        z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
     }
     let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
     let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
     let spans = Spans8 {
         at: s.add_i32(at, left),
         cell: s.add_i32(cell, left),
-        length: s.select_i32(is_row, s.sub_i32(right, left), s.all_i32(0)),
+        length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
         paint,
         z,
         starts,
@@ -402,8 +402,8 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
 #[inline(always)]
 pub(super) fn find_row<S: Lanes8>(s: S, setup: &TriangleSetup8, number: i32) -> (RowEnds<S>, [S::I32; 3]) {
     let lane = EachTriangle;
-    let ends = RowEnds::of(s, lane, setup, s.all_f64(f64::from(number)), s.all_i32(number));
-    let column = s.i32s(&setup.column);
+    let ends = RowEnds::of(s, lane, setup, s.splat_f64(f64::from(number)), s.splat_i32(number));
+    let column = s.load_i32(&setup.column);
     let [left, right] = [s.add_i32(column, s.low_bits(ends.left)), s.add_i32(column, s.low_bits(ends.right))];
     let paint = ends.paint(s, lane, setup, ends.left);
     (ends, [left, right, paint])
@@ -436,22 +436,22 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
 ) {
     let lane = OneTriangle(i);
     let (ends, j, rows) = eight_rows::<S, DEPTHS>(s, setup, shades, (i, first), list);
-    let mut is_row = s.is_greater(rows.length, s.all_i32(0));
+    let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame from the box's first on. All are below 4,096.
-    let side = |column: u32| s.all_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
+    let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
     let (mut left, mut last) = (ends.left, ends.right);
     if let Some(clip) = clip {
         // A row that begins left of the frame begins anew at its side.
         left = s.max(left, side(0));
         last = s.min(last, side(width));
-        let number = s.add_i32(s.all_i32(setup.row[i % LANES] + first), s.i32s(&NUMBERS));
-        is_row = s.both(is_row, s.is_greater(number, s.all_i32(clip.y0 as i32 - 1)));
-        is_row = s.both(is_row, s.is_greater(s.all_i32(clip.y1 as i32), number));
+        let number = s.add_i32(s.splat_i32(setup.row[i % LANES] + first), s.load_i32(&NUMBERS));
+        is_row = s.and(is_row, s.is_greater(number, s.splat_i32(clip.y0 as i32 - 1)));
+        is_row = s.and(is_row, s.is_greater(s.splat_i32(clip.y1 as i32), number));
     }
     let row_origin = left;
-    let (step, dz) = (lane.i32s(s, &setup.shade.step), lane.i64s(s, &setup.z_per_column));
+    let (step, dz) = (lane.load_i32(s, &setup.shade.step), lane.load_i64(s, &setup.z_per_column));
     for _ in 0..pieces {
-        let end = s.add(left, s.all_f64(longest.into()));
+        let end = s.add(left, s.splat_f64(longest.into()));
         let (mut start, mut right) = (left, s.min(ends.right, end));
         if let Some(clip) = clip {
             start = s.max(left, side(clip.x0));
@@ -466,21 +466,21 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             let skipped = s.sub_i32(s.low_bits(start), s.low_bits(left));
             // Both in upper halves, as the step is.
             let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, skipped));
-            paint = s.or_i32(s.and_i32(s.sar_i32(shade, 16), s.all_i32(0xFFFF)), step);
+            paint = s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step);
         }
         let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
         let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
         let spans = Spans8 {
             at: s.add_i32(rows.at, moved),
             cell: s.add_i32(rows.cell, moved),
-            length: s.select_i32(is_row, length, s.all_i32(0)),
+            length: s.select_i32(is_row, length, s.splat_i32(0)),
             paint,
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             starts,
         };
         shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
-        if s.mask_bits(s.is_less(left, ends.right)) == 0 {
+        if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;
         }
     }

@@ -40,7 +40,7 @@ use super::depth::DepthPlane;
 use super::pick::{LANES, Pick};
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 use crate::span::LargeTriangle;
 
 /// Where the pixels of a frame lie.
@@ -117,12 +117,12 @@ impl Edges {
     fn set_up<S: Lanes8>(&mut self, s: S, (x, y): (S::F64, S::F64), (dx, dy): (S::F64, S::F64)) {
         // x = (ax·dy + dx·(256·j − ay)) / (256·dy), rounded up: the floor of one unit less, plus one.
         // Along a row, where dy is 0, what comes out is not used.
-        let n = s.mul_add(dy, s.all_f64(128.0), s.all_f64(-0.5));
+        let n = s.mul_add(dy, s.splat_f64(128.0), s.splat_f64(-0.5));
         let n = s.mul_add(x, dy, n);
-        s.put_f64s(s.neg_mul_add(dx, y, n), &mut self.n);
-        let pixel = s.all_f64(256.0);
-        s.put_f64s(s.mul(dx, pixel), &mut self.per_row);
-        s.put_f64s(s.div(s.all_f64(1.0), s.mul(dy, pixel)), &mut self.inverse);
+        s.store_f64(s.neg_mul_add(dx, y, n), &mut self.n);
+        let pixel = s.splat_f64(256.0);
+        s.store_f64(s.mul(dx, pixel), &mut self.per_row);
+        s.store_f64(s.div(s.splat_f64(1.0), s.mul(dy, pixel)), &mut self.inverse);
     }
 }
 
@@ -145,37 +145,38 @@ impl ValuePlanes8 {
     /// Sets up the planes of one value for each triangle.
     #[inline(always)]
     fn set_up_constant<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, values: &Ints) {
-        let (area, zero) = (basis.area, s.all_f64(0.0));
-        let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
-        let n = s.mul(s.add(s.to_f64(s.i32s(values)), s.all_f64(128.0)), area);
-        s.put_f64s(s.sub(n, half), &mut self.n);
-        s.put_f64s(zero, &mut self.per_column);
-        s.put_f64s(zero, &mut self.per_row);
-        s.put_i32s(s.all_i32(0), &mut self.step);
+        let (area, zero) = (basis.area, s.splat_f64(0.0));
+        let half = s.mul_add(area, s.splat_f64(0.5), s.splat_f64(-0.5));
+        let n = s.mul(s.add(s.to_f64(s.load_i32(values)), s.splat_f64(128.0)), area);
+        s.store_f64(s.sub(n, half), &mut self.n);
+        s.store_f64(zero, &mut self.per_column);
+        s.store_f64(zero, &mut self.per_row);
+        s.store_i32(s.splat_i32(0), &mut self.step);
     }
 
     /// Sets up the planes of these values at the corners.
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &[Ints; 3]) {
-        let [v0, v1, v2] = basis.order.sort(s, [s.i32s(&corners[0]), s.i32s(&corners[1]), s.i32s(&corners[2])]);
+        let [v0, v1, v2] =
+            basis.order.sort(s, [s.load_i32(&corners[0]), s.load_i32(&corners[1]), s.load_i32(&corners[2])]);
         let ([x, y], area) = (basis.first, basis.area);
         let value = s.to_f64(v0);
         let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(v1, v0)), s.to_f64(s.sub_i32(v2, v0))]);
         // +0 and no −0: its sign chooses the rounding.
-        let gx = s.add(gx, s.all_f64(0.0));
+        let gx = s.add(gx, s.splat_f64(0.0));
         // `ShadePlane::start`: the floor, or the ceiling of falling values, and half a shade.
-        let half = s.mul_add(area, s.all_f64(0.5), s.all_f64(-0.5));
-        let n = s.mul(s.add(value, s.all_f64(128.0)), area);
+        let half = s.mul_add(area, s.splat_f64(0.5), s.splat_f64(-0.5));
+        let n = s.mul(s.add(value, s.splat_f64(128.0)), area);
         let n = s.neg_mul_add(gx, x, n);
         let n = s.neg_mul_add(gy, y, n);
-        s.put_f64s(s.sub(n, s.flip(half, gx)), &mut self.n);
-        let pixel = s.all_f64(256.0);
+        s.store_f64(s.sub(n, s.xor_sign(half, gx)), &mut self.n);
+        let pixel = s.splat_f64(256.0);
         let per_column = s.mul(gx, pixel);
-        s.put_f64s(per_column, &mut self.per_column);
-        s.put_f64s(s.mul(gy, pixel), &mut self.per_row);
+        s.store_f64(per_column, &mut self.per_column);
+        s.store_f64(s.mul(gy, pixel), &mut self.per_row);
         // Toward zero. The sum wraps, as in `ShadePlane`.
-        let step = s.mul_add(s.sub(per_column, s.flip(half, gx)), basis.inverse, s.all_f64(ROUND_MAGIC));
-        s.put_i32s(s.shl_i32(s.low_bits(step), 16), &mut self.step);
+        let step = s.mul_add(s.sub(per_column, s.xor_sign(half, gx)), basis.inverse, s.splat_f64(ROUND_MAGIC));
+        s.store_i32(s.shl_i32(s.low_bits(step), 16), &mut self.step);
     }
 }
 
@@ -232,7 +233,7 @@ impl TriangleSetup8 {
     }
 
     /// Triangle `i` alone.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     pub(super) fn large_triangle(&self, i: usize, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
         let edge = |edges: &Edges| [edges.n[i], edges.per_row[i], edges.inverse[i]];
         LargeTriangle {
@@ -261,9 +262,9 @@ impl TriangleSetup8 {
         corners: &Corners8,
         layout: FrameLayout,
     ) -> Basis<S> {
-        let [ax, ay] = s.halves_of_i64(s.i64s(&corners.at[0]));
-        let [bx, by] = s.halves_of_i64(s.i64s(&corners.at[1]));
-        let [cx, cy] = s.halves_of_i64(s.i64s(&corners.at[2]));
+        let [ax, ay] = s.halves_of_i64(s.load_i64(&corners.at[0]));
+        let [bx, by] = s.halves_of_i64(s.load_i64(&corners.at[1]));
+        let [cx, cy] = s.halves_of_i64(s.load_i64(&corners.at[2]));
         // The box of culling, found again by eight operations for eight triangles. To hand it on, culling would pack three
         // more lists, and these would be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
@@ -272,13 +273,13 @@ impl TriangleSetup8 {
         let row = first_centre(s, top);
         let rows = s.sub_i32(first_centre(s, bottom), row);
         // A column and a row are below 4,096, the pitch is at most 2¹⁶.
-        let down = s.sub_i32(row, s.all_i32(layout.first_row as i32));
-        let (pitch, width) = (s.all_i32(layout.pitch as i32), s.all_i32(layout.width as i32));
-        s.put_i32s(column, &mut self.column);
-        s.put_i32s(row, &mut self.row);
-        s.put_i32s(s.add_i32(s.mul_i32(down, pitch), column), &mut self.at);
+        let down = s.sub_i32(row, s.splat_i32(layout.first_row as i32));
+        let (pitch, width) = (s.splat_i32(layout.pitch as i32), s.splat_i32(layout.width as i32));
+        s.store_i32(column, &mut self.column);
+        s.store_i32(row, &mut self.row);
+        s.store_i32(s.add_i32(s.mul_i32(down, pitch), column), &mut self.at);
         if DEPTHS {
-            s.put_i32s(s.add_i32(s.mul_i32(down, width), column), &mut self.cell);
+            s.store_i32(s.add_i32(s.mul_i32(down, width), column), &mut self.cell);
         }
 
         // Top, middle and bottom corner. Which of two at the same height comes first is of no matter here.
@@ -288,7 +289,7 @@ impl TriangleSetup8 {
             last_is_b: s.is_equal(by, bottom),
             last_is_c: s.is_equal(cy, bottom),
         };
-        let half = s.all_i32(128);
+        let half = s.splat_i32(128);
         let left = s.add_i32(s.shl_i32(column, 8), half);
         let above = s.add_i32(s.shl_i32(row, 8), half);
         let [x0, x1, x2] = order.sort(s, [ax, bx, cx]);
@@ -296,7 +297,7 @@ impl TriangleSetup8 {
         // From the first pixel's centre, within ±2²⁰.
         let (x0, x1, x2) = (s.sub_i32(x0, left), s.sub_i32(x1, left), s.sub_i32(x2, left));
         let (y0, y1, y2) = (s.sub_i32(y0, above), s.sub_i32(y1, above), s.sub_i32(y2, above));
-        s.put_i32s(s.sar_i32(s.add_i32(y1, s.all_i32(255)), 8), &mut self.split);
+        s.store_i32(s.shr_i32(s.add_i32(y1, s.splat_i32(255)), 8), &mut self.split);
         let (fx0, fx1, fx2) = (s.to_f64(x0), s.to_f64(x1), s.to_f64(x2));
         let (fy0, fy1, fy2) = (s.to_f64(y0), s.to_f64(y1), s.to_f64(y2));
         let (dx1, dy1) = (s.sub(fx1, fx0), s.sub(fy1, fy0));
@@ -306,36 +307,37 @@ impl TriangleSetup8 {
         self.lower.set_up(s, (fx1, fy1), (s.sub(fx2, fx1), s.sub(fy2, fy1)));
 
         let signed = s.neg_mul_add(dx2, dy1, s.mul(dx1, dy2));
-        let area = s.flip(signed, signed);
-        let inverse = s.div(s.all_f64(1.0), area);
+        let area = s.xor_sign(signed, signed);
+        let inverse = s.div(s.splat_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
         if corners.are_flat {
             self.shade.set_up_constant(s, &basis, &corners.shade[0]);
         } else {
             self.shade.set_up(s, &basis, &corners.shade);
         }
-        s.put_f64s(inverse, &mut self.inverse);
+        s.store_f64(inverse, &mut self.inverse);
         // Without an area no rows.
-        let has_area = s.is_less(s.all_f64(0.0), area);
-        s.put_i32s(s.select_i32(has_area, rows, s.all_i32(0)), &mut self.rows);
+        let has_area = s.is_less(s.splat_f64(0.0), area);
+        s.store_i32(s.select_i32(has_area, rows, s.splat_i32(0)), &mut self.rows);
 
         if DEPTHS {
-            let [d0, d1, d2] =
-                basis.order.sort(s, [s.i32s(&corners.depth[0]), s.i32s(&corners.depth[1]), s.i32s(&corners.depth[2])]);
+            let [d0, d1, d2] = basis
+                .order
+                .sort(s, [s.load_i32(&corners.depth[0]), s.load_i32(&corners.depth[1]), s.load_i32(&corners.depth[2])]);
             let depth = s.unsigned_to_f64(d0);
             let (dd1, dd2) = (s.sub(s.unsigned_to_f64(d1), depth), s.sub(s.unsigned_to_f64(d2), depth));
             let [nx, ny] = basis.gradient(s, [dd1, dd2]);
             let gx = depth_gradient(s, nx, area, inverse);
             let gy = depth_gradient(s, ny, area, inverse);
             // The plane is that through the first corner by (y, x).
-            let is_second = s.both(s.is_equal(y0, y1), s.is_greater(x0, x1));
+            let is_second = s.and(s.is_equal(y0, y1), s.is_greater(x0, x1));
             let (x, d) = (s.select_i32(is_second, x1, x0), s.select_i32(is_second, d1, d0));
-            let z = s.add_i64(s.shl_i64(s.unsigned_to_i64(d), 24), s.all_i64(1 << 23));
+            let z = s.add_i64(s.shl_i64(s.unsigned_to_i64(d), 24), s.splat_i64(1 << 23));
             let z = s.sub_i64(z, s.mul_i64(gx, s.to_i64(x)));
             let z = s.sub_i64(z, s.mul_i64(gy, s.to_i64(y0)));
-            s.put_i64s(s.shl_i64(z, 8), &mut self.z);
-            s.put_i64s(s.shl_i64(gx, 16), &mut self.z_per_column);
-            s.put_i64s(s.shl_i64(gy, 16), &mut self.z_per_row);
+            s.store_i64(s.shl_i64(z, 8), &mut self.z);
+            s.store_i64(s.shl_i64(gx, 16), &mut self.z_per_column);
+            s.store_i64(s.shl_i64(gy, 16), &mut self.z_per_row);
         }
         basis
     }
@@ -360,16 +362,16 @@ impl<S: Lanes8> Basis<S> {
     #[inline(always)]
     pub(super) fn gradient(&self, s: S, [d1, d2]: [S::F64; 2]) -> [S::F64; 2] {
         let ([dx1, dy1], [dx2, dy2]) = (self.second, self.third);
-        let gx = s.flip(s.neg_mul_add(d2, dy1, s.mul(d1, dy2)), self.signed);
-        [gx, s.flip(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
+        let gx = s.xor_sign(s.neg_mul_add(d2, dy1, s.mul(d1, dy2)), self.signed);
+        [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
     /// Change of a corner's weight from 1/256 pixel to the next; and its weight at the box's first pixel, with its change from
     /// a row and from a column to the next. All are whole numbers, exact. Corners are counted by height.
     #[inline(always)]
     pub(super) fn weight(&self, s: S, corner: usize) -> (S::F64, [S::F64; 3]) {
-        let ([x, y], pixel, zero) = (self.first, s.all_f64(256.0), s.all_f64(0.0));
-        let (one, minus_one) = (s.all_f64(1.0), s.all_f64(-1.0));
+        let ([x, y], pixel, zero) = (self.first, s.splat_f64(256.0), s.splat_f64(0.0));
+        let (one, minus_one) = (s.splat_f64(1.0), s.splat_f64(-1.0));
         // How it differs at the second and the third from that at the first.
         let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
         let [gx, gy] = self.gradient(s, differences[corner % 3]);
@@ -402,18 +404,18 @@ impl<S: Lanes8> Order<S> {
 /// `I24F8::first_centre`, of coordinates of at most 2²⁰.
 #[inline(always)]
 pub(super) fn first_centre<S: Lanes8>(s: S, units: S::I32) -> S::I32 {
-    s.sar_i32(s.add_i32(units, s.all_i32(127)), 8)
+    s.shr_i32(s.add_i32(units, s.splat_i32(127)), 8)
 }
 
 /// Gradients with 24 fraction bits from numerators, areas and the inverses of these; any number for a triangle without
 /// area.
 #[inline(always)]
 fn depth_gradient<S: Lanes8>(s: S, n: S::F64, area: S::F64, inverse: S::F64) -> S::I64 {
-    let magic = s.all_f64(ROUND_MAGIC);
+    let magic = s.splat_f64(ROUND_MAGIC);
     let integer = s.mul_add(n, inverse, magic);
     let rest = s.neg_mul_add(s.sub(integer, magic), area, n);
-    let part = s.mul_add(s.mul_add(rest, s.all_f64(16_777_216.0), s.all_f64(0.25)), inverse, magic);
-    // Of the first sum the bits of the magic number are shifted out. The wrap is meant: see `raster::depth`.
+    let part = s.mul_add(s.mul_add(rest, s.splat_f64(16_777_216.0), s.splat_f64(0.25)), inverse, magic);
+    // Of the first sum the bits of the magic number are shifted out. Wrapping is intended: see `raster::depth`.
     s.add_i64(s.shl_i64(s.bits(integer), 24), s.sub_i64(s.bits(part), s.bits(magic)))
 }
 

@@ -62,48 +62,49 @@ impl AffinePlanes8 {
 
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) {
-        s.put_f64s(basis.inverse, &mut self.inverse);
+        s.store_f64(basis.inverse, &mut self.inverse);
         self.fits = u32::MAX;
         let [x, y] = basis.first;
-        let (pixel, magic) = (s.all_f64(256.0), s.all_f64(ROUND_MAGIC));
+        let (pixel, magic) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC));
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
-            let corners = [s.i32s(a), s.i32s(b), s.i32s(c)];
+            let corners = [s.load_i32(a), s.load_i32(b), s.load_i32(c)];
             let [a, b, c] = corners;
             // Modulo 2³²: a difference of 2³¹ or more is negative.
             let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
-            let is_near = s.but_not(s.is_greater(s.all_i32(Self::TOO_FAR), range), s.is_greater(s.all_i32(0), range));
-            self.fits &= s.mask_bits(is_near);
+            let is_near =
+                s.and_not(s.is_greater(s.splat_i32(Self::TOO_FAR), range), s.is_greater(s.splat_i32(0), range));
+            self.fits &= s.to_bitmask(is_near);
             let [first, second, third] = basis.order.sort(s, corners);
-            s.put_i32s(first, &mut self.first[i]);
+            s.store_i32(first, &mut self.first[i]);
             let differences = [s.to_f64(s.sub_i32(second, first)), s.to_f64(s.sub_i32(third, first))];
             let [gx, gy] = basis.gradient(s, differences);
             // +0 and no −0: its sign chooses the rounding.
-            let gx = s.add(gx, s.all_f64(0.0));
+            let gx = s.add(gx, s.splat_f64(0.0));
             // `AffinePlane::start`: the floor, or the ceiling where coordinates fall.
-            let half = s.flip(s.mul_add(basis.area, s.all_f64(0.5), s.all_f64(-0.5)), gx);
-            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, s.all_f64(0.0)));
-            s.put_f64s(s.sub(n, half), &mut self.n[i]);
-            s.put_f64s(s.mul(gy, pixel), &mut self.per_row[i]);
+            let half = s.xor_sign(s.mul_add(basis.area, s.splat_f64(0.5), s.splat_f64(-0.5)), gx);
+            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, s.splat_f64(0.0)));
+            s.store_f64(s.sub(n, half), &mut self.n[i]);
+            s.store_f64(s.mul(gy, pixel), &mut self.per_row[i]);
             let per_column = s.mul(gx, pixel);
-            s.put_f64s(per_column, &mut self.per_column[i]);
+            s.store_f64(per_column, &mut self.per_column[i]);
             // Toward zero.
             let step = s.mul_add(s.sub(per_column, half), basis.inverse, magic);
-            s.put_i32s(s.low_bits(step), &mut self.step[i]);
+            s.store_i32(s.low_bits(step), &mut self.step[i]);
         }
     }
 
     /// The coordinates at the first pixel of a row of each triangle.
     #[inline(always)]
     pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::I32; 2] {
-        let magic = s.all_f64(ROUND_MAGIC);
+        let magic = s.splat_f64(ROUND_MAGIC);
         let columns = s.sub(ends.left, magic);
-        let inverse = s.f64s(&self.inverse);
-        let mut starts = [s.all_i32(0); 2];
+        let inverse = s.load_f64(&self.inverse);
+        let mut starts = [s.splat_i32(0); 2];
         // Not by a closure, which would not be inlined.
         for (i, start) in starts.iter_mut().enumerate() {
-            let n = s.mul_add(s.f64s(&self.per_row[i]), j, s.f64s(&self.n[i]));
-            let n = s.mul_add(s.f64s(&self.per_column[i]), columns, n);
-            *start = s.add_i32(s.low_bits(s.mul_add(n, inverse, magic)), s.i32s(&self.first[i]));
+            let n = s.mul_add(s.load_f64(&self.per_row[i]), j, s.load_f64(&self.n[i]));
+            let n = s.mul_add(s.load_f64(&self.per_column[i]), columns, n);
+            *start = s.add_i32(s.low_bits(s.mul_add(n, inverse, magic)), s.load_i32(&self.first[i]));
         }
         starts
     }
@@ -135,40 +136,40 @@ impl PerspectivePlanes8 {
     ) {
         let [u, v] = coordinates;
         let [depth_a, depth_b, depth_c] = &corners.depth;
-        let u = basis.order.sort(s, [s.i32s(&u[0]), s.i32s(&u[1]), s.i32s(&u[2])]);
-        let v = basis.order.sort(s, [s.i32s(&v[0]), s.i32s(&v[1]), s.i32s(&v[2])]);
-        let depth = basis.order.sort(s, [s.i32s(depth_a), s.i32s(depth_b), s.i32s(depth_c)]);
-        let one = s.all_f64(1.0);
-        let mut sums = [s.all_f64(0.0); 3];
+        let u = basis.order.sort(s, [s.load_i32(&u[0]), s.load_i32(&u[1]), s.load_i32(&u[2])]);
+        let v = basis.order.sort(s, [s.load_i32(&v[0]), s.load_i32(&v[1]), s.load_i32(&v[2])]);
+        let depth = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
+        let one = s.splat_f64(1.0);
+        let mut sums = [s.splat_f64(0.0); 3];
         for corner in 0..3 {
             let (_, weight) = basis.weight(s, corner);
             for (i, to) in self.weights[corner].iter_mut().enumerate() {
-                s.put_f64s(weight[i], to);
+                s.store_f64(weight[i], to);
             }
             let [_, _, per_column] = weight;
             // A depth counts as 1 at least.
             let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
             let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
             for i in 0..3 {
-                s.put_f64s(values[i], &mut self.values[corner][i]);
+                s.store_f64(values[i], &mut self.values[corner][i]);
                 sums[i] = s.mul_add(per_column, values[i], sums[i]);
             }
         }
         for (i, step) in self.step.iter_mut().enumerate() {
-            s.put_f64s(sums[i], step);
+            s.store_f64(sums[i], step);
         }
     }
 
     /// The sums at the first pixel of a row of each triangle.
     #[inline(always)]
     pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::F64; 3] {
-        let columns = s.sub(ends.left, s.all_f64(ROUND_MAGIC));
-        let mut sums = [s.all_f64(0.0); 3];
+        let columns = s.sub(ends.left, s.splat_f64(ROUND_MAGIC));
+        let mut sums = [s.splat_f64(0.0); 3];
         for (corner, weights) in self.weights.iter().enumerate() {
-            let weight = s.mul_add(s.f64s(&weights[1]), j, s.f64s(&weights[0]));
-            let weight = s.mul_add(s.f64s(&weights[2]), columns, weight);
+            let weight = s.mul_add(s.load_f64(&weights[1]), j, s.load_f64(&weights[0]));
+            let weight = s.mul_add(s.load_f64(&weights[2]), columns, weight);
             for (i, sum) in sums.iter_mut().enumerate() {
-                *sum = s.mul_add(weight, s.f64s(&self.values[corner][i]), *sum);
+                *sum = s.mul_add(weight, s.load_f64(&self.values[corner][i]), *sum);
             }
         }
         sums

@@ -82,7 +82,7 @@ impl ShadePlane {
             origin,
             per_column: gx * 256,
             per_row: gy * 256,
-            // The wrap is meant: see the module's head.
+            // Wrapping is intended: see the module's head.
             step: area.truncate(gx * 256) as u16,
         }
     }

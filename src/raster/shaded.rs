@@ -144,34 +144,34 @@ impl<'a> Shaded8<'a> {
 
     #[inline(always)]
     fn set_up_16_16<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, setup: &TriangleSetup8) {
-        let magic = s.all_f64(ROUND_MAGIC);
-        let per_column = s.f64s(&setup.shade.per_column);
-        let half = s.flip(s.mul_add(basis.area, s.all_f64(0.5), s.all_f64(-0.5)), per_column);
-        let fraction = s.mul(half, s.all_f64(255.0));
-        s.put_f64s(fraction, &mut self.fraction);
-        s.put_f64s(basis.area, &mut self.area);
+        let magic = s.splat_f64(ROUND_MAGIC);
+        let per_column = s.load_f64(&setup.shade.per_column);
+        let half = s.xor_sign(s.mul_add(basis.area, s.splat_f64(0.5), s.splat_f64(-0.5)), per_column);
+        let fraction = s.mul(half, s.splat_f64(255.0));
+        s.store_f64(fraction, &mut self.fraction);
+        s.store_f64(basis.area, &mut self.area);
         let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
-        s.put_i32s(step, &mut self.listed.steps[self.listed.batch].fixed16);
+        s.store_i32(step, &mut self.listed.steps[self.listed.batch].fixed16);
     }
 
     #[inline(always)]
     fn set_up_perspective<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
-        let (pixel, zero, one) = (s.all_f64(256.0), s.all_f64(0.0), s.all_f64(1.0));
+        let (pixel, zero, one) = (s.splat_f64(256.0), s.splat_f64(0.0), s.splat_f64(1.0));
         let [shade_a, shade_b, shade_c] = &corners.shade;
         let [depth_a, depth_b, depth_c] = &corners.depth;
-        let shades = basis.order.sort(s, [s.i32s(shade_a), s.i32s(shade_b), s.i32s(shade_c)]);
-        let depths = basis.order.sort(s, [s.i32s(depth_a), s.i32s(depth_b), s.i32s(depth_c)]);
+        let shades = basis.order.sort(s, [s.load_i32(shade_a), s.load_i32(shade_b), s.load_i32(shade_c)]);
+        let depths = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
         let is_estimate = self.kind == Kind::Hyperbolic;
         // 2¹⁶ times a byte with its half; or shades as they are.
         let (half, scale) = if is_estimate { (128.0, 256.0) } else { (0.0, 1.0) };
-        let (half, scale) = (s.all_f64(half), s.all_f64(scale));
+        let (half, scale) = (s.splat_f64(half), s.splat_f64(scale));
         let mut sums = [zero; 2];
         let mut changes = [zero; 3];
         let mut values = [[zero; 2]; 3];
         for corner in 0..3 {
             let (gradient, weight) = basis.weight(s, corner);
             for (i, to) in self.weights[corner].iter_mut().enumerate() {
-                s.put_f64s(weight[i], to);
+                s.store_f64(weight[i], to);
             }
             // A depth counts as 1 at least.
             let depth = s.max(s.unsigned_to_f64(depths[corner]), one);
@@ -179,32 +179,32 @@ impl<'a> Shaded8<'a> {
             values[corner] = [s.mul(shade, depth), depth];
             changes[corner] = gradient;
             for i in 0..2 {
-                s.put_f64s(values[corner][i], &mut self.values[corner][i]);
+                s.store_f64(values[corner][i], &mut self.values[corner][i]);
                 sums[i] = s.mul_add(s.mul(gradient, pixel), values[corner][i], sums[i]);
             }
         }
         let steps = &mut self.listed.steps[self.listed.batch];
         if is_estimate {
-            s.put_f64s(sums[0], &mut steps.sums[0]);
-            s.put_f64s(sums[1], &mut steps.sums[1]);
+            s.store_f64(sums[0], &mut steps.sums[0]);
+            s.store_f64(sums[1], &mut steps.sums[1]);
             return;
         }
         // Of two last corners at one height the left one comes first.
         let is_last_second =
-            s.but_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
+            s.and_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
         for i in 0..3 {
             let [_, second, third] = &mut self.weights;
-            let (at_second, at_third) = (s.f64s(&second[i]), s.f64s(&third[i]));
-            s.put_f64s(s.select(is_last_second, at_third, at_second), &mut second[i]);
-            s.put_f64s(s.select(is_last_second, at_second, at_third), &mut third[i]);
+            let (at_second, at_third) = (s.load_f64(&second[i]), s.load_f64(&third[i]));
+            s.store_f64(s.select(is_last_second, at_third, at_second), &mut second[i]);
+            s.store_f64(s.select(is_last_second, at_second, at_third), &mut third[i]);
         }
         let [first, second, third] = values;
         for (i, (unit, sums)) in [1.0, 256.0].into_iter().zip(&mut steps.sums).enumerate() {
-            s.put_f64s(s.select(is_last_second, third[i], second[i]), &mut self.values[1][i]);
-            s.put_f64s(s.select(is_last_second, second[i], third[i]), &mut self.values[2][i]);
+            s.store_f64(s.select(is_last_second, third[i], second[i]), &mut self.values[1][i]);
+            s.store_f64(s.select(is_last_second, second[i], third[i]), &mut self.values[2][i]);
             // Whole numbers below 2⁴⁸ and 2¹², exact in sums with the magic number.
             let mut exact = [0; LANES];
-            s.put_i64s(
+            s.store_i64(
                 s.add_i64(
                     s.add_i64(product(s, changes[0], first[i]), product(s, changes[1], second[i])),
                     product(s, changes[2], third[i]),
@@ -217,8 +217,8 @@ impl<'a> Shaded8<'a> {
             }
         }
         let [a, b, c] = shades;
-        s.put_i32s(s.min_i32(s.min_i32(a, b), c), &mut steps.least);
-        s.put_i32s(s.max_i32(s.max_i32(a, b), c), &mut steps.greatest);
+        s.store_i32(s.min_i32(s.min_i32(a, b), c), &mut steps.least);
+        s.store_i32(s.max_i32(s.max_i32(a, b), c), &mut steps.greatest);
     }
 
     #[inline(always)]
@@ -260,14 +260,14 @@ impl<'a> Shaded8<'a> {
 fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), fraction: S::F64, magic: S::F64) -> S::I32 {
     let whole = s.mul_add(n, inverse, magic);
     let rest = s.neg_mul_add(s.sub(whole, magic), area, n);
-    let part = s.mul_add(s.mul_add(rest, s.all_f64(256.0), fraction), inverse, magic);
+    let part = s.mul_add(s.mul_add(rest, s.splat_f64(256.0), fraction), inverse, magic);
     s.add_i32(s.shl_i32(s.low_bits(whole), 8), s.low_bits(part))
 }
 
 /// The product of whole numbers.
 #[inline(always)]
 fn product<S: Lanes8>(s: S, a: S::F64, b: S::F64) -> S::I64 {
-    let magic = s.all_f64(ROUND_MAGIC);
+    let magic = s.splat_f64(ROUND_MAGIC);
     let whole = |value: S::F64| s.sub_i64(s.bits(s.add(value, magic)), s.bits(magic));
     s.mul_i64(whole(a), whole(b))
 }
@@ -304,34 +304,34 @@ impl Shades8 for Shaded8<'_> {
         (ends, j): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
     ) -> (S::I32, [S::I64; 2]) {
-        let magic = s.all_f64(ROUND_MAGIC);
+        let magic = s.splat_f64(ROUND_MAGIC);
         // At most 255.
-        let face = s.add_i32(s.all_i32((self.listed.batch * LANES) as i32), lane.numbers(s));
+        let face = s.add_i32(s.splat_i32((self.listed.batch * LANES) as i32), lane.numbers(s));
         let steps = &self.listed.steps[self.listed.batch];
         if self.kind == Kind::Fixed16 {
             let n = ends.shade_numerator(s, lane, setup, parts.origin);
-            let quotient = (lane.f64s(s, &self.area), lane.f64s(s, &setup.inverse));
-            let start = sum_16_16(s, n, quotient, lane.f64s(s, &self.fraction), magic);
+            let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
+            let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.origin));
-            let start = s.add_i32(start, s.mul_i32(lane.i32s(s, &steps.fixed16), skipped));
-            return (face, [s.to_i64(start), s.all_i64(0)]);
+            let start = s.add_i32(start, s.mul_i32(lane.load_i32(s, &steps.fixed16), skipped));
+            return (face, [s.to_i64(start), s.splat_i64(0)]);
         }
         let (mut at, mut paint) = (parts.start, face);
         if self.kind != Kind::Hyperbolic {
-            let falls = s.is_less(lane.f64s(s, &steps.sums[1]), s.all_f64(0.0));
-            at = s.select(falls, s.sub(parts.end, s.all_f64(1.0)), parts.origin);
+            let falls = s.is_less(lane.load_f64(s, &steps.sums[1]), s.splat_f64(0.0));
+            at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.origin);
             let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
             paint = s.or_i32(face, s.shl_i32(first, 16));
         }
         let columns = s.sub(at, magic);
-        let mut sums = [s.all_f64(0.0); 2];
+        let mut sums = [s.splat_f64(0.0); 2];
         for (weights, values) in self.weights.iter().zip(&self.values) {
             // Whole numbers: exact.
-            let weight = s.mul_add(lane.f64s(s, &weights[1]), j, lane.f64s(s, &weights[0]));
-            let weight = s.mul_add(lane.f64s(s, &weights[2]), columns, weight);
+            let weight = s.mul_add(lane.load_f64(s, &weights[1]), j, lane.load_f64(s, &weights[0]));
+            let weight = s.mul_add(lane.load_f64(s, &weights[2]), columns, weight);
             for (i, sum) in sums.iter_mut().enumerate() {
                 // Rounded twice at every level.
-                *sum = s.add(*sum, s.mul(weight, lane.f64s(s, &values[i])));
+                *sum = s.add(*sum, s.mul(weight, lane.load_f64(s, &values[i])));
             }
         }
         (paint, [s.bits(sums[0]), s.bits(sums[1])])
@@ -414,12 +414,12 @@ struct Fixed16;
 impl Stage for Fixed16 {
     #[inline(always)]
     fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let step = s.all_i32(all.step_16_16(span.face).cast_signed());
+        let step = s.splat_i32(all.step_16_16(span.face).cast_signed());
         // The lower half.
-        let mut sums = s.add_i32(s.all_i32(span.starts[0] as i32), s.mul_i32(step, s.i32s(&NUMBERS)));
+        let mut sums = s.add_i32(s.splat_i32(span.starts[0] as i32), s.mul_i32(step, s.load_i32(&NUMBERS)));
         let next = s.shl_i32(step, 3);
         for block in blocks(bytes, span.length) {
-            *block = s.low_bytes(s.sar_i32(sums, 16));
+            *block = s.low_bytes(s.shr_i32(sums, 16));
             sums = s.add_i32(sums, next);
         }
         true
@@ -443,20 +443,20 @@ impl Stage for Hyperbolic {
         if !HyperbolicPlane::is_sure(d0, dd, span.length) {
             return false;
         }
-        let (n0, dn, d0, dd) = (s.all_f64(n0), s.all_f64(dn), s.all_f64(d0), s.all_f64(dd));
-        let mut k = s.to_f64(s.i32s(&NUMBERS));
+        let (n0, dn, d0, dd) = (s.splat_f64(n0), s.splat_f64(dn), s.splat_f64(d0), s.splat_f64(dd));
+        let mut k = s.to_f64(s.load_i32(&NUMBERS));
         let mut left = span.length as i32;
         let mut undecided = 0;
         for block in blocks(bytes, span.length) {
             let quotient = s.div(s.mul_add(k, dn, n0), s.mul_add(k, dd, d0));
-            let estimate = s.low_bits(s.add(quotient, s.all_f64(ROUND_MAGIC)));
-            *block = s.low_bytes(s.sar_i32(estimate, 16));
+            let estimate = s.low_bits(s.add(quotient, s.splat_f64(ROUND_MAGIC)));
+            *block = s.low_bytes(s.shr_i32(estimate, 16));
             // As in `fill_estimated_quotients`.
-            let is_whole = s.is_equal(s.and_i32(estimate, s.all_i32(0xFFFF)), s.all_i32(0));
-            let is_there = s.is_greater(s.all_i32(left), s.i32s(&NUMBERS));
-            undecided |= s.mask_bits(s.both(is_whole, is_there));
+            let is_whole = s.is_equal(s.and_i32(estimate, s.splat_i32(0xFFFF)), s.splat_i32(0));
+            let is_there = s.is_greater(s.splat_i32(left), s.load_i32(&NUMBERS));
+            undecided |= s.to_bitmask(s.and(is_whole, is_there));
             left -= LANES as i32;
-            k = s.add(k, s.all_f64(LANES as f64));
+            k = s.add(k, s.splat_f64(LANES as f64));
         }
         undecided == 0
     }

@@ -258,7 +258,7 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
                 let row = setup.row[i % LANES];
                 (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
             }
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             if !DEPTHS
                 && !P::STARTS
                 && pick.class() == SizeClass::Large

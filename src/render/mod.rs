@@ -163,7 +163,7 @@ impl Renderer {
     /// A new renderer that is set as this one and draws the same bytes, for another thread.
     #[must_use]
     #[doc(hidden)]
-    pub fn set_alike(&self) -> Self {
+    pub fn with_same_settings(&self) -> Self {
         Self { settings: self.settings.clone(), time_budget: self.time_budget.clone(), ..Self::new() }
     }
 
@@ -184,12 +184,12 @@ impl Renderer {
     ///     scene.objects_mut()[0].rotate_y(Angle::from_degrees(1.0));
     ///     let start = Instant::now();
     ///     let stats = renderer.draw(&scene, &mut vga)?;
-    ///     renderer.frame_took(start.elapsed());
+    ///     renderer.report_frame_time(start.elapsed());
     ///     assert!(stats.max_error <= Some(16.0));
     /// }
     /// # Ok::<(), mode13h::render::RenderError>(())
     /// ```
-    pub fn frame_took(&mut self, time: Duration) {
+    pub fn report_frame_time(&mut self, time: Duration) {
         if let Some(time_budget) = &mut self.time_budget {
             time_budget.took(self.redrawn.then_some(time.as_secs_f32() * 1000.0));
         }
@@ -264,7 +264,7 @@ impl Renderer {
         if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
             return None;
         }
-        let object_in_scene = scene.objects().get(object).filter(|object| !plan::answers_itself(object))?;
+        let object_in_scene = scene.objects().get(object).filter(|object| !plan::has_custom_response(object))?;
         let faces = self.cache.states.get(object)?.faces(object_in_scene, plan)?;
         Some(faces.linear_error())
     }

@@ -430,7 +430,7 @@ impl ObjectState {
 
     /// Rounds its vertices once more.
     pub(super) fn round_vertices(&mut self, bits: u32) {
-        vertex::round_further(bits, &mut self.columns);
+        vertex::requantize(bits, &mut self.columns);
     }
 
     /// The table of a surface's shades by normal.

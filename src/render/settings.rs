@@ -82,7 +82,7 @@ pub struct Settings {
     /// Accuracy of shades.
     pub accuracy: Option<Accuracy>,
     /// Time for a frame in milliseconds, above 0: each frame is drawn within the least error that fits, as far as the
-    /// times tell that [`Renderer::frame_took`](super::Renderer::frame_took) is told. An error in `accuracy` is then the
+    /// times tell that [`Renderer::report_frame_time`](super::Renderer::report_frame_time) is told. An error in `accuracy` is then the
     /// greatest that is accepted. A shading there is a contradiction: an error when a scene is drawn.
     pub max_time: Option<f32>,
     /// Method for hidden surfaces, right or wrong.

@@ -44,7 +44,7 @@ pub(super) enum Turning {
     /// It turns about its own upward axis, which may be tilted.
     Upright,
     /// It turns in another way: any direction may come to the front.
-    Anyhow,
+    Free,
 }
 
 /// The space that an object covers as it moves.
@@ -81,7 +81,7 @@ impl Swept {
                 let rings = points(object, [Angle::default(), Angle::default(), roll]);
                 Shape::Rings(axis, rings.into_iter().map(|[x, y, z]| [libm::sqrt(x * x + z * z), y]).collect())
             }
-            Turning::Anyhow => {
+            Turning::Free => {
                 let squares = points(object, [Angle::default(); 3]).into_iter().map(|p| dot(p, p));
                 Shape::Sphere(libm::sqrt(squares.fold(0.0, f64::max)))
             }
@@ -522,7 +522,7 @@ mod tests {
         let mut random = Random::again(2);
         let mut fullest = [1.0_f64; 3];
         for number in 0..60 {
-            let turning = [Turning::Still, Turning::Upright, Turning::Anyhow][number % 3];
+            let turning = [Turning::Still, Turning::Upright, Turning::Free][number % 3];
             let mut point = || Vec3::from_array([(); 3].map(|()| random.around_zero(2.0) as f32));
             let (direction, up, from, towards, centre, target) = (point(), point(), point(), point(), point(), point());
             let path = match number / 3 % 3 {
@@ -541,7 +541,7 @@ mod tests {
                 object.angles = match turning {
                     Turning::Still => [0.3, 1.0, 2.0],
                     Turning::Upright => [0.3, random.around_zero(7.0), 2.0],
-                    Turning::Anyhow => [(); 3].map(|()| random.around_zero(7.0)),
+                    Turning::Free => [(); 3].map(|()| random.around_zero(7.0)),
                 }
                 .map(Angle::from_radians);
                 let view = crate::view::View::new(&camera, crate::view::Screen::MODE_13H).expect("a view");

@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::singles::{Light8, Singles8, singles_of_256_bits};
+use super::singles::{F32Lanes8, Light8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -102,9 +102,9 @@ impl Lanes8 for Avx2 {
     type Mask = __m256i;
 
     lanes! {
-        fn f64s(from: &[f64; 8]) -> F64 { [_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from.as_ptr().add(4))] }
-        fn all_f64(value: f64) -> F64 { [_mm256_set1_pd(value); 2] }
-        fn put_f64s(from: F64, to: &mut [f64; 8]) {
+        fn load_f64(from: &[f64; 8]) -> F64 { [_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from.as_ptr().add(4))] }
+        fn splat_f64(value: f64) -> F64 { [_mm256_set1_pd(value); 2] }
+        fn store_f64(from: F64, to: &mut [f64; 8]) {
             _mm256_storeu_pd(to.as_mut_ptr(), from[0]);
             _mm256_storeu_pd(to.as_mut_ptr().add(4), from[1]);
         }
@@ -116,7 +116,7 @@ impl Lanes8 for Avx2 {
         fn neg_mul_add(a: F64, b: F64, c: F64) -> F64 { halves!(h => _mm256_fnmadd_pd(a[h], b[h], c[h])) }
         fn min(a: F64, b: F64) -> F64 { halves!(h => _mm256_min_pd(a[h], b[h])) }
         fn max(a: F64, b: F64) -> F64 { halves!(h => _mm256_max_pd(a[h], b[h])) }
-        fn flip(a: F64, sign: F64) -> F64 {
+        fn xor_sign(a: F64, sign: F64) -> F64 {
             halves!(h => _mm256_xor_pd(a[h], _mm256_and_pd(sign[h], _mm256_set1_pd(-0.0))))
         }
         fn is_less(a: F64, b: F64) -> __m256i { low(halves!(h => _mm256_cmp_pd::<_CMP_LT_OQ>(a[h], b[h]))) }
@@ -137,9 +137,9 @@ impl Lanes8 for Avx2 {
         fn low_bits(from: F64) -> __m256i { low(from) }
         fn bits(from: F64) -> I64 { halves!(h => _mm256_castpd_si256(from[h])) }
 
-        fn i32s(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
-        fn all_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
-        fn put_i32s(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn load_i32(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
+        fn splat_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
+        fn store_i32(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
         fn low_bytes(from: __m256i) -> [u8; 8] {
             let fours = _mm256_shuffle_epi8(from, _mm256_set1_epi32(0x0C08_0400));
             let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256::<1>(fours));
@@ -154,21 +154,21 @@ impl Lanes8 for Avx2 {
         fn or_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_or_si256(a, b) }
         fn xor_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_xor_si256(a, b) }
         fn shl_i32(a: __m256i, by: i32) -> __m256i { _mm256_sll_epi32(a, _mm_cvtsi32_si128(by)) }
-        fn sar_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn shr_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
         fn is_greater(a: __m256i, b: __m256i) -> __m256i { _mm256_cmpgt_epi32(a, b) }
         fn is_equal(a: __m256i, b: __m256i) -> __m256i { _mm256_cmpeq_epi32(a, b) }
         fn select_i32(mask: __m256i, a: __m256i, b: __m256i) -> __m256i { _mm256_blendv_epi8(b, a, mask) }
-        fn zip_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
+        fn interleave_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
             let (even, odd) = (_mm256_unpacklo_epi32(a, b), _mm256_unpackhi_epi32(a, b));
             [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)]
         }
 
-        fn i64s(from: &[i64; 8]) -> I64 {
+        fn load_i64(from: &[i64; 8]) -> I64 {
             [_mm256_loadu_si256(from.as_ptr().cast()), _mm256_loadu_si256(from.as_ptr().add(4).cast())]
         }
-        fn all_i64(value: i64) -> I64 { [_mm256_set1_epi64x(value); 2] }
+        fn splat_i64(value: i64) -> I64 { [_mm256_set1_epi64x(value); 2] }
         fn halves_i64(low: i64, high: i64) -> I64 { [_mm256_set1_epi64x(low), _mm256_set1_epi64x(high)] }
-        fn put_i64s(from: I64, to: &mut [i64; 8]) {
+        fn store_i64(from: I64, to: &mut [i64; 8]) {
             _mm256_storeu_si256(to.as_mut_ptr().cast(), from[0]);
             _mm256_storeu_si256(to.as_mut_ptr().add(4).cast(), from[1]);
         }
@@ -206,26 +206,26 @@ impl Lanes8 for Avx2 {
             let high = _mm256_castps_si256(_mm256_shuffle_ps::<0b11_01_11_01>(a, b));
             [_mm256_permute4x64_epi64::<0b11_01_10_00>(low), _mm256_permute4x64_epi64::<0b11_01_10_00>(high)]
         }
-        fn zip_i64(a: I64, b: I64) -> [I64; 2] {
+        fn interleave_i64(a: I64, b: I64) -> [I64; 2] {
             halves!(h => {
                 let (even, odd) = (_mm256_unpacklo_epi64(a[h], b[h]), _mm256_unpackhi_epi64(a[h], b[h]));
                 [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)]
             })
         }
 
-        fn both(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
-        fn but_not(a: __m256i, b: __m256i) -> __m256i { _mm256_andnot_si256(b, a) }
-        fn mask_of_bits(bits: u8) -> __m256i {
+        fn and(a: __m256i, b: __m256i) -> __m256i { _mm256_and_si256(a, b) }
+        fn and_not(a: __m256i, b: __m256i) -> __m256i { _mm256_andnot_si256(b, a) }
+        fn mask_from_bits(bits: u8) -> __m256i {
             let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits.into()), lanes), lanes)
         }
-        fn mask_bits(mask: __m256i) -> u32 { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).cast_unsigned() }
+        fn to_bitmask(mask: __m256i) -> u32 { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).cast_unsigned() }
     }
 
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
+    fn compress_i32<const N: usize>(self, mask: __m256i, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         // Eight bits.
-        let set = SET_LANES[self.mask_bits(mask) as usize % 256].cast_signed();
+        let set = SET_LANES[self.to_bitmask(mask) as usize % 256].cast_signed();
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
             unsafe {
@@ -235,8 +235,8 @@ impl Lanes8 for Avx2 {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [i64; 8]; N]) {
-        let bits = self.mask_bits(mask) as usize;
+    fn compress_i64<const N: usize>(self, mask: __m256i, from: [I64; N], to: [&mut [i64; 8]; N]) {
+        let bits = self.to_bitmask(mask) as usize;
         let set = [SET_PAIRS[bits % 16].cast_signed(), SET_PAIRS[bits / 16 % 16].cast_signed()];
         let low = (bits % 16).count_ones() as usize;
         for (i, to) in to.into_iter().enumerate() {
@@ -254,7 +254,7 @@ impl Lanes8 for Avx2 {
 }
 
 #[cfg(feature = "alloc")]
-impl Singles8 for Avx2 {
+impl F32Lanes8 for Avx2 {
     singles_of_256_bits! {
         fn is_at_least(a: __m256, b: __m256) -> __m256i { _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) }
         fn widen(from: __m256) -> F64 {
@@ -268,7 +268,7 @@ impl Singles8 for Avx2 {
 #[cfg(feature = "alloc")]
 impl Light8 for Avx2 {
     lanes! {
-        fn f32s(from: &[f32; 8]) -> __m256 { _mm256_loadu_ps(from.as_ptr()) }
+        fn load_f32(from: &[f32; 8]) -> __m256 { _mm256_loadu_ps(from.as_ptr()) }
         fn sqrt(of: F64) -> F64 { halves!(h => _mm256_sqrt_pd(of[h])) }
         fn if_less(a: F64, b: F64, value: F64) -> F64 {
             halves!(h => _mm256_and_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a[h], b[h]), value[h]))

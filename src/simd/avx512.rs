@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::singles::{Singles8, singles_of_256_bits};
+use super::singles::{F32Lanes8, singles_of_256_bits};
 use super::{Avx512, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -31,9 +31,9 @@ impl Lanes8 for Avx512 {
     type Mask = __mmask8;
 
     lanes! {
-        fn f64s(from: &[f64; 8]) -> __m512d { _mm512_loadu_pd(from.as_ptr()) }
-        fn all_f64(value: f64) -> __m512d { _mm512_set1_pd(value) }
-        fn put_f64s(from: __m512d, to: &mut [f64; 8]) { _mm512_storeu_pd(to.as_mut_ptr(), from) }
+        fn load_f64(from: &[f64; 8]) -> __m512d { _mm512_loadu_pd(from.as_ptr()) }
+        fn splat_f64(value: f64) -> __m512d { _mm512_set1_pd(value) }
+        fn store_f64(from: __m512d, to: &mut [f64; 8]) { _mm512_storeu_pd(to.as_mut_ptr(), from) }
         fn add(a: __m512d, b: __m512d) -> __m512d { _mm512_add_pd(a, b) }
         fn sub(a: __m512d, b: __m512d) -> __m512d { _mm512_sub_pd(a, b) }
         fn mul(a: __m512d, b: __m512d) -> __m512d { _mm512_mul_pd(a, b) }
@@ -42,7 +42,7 @@ impl Lanes8 for Avx512 {
         fn neg_mul_add(a: __m512d, b: __m512d, c: __m512d) -> __m512d { _mm512_fnmadd_pd(a, b, c) }
         fn min(a: __m512d, b: __m512d) -> __m512d { _mm512_min_pd(a, b) }
         fn max(a: __m512d, b: __m512d) -> __m512d { _mm512_max_pd(a, b) }
-        fn flip(a: __m512d, sign: __m512d) -> __m512d {
+        fn xor_sign(a: __m512d, sign: __m512d) -> __m512d {
             _mm512_xor_pd(a, _mm512_and_pd(sign, _mm512_set1_pd(-0.0)))
         }
         fn is_less(a: __m512d, b: __m512d) -> __mmask8 { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b) }
@@ -52,9 +52,9 @@ impl Lanes8 for Avx512 {
         fn low_bits(from: __m512d) -> __m256i { _mm512_cvtepi64_epi32(_mm512_castpd_si512(from)) }
         fn bits(from: __m512d) -> __m512i { _mm512_castpd_si512(from) }
 
-        fn i32s(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
-        fn all_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
-        fn put_i32s(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn load_i32(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
+        fn splat_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
+        fn store_i32(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
         fn low_bytes(from: __m256i) -> [u8; 8] { _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(from)).to_le_bytes() }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }
@@ -65,20 +65,20 @@ impl Lanes8 for Avx512 {
         fn or_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_or_si256(a, b) }
         fn xor_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_xor_si256(a, b) }
         fn shl_i32(a: __m256i, by: i32) -> __m256i { _mm256_sll_epi32(a, _mm_cvtsi32_si128(by)) }
-        fn sar_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn shr_i32(a: __m256i, by: i32) -> __m256i { _mm256_sra_epi32(a, _mm_cvtsi32_si128(by)) }
         fn is_greater(a: __m256i, b: __m256i) -> __mmask8 { _mm256_cmpgt_epi32_mask(a, b) }
         fn is_equal(a: __m256i, b: __m256i) -> __mmask8 { _mm256_cmpeq_epi32_mask(a, b) }
         fn select_i32(mask: __mmask8, a: __m256i, b: __m256i) -> __m256i { _mm256_mask_blend_epi32(mask, b, a) }
-        fn zip_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
+        fn interleave_i32(a: __m256i, b: __m256i) -> [__m256i; 2] {
             let low = _mm256_setr_epi32(0, 8, 1, 9, 2, 10, 3, 11);
             let high = _mm256_setr_epi32(4, 12, 5, 13, 6, 14, 7, 15);
             [_mm256_permutex2var_epi32(a, low, b), _mm256_permutex2var_epi32(a, high, b)]
         }
 
-        fn i64s(from: &[i64; 8]) -> __m512i { _mm512_loadu_si512(from.as_ptr().cast()) }
-        fn all_i64(value: i64) -> __m512i { _mm512_set1_epi64(value) }
+        fn load_i64(from: &[i64; 8]) -> __m512i { _mm512_loadu_si512(from.as_ptr().cast()) }
+        fn splat_i64(value: i64) -> __m512i { _mm512_set1_epi64(value) }
         fn halves_i64(low: i64, high: i64) -> __m512i { _mm512_mask_set1_epi64(_mm512_set1_epi64(low), 0xF0, high) }
-        fn put_i64s(from: __m512i, to: &mut [i64; 8]) { _mm512_storeu_si512(to.as_mut_ptr().cast(), from) }
+        fn store_i64(from: __m512i, to: &mut [i64; 8]) { _mm512_storeu_si512(to.as_mut_ptr().cast(), from) }
         fn add_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_add_epi64(a, b) }
         fn sub_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_sub_epi64(a, b) }
         fn mul_i64(a: __m512i, b: __m512i) -> __m512i { _mm512_mullo_epi64(a, b) }
@@ -91,7 +91,7 @@ impl Lanes8 for Avx512 {
         fn halves_of_i64(from: __m512i) -> [__m256i; 2] {
             [_mm512_cvtepi64_epi32(from), _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(from))]
         }
-        fn zip_i64(a: __m512i, b: __m512i) -> [__m512i; 2] {
+        fn interleave_i64(a: __m512i, b: __m512i) -> [__m512i; 2] {
             let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
             let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
             [_mm512_permutex2var_epi64(a, low, b), _mm512_permutex2var_epi64(a, high, b)]
@@ -99,24 +99,24 @@ impl Lanes8 for Avx512 {
     }
 
     #[inline(always)]
-    fn both(self, a: __mmask8, b: __mmask8) -> __mmask8 {
+    fn and(self, a: __mmask8, b: __mmask8) -> __mmask8 {
         a & b
     }
     #[inline(always)]
-    fn but_not(self, a: __mmask8, b: __mmask8) -> __mmask8 {
+    fn and_not(self, a: __mmask8, b: __mmask8) -> __mmask8 {
         a & !b
     }
     #[inline(always)]
-    fn mask_of_bits(self, bits: u8) -> __mmask8 {
+    fn mask_from_bits(self, bits: u8) -> __mmask8 {
         bits
     }
     #[inline(always)]
-    fn mask_bits(self, mask: __mmask8) -> u32 {
+    fn to_bitmask(self, mask: __mmask8) -> u32 {
         mask.into()
     }
 
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
+    fn compress_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array. (`vpcompressd` to
             // memory is slow on Zen 4.)
@@ -124,7 +124,7 @@ impl Lanes8 for Avx512 {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
+    fn compress_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: likewise.
             unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from[i])) }
@@ -133,7 +133,7 @@ impl Lanes8 for Avx512 {
 }
 
 #[cfg(feature = "alloc")]
-impl Singles8 for Avx512 {
+impl F32Lanes8 for Avx512 {
     singles_of_256_bits! {
         fn is_at_least(a: __m256, b: __m256) -> __mmask8 { _mm256_cmp_ps_mask::<_CMP_GE_OQ>(a, b) }
         fn widen(from: __m256) -> __m512d { _mm512_cvtps_pd(from) }

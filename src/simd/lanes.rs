@@ -16,9 +16,9 @@ pub(crate) trait Lanes8: Copy {
     /// Eight truth values.
     type Mask: Copy;
 
-    fn f64s(self, from: &[f64; 8]) -> Self::F64;
-    fn all_f64(self, value: f64) -> Self::F64;
-    fn put_f64s(self, from: Self::F64, to: &mut [f64; 8]);
+    fn load_f64(self, from: &[f64; 8]) -> Self::F64;
+    fn splat_f64(self, value: f64) -> Self::F64;
+    fn store_f64(self, from: Self::F64, to: &mut [f64; 8]);
     fn add(self, a: Self::F64, b: Self::F64) -> Self::F64;
     fn sub(self, a: Self::F64, b: Self::F64) -> Self::F64;
     fn mul(self, a: Self::F64, b: Self::F64) -> Self::F64;
@@ -32,7 +32,7 @@ pub(crate) trait Lanes8: Copy {
     /// The greater one, likewise.
     fn max(self, a: Self::F64, b: Self::F64) -> Self::F64;
     /// `a`, negated where the sign bit of `sign` is set.
-    fn flip(self, a: Self::F64, sign: Self::F64) -> Self::F64;
+    fn xor_sign(self, a: Self::F64, sign: Self::F64) -> Self::F64;
     fn is_less(self, a: Self::F64, b: Self::F64) -> Self::Mask;
     /// `a` where the mask is set, otherwise `b`.
     fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64;
@@ -43,14 +43,14 @@ pub(crate) trait Lanes8: Copy {
     fn low_bits(self, from: Self::F64) -> Self::I32;
     fn bits(self, from: Self::F64) -> Self::I64;
 
-    fn i32s(self, from: &[i32; 8]) -> Self::I32;
-    fn all_i32(self, value: i32) -> Self::I32;
-    fn put_i32s(self, from: Self::I32, to: &mut [i32; 8]);
+    fn load_i32(self, from: &[i32; 8]) -> Self::I32;
+    fn splat_i32(self, value: i32) -> Self::I32;
+    fn store_i32(self, from: Self::I32, to: &mut [i32; 8]);
     /// The lowest byte of each.
     #[inline(always)]
     fn low_bytes(self, from: Self::I32) -> [u8; 8] {
         let mut lanes = [0; 8];
-        self.put_i32s(from, &mut lanes);
+        self.store_i32(from, &mut lanes);
         crate::lanes::each!(lane => lanes[lane] as u8)
     }
     fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
@@ -64,18 +64,18 @@ pub(crate) trait Lanes8: Copy {
     /// Shifts left by a constant.
     fn shl_i32(self, a: Self::I32, by: i32) -> Self::I32;
     /// Shifts right by a constant, with the sign.
-    fn sar_i32(self, a: Self::I32, by: i32) -> Self::I32;
+    fn shr_i32(self, a: Self::I32, by: i32) -> Self::I32;
     fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
     /// Lanes 0 of both, lanes 1 of both, and so on: the first eight and the last eight.
-    fn zip_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2];
+    fn interleave_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2];
 
-    fn i64s(self, from: &[i64; 8]) -> Self::I64;
-    fn all_i64(self, value: i64) -> Self::I64;
+    fn load_i64(self, from: &[i64; 8]) -> Self::I64;
+    fn splat_i64(self, value: i64) -> Self::I64;
     /// `low` in lanes 0 to 3, `high` in lanes 4 to 7.
     fn halves_i64(self, low: i64, high: i64) -> Self::I64;
-    fn put_i64s(self, from: Self::I64, to: &mut [i64; 8]);
+    fn store_i64(self, from: Self::I64, to: &mut [i64; 8]);
     fn add_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
     fn sub_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
     fn mul_i64(self, a: Self::I64, b: Self::I64) -> Self::I64;
@@ -88,8 +88,8 @@ pub(crate) trait Lanes8: Copy {
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
     /// The lower and the upper halves.
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
-    /// Like [`zip_i32`](Self::zip_i32).
-    fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
+    /// Like [`interleave_i32`](Self::interleave_i32).
+    fn interleave_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
 
     /// Reads `from[rows[lane][column]]` for each of three columns.
     ///
@@ -105,18 +105,18 @@ pub(crate) trait Lanes8: Copy {
             lanes[2][lane] = from[c as usize].into().cast_signed();
         }
         let [a, b, c] = &lanes;
-        [self.i64s(a), self.i64s(b), self.i64s(c)]
+        [self.load_i64(a), self.load_i64(b), self.load_i64(c)]
     }
 
-    fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `a` and not `b`.
-    fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// A bit for each lane, that of lane 0 lowest.
-    fn mask_bits(self, mask: Self::Mask) -> u32;
+    fn to_bitmask(self, mask: Self::Mask) -> u32;
     /// The mask of such bits.
-    fn mask_of_bits(self, bits: u8) -> Self::Mask;
+    fn mask_from_bits(self, bits: u8) -> Self::Mask;
     /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
-    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
+    fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
     /// Likewise.
-    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
+    fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
 }

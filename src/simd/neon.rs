@@ -6,8 +6,8 @@ use core::arch::aarch64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::quarters::Singles128;
-use super::quarters::Vector128;
+use super::wide128::Singles128;
+use super::wide128::Vector128;
 
 /// The level that the target has.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ impl Vector128 for Neon {
 
     vectors! {
         fn load_f64(from: &[f64; 2]) -> float64x2_t { vld1q_f64(from.as_ptr()) }
-        fn all_f64(value: f64) -> float64x2_t { vdupq_n_f64(value) }
+        fn splat_f64(value: f64) -> float64x2_t { vdupq_n_f64(value) }
         fn store_f64(from: float64x2_t, to: &mut [f64; 2]) { vst1q_f64(to.as_mut_ptr(), from) }
         fn add_f64(a: float64x2_t, b: float64x2_t) -> float64x2_t { vaddq_f64(a, b) }
         fn sub_f64(a: float64x2_t, b: float64x2_t) -> float64x2_t { vsubq_f64(a, b) }
@@ -47,7 +47,7 @@ impl Vector128 for Neon {
         fn low_to_f64(from: int32x4_t) -> float64x2_t { vcvtq_f64_s64(vmovl_s32(vget_low_s32(from))) }
 
         fn load(from: &[i32; 4]) -> int32x4_t { vld1q_s32(from.as_ptr()) }
-        fn all(value: i32) -> int32x4_t { vdupq_n_s32(value) }
+        fn splat(value: i32) -> int32x4_t { vdupq_n_s32(value) }
         fn store(from: int32x4_t, to: &mut [i32; 4]) { vst1q_s32(to.as_mut_ptr(), from) }
         fn add(a: int32x4_t, b: int32x4_t) -> int32x4_t { vaddq_s32(a, b) }
         fn sub(a: int32x4_t, b: int32x4_t) -> int32x4_t { vsubq_s32(a, b) }
@@ -57,13 +57,13 @@ impl Vector128 for Neon {
         fn xor(a: int32x4_t, b: int32x4_t) -> int32x4_t { veorq_s32(a, b) }
         fn and_not(a: int32x4_t, b: int32x4_t) -> int32x4_t { vbicq_s32(a, b) }
         fn shl(a: int32x4_t, by: i32) -> int32x4_t { vshlq_s32(a, vdupq_n_s32(by)) }
-        fn sar(a: int32x4_t, by: i32) -> int32x4_t { vshlq_s32(a, vdupq_n_s32(-by)) }
+        fn shr(a: int32x4_t, by: i32) -> int32x4_t { vshlq_s32(a, vdupq_n_s32(-by)) }
         fn is_greater(a: int32x4_t, b: int32x4_t) -> int32x4_t { vreinterpretq_s32_u32(vcgtq_s32(a, b)) }
         fn is_equal(a: int32x4_t, b: int32x4_t) -> int32x4_t { vreinterpretq_s32_u32(vceqq_s32(a, b)) }
         fn min(a: int32x4_t, b: int32x4_t) -> int32x4_t { vminq_s32(a, b) }
         fn max(a: int32x4_t, b: int32x4_t) -> int32x4_t { vmaxq_s32(a, b) }
-        fn zip_low(a: int32x4_t, b: int32x4_t) -> int32x4_t { vzip1q_s32(a, b) }
-        fn zip_high(a: int32x4_t, b: int32x4_t) -> int32x4_t { vzip2q_s32(a, b) }
+        fn interleave_low(a: int32x4_t, b: int32x4_t) -> int32x4_t { vzip1q_s32(a, b) }
+        fn interleave_high(a: int32x4_t, b: int32x4_t) -> int32x4_t { vzip2q_s32(a, b) }
         fn even(a: int32x4_t, b: int32x4_t) -> int32x4_t { vuzp1q_s32(a, b) }
         fn sign_bits(from: int32x4_t) -> u32 {
             let numbers = [0, 1, 2, 3];
@@ -72,7 +72,7 @@ impl Vector128 for Neon {
         }
 
         fn load_i64(from: &[i64; 2]) -> int32x4_t { vreinterpretq_s32_s64(vld1q_s64(from.as_ptr())) }
-        fn all_i64(value: i64) -> int32x4_t { vreinterpretq_s32_s64(vdupq_n_s64(value)) }
+        fn splat_i64(value: i64) -> int32x4_t { vreinterpretq_s32_s64(vdupq_n_s64(value)) }
         fn store_i64(from: int32x4_t, to: &mut [i64; 2]) { vst1q_s64(to.as_mut_ptr(), vreinterpretq_s64_s32(from)) }
         fn add_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
             vreinterpretq_s32_s64(vaddq_s64(vreinterpretq_s64_s32(a), vreinterpretq_s64_s32(b)))
@@ -88,10 +88,10 @@ impl Vector128 for Neon {
             let (a, b) = (vmovn_u64(vreinterpretq_u64_s32(a)), vmovn_u64(vreinterpretq_u64_s32(b)));
             vreinterpretq_s32_u64(vmull_u32(a, b))
         }
-        fn zip_low_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        fn interleave_low_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
             vreinterpretq_s32_s64(vzip1q_s64(vreinterpretq_s64_s32(a), vreinterpretq_s64_s32(b)))
         }
-        fn zip_high_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        fn interleave_high_i64(a: int32x4_t, b: int32x4_t) -> int32x4_t {
             vreinterpretq_s32_s64(vzip2q_s64(vreinterpretq_s64_s32(a), vreinterpretq_s64_s32(b)))
         }
     }
@@ -102,7 +102,7 @@ impl Singles128 for Neon {
     type S = float32x4_t;
 
     vectors! {
-        fn all_f32(value: f32) -> float32x4_t { vdupq_n_f32(value) }
+        fn splat_f32(value: f32) -> float32x4_t { vdupq_n_f32(value) }
         fn vectors(from: &[Vec3; 4]) -> [float32x4_t; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
             // 12 f32: `Vec3` is three in this order, without anything between.

@@ -29,8 +29,8 @@ impl<const N: usize> Packed<N> {
     pub(crate) fn append<S: Lanes8>(&mut self, s: S, mask: S::Mask, numbers: S::I32) {
         let count = self.count.min(Self::CAPACITY);
         if let Some(eight) = self.numbers[count..].first_chunk_mut() {
-            s.compact_i32(mask, [numbers], [eight]);
-            self.count = (count + s.mask_bits(mask).count_ones() as usize).min(Self::CAPACITY);
+            s.compress_i32(mask, [numbers], [eight]);
+            self.count = (count + s.to_bitmask(mask).count_ones() as usize).min(Self::CAPACITY);
         }
     }
 

@@ -19,15 +19,15 @@ impl Lanes8 for Portable {
     type Mask = I32;
 
     #[inline(always)]
-    fn f64s(self, from: &F64) -> F64 {
+    fn load_f64(self, from: &F64) -> F64 {
         *from
     }
     #[inline(always)]
-    fn all_f64(self, value: f64) -> F64 {
+    fn splat_f64(self, value: f64) -> F64 {
         [value; 8]
     }
     #[inline(always)]
-    fn put_f64s(self, from: F64, to: &mut F64) {
+    fn store_f64(self, from: F64, to: &mut F64) {
         *to = from;
     }
     #[inline(always)]
@@ -63,7 +63,7 @@ impl Lanes8 for Portable {
         each!(i => if a[i] > b[i] { a[i] } else { b[i] })
     }
     #[inline(always)]
-    fn flip(self, a: F64, sign: F64) -> F64 {
+    fn xor_sign(self, a: F64, sign: F64) -> F64 {
         each!(i => f64::from_bits(a[i].to_bits() ^ (sign[i].to_bits() & 1 << 63)))
     }
     #[inline(always)]
@@ -93,15 +93,15 @@ impl Lanes8 for Portable {
     }
 
     #[inline(always)]
-    fn i32s(self, from: &I32) -> I32 {
+    fn load_i32(self, from: &I32) -> I32 {
         *from
     }
     #[inline(always)]
-    fn all_i32(self, value: i32) -> I32 {
+    fn splat_i32(self, value: i32) -> I32 {
         [value; 8]
     }
     #[inline(always)]
-    fn put_i32s(self, from: I32, to: &mut I32) {
+    fn store_i32(self, from: I32, to: &mut I32) {
         *to = from;
     }
     #[inline(always)]
@@ -141,7 +141,7 @@ impl Lanes8 for Portable {
         each!(i => a[i] << by)
     }
     #[inline(always)]
-    fn sar_i32(self, a: I32, by: i32) -> I32 {
+    fn shr_i32(self, a: I32, by: i32) -> I32 {
         each!(i => a[i] >> by)
     }
     #[inline(always)]
@@ -157,17 +157,17 @@ impl Lanes8 for Portable {
         each!(i => (a[i] & mask[i]) | (b[i] & !mask[i]))
     }
     #[inline(always)]
-    fn zip_i32(self, a: I32, b: I32) -> [I32; 2] {
+    fn interleave_i32(self, a: I32, b: I32) -> [I32; 2] {
         let of = |i: usize| [a, b][i % 2][i / 2];
         [each!(i => of(i)), each!(i => of(i + 8))]
     }
 
     #[inline(always)]
-    fn i64s(self, from: &I64) -> I64 {
+    fn load_i64(self, from: &I64) -> I64 {
         *from
     }
     #[inline(always)]
-    fn all_i64(self, value: i64) -> I64 {
+    fn splat_i64(self, value: i64) -> I64 {
         [value; 8]
     }
     #[inline(always)]
@@ -175,7 +175,7 @@ impl Lanes8 for Portable {
         each!(i => if i < 4 { low } else { high })
     }
     #[inline(always)]
-    fn put_i64s(self, from: I64, to: &mut I64) {
+    fn store_i64(self, from: I64, to: &mut I64) {
         *to = from;
     }
     #[inline(always)]
@@ -211,29 +211,29 @@ impl Lanes8 for Portable {
         [each!(i => from[i] as i32), each!(i => (from[i] >> 32) as i32)]
     }
     #[inline(always)]
-    fn zip_i64(self, a: I64, b: I64) -> [I64; 2] {
+    fn interleave_i64(self, a: I64, b: I64) -> [I64; 2] {
         let of = |i: usize| [a, b][i % 2][i / 2];
         [each!(i => of(i)), each!(i => of(i + 8))]
     }
 
     #[inline(always)]
-    fn both(self, a: I32, b: I32) -> I32 {
+    fn and(self, a: I32, b: I32) -> I32 {
         each!(i => a[i] & b[i])
     }
     #[inline(always)]
-    fn but_not(self, a: I32, b: I32) -> I32 {
+    fn and_not(self, a: I32, b: I32) -> I32 {
         each!(i => a[i] & !b[i])
     }
     #[inline(always)]
-    fn mask_bits(self, mask: I32) -> u32 {
+    fn to_bitmask(self, mask: I32) -> u32 {
         mask.iter().rev().fold(0, |bits, &set| bits << 1 | (set & 1).cast_unsigned())
     }
     #[inline(always)]
-    fn mask_of_bits(self, bits: u8) -> I32 {
+    fn mask_from_bits(self, bits: u8) -> I32 {
         each!(i => -i32::from(bits >> i & 1))
     }
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [u32; 8]; N]) {
+    fn compress_i32<const N: usize>(self, mask: I32, from: [I32; N], mut to: [&mut [u32; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (i, to) in to.iter_mut().enumerate() {
@@ -244,7 +244,7 @@ impl Lanes8 for Portable {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [i64; 8]; N]) {
+    fn compress_i64<const N: usize>(self, mask: I32, from: [I64; N], mut to: [&mut [i64; 8]; N]) {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (i, to) in to.iter_mut().enumerate() {

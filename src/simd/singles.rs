@@ -7,11 +7,11 @@ use crate::fixed::whole_part;
 use crate::lanes::each;
 
 /// Operations on eight lanes of f32. Each rounds once, like the operation on one number.
-pub(crate) trait Singles8: Lanes8 {
+pub(crate) trait F32Lanes8: Lanes8 {
     /// Eight f32.
     type F32: Copy;
 
-    fn all_f32(self, value: f32) -> Self::F32;
+    fn splat_f32(self, value: f32) -> Self::F32;
     /// x, y and z of eight vectors.
     fn vectors(self, from: &[Vec3; 8]) -> [Self::F32; 3];
     fn add_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
@@ -33,8 +33,8 @@ pub(crate) trait Singles8: Lanes8 {
 }
 
 /// What light at points needs beside them.
-pub(crate) trait Light8: Singles8 {
-    fn f32s(self, from: &[f32; 8]) -> Self::F32;
+pub(crate) trait Light8: F32Lanes8 {
+    fn load_f32(self, from: &[f32; 8]) -> Self::F32;
     /// The number nearest to the root.
     fn sqrt(self, of: Self::F64) -> Self::F64;
     /// `value` where `a` is less than `b`, otherwise 0: also where one is NaN.
@@ -45,7 +45,7 @@ pub(crate) trait Light8: Singles8 {
 
 impl Light8 for Portable {
     #[inline(always)]
-    fn f32s(self, from: &[f32; 8]) -> [f32; 8] {
+    fn load_f32(self, from: &[f32; 8]) -> [f32; 8] {
         *from
     }
     #[inline(always)]
@@ -71,11 +71,11 @@ impl Light8 for Portable {
     }
 }
 
-impl Singles8 for Portable {
+impl F32Lanes8 for Portable {
     type F32 = [f32; 8];
 
     #[inline(always)]
-    fn all_f32(self, value: f32) -> [f32; 8] {
+    fn splat_f32(self, value: f32) -> [f32; 8] {
         [value; 8]
     }
     #[inline(always)]
@@ -130,7 +130,7 @@ impl Singles8 for Portable {
 
 /// Four vectors' x, y and z, from three vectors of four numbers that hold them in their order. `$shuffle::<N>(a, b)` takes two
 /// numbers of each, by two bits of `N` each, the lowest first; wider vectors do so in each 128 bits.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 macro_rules! apart {
     ($shuffle:ident, $a:expr, $b:expr, $c:expr) => {{
         // x y z x | y z x y | z x y z
@@ -140,17 +140,17 @@ macro_rules! apart {
         [$shuffle::<0b10_00_11_00>(a, xy), $shuffle::<0b11_01_10_00>(yz, xy), $shuffle::<0b11_00_11_01>(yz, c)]
     }};
 }
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 pub(super) use apart;
 
 /// The operations of AVX2 and AVX-512 that are the same: on 256 bits.
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 macro_rules! singles_of_256_bits {
     ($($rest:tt)*) => {
         type F32 = __m256;
 
         lanes! {
-            fn all_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
+            fn splat_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
             fn vectors(from: &[Vec3; 8]) -> [__m256; 3] {
                 const { assert!(size_of::<Vec3>() == 12) };
                 // 24 f32: `Vec3` is three in this order, without anything between. Four each are loaded from numbers 0, 4, 8,
@@ -172,5 +172,5 @@ macro_rules! singles_of_256_bits {
         }
     };
 }
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 pub(super) use singles_of_256_bits;

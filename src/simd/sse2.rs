@@ -6,8 +6,8 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::quarters::Singles128;
-use super::quarters::Vector128;
+use super::wide128::Singles128;
+use super::wide128::Vector128;
 
 /// The level that every x86-64 has.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ impl Vector128 for Sse2 {
 
     vectors! {
         fn load_f64(from: &[f64; 2]) -> __m128d { _mm_loadu_pd(from.as_ptr()) }
-        fn all_f64(value: f64) -> __m128d { _mm_set1_pd(value) }
+        fn splat_f64(value: f64) -> __m128d { _mm_set1_pd(value) }
         fn store_f64(from: __m128d, to: &mut [f64; 2]) { _mm_storeu_pd(to.as_mut_ptr(), from) }
         fn add_f64(a: __m128d, b: __m128d) -> __m128d { _mm_add_pd(a, b) }
         fn sub_f64(a: __m128d, b: __m128d) -> __m128d { _mm_sub_pd(a, b) }
@@ -47,7 +47,7 @@ impl Vector128 for Sse2 {
         fn low_to_f64(from: __m128i) -> __m128d { _mm_cvtepi32_pd(from) }
 
         fn load(from: &[i32; 4]) -> __m128i { _mm_loadu_si128(from.as_ptr().cast()) }
-        fn all(value: i32) -> __m128i { _mm_set1_epi32(value) }
+        fn splat(value: i32) -> __m128i { _mm_set1_epi32(value) }
         fn store(from: __m128i, to: &mut [i32; 4]) { _mm_storeu_si128(to.as_mut_ptr().cast(), from) }
         fn add(a: __m128i, b: __m128i) -> __m128i { _mm_add_epi32(a, b) }
         fn sub(a: __m128i, b: __m128i) -> __m128i { _mm_sub_epi32(a, b) }
@@ -62,7 +62,7 @@ impl Vector128 for Sse2 {
         fn xor(a: __m128i, b: __m128i) -> __m128i { _mm_xor_si128(a, b) }
         fn and_not(a: __m128i, b: __m128i) -> __m128i { _mm_andnot_si128(b, a) }
         fn shl(a: __m128i, by: i32) -> __m128i { _mm_sll_epi32(a, _mm_cvtsi32_si128(by)) }
-        fn sar(a: __m128i, by: i32) -> __m128i { _mm_sra_epi32(a, _mm_cvtsi32_si128(by)) }
+        fn shr(a: __m128i, by: i32) -> __m128i { _mm_sra_epi32(a, _mm_cvtsi32_si128(by)) }
         fn is_greater(a: __m128i, b: __m128i) -> __m128i { _mm_cmpgt_epi32(a, b) }
         fn is_equal(a: __m128i, b: __m128i) -> __m128i { _mm_cmpeq_epi32(a, b) }
         fn min(a: __m128i, b: __m128i) -> __m128i {
@@ -73,8 +73,8 @@ impl Vector128 for Sse2 {
             let is_greater = _mm_cmpgt_epi32(a, b);
             _mm_or_si128(_mm_and_si128(is_greater, a), _mm_andnot_si128(is_greater, b))
         }
-        fn zip_low(a: __m128i, b: __m128i) -> __m128i { _mm_unpacklo_epi32(a, b) }
-        fn zip_high(a: __m128i, b: __m128i) -> __m128i { _mm_unpackhi_epi32(a, b) }
+        fn interleave_low(a: __m128i, b: __m128i) -> __m128i { _mm_unpacklo_epi32(a, b) }
+        fn interleave_high(a: __m128i, b: __m128i) -> __m128i { _mm_unpackhi_epi32(a, b) }
         fn even(a: __m128i, b: __m128i) -> __m128i {
             let (a, b) = (_mm_castsi128_ps(a), _mm_castsi128_ps(b));
             _mm_castps_si128(_mm_shuffle_ps::<0b10_00_10_00>(a, b))
@@ -82,15 +82,15 @@ impl Vector128 for Sse2 {
         fn sign_bits(from: __m128i) -> u32 { _mm_movemask_ps(_mm_castsi128_ps(from)).cast_unsigned() }
 
         fn load_i64(from: &[i64; 2]) -> __m128i { _mm_loadu_si128(from.as_ptr().cast()) }
-        fn all_i64(value: i64) -> __m128i { _mm_set1_epi64x(value) }
+        fn splat_i64(value: i64) -> __m128i { _mm_set1_epi64x(value) }
         fn store_i64(from: __m128i, to: &mut [i64; 2]) { _mm_storeu_si128(to.as_mut_ptr().cast(), from) }
         fn add_i64(a: __m128i, b: __m128i) -> __m128i { _mm_add_epi64(a, b) }
         fn sub_i64(a: __m128i, b: __m128i) -> __m128i { _mm_sub_epi64(a, b) }
         fn shl_i64(a: __m128i, by: i32) -> __m128i { _mm_sll_epi64(a, _mm_cvtsi32_si128(by)) }
         fn upper(a: __m128i) -> __m128i { _mm_srli_epi64::<32>(a) }
         fn mul_low(a: __m128i, b: __m128i) -> __m128i { _mm_mul_epu32(a, b) }
-        fn zip_low_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpacklo_epi64(a, b) }
-        fn zip_high_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpackhi_epi64(a, b) }
+        fn interleave_low_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpacklo_epi64(a, b) }
+        fn interleave_high_i64(a: __m128i, b: __m128i) -> __m128i { _mm_unpackhi_epi64(a, b) }
     }
 }
 
@@ -99,7 +99,7 @@ impl Singles128 for Sse2 {
     type S = __m128;
 
     vectors! {
-        fn all_f32(value: f32) -> __m128 { _mm_set1_ps(value) }
+        fn splat_f32(value: f32) -> __m128 { _mm_set1_ps(value) }
         fn vectors(from: &[Vec3; 4]) -> [__m128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
             // 12 f32: `Vec3` is three in this order, without anything between.

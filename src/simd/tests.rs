@@ -3,10 +3,10 @@
 use super::*;
 use crate::random::Random;
 
+#[cfg(feature = "alloc")]
+use F32Lanes8 as Eights;
 #[cfg(not(feature = "alloc"))]
 use Lanes8 as Eights;
-#[cfg(feature = "alloc")]
-use Singles8 as Eights;
 
 /// Numbers of all sizes, signs and bit patterns.
 struct Numbers(Random);
@@ -41,7 +41,7 @@ struct Checker<S> {
 impl<S: Lanes8> Checker<S> {
     fn f64s(&self, what: &str, found: S::F64, expected: [f64; 8]) {
         let mut lanes = [0.0; 8];
-        self.s.put_f64s(found, &mut lanes);
+        self.s.store_f64(found, &mut lanes);
         assert_eq!(
             lanes.map(f64::to_bits),
             expected.map(f64::to_bits),
@@ -52,18 +52,18 @@ impl<S: Lanes8> Checker<S> {
 
     fn i32s(&self, what: &str, found: S::I32, expected: [i32; 8]) {
         let mut lanes = [0; 8];
-        self.s.put_i32s(found, &mut lanes);
+        self.s.store_i32(found, &mut lanes);
         assert_eq!(lanes, expected, "{what} of {}", self.name);
     }
 
     fn i64s(&self, what: &str, found: S::I64, expected: [i64; 8]) {
         let mut lanes = [0; 8];
-        self.s.put_i64s(found, &mut lanes);
+        self.s.store_i64(found, &mut lanes);
         assert_eq!(lanes, expected, "{what} of {}", self.name);
     }
 
     fn mask(&self, what: &str, found: S::Mask, expected: [i32; 8]) {
-        assert_eq!(self.s.mask_bits(found), Portable.mask_bits(expected), "{what} of {}", self.name);
+        assert_eq!(self.s.to_bitmask(found), Portable.to_bitmask(expected), "{what} of {}", self.name);
     }
 }
 
@@ -74,26 +74,26 @@ fn check<S: Eights>(s: S, name: &'static str) {
     let mut random = Numbers(Random::again(15));
     for round in 0..2_000 {
         let (a, b, d) = (random.f64s(), random.f64s(), random.f64s());
-        let (fa, fb, fd) = (s.f64s(&a), s.f64s(&b), s.f64s(&d));
+        let (fa, fb, fd) = (s.load_f64(&a), s.load_f64(&b), s.load_f64(&d));
         c.f64s("add", s.add(fa, fb), p.add(a, b));
         c.f64s("sub", s.sub(fa, fb), p.sub(a, b));
         c.f64s("mul", s.mul(fa, fb), p.mul(a, b));
         c.f64s("mul_add", s.mul_add(fa, fb, fd), p.mul_add(a, b, d));
         c.f64s("neg_mul_add", s.neg_mul_add(fa, fb, fd), p.neg_mul_add(a, b, d));
         let divisor = b.map(|x| if x == 0.0 { 1.0 } else { x });
-        c.f64s("div", s.div(fa, s.f64s(&divisor)), p.div(a, divisor));
+        c.f64s("div", s.div(fa, s.load_f64(&divisor)), p.div(a, divisor));
         // Zeros of different signs are not compared.
         let positive = b.map(|x| x + 0.0);
-        c.f64s("min", s.min(fa, s.f64s(&positive)), p.min(a, positive));
-        c.f64s("max", s.max(fa, s.f64s(&positive)), p.max(a, positive));
-        c.f64s("flip", s.flip(fa, fb), p.flip(a, b));
+        c.f64s("min", s.min(fa, s.load_f64(&positive)), p.min(a, positive));
+        c.f64s("max", s.max(fa, s.load_f64(&positive)), p.max(a, positive));
+        c.f64s("xor_sign", s.xor_sign(fa, fb), p.xor_sign(a, b));
         c.mask("is_less", s.is_less(fa, fb), p.is_less(a, b));
         c.mask("is_less, equal", s.is_less(fa, fa), [0; 8]);
         c.i32s("low_bits", s.low_bits(fa), p.low_bits(a));
         c.i64s("bits", s.bits(fa), p.bits(a));
 
         let (i, j) = (random.i32s(), random.i32s());
-        let (ii, ij) = (s.i32s(&i), s.i32s(&j));
+        let (ii, ij) = (s.load_i32(&i), s.load_i32(&j));
         c.f64s("to_f64", s.to_f64(ii), p.to_f64(i));
         c.f64s("unsigned_to_f64", s.unsigned_to_f64(ii), p.unsigned_to_f64(i));
         assert_eq!(s.low_bytes(ii), p.low_bytes(i), "low_bytes of {name}");
@@ -107,7 +107,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
         c.i32s("xor_i32", s.xor_i32(ii, ij), p.xor_i32(i, j));
         let by = round % 32;
         c.i32s("shl_i32", s.shl_i32(ii, by), p.shl_i32(i, by));
-        c.i32s("sar_i32", s.sar_i32(ii, by), p.sar_i32(i, by));
+        c.i32s("shr_i32", s.shr_i32(ii, by), p.shr_i32(i, by));
         let (greater, equal) = (s.is_greater(ii, ij), s.is_equal(ii, ij));
         c.mask("is_greater", greater, p.is_greater(i, j));
         c.mask("is_equal", equal, p.is_equal(i, j));
@@ -115,12 +115,12 @@ fn check<S: Eights>(s: S, name: &'static str) {
         let mask = p.is_greater(i, j);
         c.f64s("select", s.select(greater, fa, fb), p.select(mask, a, b));
         c.i32s("select_i32", s.select_i32(greater, ii, ij), p.select_i32(mask, i, j));
-        let ([low, high], expected) = (s.zip_i32(ii, ij), p.zip_i32(i, j));
-        c.i32s("zip_i32", low, expected[0]);
-        c.i32s("zip_i32, high", high, expected[1]);
+        let ([low, high], expected) = (s.interleave_i32(ii, ij), p.interleave_i32(i, j));
+        c.i32s("interleave_i32", low, expected[0]);
+        c.i32s("interleave_i32, high", high, expected[1]);
 
         let (k, l) = (random.i64s(), random.i64s());
-        let (kk, ll) = (s.i64s(&k), s.i64s(&l));
+        let (kk, ll) = (s.load_i64(&k), s.load_i64(&l));
         c.i64s("add_i64", s.add_i64(kk, ll), p.add_i64(k, l));
         c.i64s("sub_i64", s.sub_i64(kk, ll), p.sub_i64(k, l));
         c.i64s("mul_i64", s.mul_i64(kk, ll), p.mul_i64(k, l));
@@ -130,13 +130,13 @@ fn check<S: Eights>(s: S, name: &'static str) {
         c.i64s("to_i64", s.to_i64(ii), p.to_i64(i));
         c.i64s("unsigned_to_i64", s.unsigned_to_i64(ii), p.unsigned_to_i64(i));
         c.i64s("halves_i64", s.halves_i64(k[0], k[1]), p.halves_i64(k[0], k[1]));
-        c.i64s("all_i64", s.all_i64(k[2]), [k[2]; 8]);
+        c.i64s("splat_i64", s.splat_i64(k[2]), [k[2]; 8]);
         let ([low, high], expected) = (s.halves_of_i64(kk), p.halves_of_i64(k));
         c.i32s("halves_of_i64", low, expected[0]);
         c.i32s("halves_of_i64, high", high, expected[1]);
-        let ([low, high], expected) = (s.zip_i64(kk, ll), p.zip_i64(k, l));
-        c.i64s("zip_i64", low, expected[0]);
-        c.i64s("zip_i64, high", high, expected[1]);
+        let ([low, high], expected) = (s.interleave_i64(kk, ll), p.interleave_i64(k, l));
+        c.i64s("interleave_i64", low, expected[0]);
+        c.i64s("interleave_i64, high", high, expected[1]);
 
         #[cfg(feature = "alloc")]
         {
@@ -147,24 +147,28 @@ fn check<S: Eights>(s: S, name: &'static str) {
             }
         }
 
-        c.mask("both", s.both(greater, s.is_greater(ii, s.all_i32(0))), p.both(mask, p.is_greater(i, [0; 8])));
-        c.mask("but_not", s.but_not(greater, s.is_greater(ii, s.all_i32(0))), p.but_not(mask, p.is_greater(i, [0; 8])));
+        c.mask("and", s.and(greater, s.is_greater(ii, s.splat_i32(0))), p.and(mask, p.is_greater(i, [0; 8])));
+        c.mask(
+            "but_not",
+            s.and_not(greater, s.is_greater(ii, s.splat_i32(0))),
+            p.and_not(mask, p.is_greater(i, [0; 8])),
+        );
     }
     for bits in 0..=u8::MAX {
-        let mask = s.mask_of_bits(bits);
-        assert_eq!(s.mask_bits(mask), u32::from(bits), "mask_of_bits of {name}");
+        let mask = s.mask_from_bits(bits);
+        assert_eq!(s.to_bitmask(mask), u32::from(bits), "mask_from_bits of {name}");
         let numbers = random.i32s();
         let wide = random.i64s();
         let set = (0..8).filter(|lane| bits >> lane & 1 == 1);
         let mut packed = Packed::<24>::new();
-        packed.append(s, mask, s.i32s(&numbers));
-        packed.append(s, mask, s.i32s(&numbers));
+        packed.append(s, mask, s.load_i32(&numbers));
+        packed.append(s, mask, s.load_i32(&numbers));
         let once = set.clone().map(|lane: usize| numbers[lane].cast_unsigned());
-        assert!(packed.as_slice().iter().copied().eq(once.clone().chain(once)), "compact_i32 of {name}");
+        assert!(packed.as_slice().iter().copied().eq(once.clone().chain(once)), "compress_i32 of {name}");
         let mut to = [0; 8];
-        s.compact_i64(mask, [s.i64s(&wide)], [&mut to]);
+        s.compress_i64(mask, [s.load_i64(&wide)], [&mut to]);
         for (to, lane) in to.iter().zip(set) {
-            assert_eq!(*to, wide[lane], "compact_i64 of {name}");
+            assert_eq!(*to, wide[lane], "compress_i64 of {name}");
         }
     }
 }
@@ -183,10 +187,10 @@ impl Numbers {
 }
 
 #[cfg(feature = "alloc")]
-impl<S: Singles8> Checker<S> {
+impl<S: F32Lanes8> Checker<S> {
     fn f32s(&self, what: &str, found: S::F32, expected: [f32; 8]) {
         let mut lanes = [0; 8];
-        self.s.put_i32s(self.s.bits_of_f32(found), &mut lanes);
+        self.s.store_i32(self.s.bits_of_f32(found), &mut lanes);
         for (found, expected) in lanes.into_iter().zip(expected) {
             // Which NaN it is says no level.
             let found = f32::from_bits(found.cast_unsigned());
@@ -197,7 +201,7 @@ impl<S: Singles8> Checker<S> {
 }
 
 #[cfg(feature = "alloc")]
-fn check_singles<S: Singles8>(s: S, name: &'static str) {
+fn check_singles<S: F32Lanes8>(s: S, name: &'static str) {
     use glam::Vec3;
 
     let c = Checker { s, name };
@@ -211,7 +215,7 @@ fn check_singles<S: Singles8>(s: S, name: &'static str) {
         for (found, expected) in s.vectors(&points).into_iter().zip(p.vectors(&points)) {
             c.f32s("vectors", found, expected);
         }
-        c.f32s("all_f32", s.all_f32(a[0]), [a[0]; 8]);
+        c.f32s("splat_f32", s.splat_f32(a[0]), [a[0]; 8]);
         c.f32s("add_f32", s.add_f32(fa, fb), p.add_f32(a, b));
         c.f32s("sub_f32", s.sub_f32(fa, fb), p.sub_f32(a, b));
         c.f32s("mul_f32", s.mul_f32(fa, fb), p.mul_f32(a, b));
@@ -227,34 +231,34 @@ fn check_singles<S: Singles8>(s: S, name: &'static str) {
             let next = f64::from(f32::from_bits(numbers[i].to_bits() + 1));
             if next.is_finite() { f64::midpoint(numbers[i].into(), next) } else { f64::MAX }
         });
-        c.f32s("narrow", s.narrow(s.f64s(&wide)), p.narrow(wide));
+        c.f32s("narrow", s.narrow(s.load_f64(&wide)), p.narrow(wide));
         let positive = random.i32s().map(|n| f64::from(n.unsigned_abs() >> 1) + (n & 3) as f64 / 4.0);
-        c.i32s("whole", s.whole(s.f64s(&positive)), positive.map(|x| x as i32));
+        c.i32s("whole", s.whole(s.load_f64(&positive)), positive.map(|x| x as i32));
     }
 }
 
-#[cfg(all(feature = "alloc", feature = "simd", target_arch = "x86_64"))]
+#[cfg(all(feature = "alloc", simd_x86_64))]
 fn check_light<S: Light8>(s: S, name: &'static str) {
     let c = Checker { s, name };
     let p = Portable;
     let mut random = Numbers(Random::again(33));
     for _ in 0..2_000 {
         let a = random.f32s();
-        c.f32s("f32s", s.f32s(&a), a);
+        c.f32s("load_f32", s.load_f32(&a), a);
         let numbers = a.map(f64::from);
         let others: [f64; 8] = core::array::from_fn(|i| numbers[i * 3 % 8]);
-        let (found, other) = (s.f64s(&numbers), s.f64s(&others));
+        let (found, other) = (s.load_f64(&numbers), s.load_f64(&others));
         let squares = numbers.map(f64::abs);
-        c.f64s("sqrt", s.sqrt(s.f64s(&squares)), p.sqrt(squares));
+        c.f64s("sqrt", s.sqrt(s.load_f64(&squares)), p.sqrt(squares));
         let [x, y] = [numbers, others].map(|lanes| lanes.map(|x| if x.is_nan() { 2.0 } else { x }));
-        c.f64s("if_less", s.if_less(found, other, s.f64s(&x)), p.if_less(numbers, others, x));
-        c.f64s("if_less, equal", s.if_less(found, found, s.f64s(&y)), [0.0; 8]);
+        c.f64s("if_less", s.if_less(found, other, s.load_f64(&x)), p.if_less(numbers, others, x));
+        c.f64s("if_less, equal", s.if_less(found, found, s.load_f64(&y)), [0.0; 8]);
     }
     for lane in 0..8 {
         let mut one = [0.0; 8];
-        assert!(s.is_zero(s.f64s(&one)) && p.is_zero(one), "is_zero of {name}");
+        assert!(s.is_zero(s.load_f64(&one)) && p.is_zero(one), "is_zero of {name}");
         one[lane] = f64::from_bits(1);
-        assert!(!s.is_zero(s.f64s(&one)) && !p.is_zero(one), "is_zero of {name}, lane {lane}");
+        assert!(!s.is_zero(s.load_f64(&one)) && !p.is_zero(one), "is_zero of {name}, lane {lane}");
     }
 }
 
@@ -264,7 +268,7 @@ fn check_singles<S: Lanes8>(_: S, _: &'static str) {}
 #[test]
 fn every_level_has_the_operations_of_plain_arrays() {
     check(Portable, "plain arrays");
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     {
         check(SSE2, "SSE2");
         #[cfg(feature = "alloc")]
@@ -278,8 +282,8 @@ fn every_level_has_the_operations_of_plain_arrays() {
             }
         }
     }
-    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    #[cfg(simd_neon)]
     check(NEON, "NEON");
-    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    #[cfg(simd_wasm)]
     check(SIMD128, "simd128");
 }

@@ -6,8 +6,8 @@ use core::arch::wasm32::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::quarters::Singles128;
-use super::quarters::Vector128;
+use super::wide128::Singles128;
+use super::wide128::Vector128;
 
 /// The level that the target has.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ impl Vector128 for Simd128 {
 
     vectors! {
         fn load_f64(from: &[f64; 2]) -> v128 { v128_load(from.as_ptr().cast()) }
-        fn all_f64(value: f64) -> v128 { f64x2_splat(value) }
+        fn splat_f64(value: f64) -> v128 { f64x2_splat(value) }
         fn store_f64(from: v128, to: &mut [f64; 2]) { v128_store(to.as_mut_ptr().cast(), from) }
         fn add_f64(a: v128, b: v128) -> v128 { f64x2_add(a, b) }
         fn sub_f64(a: v128, b: v128) -> v128 { f64x2_sub(a, b) }
@@ -48,7 +48,7 @@ impl Vector128 for Simd128 {
         fn low_to_f64(from: v128) -> v128 { f64x2_convert_low_i32x4(from) }
 
         fn load(from: &[i32; 4]) -> v128 { v128_load(from.as_ptr().cast()) }
-        fn all(value: i32) -> v128 { i32x4_splat(value) }
+        fn splat(value: i32) -> v128 { i32x4_splat(value) }
         fn store(from: v128, to: &mut [i32; 4]) { v128_store(to.as_mut_ptr().cast(), from) }
         fn add(a: v128, b: v128) -> v128 { i32x4_add(a, b) }
         fn sub(a: v128, b: v128) -> v128 { i32x4_sub(a, b) }
@@ -58,18 +58,18 @@ impl Vector128 for Simd128 {
         fn xor(a: v128, b: v128) -> v128 { v128_xor(a, b) }
         fn and_not(a: v128, b: v128) -> v128 { v128_andnot(a, b) }
         fn shl(a: v128, by: i32) -> v128 { i32x4_shl(a, by.cast_unsigned()) }
-        fn sar(a: v128, by: i32) -> v128 { i32x4_shr(a, by.cast_unsigned()) }
+        fn shr(a: v128, by: i32) -> v128 { i32x4_shr(a, by.cast_unsigned()) }
         fn is_greater(a: v128, b: v128) -> v128 { i32x4_gt(a, b) }
         fn is_equal(a: v128, b: v128) -> v128 { i32x4_eq(a, b) }
         fn min(a: v128, b: v128) -> v128 { i32x4_min(a, b) }
         fn max(a: v128, b: v128) -> v128 { i32x4_max(a, b) }
-        fn zip_low(a: v128, b: v128) -> v128 { i32x4_shuffle::<0, 4, 1, 5>(a, b) }
-        fn zip_high(a: v128, b: v128) -> v128 { i32x4_shuffle::<2, 6, 3, 7>(a, b) }
+        fn interleave_low(a: v128, b: v128) -> v128 { i32x4_shuffle::<0, 4, 1, 5>(a, b) }
+        fn interleave_high(a: v128, b: v128) -> v128 { i32x4_shuffle::<2, 6, 3, 7>(a, b) }
         fn even(a: v128, b: v128) -> v128 { i32x4_shuffle::<0, 2, 4, 6>(a, b) }
         fn sign_bits(from: v128) -> u32 { i32x4_bitmask(from).into() }
 
         fn load_i64(from: &[i64; 2]) -> v128 { v128_load(from.as_ptr().cast()) }
-        fn all_i64(value: i64) -> v128 { i64x2_splat(value) }
+        fn splat_i64(value: i64) -> v128 { i64x2_splat(value) }
         fn store_i64(from: v128, to: &mut [i64; 2]) { v128_store(to.as_mut_ptr().cast(), from) }
         fn add_i64(a: v128, b: v128) -> v128 { i64x2_add(a, b) }
         fn sub_i64(a: v128, b: v128) -> v128 { i64x2_sub(a, b) }
@@ -78,8 +78,8 @@ impl Vector128 for Simd128 {
         fn mul_low(a: v128, b: v128) -> v128 {
             u64x2_extmul_low_u32x4(i32x4_shuffle::<0, 2, 0, 2>(a, a), i32x4_shuffle::<0, 2, 0, 2>(b, b))
         }
-        fn zip_low_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<0, 2>(a, b) }
-        fn zip_high_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<1, 3>(a, b) }
+        fn interleave_low_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<0, 2>(a, b) }
+        fn interleave_high_i64(a: v128, b: v128) -> v128 { i64x2_shuffle::<1, 3>(a, b) }
     }
 }
 
@@ -88,7 +88,7 @@ impl Singles128 for Simd128 {
     type S = v128;
 
     vectors! {
-        fn all_f32(value: f32) -> v128 { f32x4_splat(value) }
+        fn splat_f32(value: f32) -> v128 { f32x4_splat(value) }
         fn vectors(from: &[Vec3; 4]) -> [v128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
             // 12 f32: `Vec3` is three in this order, without anything between. x y z x | y z x y | z x y z

@@ -107,7 +107,7 @@ pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i6
 ///
 /// This is for faces that one sees through, of which many may lie before one another.
 #[inline]
-pub fn copy_before<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
+pub fn copy_nearer_keep_depth<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     let n = row.len().min(depth.len()).min(bytes.len());
     let depth = &depth[..n];
     copy_where(&mut row[..n], &bytes[..n], z, dz, |i, d: D| d > depth[i])

@@ -24,7 +24,7 @@ pub use super::thresholds::{DitherPattern, PERIOD, ThresholdRow, Thresholds};
 /// ```
 #[inline(never)]
 pub fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     if row.len() >= 16 {
         return super::simd::sse2::fill_dithered(row, shade, step, thresholds, x);
     }

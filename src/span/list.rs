@@ -74,16 +74,19 @@ impl<S: Lanes8> Spans8<S> {
     /// Spans 0 of both, spans 1 of both, and so on.
     #[inline(always)]
     pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, (has_depths, has_starts): (bool, bool)) -> [Self; 2] {
-        let [at, more_at] = s.zip_i32(self.at, other.at);
-        let [cell, more_cell] =
-            if has_depths && !list.cells_are_pixels() { s.zip_i32(self.cell, other.cell) } else { [at, more_at] };
-        let [length, more_length] = s.zip_i32(self.length, other.length);
-        let [paint, more_paint] = s.zip_i32(self.paint, other.paint);
-        let [z, more_z] = if has_depths { s.zip_i64(self.z, other.z) } else { [self.z, other.z] };
+        let [at, more_at] = s.interleave_i32(self.at, other.at);
+        let [cell, more_cell] = if has_depths && !list.cells_are_pixels() {
+            s.interleave_i32(self.cell, other.cell)
+        } else {
+            [at, more_at]
+        };
+        let [length, more_length] = s.interleave_i32(self.length, other.length);
+        let [paint, more_paint] = s.interleave_i32(self.paint, other.paint);
+        let [z, more_z] = if has_depths { s.interleave_i64(self.z, other.z) } else { [self.z, other.z] };
         let (mut starts, mut more_starts) = (self.starts, other.starts);
         if has_starts {
             for i in 0..2 {
-                [starts[i], more_starts[i]] = s.zip_i64(self.starts[i], other.starts[i]);
+                [starts[i], more_starts[i]] = s.interleave_i64(self.starts[i], other.starts[i]);
             }
         }
         [
@@ -132,7 +135,7 @@ impl SpanList {
     }
 
     /// Counts spans and their pixels that were drawn without the list.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     pub(crate) fn count_drawn(&mut self, (spans, covered): (u32, u32)) {
         self.drawn = self.drawn.wrapping_add(spans);
         self.covered[0] = self.covered[0].wrapping_add(covered.cast_signed());
@@ -155,18 +158,18 @@ impl SpanList {
     fn inside<S: Lanes8, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S>) -> S::Mask {
         // Each is negative where a span has no length, begins before the pixels, ends behind 2³¹, or ends behind them.
         let end = s.add_i32(spans.at, spans.length);
-        let mut sign = s.or_i32(s.sub_i32(spans.length, s.all_i32(1)), s.or_i32(spans.at, end));
-        sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.pixels), end));
+        let mut sign = s.or_i32(s.sub_i32(spans.length, s.splat_i32(1)), s.or_i32(spans.at, end));
+        sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.pixels), end));
         if DEPTHS {
             if self.cells_are_pixels() {
-                sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.cells), end));
+                sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
             } else {
                 let end = s.add_i32(spans.cell, spans.length);
                 sign = s.or_i32(sign, s.or_i32(spans.cell, end));
-                sign = s.or_i32(sign, s.sub_i32(s.all_i32(self.cells), end));
+                sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
             }
         }
-        s.is_greater(sign, s.all_i32(-1))
+        s.is_greater(sign, s.splat_i32(-1))
     }
 
     /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
@@ -180,29 +183,29 @@ impl SpanList {
     ) -> (S::Mask, usize) {
         let &Spans8 { at, cell, length, paint, z, .. } = spans;
         let mask = self.inside::<S, DEPTHS>(s, spans);
-        let covered = s.select_i32(mask, length, s.all_i32(0));
-        s.put_i32s(s.add_i32(s.i32s(&self.covered), covered), &mut self.covered);
+        let covered = s.select_i32(mask, length, s.splat_i32(0));
+        s.store_i32(s.add_i32(s.load_i32(&self.covered), covered), &mut self.covered);
         let count = self.count.min(CAPACITY);
-        s.compact_i32(
+        s.compress_i32(
             mask,
             [at, length, paint],
             [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.paint, count)],
         );
         if DEPTHS {
             if !self.cells_are_pixels() {
-                s.compact_i32(mask, [cell], [eight(&mut self.cell, count)]);
+                s.compress_i32(mask, [cell], [eight(&mut self.cell, count)]);
             }
             match dz {
                 DepthSteps::Each(dz) => {
-                    s.compact_i64(mask, [z, dz], [eight(&mut self.z, count), eight(&mut self.dz, count)]);
+                    s.compress_i64(mask, [z, dz], [eight(&mut self.z, count), eight(&mut self.dz, count)]);
                 }
                 DepthSteps::All(dz) => {
-                    s.compact_i64(mask, [z], [eight(&mut self.z, count)]);
+                    s.compress_i64(mask, [z], [eight(&mut self.z, count)]);
                     *eight(&mut self.dz, count) = [dz; LANES];
                 }
             }
         }
-        self.count = (count + s.mask_bits(mask).count_ones() as usize).min(CAPACITY);
+        self.count = (count + s.to_bitmask(mask).count_ones() as usize).min(CAPACITY);
         (mask, count)
     }
 
@@ -251,19 +254,19 @@ impl SpanList {
     }
 
     /// Returns whether all spans lie inside these pixels.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     pub(super) fn are_inside(&self, pixels: &[u8]) -> bool {
         pixels.len() >= self.pixels as usize
     }
 
     /// Returns whether all spans lie inside these cells.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     pub(super) fn are_inside_cells<D>(&self, cells: &[D]) -> bool {
         cells.len() >= self.cells as usize
     }
 
     /// At most `CAPACITY`.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
         self.count.min(CAPACITY)
@@ -298,7 +301,7 @@ impl SpanList {
     }
 
     /// Span `k`, which is below `len`.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(super) fn span(&self, k: usize) -> Span {
         let k = k.min(CAPACITY);
@@ -306,7 +309,7 @@ impl SpanList {
     }
 
     /// The depth of span `k`, which is below `len`.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(super) fn depth(&self, k: usize) -> SpanDepth {
         let k = k.min(CAPACITY);
@@ -370,7 +373,7 @@ impl SpanStarts {
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: [S::I64; 2]) {
         let [first, second] = &mut self.0;
-        s.compact_i64(mask, starts, [eight(first, at), eight(second, at)]);
+        s.compress_i64(mask, starts, [eight(first, at), eight(second, at)]);
     }
 
     /// Those of span `k`.

@@ -39,7 +39,7 @@
 //! | [`texture::fill_affine`], [`texture::fill_perspective`] | rows of texels |
 //! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
 //! | [`channels::mix_cube`], [`channels::mix_nearest`] | red, green and blue to an index, with dither |
-//! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_before`] | with a depth test |
+//! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_nearer_keep_depth`] | with a depth test |
 //! | [`list::fill`], [`list::fill_where_nearer`] | a list of spans, as batches make it |
 //! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
 //! | [`curve::curve`] | writes no pixels: shades on a parabola |
@@ -51,7 +51,7 @@ use core::str::FromStr;
 
 use crate::names::{KERNELS, UnknownName};
 use crate::simd::Level;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 use crate::simd::{Avx2, Avx512};
 
 #[doc(hidden)]
@@ -78,14 +78,14 @@ mod portable;
     allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
-#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+#[cfg(simd_x86_64)]
 pub(crate) use simd::avx512::{LargeTriangle, fill_large};
 #[doc(hidden)]
 pub mod fixed16;
 #[doc(hidden)]
 pub mod texture;
 mod thresholds;
-#[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
+#[cfg(any(asm_x86_64, asm_i686))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
 
@@ -94,7 +94,7 @@ pub use lookup::lookup;
 
 /// The bare assembly entries, for the tests that call them with rubbish in their registers and read
 /// their instructions. No part of the interface.
-#[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
+#[cfg(any(asm_x86_64, asm_i686))]
 #[doc(hidden)]
 pub mod entry {
     pub use super::x86::entry::*;
@@ -156,18 +156,18 @@ static LISTED: [Listed; KERNELS] = [
 ];
 
 fn find_asm() -> Option<Found> {
-    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    #[cfg(asm_x86_64)]
     return Some((Level::X86_64, x86::fill));
-    #[cfg(all(feature = "asm", target_arch = "x86"))]
+    #[cfg(asm_i686)]
     return Some((Level::I686, x86::fill));
-    #[cfg(not(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86"))))]
+    #[cfg(not(any(asm_x86_64, asm_i686)))]
     return None;
 }
 
 fn find_asm_unrolled() -> Option<Found> {
-    #[cfg(all(feature = "asm", target_arch = "x86_64"))]
+    #[cfg(asm_x86_64)]
     return Some((Level::X86_64, x86::fill_unrolled));
-    #[cfg(not(all(feature = "asm", target_arch = "x86_64")))]
+    #[cfg(not(asm_x86_64))]
     return None;
 }
 
@@ -183,37 +183,37 @@ fn find_arrays() -> Option<Found> {
 }
 
 fn find_sse2() -> Option<Found> {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     return Some((Level::Sse2, simd::sse2::fill));
-    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    #[cfg(not(simd_x86_64))]
     return None;
 }
 
 fn find_neon() -> Option<Found> {
-    #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+    #[cfg(simd_neon)]
     return Some((Level::Neon, simd::neon::fill));
-    #[cfg(not(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little")))]
+    #[cfg(not(simd_neon))]
     return None;
 }
 
 fn find_wasm() -> Option<Found> {
-    #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+    #[cfg(simd_wasm)]
     return Some((Level::Wasm, simd::wasm::fill));
-    #[cfg(not(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128")))]
+    #[cfg(not(simd_wasm))]
     return None;
 }
 
 fn find_avx2() -> Option<Found> {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::sse2::fill as Fill));
-    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    #[cfg(not(simd_x86_64))]
     return None;
 }
 
 fn find_avx512() -> Option<Found> {
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     return Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::sse2::fill as Fill));
-    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
+    #[cfg(not(simd_x86_64))]
     return None;
 }
 
@@ -247,9 +247,9 @@ impl Kernel {
     #[inline]
     pub fn fill(self, row: &mut [u8], shade: u16, step: u16) {
         match self.level {
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Level::Avx2(avx2) => simd::avx2::fill(avx2, row, shade, step),
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Level::Avx512(avx512) => simd::avx512::fill(avx512, row, shade, step),
             _ => (self.fill)(row, shade, step),
         }
@@ -262,17 +262,17 @@ impl Kernel {
             Level::Portable => spans.each(pixels, portable::fill),
             #[cfg(feature = "simd")]
             Level::Arrays => spans.each(pixels, simd::arrays::fill),
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Level::Sse2 => simd::sse2::fill_spans(pixels, spans),
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Level::Avx2(avx2) => simd::avx2::fill_spans(avx2, pixels, spans),
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            #[cfg(simd_x86_64)]
             Level::Avx512(avx512) => simd::avx512::fill_spans(avx512, pixels, spans),
-            #[cfg(all(feature = "simd", target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+            #[cfg(simd_neon)]
             Level::Neon => simd::neon::fill_spans(pixels, spans),
-            #[cfg(all(feature = "simd", target_arch = "wasm32", target_feature = "simd128"))]
+            #[cfg(simd_wasm)]
             Level::Wasm => simd::wasm::fill_spans(pixels, spans),
-            #[cfg(all(feature = "asm", any(target_arch = "x86_64", target_arch = "x86")))]
+            #[cfg(any(asm_x86_64, asm_i686))]
             _ => spans.each(pixels, |row, shade, step| self.fill(row, shade, step)),
         }
     }
@@ -280,7 +280,7 @@ impl Kernel {
     /// Fills every span, in order, with the depth test of [`depth::fill_nearer`]. Returns the number of pixels written.
     #[inline]
     fn fill_spans_nearer<D: depth::Cell>(self, pixels: &mut [u8], cells: &mut [D], spans: &list::SpanList) -> u32 {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = self.avx2()
             && let Some(cells) = D::as_u32(cells)
         {
@@ -309,7 +309,7 @@ impl Kernel {
             }
             return 0;
         };
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = self.avx2() {
             return simd::nearer::copy_spans(avx2, pixels, cells, (spans, range), bytes);
         }
@@ -327,7 +327,7 @@ impl Kernel {
         spans: &list::SpanList,
         shades: impl Fn(usize, u32) -> (u32, u32),
     ) -> Option<u32> {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = self.avx2() {
             return cells.map(|cells| simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades));
         }
@@ -335,7 +335,8 @@ impl Kernel {
         None
     }
 
-    /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as [`depth::copy_before`]. Returns the
+    /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as
+    /// [`depth::copy_nearer_keep_depth`]. Returns the
     /// number of pixels written.
     ///
     /// Row, cells and bytes may be longer, and what lies behind in the row and in the cells stays as it was: vectors take
@@ -351,7 +352,7 @@ impl Kernel {
         z: i64,
         dz: i64,
     ) -> u32 {
-        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        #[cfg(simd_x86_64)]
         if let Some(avx2) = self.avx2()
             && let Some(cells) = D::as_u32(cells)
             && let Some(written) = simd::nearer::copy::<KEEPS>(avx2, length, row, cells, bytes, z, dz)
@@ -359,7 +360,11 @@ impl Kernel {
             return written;
         }
         let bytes = &bytes[..length.min(bytes.len())];
-        if KEEPS { depth::copy_nearer(row, cells, bytes, z, dz) } else { depth::copy_before(row, cells, bytes, z, dz) }
+        if KEEPS {
+            depth::copy_nearer(row, cells, bytes, z, dz)
+        } else {
+            depth::copy_nearer_keep_depth(row, cells, bytes, z, dz)
+        }
     }
 
     /// Copies the first `length` bytes, of which the row has as many. What lies behind them stays as it was.
@@ -392,14 +397,14 @@ impl Kernel {
     }
 
     /// The proof that the processor has AVX2, if this kernel may use it.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline]
     pub(crate) fn avx2(self) -> Option<Avx2> {
         self.level.avx2()
     }
 
     /// The proof that the processor has AVX-512, if this kernel may use it.
-    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    #[cfg(simd_x86_64)]
     #[inline]
     pub(crate) fn avx512(self) -> Option<Avx512> {
         self.level.avx512()

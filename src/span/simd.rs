@@ -81,7 +81,7 @@ pub(super) mod arrays {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(simd_x86_64)]
 pub(super) mod sse2 {
     use super::super::list::SpanList;
     use super::super::thresholds::ThresholdRow;
@@ -250,20 +250,17 @@ pub(super) mod sse2 {
     }
 }
 
-#[cfg(any(
-    all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"),
-    all(target_arch = "wasm32", target_feature = "simd128")
-))]
+#[cfg(any(simd_neon, simd_wasm))]
 mod simd128;
-#[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+#[cfg(simd_neon)]
 pub(super) use simd128::neon;
-#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+#[cfg(simd_wasm)]
 pub(super) use simd128::wasm;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(simd_x86_64)]
 pub(crate) mod nearer;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(simd_x86_64)]
 pub(crate) mod avx2 {
     use super::super::list::{Span, SpanList};
     use super::sse2;
@@ -384,5 +381,5 @@ pub(crate) mod avx2 {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(simd_x86_64)]
 pub(crate) mod avx512;

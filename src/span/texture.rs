@@ -262,14 +262,14 @@ impl<S: Lanes8> PlaceLanes<S> {
     fn new(s: S, texels: Texels<'_>) -> Self {
         let columns = (1 << texels.ubits) - 1;
         let rows = ((1 << texels.vbits) - 1) << texels.ubits;
-        Self { s, columns: s.all_i32(columns), rows: s.all_i32(rows) }
+        Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows) }
     }
 
     /// [`Texels::place`] of u, and of v times the width: what is lost of that no mask has.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
-        s.or_i32(s.and_i32(s.sar_i32(v, 16), self.rows), s.and_i32(s.sar_i32(u, 16), self.columns))
+        s.or_i32(s.and_i32(s.shr_i32(v, 16), self.rows), s.and_i32(s.shr_i32(u, 16), self.columns))
     }
 }
 
@@ -292,12 +292,12 @@ impl<S: Lanes8> AffineLines<S> {
     pub(crate) fn new(s: S, texels: Texels<'_>, [du, dv]: [u32; 2]) -> Self {
         let places = PlaceLanes::new(s, texels);
         let (du, dv) = (du.cast_signed(), (dv << texels.ubits).cast_signed());
-        let numbers = s.i32s(&NUMBERS);
+        let numbers = s.load_i32(&NUMBERS);
         Self {
             places,
             ubits: texels.ubits,
-            first: [s.mul_i32(s.all_i32(du), numbers), s.mul_i32(s.all_i32(dv), numbers)],
-            next: [s.all_i32(du.wrapping_mul(LANES as i32)), s.all_i32(dv.wrapping_mul(LANES as i32))],
+            first: [s.mul_i32(s.splat_i32(du), numbers), s.mul_i32(s.splat_i32(dv), numbers)],
+            next: [s.splat_i32(du.wrapping_mul(LANES as i32)), s.splat_i32(dv.wrapping_mul(LANES as i32))],
         }
     }
 
@@ -305,10 +305,10 @@ impl<S: Lanes8> AffineLines<S> {
     #[inline(always)]
     pub(crate) fn places(&self, places: &mut [i32], n: usize, [u, v]: [u32; 2]) {
         let s = self.places.s;
-        let mut u = s.add_i32(s.all_i32(u.cast_signed()), self.first[0]);
-        let mut v = s.add_i32(s.all_i32((v << self.ubits).cast_signed()), self.first[1]);
+        let mut u = s.add_i32(s.splat_i32(u.cast_signed()), self.first[0]);
+        let mut v = s.add_i32(s.splat_i32((v << self.ubits).cast_signed()), self.first[1]);
         for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
-            s.put_i32s(self.places.at(u, v), block);
+            s.store_i32(self.places.at(u, v), block);
             (u, v) = (s.add_i32(u, self.next[0]), s.add_i32(v, self.next[1]));
         }
     }
@@ -453,24 +453,24 @@ pub(crate) fn perspective_places<S: Lanes8>(
         return false;
     }
     let at = PlaceLanes::new(s, texels);
-    let (magic, fraction) = (s.all_f64(ROUND_MAGIC), s.all_i32(0xFFFF));
-    let mut numbers = s.i32s(&NUMBERS);
-    let end = s.all_i32(n as i32);
-    let width = s.all_i32(1 << texels.ubits);
+    let (magic, fraction) = (s.splat_f64(ROUND_MAGIC), s.splat_i32(0xFFFF));
+    let mut numbers = s.load_i32(&NUMBERS);
+    let end = s.splat_i32(n as i32);
+    let width = s.splat_i32(1 << texels.ubits);
     let mut unsure = 0;
     for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
         let k = s.to_f64(numbers);
-        let reciprocal = s.div(s.all_f64(1.0), s.mul_add(k, s.all_f64(dd), s.all_f64(d)));
+        let reciprocal = s.div(s.splat_f64(1.0), s.mul_add(k, s.splat_f64(dd), s.splat_f64(d)));
         // Modulo 2³². Lanes beyond the last may hold anything.
-        let u = s.low_bits(s.mul_add(s.mul_add(k, s.all_f64(du), s.all_f64(u)), reciprocal, magic));
-        let v = s.low_bits(s.mul_add(s.mul_add(k, s.all_f64(dv), s.all_f64(v)), reciprocal, magic));
+        let u = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(du), s.splat_f64(u)), reciprocal, magic));
+        let v = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(dv), s.splat_f64(v)), reciprocal, magic));
         let is_there = s.is_greater(end, numbers);
-        let zero = s.all_i32(0);
-        unsure |= s.mask_bits(s.both(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
-        unsure |= s.mask_bits(s.both(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
+        let zero = s.splat_i32(0);
+        unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
+        unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
         // By a product: shifts are by constants.
-        s.put_i32s(at.at(u, s.mul_i32(v, width)), block);
-        numbers = s.add_i32(numbers, s.all_i32(LANES as i32));
+        s.store_i32(at.at(u, s.mul_i32(v, width)), block);
+        numbers = s.add_i32(numbers, s.splat_i32(LANES as i32));
     }
     unsure == 0
 }

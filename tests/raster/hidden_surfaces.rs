@@ -450,7 +450,7 @@ fn depths_of_earlier_frames_do_not_count() {
         scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
         scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);
         again.settings.accuracy = Some(random.one_of(&Shading::ALL).into());
-        let mut fresh = again.set_alike();
+        let mut fresh = again.with_same_settings();
         let mut other = Vga::new();
         let stats = again.draw(&scene, &mut machine).expect("a legal scene");
         fresh.draw(&scene, &mut other).expect("a legal scene");

@@ -7,7 +7,7 @@ use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
-use mode13h::span::depth::{copy_before, copy_nearer, fill_nearer};
+use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
 use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
@@ -376,7 +376,7 @@ fn wrong_depth_tests_are_caught() {
     );
     assert_caught(
         "the depths are kept",
-        check_copy::<u16>(full(), true, |_, row, depth, bytes, z, dz| copy_before(row, depth, bytes, z, dz)),
+        check_copy::<u16>(full(), true, |_, row, depth, bytes, z, dz| copy_nearer_keep_depth(row, depth, bytes, z, dz)),
     );
     assert_caught(
         "the depths of 16 bits are kept, and should stay",
@@ -386,7 +386,7 @@ fn wrong_depth_tests_are_caught() {
     );
     let equal = |_, row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
         let lower: Vec<u32> = depth.iter().map(|d| d.saturating_sub(1)).collect();
-        copy_before(row, &lower, bytes, z, dz)
+        copy_nearer_keep_depth(row, &lower, bytes, z, dz)
     };
     assert_caught("an equal depth counts as nearer", check_copy(full(), false, equal));
     let one_more = |n: usize, row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {

@@ -77,7 +77,7 @@ impl Compare {
 
     /// Gives the right half a renderer that is set as the left one's.
     pub(super) fn renew(&mut self, left: &Renderer) {
-        self.right.renderer = left.set_alike();
+        self.right.renderer = left.with_same_settings();
         self.right.timing = Timing::default();
     }
 
@@ -88,7 +88,7 @@ impl Compare {
         let start = Instant::now();
         let stats = renderer.draw(scene, vga)?;
         let taken = start.elapsed();
-        renderer.frame_took(taken);
+        renderer.report_frame_time(taken);
         timing.add(stats.redrawn.then_some(taken.as_secs_f64()), seconds);
         Ok(stats.redrawn)
     }

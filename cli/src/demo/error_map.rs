@@ -420,7 +420,7 @@ mod tests {
             let mut renderer = Renderer::new();
             renderer.settings.accuracy = Some(shading.into());
             renderer.draw(scene, &mut picture).expect("a legal scene");
-            renderer.set_alike()
+            renderer.with_same_settings()
         };
         let renderers = shadings.iter().map(renderer).collect();
         let shadings = shadings.iter().map(|shading| shading.name().to_string()).collect();

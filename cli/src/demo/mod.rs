@@ -314,7 +314,7 @@ impl Demo {
         self.is_loading = false;
         // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
         let checked = result.and_then(|stage| {
-            let mut renderer = self.renderer.set_alike();
+            let mut renderer = self.renderer.with_same_settings();
             renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
             Ok(*stage)
         });
@@ -522,7 +522,7 @@ impl Demo {
                     shadings: shadings.map(|shading| shading.to_string()).collect(),
                 },
                 scene: self.stage.scene.clone(),
-                renderers: renderers.map(Renderer::set_alike).collect(),
+                renderers: renderers.map(Renderer::with_same_settings).collect(),
                 mouse: self.mouse,
             };
             self.map.follow(self.number, frame)?;
@@ -608,7 +608,7 @@ impl Demo {
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)?;
         let taken = start.elapsed();
-        self.renderer.frame_took(taken);
+        self.renderer.report_frame_time(taken);
         self.is_redrawn = stats.redrawn;
         self.timing.add(stats.redrawn.then_some(taken.as_secs_f64()), self.seconds);
         // What was counted is of the frame that is shown, if that was there already.
@@ -649,7 +649,7 @@ impl Demo {
             number,
             pixel,
             scene: self.stage.scene.clone(),
-            renderer: self.side(pixel.x).0.set_alike(),
+            renderer: self.side(pixel.x).0.with_same_settings(),
             cells: Cells::about(pixel, &self.shown),
         });
         if let Some(seen) = magnifier.seen(number, pixel) {

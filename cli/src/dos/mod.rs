@@ -115,7 +115,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
 /// What the film leaves out of a scene, if anything: effects that it calls for and that 16.16 does not know.
 fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Failure> {
-    let mut renderer = like.set_alike();
+    let mut renderer = like.with_same_settings();
     stage.show(0.0, Pose::FIRST);
     let called_for = |path: VertexPath, renderer: &mut Renderer| -> Result<Vec<Effect>, Failure> {
         renderer.settings.vertex_path = path;

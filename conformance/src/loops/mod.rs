@@ -9,7 +9,7 @@
 //! | [`spans`] | `fill`, `fill_16_16`, `fill_quotients`, `fill_float`, `fill_dithered` |
 //! | [`texels`] | `fill_affine`, `fill_perspective`, `lookup` |
 //! | [`channels`] | `mix_cube`, `mix_nearest` |
-//! | [`depth`] | `fill_nearer`, `copy_nearer`, `copy_before`, lists of spans; cells of 32 and of 16 bits |
+//! | [`depth`] | `fill_nearer`, `copy_nearer`, `copy_nearer_keep_depth`, lists of spans; cells of 32 and of 16 bits |
 //! | [`light`] | `interpolate`, `numerators` and `divide`, `curve`: these write no pixels |
 //!
 //! ```
@@ -33,7 +33,7 @@ use core::fmt;
 use mode13h::span::Kernel;
 use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
 use mode13h::span::curve::curve;
-use mode13h::span::depth::{copy_before, copy_nearer, fill_nearer};
+use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
 use mode13h::span::dither::{fill_dithered, fill_dithered_portable};
 use mode13h::span::fixed16::fill_16_16;
 use mode13h::span::float::fill_float;
@@ -119,8 +119,8 @@ const LOOPS: [(&str, Check); 17] = [
     ("mix_nearest", |cases| channels::check_nearest(cases, mix_nearest)),
     ("fill_nearer, u32", |cases| depth::check_fill::<u32>(cases, fill_nearer)),
     ("fill_nearer, u16", |cases| depth::check_fill::<u16>(cases, fill_nearer)),
-    ("copy_nearer and copy_before, u32", check_copies::<u32>),
-    ("copy_nearer and copy_before, u16", check_copies::<u16>),
+    ("copy_nearer and copy_nearer_keep_depth, u32", check_copies::<u32>),
+    ("copy_nearer and copy_nearer_keep_depth, u16", check_copies::<u16>),
     ("interpolate and curve", |cases| {
         Ok(light::check_interpolate(cases, interpolate)? + light::check_curve(cases, curve)?)
     }),
@@ -131,7 +131,7 @@ fn check_copies<D: depth::NaiveCell>(cases: Cases) -> Checked {
         copy_nearer(row, cells, &bytes[..length.min(bytes.len())], z, dz)
     })?;
     let stay = depth::check_copy::<D>(cases, false, |length, row, cells, bytes, z, dz| {
-        copy_before(row, cells, &bytes[..length.min(bytes.len())], z, dz)
+        copy_nearer_keep_depth(row, cells, &bytes[..length.min(bytes.len())], z, dz)
     })?;
     Ok(kept + stay)
 }

@@ -37,7 +37,7 @@ pub fn time_frame(
     let start = (clock.now)();
     let stats = renderer.draw(scene, vga)?;
     let time = (clock.now)().saturating_sub(start);
-    renderer.frame_took(time);
+    renderer.report_frame_time(time);
     Ok((stats, time.as_secs_f64() * 1000.0))
 }
 

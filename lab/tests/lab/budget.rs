@@ -355,8 +355,8 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
             let error = stats.max_error.expect("an error");
             assert_eq!(stats.max_time, Some(5.0));
             assert!(vga.pixels() == draw(&mut within(error), scene, &mut Vga::new()), "frame {frame}");
-            assert!(draw(&mut renderer.set_alike(), scene, &mut Vga::new()) == vga.pixels(), "frame {frame}");
-            renderer.frame_took(std::time::Duration::from_micros(cost(error)));
+            assert!(draw(&mut renderer.with_same_settings(), scene, &mut Vga::new()) == vga.pixels(), "frame {frame}");
+            renderer.report_frame_time(std::time::Duration::from_micros(cost(error)));
             errors.push((error, stats.fits));
         }
         errors
@@ -374,7 +374,7 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
     renderer.settings.max_time = Some(5.0);
     for _ in 0..60 {
         drawn += u32::from(renderer.draw(&scene, &mut vga).expect("a legal scene").redrawn);
-        renderer.frame_took(std::time::Duration::from_millis(1));
+        renderer.report_frame_time(std::time::Duration::from_millis(1));
     }
     assert_eq!(drawn, 6, "once within each error");
     assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));

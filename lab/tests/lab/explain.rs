@@ -499,7 +499,7 @@ fn a_walk_over_what_is_seen_has_the_frames_bytes() {
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = Some(shading.into());
         let bytes = frame(&mut renderer, &scene);
-        let shown = Probe::new(renderer.set_alike()).look(&scene, SCREEN).expect("a legal scene");
+        let shown = Probe::new(renderer.with_same_settings()).look(&scene, SCREEN).expect("a legal scene");
         let mut seen = 0;
         for (x, y) in some_pixels(&bytes, scene.background, 12, &mut random) {
             let pixel = explain(&mut renderer, &scene, x, y);

@@ -134,7 +134,7 @@ fn read(
                 Err(kind) => Err(kind),
             },
             b"map_Kd" => {
-                surface.texture = texture(rest).map(|file| beside(path, &file));
+                surface.texture = texture(rest).map(|file| sibling_path(path, &file));
                 if places_otherwise(rest) {
                     left_out.add("options of map_Kd (-s, -o, -clamp)", line);
                 }
@@ -243,7 +243,7 @@ fn places_otherwise(rest: &[u8]) -> bool {
 }
 
 /// A path as an MTL file gives it, from its own folder.
-fn beside(path: &Path, file: &str) -> String {
+fn sibling_path(path: &Path, file: &str) -> String {
     let folder = path.parent().unwrap_or(Path::new(""));
     let as_written = folder.join(file);
     // Windows' separators are a part of a name elsewhere; hardly ever one that was meant.

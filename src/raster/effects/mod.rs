@@ -325,12 +325,9 @@ impl<R: Rows, D: Cell> Drawing<'_, '_, R, D> {
             None => {
                 let mut drawn = DrawStats::default();
                 for piece in pieces.pieces() {
-                    let Some(pixels) = rows.starting_at(piece.range().start, piece.row.y as u32) else { continue };
+                    let Some((row, bytes)) = visible(rows, piece, bytes, blend) else { continue };
                     let n = piece.visible();
-                    if n > pixels.len() {
-                        continue;
-                    }
-                    copy(pixels, &mut bytes[piece.first_visible()..], n, blend);
+                    kernel.copy(n, row, bytes);
                     drawn.spans += 1;
                     // At most 64.
                     drawn.pixels += n as u32;
@@ -430,45 +427,6 @@ fn visible<'a>(
         }
     }
     Some((row, bytes))
-}
-
-/// Copies the first `n` bytes to the first `n` pixels, of which there are as many; with a table, what it makes of both.
-#[inline(always)]
-fn copy(pixels: &mut [u8], bytes: &mut [u8], n: usize, blend: Option<&[u8; 65_536]>) {
-    // Mostly few, whose number no processor foretells. Those behind them are written as they were.
-    if n <= 4
-        && let (Some(pixels), Some(bytes)) = (pixels.first_chunk_mut(), bytes.first_chunk())
-    {
-        let there = *pixels;
-        let own = u32::from_le_bytes(blended::<4>(*bytes, there, blend));
-        let mask = !(u32::MAX << 1 << (8 * n - 1));
-        *pixels = (own & mask | u32::from_le_bytes(there) & !mask).to_le_bytes();
-    } else if n <= 8
-        && let (Some(pixels), Some(bytes)) = (pixels.first_chunk_mut(), bytes.first_chunk())
-    {
-        let there = *pixels;
-        let own = u64::from_le_bytes(blended::<8>(*bytes, there, blend));
-        let mask = !(u64::MAX << 1 << (8 * n - 1));
-        *pixels = (own & mask | u64::from_le_bytes(there) & !mask).to_le_bytes();
-    } else {
-        let (pixels, bytes) = (&mut pixels[..n], &mut bytes[..n]);
-        if let Some(table) = blend {
-            lookup(pixels, bytes, table);
-        } else {
-            pixels.copy_from_slice(bytes);
-        }
-    }
-}
-
-/// Looks bytes (rows) and what is there (columns) up in a table.
-#[inline(always)]
-fn blended<const N: usize>(mut bytes: [u8; N], there: [u8; N], table: Option<&[u8; 65_536]>) -> [u8; N] {
-    if let Some(table) = table {
-        for (i, byte) in bytes.iter_mut().enumerate() {
-            table.show(byte, there[i]);
-        }
-    }
-    bytes
 }
 
 impl<D: Cell> Raster<'_, D> {

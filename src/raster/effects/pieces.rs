@@ -164,7 +164,7 @@ impl Piece {
 
 /// A face that has pieces, and what is known of its values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Covered {
+pub(super) struct FaceSpans {
     /// The face's index among those that are drawn.
     pub(super) face: usize,
     /// The index of the piece behind its last one.
@@ -172,7 +172,7 @@ pub(super) struct Covered {
     pub(super) set_up: SetUp,
 }
 
-impl Covered {
+impl FaceSpans {
     /// The face, and its corners' values. `room` is for a face that nobody has put in order yet.
     #[inline(always)]
     pub(super) fn corners<'a>(&'a self, faces: Faces<'a>, room: &'a mut Option<SortedFace>) -> FaceCorners<'a> {
@@ -226,7 +226,7 @@ impl PieceStart {
 /// Pieces of faces, in the order in which they are drawn.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pieces {
-    triangles: Vec<Covered>,
+    triangles: Vec<FaceSpans>,
     /// Room for all; those that wait come first.
     pieces: Vec<Piece>,
     count: usize,
@@ -239,7 +239,7 @@ pub(super) struct Pieces {
 impl Pieces {
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
-        self.triangles.capacity() * size_of::<Covered>()
+        self.triangles.capacity() * size_of::<FaceSpans>()
             + self.pieces.capacity() * size_of::<Piece>()
             + self.starts.capacity() * size_of::<PieceStart>()
     }
@@ -291,7 +291,7 @@ impl Pieces {
     pub(super) fn close(&mut self, face: usize, set_up: &SetUp) {
         let end = self.count;
         if self.triangles.last().map_or(0, |last| last.end) != end {
-            self.triangles.push(Covered { face, end, set_up: *set_up });
+            self.triangles.push(FaceSpans { face, end, set_up: *set_up });
         }
     }
 
@@ -322,7 +322,7 @@ impl Pieces {
 
     /// The triangles that have pieces.
     #[inline]
-    pub(super) fn triangles(&self) -> &[Covered] {
+    pub(super) fn triangles(&self) -> &[FaceSpans] {
         &self.triangles
     }
 

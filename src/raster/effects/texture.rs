@@ -4,7 +4,7 @@
 //! a guess of the processor that costs as much as several pixels.
 
 use super::level::{self, LevelPlane};
-use super::pieces::{Covered, FaceCorners, FaceSetup, Faces, PIECE, Piece, Pieces, SetUp};
+use super::pieces::{FaceCorners, FaceSetup, FaceSpans, Faces, PIECE, Piece, Pieces, SetUp};
 use super::pipeline::TextureStage;
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::mapping::Mapping;
@@ -124,7 +124,7 @@ fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image: Tex
 }
 
 #[inline(never)]
-fn affine_texture<'a>(covered: &Covered, faces: Faces<'_>, image: Image<'a>) -> AffineTexture<'a> {
+fn affine_texture<'a>(covered: &FaceSpans, faces: Faces<'_>, image: Image<'a>) -> AffineTexture<'a> {
     AffineTexture::new(&covered.corners(faces, &mut None), image)
 }
 
@@ -159,7 +159,7 @@ fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image
 }
 
 #[inline(never)]
-fn perspective_texture(covered: &Covered, faces: Faces<'_>) -> PerspectiveTexture {
+fn perspective_texture(covered: &FaceSpans, faces: Faces<'_>) -> PerspectiveTexture {
     PerspectiveTexture::new(&covered.corners(faces, &mut None))
 }
 
@@ -192,7 +192,7 @@ impl<'a> AffineTexture<'a> {
     #[inline(always)]
     fn steps(&self) -> [u32; 2] {
         let [u, v] = &self.planes;
-        // The wrap is meant: texels repeat.
+        // Wrapping is intended: texels repeat.
         [u.step as u32, v.step as u32]
     }
 
@@ -415,7 +415,7 @@ impl PerspectiveTexture {
             let next = (x + EVERY as i32).min(piece.row.last).max(x);
             let to = at(next);
             let step = |i: usize| {
-                // The wrap is meant: texels repeat.
+                // Wrapping is intended: texels repeat.
                 let change = to[i].wrapping_sub(from[i]);
                 match next - x {
                     0 => 0,
@@ -425,7 +425,7 @@ impl PerspectiveTexture {
                     pixels => (change / pixels) as u32,
                 }
             };
-            // The wrap is meant here, too.
+            // Wrapping is intended here, too.
             let start = [from[0] as u32, from[1] as u32];
             let lines = AffineLines::new(BASELINE, texels, [step(0), step(1)]);
             lines.places(&mut places[first..], EVERY.min(n - first), start);

@@ -12,7 +12,7 @@ use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
 use crate::render::columns::{ScreenPos, VertexColumns};
 use crate::render::paint::SurfaceMaterial;
-use crate::simd::{Singles8, compiled_for_each_level};
+use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
 
 compiled_for_each_level! {
@@ -26,7 +26,7 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn project_by<S: Singles8, const TESTED: bool>(
+fn project_by<S: F32Lanes8, const TESTED: bool>(
     s: S,
     view: &ObjectView,
     narrow: &Narrow,
@@ -49,7 +49,7 @@ fn project_by<S: Singles8, const TESTED: bool>(
 
 /// Eight vertices, with a mark on those that need clipping.
 #[inline(always)]
-fn project_eight<S: Singles8>(
+fn project_eight<S: F32Lanes8>(
     s: S,
     narrow: &Narrow,
     points: &[Vec3; LANES],
@@ -58,45 +58,45 @@ fn project_eight<S: Singles8>(
 ) {
     let at = s.vectors(points);
     let w = row(s, narrow, at, 2);
-    let inverse = s.div_f32(s.all_f32(1.0), w);
-    let x = s.add_f32(s.all_f32(narrow.centre.0), s.mul_f32(row(s, narrow, at, 0), inverse));
-    let y = s.add_f32(s.all_f32(narrow.centre.1), s.mul_f32(row(s, narrow, at, 1), inverse));
-    let within = s.both(s.is_at_least(w, s.all_f32(narrow.near)), s.both(is_near(s, x), is_near(s, y)));
-    let nothing = s.all_i32(0);
-    let x = s.select_i32(within, units(s, x), s.all_i32(ScreenPos::BEYOND));
+    let inverse = s.div_f32(s.splat_f32(1.0), w);
+    let x = s.add_f32(s.splat_f32(narrow.centre.0), s.mul_f32(row(s, narrow, at, 0), inverse));
+    let y = s.add_f32(s.splat_f32(narrow.centre.1), s.mul_f32(row(s, narrow, at, 1), inverse));
+    let within = s.and(s.is_at_least(w, s.splat_f32(narrow.near)), s.and(is_near(s, x), is_near(s, y)));
+    let nothing = s.splat_i32(0);
+    let x = s.select_i32(within, units(s, x), s.splat_i32(ScreenPos::BEYOND));
     let y = s.select_i32(within, units(s, y), nothing);
     // As `ObjectView::depth`: 1 to 2³⁰ of what is within.
-    let part = s.mul(s.div(s.all_f64(narrow.near.into()), s.widen(w)), s.all_f64(1_073_741_824.0));
-    let depth = s.max_i32(s.whole(s.add(part, s.all_f64(0.5))), s.all_i32(1));
+    let part = s.mul(s.div(s.splat_f64(narrow.near.into()), s.widen(w)), s.splat_f64(1_073_741_824.0));
+    let depth = s.max_i32(s.whole(s.add(part, s.splat_f64(0.5))), s.splat_i32(1));
 
     let mut pairs = [[0; LANES]; 2];
-    let [low, high] = s.zip_i32(x, y);
-    s.put_i32s(low, &mut pairs[0]);
-    s.put_i32s(high, &mut pairs[1]);
+    let [low, high] = s.interleave_i32(x, y);
+    s.store_i32(low, &mut pairs[0]);
+    s.store_i32(high, &mut pairs[1]);
     for (lane, place) in places.iter_mut().enumerate() {
         let (half, at) = (lane / 4, 2 * (lane % 4));
         *place = ScreenPos::new(pairs[half][at], pairs[half][at + 1]);
     }
     let mut numbers = [0; LANES];
-    s.put_i32s(s.select_i32(within, depth, nothing), &mut numbers);
+    s.store_i32(s.select_i32(within, depth, nothing), &mut numbers);
     *depths = each!(lane => numbers[lane].cast_unsigned());
 }
 
 /// Coordinate `k` of points seen from the eye. As glam has it: column by column.
 #[inline(always)]
-fn row<S: Singles8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32 {
+fn row<S: F32Lanes8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32 {
     // No closures, and no functions of the standard library that take them: they would be compiled for no level.
     let Narrow { matrix, offset, .. } = narrow;
-    let a = s.mul_f32(s.all_f32(matrix.x_axis.to_array()[k]), at[0]);
-    let b = s.mul_f32(s.all_f32(matrix.y_axis.to_array()[k]), at[1]);
-    let c = s.mul_f32(s.all_f32(matrix.z_axis.to_array()[k]), at[2]);
-    s.add_f32(s.add_f32(s.add_f32(a, b), c), s.all_f32(offset.to_array()[k]))
+    let a = s.mul_f32(s.splat_f32(matrix.x_axis.to_array()[k]), at[0]);
+    let b = s.mul_f32(s.splat_f32(matrix.y_axis.to_array()[k]), at[1]);
+    let c = s.mul_f32(s.splat_f32(matrix.z_axis.to_array()[k]), at[2]);
+    s.add_f32(s.add_f32(s.add_f32(a, b), c), s.splat_f32(offset.to_array()[k]))
 }
 
 /// Within the limit. NaN is not.
 #[inline(always)]
-fn is_near<S: Singles8>(s: S, c: S::F32) -> S::Mask {
-    s.both(s.is_at_least(c, s.all_f32(-Narrow::LIMIT)), s.is_at_least(s.all_f32(Narrow::LIMIT), c))
+fn is_near<S: F32Lanes8>(s: S, c: S::F32) -> S::Mask {
+    s.and(s.is_at_least(c, s.splat_f32(-Narrow::LIMIT)), s.is_at_least(s.splat_f32(Narrow::LIMIT), c))
 }
 
 /// `floor(256·pixels + ½)` for coordinates within the limit; some number for others. It stays in f32, where such a
@@ -111,14 +111,14 @@ fn is_near<S: Singles8>(s: S, c: S::F32) -> S::Mask {
 /// s − n is exact: below 1 in magnitude and a multiple of the lesser of both units in the last place. It lies within
 /// ±½, and −½ is a half that was rounded up already.
 #[inline(always)]
-fn units<S: Singles8>(s: S, pixels: S::F32) -> S::I32 {
-    let magic = s.all_f32(12_582_912.0);
-    let scaled = s.mul_f32(pixels, s.all_f32(256.0));
+fn units<S: F32Lanes8>(s: S, pixels: S::F32) -> S::I32 {
+    let magic = s.splat_f32(12_582_912.0);
+    let scaled = s.mul_f32(pixels, s.splat_f32(256.0));
     let sum = s.add_f32(scaled, magic);
     // The number is in the low bits of the sum.
     let nearest = s.sub_i32(s.bits_of_f32(sum), s.bits_of_f32(magic));
-    let is_less = s.is_at_least(s.sub_f32(scaled, s.sub_f32(sum, magic)), s.all_f32(0.5));
-    s.add_i32(nearest, s.select_i32(is_less, s.all_i32(1), s.all_i32(0)))
+    let is_less = s.is_at_least(s.sub_f32(scaled, s.sub_f32(sum, magic)), s.splat_f32(0.5));
+    s.add_i32(nearest, s.select_i32(is_less, s.splat_i32(1), s.splat_i32(0)))
 }
 
 /// The definition, of vertices from number `first` on.
@@ -145,7 +145,7 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn light_suns_by<S: Singles8, const BOTH: bool>(
+fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
     s: S,
     geometry: &Geometry<'_>,
     paints: &[SurfaceMaterial],
@@ -178,7 +178,7 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn light_faces_by<S: Singles8>(
+fn light_faces_by<S: F32Lanes8>(
     s: S,
     paint: &SurfaceMaterial,
     lights: &Lights<'_>,
@@ -207,7 +207,7 @@ fn light_one_by_one<const BOTH: bool>(
 
 /// Eight vertices of one surface.
 #[inline(always)]
-fn light_eight<S: Singles8, const BOTH: bool>(
+fn light_eight<S: F32Lanes8, const BOTH: bool>(
     s: S,
     paint: &SurfaceMaterial,
     lights: &Lights<'_>,
@@ -215,14 +215,14 @@ fn light_eight<S: Singles8, const BOTH: bool>(
     shades: &mut [[U8F8; 2]; LANES],
 ) {
     let [nx, ny, nz] = s.vectors(normals);
-    let dark = s.all_f32(0.0);
-    let (mut front, mut back) = (s.all_f64(0.0), s.all_f64(0.0));
+    let dark = s.splat_f32(0.0);
+    let (mut front, mut back) = (s.splat_f64(0.0), s.splat_f64(0.0));
     for sun in lights.suns {
         let towards = sun.towards;
-        let (x, y) = (s.mul_f32(nx, s.all_f32(towards.x)), s.mul_f32(ny, s.all_f32(towards.y)));
+        let (x, y) = (s.mul_f32(nx, s.splat_f32(towards.x)), s.mul_f32(ny, s.splat_f32(towards.y)));
         // As glam has it.
-        let cosine = s.add_f32(s.add_f32(x, y), s.mul_f32(nz, s.all_f32(towards.z)));
-        let intensity = s.all_f64(sun.intensity.into());
+        let cosine = s.add_f32(s.add_f32(x, y), s.mul_f32(nz, s.splat_f32(towards.z)));
+        let intensity = s.splat_f64(sun.intensity.into());
         // A light without effect adds zero, which changes no sum: none is −0, as each begins at +0. NaN is without effect.
         front = s.add(front, s.mul(intensity, s.widen(s.max_f32(cosine, dark))));
         if BOTH {
@@ -232,7 +232,7 @@ fn light_eight<S: Singles8, const BOTH: bool>(
     let front = shade(s, paint, front);
     let both = if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front };
     let mut pairs = [0; LANES];
-    s.put_i32s(both, &mut pairs);
+    s.store_i32(both, &mut pairs);
     // The front's shade in the lower half.
     for (lane, shades) in shades.iter_mut().enumerate() {
         *shades = [U8F8::from_bits(pairs[lane] as u16), U8F8::from_bits((pairs[lane] >> 16) as u16)];
@@ -241,13 +241,13 @@ fn light_eight<S: Singles8, const BOTH: bool>(
 
 /// [`SurfaceMaterial::shade`] of these sums of light.
 #[inline(always)]
-fn shade<S: Singles8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
-    let light = s.add(s.all_f64(paint.answer.ambient), s.mul(s.all_f64(paint.answer.diffuse), light));
+fn shade<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
+    let light = s.add(s.splat_f64(paint.answer.ambient), s.mul(s.splat_f64(paint.answer.diffuse), light));
     // Of what is no number the second of both: 0.
-    let clamped = s.min_f32(s.max_f32(s.narrow(light), s.all_f32(0.0)), s.all_f32(1.0));
-    let units = s.all_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
-    let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.all_f64(0.5)));
-    s.min_i32(s.add_i32(s.all_i32(i32::from(paint.ramp.first()) * 256), above), s.all_i32(0xFF00))
+    let clamped = s.min_f32(s.max_f32(s.narrow(light), s.splat_f32(0.0)), s.splat_f32(1.0));
+    let units = s.splat_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
+    let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.splat_f64(0.5)));
+    s.min_i32(s.add_i32(s.splat_i32(i32::from(paint.ramp.first()) * 256), above), s.splat_i32(0xFF00))
 }
 
 #[cfg(test)]

@@ -138,7 +138,7 @@ impl<'a> Builder<'a> {
             let turning = match turns {
                 [0.0, 0.0, 0.0] => Turning::Still,
                 [0.0, _, 0.0] => Turning::Upright,
-                _ => Turning::Anyhow,
+                _ => Turning::Free,
             };
             for object in objects.object(layout, &mut self.named)? {
                 if is_framed {

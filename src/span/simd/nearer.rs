@@ -125,7 +125,7 @@ fn fill<'a>(
 }
 
 /// Copies the first `length` bytes as [`copy_nearer`](super::super::depth::copy_nearer) does, or without `KEEPS` as
-/// [`copy_before`](super::super::depth::copy_before). Returns the number of pixels written; `None`, with nothing done, where
+/// [`copy_nearer_keep_depth`](super::super::depth::copy_nearer_keep_depth). Returns the number of pixels written; `None`, with nothing done, where
 /// something is shorter than the turns.
 #[inline]
 pub(crate) fn copy<const KEEPS: bool>(

@@ -24,7 +24,7 @@ pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
         block.store(&mut bytes);
         return row.copy_from_slice(&bytes[..n]);
     }
-    // The wrap is meant, of the length, too: shades are sums modulo 2¹⁶.
+    // Wrapping is intended, of the length, too: shades are sums modulo 2¹⁶.
     let last = block.raised(step.wrapping_mul((n - BLOCK) as u16));
     let (blocks, _) = row.as_chunks_mut::<BLOCK>();
     for to in blocks {
@@ -37,7 +37,7 @@ pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
 }
 
 /// 64-bit ARM, all of which has NEON.
-#[cfg(all(target_arch = "aarch64", target_feature = "neon", target_endian = "little"))]
+#[cfg(simd_neon)]
 pub(in super::super) mod neon {
     use super::super::super::list::SpanList;
     use core::arch::aarch64::*;
@@ -88,7 +88,7 @@ pub(in super::super) mod neon {
 }
 
 /// WebAssembly with vectors of 128 bits.
-#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+#[cfg(simd_wasm)]
 pub(in super::super) mod wasm {
     use super::super::super::list::SpanList;
     use core::arch::wasm32::*;

@@ -87,7 +87,7 @@ pub(super) const EXEMPT: [(&str, &str); 5] = [
     ("Shipped.text", "a file that is compiled in"),
     ("Renderer.settings", "its fields are changed one by one"),
     ("Settings.overrides", "changed by Renderer::force"),
-    ("Renderer::frame_took", "chooses another error, which a new renderer is not told of; tried in budget.rs"),
+    ("Renderer::report_frame_time", "chooses another error, which a new renderer is not told of; tried in budget.rs"),
 ];
 
 /// All of them.
@@ -507,7 +507,7 @@ pub(super) const CHANGES: &[Change] = &[
     unseen("one set alike draws the same", |w, _| {
         w.kept.force(Effect::Lighting, Some(false));
         w.settings.forced.push((None, Effect::Lighting, Some(false)));
-        let [alike, fresh] = [w.kept.set_alike(), w.settings.renderer()].map(|mut renderer| {
+        let [alike, fresh] = [w.kept.with_same_settings(), w.settings.renderer()].map(|mut renderer| {
             let mut vga = w.machines[0].clone();
             vga.pixels_mut().fill(3);
             (renderer.draw(&w.scene, &mut vga).map(drop), vga.pixels().to_vec())

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::Lanes8;
 #[cfg(feature = "alloc")]
-use super::singles::Singles8;
+use super::singles::F32Lanes8;
 
 /// Vectors of 128 bits: a pair of f64, or four i32, or two i64.
 ///
@@ -16,7 +16,7 @@ pub(crate) trait Vector128: Copy {
     type I: Copy;
 
     fn load_f64(self, from: &[f64; 2]) -> Self::F;
-    fn all_f64(self, value: f64) -> Self::F;
+    fn splat_f64(self, value: f64) -> Self::F;
     fn store_f64(self, from: Self::F, to: &mut [f64; 2]);
     fn add_f64(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub_f64(self, a: Self::F, b: Self::F) -> Self::F;
@@ -36,7 +36,7 @@ pub(crate) trait Vector128: Copy {
     fn low_to_f64(self, from: Self::I) -> Self::F;
 
     fn load(self, from: &[i32; 4]) -> Self::I;
-    fn all(self, value: i32) -> Self::I;
+    fn splat(self, value: i32) -> Self::I;
     fn store(self, from: Self::I, to: &mut [i32; 4]);
     fn add(self, a: Self::I, b: Self::I) -> Self::I;
     fn sub(self, a: Self::I, b: Self::I) -> Self::I;
@@ -47,23 +47,23 @@ pub(crate) trait Vector128: Copy {
     /// `a` and not `b`.
     fn and_not(self, a: Self::I, b: Self::I) -> Self::I;
     fn shl(self, a: Self::I, by: i32) -> Self::I;
-    fn sar(self, a: Self::I, by: i32) -> Self::I;
+    fn shr(self, a: Self::I, by: i32) -> Self::I;
     /// −1 or 0 in four lanes.
     fn is_greater(self, a: Self::I, b: Self::I) -> Self::I;
     fn is_equal(self, a: Self::I, b: Self::I) -> Self::I;
     fn min(self, a: Self::I, b: Self::I) -> Self::I;
     fn max(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a0, b0, a1, b1]`
-    fn zip_low(self, a: Self::I, b: Self::I) -> Self::I;
+    fn interleave_low(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a2, b2, a3, b3]`
-    fn zip_high(self, a: Self::I, b: Self::I) -> Self::I;
+    fn interleave_high(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a0, a2, b0, b2]`
     fn even(self, a: Self::I, b: Self::I) -> Self::I;
     /// The sign bits of four lanes.
     fn sign_bits(self, from: Self::I) -> u32;
 
     fn load_i64(self, from: &[i64; 2]) -> Self::I;
-    fn all_i64(self, value: i64) -> Self::I;
+    fn splat_i64(self, value: i64) -> Self::I;
     fn store_i64(self, from: Self::I, to: &mut [i64; 2]);
     fn add_i64(self, a: Self::I, b: Self::I) -> Self::I;
     fn sub_i64(self, a: Self::I, b: Self::I) -> Self::I;
@@ -73,17 +73,17 @@ pub(crate) trait Vector128: Copy {
     /// Products of the lower halves of two i64, as u32.
     fn mul_low(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a0, b0]` of i64
-    fn zip_low_i64(self, a: Self::I, b: Self::I) -> Self::I;
+    fn interleave_low_i64(self, a: Self::I, b: Self::I) -> Self::I;
     /// `[a1, b1]` of i64
-    fn zip_high_i64(self, a: Self::I, b: Self::I) -> Self::I;
+    fn interleave_high_i64(self, a: Self::I, b: Self::I) -> Self::I;
 }
 
-/// Vectors of four f32 beside them. What is said of [`Singles8`] holds here, too.
+/// Vectors of four f32 beside them. What is said of [`F32Lanes8`] holds here, too.
 #[cfg(feature = "alloc")]
 pub(crate) trait Singles128: Vector128 {
     type S: Copy;
 
-    fn all_f32(self, value: f32) -> Self::S;
+    fn splat_f32(self, value: f32) -> Self::S;
     fn vectors(self, from: &[Vec3; 4]) -> [Self::S; 3];
     fn add_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn sub_f32(self, a: Self::S, b: Self::S) -> Self::S;
@@ -103,10 +103,10 @@ pub(crate) trait Singles128: Vector128 {
 
 /// Four vectors for eight lanes of 64 bits, two for eight of 32.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Quarters<V>(pub(crate) V);
+pub(crate) struct Wide128<V>(pub(crate) V);
 
 /// A function of each of four vectors.
-macro_rules! four {
+macro_rules! each4 {
     ($i:ident => $value:expr) => {{
         let $i = 0;
         let a = $value;
@@ -120,7 +120,7 @@ macro_rules! four {
 }
 
 /// A function of each of two vectors.
-macro_rules! two {
+macro_rules! each2 {
     ($i:ident => $value:expr) => {{
         let $i = 0;
         let a = $value;
@@ -140,7 +140,7 @@ fn pair_mut<T>(eight: &mut [T; 8], i: usize) -> &mut [T; 2] {
     &mut eight.as_chunks_mut::<2>().0[i]
 }
 
-impl<V: Vector128> Quarters<V> {
+impl<V: Vector128> Wide128<V> {
     /// `a` where the mask is set, otherwise `b`.
     #[inline(always)]
     fn choose(self, mask: V::I, a: V::I, b: V::I) -> V::I {
@@ -152,15 +152,15 @@ impl<V: Vector128> Quarters<V> {
     fn with_upper(self, lower: [V::I; 2], upper: [V::I; 2]) -> [V::I; 4] {
         let v = self.0;
         [
-            v.zip_low(lower[0], upper[0]),
-            v.zip_high(lower[0], upper[0]),
-            v.zip_low(lower[1], upper[1]),
-            v.zip_high(lower[1], upper[1]),
+            v.interleave_low(lower[0], upper[0]),
+            v.interleave_high(lower[0], upper[0]),
+            v.interleave_low(lower[1], upper[1]),
+            v.interleave_high(lower[1], upper[1]),
         ]
     }
 }
 
-impl<V: Vector128> Lanes8 for Quarters<V> {
+impl<V: Vector128> Lanes8 for Wide128<V> {
     type F64 = [V::F; 4];
     type I32 = [V::I; 2];
     type I64 = [V::I; 4];
@@ -168,77 +168,82 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
     type Mask = [V::I; 2];
 
     #[inline(always)]
-    fn f64s(self, from: &[f64; 8]) -> Self::F64 {
-        four!(i => self.0.load_f64(pair(from, i)))
+    fn load_f64(self, from: &[f64; 8]) -> Self::F64 {
+        each4!(i => self.0.load_f64(pair(from, i)))
     }
     #[inline(always)]
-    fn all_f64(self, value: f64) -> Self::F64 {
-        [self.0.all_f64(value); 4]
+    fn splat_f64(self, value: f64) -> Self::F64 {
+        [self.0.splat_f64(value); 4]
     }
     #[inline(always)]
-    fn put_f64s(self, from: Self::F64, to: &mut [f64; 8]) {
-        four!(i => self.0.store_f64(from[i], pair_mut(to, i)));
+    fn store_f64(self, from: Self::F64, to: &mut [f64; 8]) {
+        each4!(i => self.0.store_f64(from[i], pair_mut(to, i)));
     }
     #[inline(always)]
     fn add(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.add_f64(a[i], b[i]))
+        each4!(i => self.0.add_f64(a[i], b[i]))
     }
     #[inline(always)]
     fn sub(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.sub_f64(a[i], b[i]))
+        each4!(i => self.0.sub_f64(a[i], b[i]))
     }
     #[inline(always)]
     fn mul(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.mul_f64(a[i], b[i]))
+        each4!(i => self.0.mul_f64(a[i], b[i]))
     }
     #[inline(always)]
     fn div(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.div_f64(a[i], b[i]))
+        each4!(i => self.0.div_f64(a[i], b[i]))
     }
     #[inline(always)]
     fn mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64 {
-        four!(i => self.0.mul_add(a[i], b[i], c[i]))
+        each4!(i => self.0.mul_add(a[i], b[i], c[i]))
     }
     #[inline(always)]
     fn neg_mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64 {
-        four!(i => self.0.neg_mul_add(a[i], b[i], c[i]))
+        each4!(i => self.0.neg_mul_add(a[i], b[i], c[i]))
     }
     #[inline(always)]
     fn min(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.min_f64(a[i], b[i]))
+        each4!(i => self.0.min_f64(a[i], b[i]))
     }
     #[inline(always)]
     fn max(self, a: Self::F64, b: Self::F64) -> Self::F64 {
-        four!(i => self.0.max_f64(a[i], b[i]))
+        each4!(i => self.0.max_f64(a[i], b[i]))
     }
     #[inline(always)]
-    fn flip(self, a: Self::F64, sign: Self::F64) -> Self::F64 {
+    fn xor_sign(self, a: Self::F64, sign: Self::F64) -> Self::F64 {
         let v = self.0;
-        let highest = v.all_i64(i64::MIN);
-        four!(i => v.of_bits(v.xor(v.bits(a[i]), v.and(v.bits(sign[i]), highest))))
+        let highest = v.splat_i64(i64::MIN);
+        each4!(i => v.of_bits(v.xor(v.bits(a[i]), v.and(v.bits(sign[i]), highest))))
     }
     #[inline(always)]
     fn is_less(self, a: Self::F64, b: Self::F64) -> Self::Mask {
-        let less = four!(i => self.0.is_less(a[i], b[i]));
+        let less = each4!(i => self.0.is_less(a[i], b[i]));
         [self.0.even(less[0], less[1]), self.0.even(less[2], less[3])]
     }
     #[inline(always)]
     fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64 {
         let (v, mask) = (self.0, self.with_upper(mask, mask));
-        four!(i => v.of_bits(self.choose(mask[i], v.bits(a[i]), v.bits(b[i]))))
+        each4!(i => v.of_bits(self.choose(mask[i], v.bits(a[i]), v.bits(b[i]))))
     }
     #[inline(always)]
     fn to_f64(self, from: Self::I32) -> Self::F64 {
         let v = self.0;
         let [a, b] = from;
-        [v.low_to_f64(a), v.low_to_f64(v.zip_high_i64(a, a)), v.low_to_f64(b), v.low_to_f64(v.zip_high_i64(b, b))]
+        [
+            v.low_to_f64(a),
+            v.low_to_f64(v.interleave_high_i64(a, a)),
+            v.low_to_f64(b),
+            v.low_to_f64(v.interleave_high_i64(b, b)),
+        ]
     }
     #[inline(always)]
     fn unsigned_to_f64(self, from: Self::I32) -> Self::F64 {
         // Less 2³¹, and that added again: both are exact.
-        let highest = self.0.all(i32::MIN);
-        let signed = self.to_f64(two!(i => self.0.xor(from[i], highest)));
-        self.add(signed, self.all_f64(2_147_483_648.0))
+        let highest = self.0.splat(i32::MIN);
+        let signed = self.to_f64(each2!(i => self.0.xor(from[i], highest)));
+        self.add(signed, self.splat_f64(2_147_483_648.0))
     }
     #[inline(always)]
     fn low_bits(self, from: Self::F64) -> Self::I32 {
@@ -247,107 +252,107 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
     }
     #[inline(always)]
     fn bits(self, from: Self::F64) -> Self::I64 {
-        four!(i => self.0.bits(from[i]))
+        each4!(i => self.0.bits(from[i]))
     }
 
     #[inline(always)]
-    fn i32s(self, from: &[i32; 8]) -> Self::I32 {
-        two!(i => self.0.load(&from.as_chunks::<4>().0[i]))
+    fn load_i32(self, from: &[i32; 8]) -> Self::I32 {
+        each2!(i => self.0.load(&from.as_chunks::<4>().0[i]))
     }
     #[inline(always)]
-    fn all_i32(self, value: i32) -> Self::I32 {
-        [self.0.all(value); 2]
+    fn splat_i32(self, value: i32) -> Self::I32 {
+        [self.0.splat(value); 2]
     }
     #[inline(always)]
-    fn put_i32s(self, from: Self::I32, to: &mut [i32; 8]) {
-        two!(i => self.0.store(from[i], &mut to.as_chunks_mut::<4>().0[i]));
+    fn store_i32(self, from: Self::I32, to: &mut [i32; 8]) {
+        each2!(i => self.0.store(from[i], &mut to.as_chunks_mut::<4>().0[i]));
     }
     #[inline(always)]
     fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.add(a[i], b[i]))
+        each2!(i => self.0.add(a[i], b[i]))
     }
     #[inline(always)]
     fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.sub(a[i], b[i]))
+        each2!(i => self.0.sub(a[i], b[i]))
     }
     #[inline(always)]
     fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.mul(a[i], b[i]))
+        each2!(i => self.0.mul(a[i], b[i]))
     }
     #[inline(always)]
     fn min_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.min(a[i], b[i]))
+        each2!(i => self.0.min(a[i], b[i]))
     }
     #[inline(always)]
     fn max_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.max(a[i], b[i]))
+        each2!(i => self.0.max(a[i], b[i]))
     }
     #[inline(always)]
     fn and_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.and(a[i], b[i]))
+        each2!(i => self.0.and(a[i], b[i]))
     }
     #[inline(always)]
     fn or_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.or(a[i], b[i]))
+        each2!(i => self.0.or(a[i], b[i]))
     }
     #[inline(always)]
     fn xor_i32(self, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.0.xor(a[i], b[i]))
+        each2!(i => self.0.xor(a[i], b[i]))
     }
     #[inline(always)]
     fn shl_i32(self, a: Self::I32, by: i32) -> Self::I32 {
-        two!(i => self.0.shl(a[i], by))
+        each2!(i => self.0.shl(a[i], by))
     }
     #[inline(always)]
-    fn sar_i32(self, a: Self::I32, by: i32) -> Self::I32 {
-        two!(i => self.0.sar(a[i], by))
+    fn shr_i32(self, a: Self::I32, by: i32) -> Self::I32 {
+        each2!(i => self.0.shr(a[i], by))
     }
     #[inline(always)]
     fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask {
-        two!(i => self.0.is_greater(a[i], b[i]))
+        each2!(i => self.0.is_greater(a[i], b[i]))
     }
     #[inline(always)]
     fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask {
-        two!(i => self.0.is_equal(a[i], b[i]))
+        each2!(i => self.0.is_equal(a[i], b[i]))
     }
     #[inline(always)]
     fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32 {
-        two!(i => self.choose(mask[i], a[i], b[i]))
+        each2!(i => self.choose(mask[i], a[i], b[i]))
     }
     #[inline(always)]
-    fn zip_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2] {
-        two!(i => [self.0.zip_low(a[i], b[i]), self.0.zip_high(a[i], b[i])])
+    fn interleave_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2] {
+        each2!(i => [self.0.interleave_low(a[i], b[i]), self.0.interleave_high(a[i], b[i])])
     }
 
     #[inline(always)]
-    fn i64s(self, from: &[i64; 8]) -> Self::I64 {
-        four!(i => self.0.load_i64(pair(from, i)))
+    fn load_i64(self, from: &[i64; 8]) -> Self::I64 {
+        each4!(i => self.0.load_i64(pair(from, i)))
     }
     #[inline(always)]
-    fn all_i64(self, value: i64) -> Self::I64 {
-        [self.0.all_i64(value); 4]
+    fn splat_i64(self, value: i64) -> Self::I64 {
+        [self.0.splat_i64(value); 4]
     }
     #[inline(always)]
     fn halves_i64(self, low: i64, high: i64) -> Self::I64 {
-        let (low, high) = (self.0.all_i64(low), self.0.all_i64(high));
+        let (low, high) = (self.0.splat_i64(low), self.0.splat_i64(high));
         [low, low, high, high]
     }
     #[inline(always)]
-    fn put_i64s(self, from: Self::I64, to: &mut [i64; 8]) {
-        four!(i => self.0.store_i64(from[i], pair_mut(to, i)));
+    fn store_i64(self, from: Self::I64, to: &mut [i64; 8]) {
+        each4!(i => self.0.store_i64(from[i], pair_mut(to, i)));
     }
     #[inline(always)]
     fn add_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
-        four!(i => self.0.add_i64(a[i], b[i]))
+        each4!(i => self.0.add_i64(a[i], b[i]))
     }
     #[inline(always)]
     fn sub_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
-        four!(i => self.0.sub_i64(a[i], b[i]))
+        each4!(i => self.0.sub_i64(a[i], b[i]))
     }
     #[inline(always)]
     fn mul_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
         let v = self.0;
-        four!(i => {
+        each4!(i => {
             let upper = v.add_i64(v.mul_low(a[i], v.upper(b[i])), v.mul_low(v.upper(a[i]), b[i]));
             v.add_i64(v.mul_low(a[i], b[i]), v.shl_i64(upper, 32))
         })
@@ -355,58 +360,58 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
     #[inline(always)]
     fn mul_low_i64(self, a: Self::I64, b: Self::I64) -> Self::I64 {
         let v = self.0;
-        four!(i => v.add_i64(v.mul_low(a[i], b[i]), v.shl_i64(v.mul_low(a[i], v.upper(b[i])), 32)))
+        each4!(i => v.add_i64(v.mul_low(a[i], b[i]), v.shl_i64(v.mul_low(a[i], v.upper(b[i])), 32)))
     }
     #[inline(always)]
     fn shl_i64(self, a: Self::I64, by: i32) -> Self::I64 {
-        four!(i => self.0.shl_i64(a[i], by))
+        each4!(i => self.0.shl_i64(a[i], by))
     }
     #[inline(always)]
     fn to_i64(self, from: Self::I32) -> Self::I64 {
-        self.with_upper(from, two!(i => self.0.sar(from[i], 31)))
+        self.with_upper(from, each2!(i => self.0.shr(from[i], 31)))
     }
     #[inline(always)]
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64 {
-        self.with_upper(from, [self.0.all(0); 2])
+        self.with_upper(from, [self.0.splat(0); 2])
     }
     #[inline(always)]
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2] {
         let v = self.0;
-        let upper = four!(i => v.upper(from[i]));
+        let upper = each4!(i => v.upper(from[i]));
         [[v.even(from[0], from[1]), v.even(from[2], from[3])], [v.even(upper[0], upper[1]), v.even(upper[2], upper[3])]]
     }
     #[inline(always)]
-    fn zip_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2] {
+    fn interleave_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2] {
         let v = self.0;
-        let zip = |i: usize| [v.zip_low_i64(a[i], b[i]), v.zip_high_i64(a[i], b[i])];
+        let zip = |i: usize| [v.interleave_low_i64(a[i], b[i]), v.interleave_high_i64(a[i], b[i])];
         let [[a, b], [c, d], [e, f], [g, h]] = [zip(0), zip(1), zip(2), zip(3)];
         [[a, b, c, d], [e, f, g, h]]
     }
 
     #[inline(always)]
-    fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        two!(i => self.0.and(a[i], b[i]))
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        each2!(i => self.0.and(a[i], b[i]))
     }
     #[inline(always)]
-    fn but_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        two!(i => self.0.and_not(a[i], b[i]))
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        each2!(i => self.0.and_not(a[i], b[i]))
     }
     #[inline(always)]
-    fn mask_bits(self, mask: Self::Mask) -> u32 {
+    fn to_bitmask(self, mask: Self::Mask) -> u32 {
         self.0.sign_bits(mask[0]) | self.0.sign_bits(mask[1]) << 4
     }
     #[inline(always)]
-    fn mask_of_bits(self, bits: u8) -> Self::Mask {
-        let lanes = self.i32s(&[1, 2, 4, 8, 16, 32, 64, 128]);
-        self.is_equal(self.and_i32(self.all_i32(bits.into()), lanes), lanes)
+    fn mask_from_bits(self, bits: u8) -> Self::Mask {
+        let lanes = self.load_i32(&[1, 2, 4, 8, 16, 32, 64, 128]);
+        self.is_equal(self.and_i32(self.splat_i32(bits.into()), lanes), lanes)
     }
     #[inline(always)]
-    fn compact_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], mut to: [&mut [u32; 8]; N]) {
+    fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], mut to: [&mut [u32; 8]; N]) {
         // There is no such instruction for all of these levels: lane by lane out of arrays.
-        let bits = self.mask_bits(mask);
+        let bits = self.to_bitmask(mask);
         let mut lanes = [[0; 8]; N];
         for (i, lanes) in lanes.iter_mut().enumerate() {
-            self.put_i32s(from[i], lanes);
+            self.store_i32(from[i], lanes);
         }
         let (mut count, mut lane) = (0, 0);
         while lane < 8 {
@@ -419,11 +424,11 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
         }
     }
     #[inline(always)]
-    fn compact_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], mut to: [&mut [i64; 8]; N]) {
-        let bits = self.mask_bits(mask);
+    fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], mut to: [&mut [i64; 8]; N]) {
+        let bits = self.to_bitmask(mask);
         let mut lanes = [[0; 8]; N];
         for (i, lanes) in lanes.iter_mut().enumerate() {
-            self.put_i64s(from[i], lanes);
+            self.store_i64(from[i], lanes);
         }
         let (mut count, mut lane) = (0, 0);
         while lane < 8 {
@@ -437,49 +442,49 @@ impl<V: Vector128> Lanes8 for Quarters<V> {
 }
 
 #[cfg(feature = "alloc")]
-impl<V: Singles128> Singles8 for Quarters<V> {
+impl<V: Singles128> F32Lanes8 for Wide128<V> {
     type F32 = [V::S; 2];
 
     #[inline(always)]
-    fn all_f32(self, value: f32) -> Self::F32 {
-        [self.0.all_f32(value); 2]
+    fn splat_f32(self, value: f32) -> Self::F32 {
+        [self.0.splat_f32(value); 2]
     }
     #[inline(always)]
     fn vectors(self, from: &[Vec3; 8]) -> [Self::F32; 3] {
-        let [low, high] = two!(i => self.0.vectors(&from.as_chunks::<4>().0[i]));
+        let [low, high] = each2!(i => self.0.vectors(&from.as_chunks::<4>().0[i]));
         [[low[0], high[0]], [low[1], high[1]], [low[2], high[2]]]
     }
     #[inline(always)]
     fn add_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.add_f32(a[i], b[i]))
+        each2!(i => self.0.add_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn sub_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.sub_f32(a[i], b[i]))
+        each2!(i => self.0.sub_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn mul_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.mul_f32(a[i], b[i]))
+        each2!(i => self.0.mul_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.div_f32(a[i], b[i]))
+        each2!(i => self.0.div_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.max_f32(a[i], b[i]))
+        each2!(i => self.0.max_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn min_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
-        two!(i => self.0.min_f32(a[i], b[i]))
+        each2!(i => self.0.min_f32(a[i], b[i]))
     }
     #[inline(always)]
     fn is_at_least(self, a: Self::F32, b: Self::F32) -> Self::Mask {
-        two!(i => self.0.is_at_least(a[i], b[i]))
+        each2!(i => self.0.is_at_least(a[i], b[i]))
     }
     #[inline(always)]
     fn bits_of_f32(self, from: Self::F32) -> Self::I32 {
-        two!(i => self.0.bits_of_f32(from[i]))
+        each2!(i => self.0.bits_of_f32(from[i]))
     }
     #[inline(always)]
     fn widen(self, [a, b]: Self::F32) -> Self::F64 {
