@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     for (i, shading) in Shading::ALL.into_iter().take(8).enumerate() {
         scene.set_time(scene.duration * i as f64 / 8.0);
-        scene.preferences.shading = Some(shading);
+        scene.settings.accuracy = Some(shading.into());
         let stats = renderer.draw(&scene, &mut vga)?;
         let path = folder.join(format!("{shading}.png"));
         let palette = vga.palette();

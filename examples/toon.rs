@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     scene.objects_mut()[0].materials[0].response = Some(tones);
     // Light is taken at every pixel; by default it is taken at the vertices, and linear between them.
-    scene.preferences.shading = Some(Shading::Phong);
+    scene.settings.accuracy = Some(Shading::Phong.into());
     let mut vga = Vga::new();
     println!("toon.png: {}", Renderer::new().draw(&scene, &mut vga)?);
     Ok(export::png(&vga, "toon.png")?)

@@ -113,6 +113,8 @@ pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
 #[cfg(feature = "alloc")]
+mod settings;
+#[cfg(feature = "alloc")]
 mod shared;
 #[cfg(feature = "alloc")]
 pub mod texture;

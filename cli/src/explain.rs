@@ -86,7 +86,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         };
     }
     let Some(y) = *row else { return Ok(()) };
-    let accuracy = renderer.settings.resolve(&stage.scene.preferences).accuracy;
+    let accuracy = renderer.settings.or(&stage.scene.settings).drawn_accuracy();
     let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::from)?;
     let title = format!("{name} at {at} s, row {y}, {accuracy}");
     match out {

@@ -221,7 +221,7 @@ impl Drawing {
                 ));
             }
             Input::Scene { scene, .. } => {
-                let auto = scene.preferences.auto_palette.then_some(Colors::Auto);
+                let auto = scene.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
                 (Turntable::of_scene(*scene), colors)
             }
@@ -239,7 +239,7 @@ impl Drawing {
             stage.set_dither(dither);
         }
         if let Some(shades) = self.pipeline.tessellation {
-            stage.scene.preferences.tessellation = Some(shades);
+            stage.scene.settings.tessellation = Some(shades);
         }
         let colors = asked.or(usual);
         if colors == Some(Colors::Auto) && self.pipeline.arithmetic == Some(VertexPath::Integer) {
@@ -273,11 +273,11 @@ impl Drawing {
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
         let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
-        renderer.settings.kernel = kernel;
+        renderer.kernel = kernel;
         renderer.settings.hidden_surfaces = hidden_surfaces;
         renderer.settings.mapping = mapping;
         renderer.settings.mipmaps = mipmaps;
-        renderer.settings.vertex_path = arithmetic.unwrap_or_default();
+        renderer.settings.vertex_path = arithmetic;
         renderer
     }
 }

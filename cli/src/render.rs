@@ -419,7 +419,7 @@ impl Run {
             return Ok(Run { errors: run.errors, timed: Vec::new() });
         }
         let mut renderer = shading.renderer(drawing, kernel);
-        if renderer.settings.resolve(&stage.scene.preferences).max_time.is_none() {
+        if renderer.settings.or(&stage.scene.settings).time_for_error().is_none() {
             return match record_errors {
                 Some(path) => Err(Failure::words(format!("{}: no --max-time chooses errors", path.display()))),
                 None => Ok(Run::default()),

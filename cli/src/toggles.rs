@@ -68,7 +68,7 @@ impl Switch {
         if self == Switch::Dither {
             let shown = dither(renderer.plan());
             let next = DitherPattern::ALL.into_iter().find(|pattern| shown.is_none_or(|shown| *pattern > shown));
-            stage.scene.preferences.dither = next;
+            stage.scene.settings.dither = next;
             renderer.force(Effect::Dither, next.is_none().then_some(false));
             return Ok(());
         }
@@ -193,7 +193,7 @@ mod tests {
         for colors in [Colors::Auto, cube.into()] {
             let mut stage = Turntable::of_model(shapes::cube(), None, std::slice::from_ref(&texture)).expect("a model");
             stage.set_colors(&colors).expect("a legal scene");
-            stage.scene.preferences.dither = None;
+            stage.scene.settings.dither = None;
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
             let mut draw = |stage: &Turntable, renderer: &mut Renderer| {
                 renderer.draw(&stage.scene, &mut vga).expect("a legal scene");
@@ -202,14 +202,14 @@ mod tests {
             };
             let with = draw(&stage, &mut renderer);
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.preferences.dither = None;
+            stage.scene.settings.dither = None;
             let without = draw(&stage, &mut renderer);
             // White in white light: greys, or what is nearest to them.
             let is_grey = |color: Rgb| color.r.abs_diff(color.g).max(color.g.abs_diff(color.b)) < 24;
             assert!(without.iter().all(|color| is_grey(*color)), "{colors:?}");
             assert!(without != with && without.iter().any(|color| color.brightness() > 100_000), "{colors:?}");
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
-            stage.scene.preferences.dither = None;
+            stage.scene.settings.dither = None;
             assert!(draw(&stage, &mut renderer) == with, "{colors:?}: the image comes back");
         }
     }

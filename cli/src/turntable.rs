@@ -110,7 +110,7 @@ impl Turntable {
 
     fn new(scene: Scene, shown: Shown) -> Turntable {
         let materials = scene.objects().iter().map(|object| object.materials.clone()).collect();
-        let (camera, palette, own_dither) = (scene.camera, scene.palette.clone(), scene.preferences.dither);
+        let (camera, palette, own_dither) = (scene.camera, scene.palette.clone(), scene.settings.dither);
         Turntable {
             scene,
             shown,
@@ -260,8 +260,8 @@ impl Turntable {
                 object.materials = shown.map(|(material, surface)| material.in_own_colors(surface)).collect();
             }
         }
-        self.scene.preferences.dither = self.dither.unwrap_or(dither);
-        self.scene.preferences.auto_palette = false;
+        self.scene.settings.dither = self.dither.unwrap_or(dither);
+        self.scene.auto_palette = false;
         match colors {
             Colors::Palette(palette) => {
                 if let Some(color) = self.scene.background_color {

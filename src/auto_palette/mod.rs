@@ -39,7 +39,7 @@ impl AutomaticPalette {
     /// for, or one with the same objects. Objects with other numbers of materials stay as they are. The scene's
     /// preference for such a palette is cleared.
     pub fn apply(&self, scene: &mut Scene) {
-        scene.preferences.auto_palette = false;
+        scene.auto_palette = false;
         if let Some(color) = scene.background_color {
             scene.background = self.palette.nearest(color);
         }

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 use crate::light::{Blend, Material, RampChoice};
 use crate::palette::Ramp;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Preferences, Scene};
+use crate::scene::{Scene, Settings};
 use crate::vga::Vga;
 
 /// Pictures over one round.
@@ -78,7 +78,7 @@ impl Picture {
         scene.fog = None;
         scene.background = 0;
         scene.background_color = None;
-        scene.preferences = Preferences { dither: None, ..scene.preferences };
+        scene.settings = Settings { dither: None, ..scene.settings };
         let materials = scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials);
         for (number, material) in materials.enumerate() {
             (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);
@@ -161,8 +161,7 @@ impl Numbers {
             // In the dark, by the cheapest shading.
             let scene = picture.scene_mut();
             scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.0));
-            scene.preferences =
-                Preferences { hidden_surfaces: scene.preferences.hidden_surfaces, ..Preferences::default() };
+            scene.settings = Settings { hidden_surfaces: scene.settings.hidden_surfaces, ..Settings::default() };
             picture
         };
         Self { bytes: places.map(picture).collect(), found: vec![None; Vga::SHOWN] }

@@ -17,7 +17,7 @@ use crate::shared::Shared;
 /// let mut scene = Scene::showing(shapes::teapot(8));
 /// scene.objects_mut()[0].materials[0].response = Some(toon);
 /// // At every pixel; without this at the vertices, and linear between them.
-/// scene.preferences.shading = Some(Shading::Phong);
+/// scene.settings.accuracy = Some(Shading::Phong.into());
 /// ```
 #[derive(Clone)]
 pub struct LightResponse(Shared<dyn Fn(f32) -> f32 + Send + Sync>);

@@ -2,11 +2,11 @@
 
 use super::hidden;
 use super::reason::Reason;
-use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
+use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, Switches, VertexStage};
 use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
-use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Object, Scene, Shading};
+use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Object, Scene, Settings, Shading};
 use crate::view::{ObjectView, ScreenBounds};
 
 /// The max error of an affine mapping, in texels: half of one.
@@ -24,21 +24,10 @@ pub(crate) struct Inputs<'a> {
     /// The changes, one for each object: whether it was drawn before, and is as it was.
     pub(crate) change: &'a [Change],
     pub(crate) forced: &'a Overrides,
-    /// The shading; on the 16.16 path one that it has.
-    pub(crate) shading: Shading,
-    /// The budget; then the shading is the default. None on the 16.16 path.
-    pub(crate) max_error: Option<f32>,
-    /// Faces are to be split.
-    pub(crate) tessellates: bool,
-    /// Shades between two entries are to be shown in this pattern of both.
-    pub(crate) dither: Option<DitherPattern>,
-    pub(crate) hidden_surfaces: Option<HiddenSurfaces>,
-    pub(crate) mapping: Option<Mapping>,
-    pub(crate) mipmaps: Option<bool>,
+    /// The settings of the renderer and the scene, as one.
+    pub(crate) settings: &'a Settings,
     /// The frame holds the whole screen.
     pub(crate) whole: bool,
-    /// Vertices are made in 16.16.
-    pub(crate) integer: bool,
     /// An object may keep the results of its vertices.
     pub(crate) keeps: bool,
 }
@@ -57,7 +46,11 @@ const LEAST_DEPTH: f64 = 1.0 / 1_048_576.0;
 /// Makes the plan of a frame, in place.
 #[inline(never)]
 pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [LampBeam], plan: &mut Plan) {
-    let (way, reason) = hidden::choose(inputs.scene, inputs.views, inputs.hidden_surfaces, &mut plan.order);
+    let accuracy = inputs.settings.drawn_accuracy();
+    let (shading, max_error) = (accuracy.shading(), accuracy.max_error());
+    let is_integer = inputs.settings.is_integer();
+    let (way, reason) = hidden::choose(inputs.scene, inputs.views, inputs.settings.hidden_surfaces, &mut plan.order);
+    plan.is_integer = is_integer;
     plan.hidden_surfaces = way;
     plan.chosen = reason != Reason::Asked;
     plan.objects.clear();
@@ -65,7 +58,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     let mut farthest = 0.0_f64;
     for (place, object) in inputs.scene.objects().iter().enumerate() {
         if !inputs.scene.is_visible(place) {
-            plan.objects.push(ObjectPlan::new(inputs.shading));
+            plan.objects.push(ObjectPlan::new(shading));
             continue;
         }
         let rules = Rules {
@@ -76,11 +69,9 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             reach: inputs.views[place].reach(object.mesh().bounds()),
             change: inputs.change.get(place).copied().unwrap_or(Change::New),
             inputs,
-            shading: if inputs.max_error.is_some() && has_custom_response(object) {
-                Shading::Phong
-            } else {
-                inputs.shading
-            },
+            is_integer,
+            max_error,
+            shading: if max_error.is_some() && has_custom_response(object) { Shading::Phong } else { shading },
             way: (way, reason),
         };
         plan.seen = plan.seen.hull(rules.reach.seen);
@@ -91,7 +82,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
     // That of the sources draws beyond a triangle's edges, and 16.16 clips in its own way.
-    if inputs.shading == Shading::GouraudVintage || inputs.integer {
+    if shading == Shading::GouraudVintage || is_integer {
         plan.seen = Rect::EVERYWHERE;
     }
 }
@@ -125,7 +116,11 @@ struct Rules<'a> {
     reach: ScreenBounds,
     change: Change,
     inputs: &'a Inputs<'a>,
-    /// The shading of the inputs; for an object without a bound, light at every pixel in place of a budget.
+    /// Vertices are made in 16.16.
+    is_integer: bool,
+    /// The error budget, if there is one.
+    max_error: Option<f32>,
+    /// The shading that is asked for, on the 16.16 path one that it has, within a budget the default; for an object without a bound, light at every pixel in place of a budget.
     shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
@@ -140,7 +135,7 @@ impl Rules<'_> {
                 plan.set(effect, Decision::off(Reason::LeftOut));
                 continue;
             }
-            if self.inputs.integer && !in_integers(effect) {
+            if self.is_integer && !in_integers(effect) {
                 plan.set(effect, Decision::off(Reason::NotInIntegers));
                 continue;
             }
@@ -153,7 +148,7 @@ impl Rules<'_> {
             }
             plan.set(effect, decision);
         }
-        if let Some(max_error) = self.inputs.max_error {
+        if let Some(max_error) = self.max_error {
             self.keep_within(max_error, &mut plan);
         }
         plan.stages = self.stages(&plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
@@ -165,6 +160,7 @@ impl Rules<'_> {
         let is_on = |effect| plan.is_on(effect);
         let channels = is_on(Effect::RgbChannels);
         Stages {
+            switches: Switches::of(is_on),
             vertices: match is_on(Effect::Transform) {
                 false => VertexStage::Keep,
                 true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
@@ -250,7 +246,7 @@ impl Rules<'_> {
 
     fn transform(&self) -> Decision {
         match self.change {
-            _ if self.inputs.integer => Decision::on(Reason::NotKept),
+            _ if self.is_integer => Decision::on(Reason::NotKept),
             Change::New => Decision::on(Reason::FirstFrame),
             Change::Changed => Decision::on(Reason::Changed),
             Change::Unchanged if self.inputs.keeps => Decision::off(Reason::Unchanged),
@@ -335,7 +331,7 @@ impl Rules<'_> {
         if !before.is_on(Effect::Lighting) {
             return Decision::off(Reason::OneShade);
         }
-        if let Some(max_error) = self.inputs.max_error {
+        if let Some(max_error) = self.max_error {
             return match self.is_lit_by_face(before) {
                 true => Decision::off(Reason::Faceted),
                 false => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
@@ -359,7 +355,7 @@ impl Rules<'_> {
     }
 
     fn phong(&self, before: &ObjectPlan) -> Decision {
-        if let Some(max_error) = self.inputs.max_error {
+        if let Some(max_error) = self.max_error {
             return if !before.is_on(Effect::Lighting) {
                 Decision::off(before[Effect::Lighting].reason)
             } else if self.is_lit_by_face(before) {
@@ -378,9 +374,9 @@ impl Rules<'_> {
         // Faces are split for their shades alone.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before[Effect::Lighting].reason)
-        } else if self.inputs.max_error.is_some() {
+        } else if self.max_error.is_some() {
             Decision::off(Reason::LeftToBudget)
-        } else if self.inputs.tessellates {
+        } else if self.inputs.settings.tessellates() {
             Decision::on(Reason::Asked)
         } else {
             Decision::off(Reason::NotAsked)
@@ -392,7 +388,7 @@ impl Rules<'_> {
             return Decision::off(Reason::NoTexture);
         }
         let texels = self.affine_error();
-        match self.inputs.mapping {
+        match self.inputs.settings.mapping {
             Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Choice::Mapping(Mapping::Affine)),
             Some(mapping) => Decision::on(Reason::Asked).choosing(Choice::Mapping(mapping)),
             None if texels > AFFINE_TOLERANCE => {
@@ -432,7 +428,7 @@ impl Rules<'_> {
             return Decision::off(Reason::NoImage);
         }
         let texels = texels_to_pixel(self.object, self.view, self.reach.farthest);
-        let (on, reason) = match self.inputs.mipmaps {
+        let (on, reason) = match self.inputs.settings.mipmaps {
             Some(asked) => (asked, Reason::Asked),
             None => (texels > MIN_TEXELS, Reason::TexelsToPixel { texels }),
         };
@@ -463,7 +459,7 @@ impl Rules<'_> {
     }
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
-        let Some(pattern) = self.inputs.dither else {
+        let Some(pattern) = self.inputs.settings.dither else {
             // Few palettes without ramps have many shades of one colour.
             if before.is_on(Effect::RgbChannels) && self.misses_ramp() {
                 return Decision::on(Reason::NoRamps).choosing(Choice::Dither(DitherPattern::default()));

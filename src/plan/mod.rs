@@ -36,7 +36,7 @@ pub use stages::Choice;
 pub(crate) use decide::{Change, Inputs, decide, has_custom_response};
 pub(crate) use hidden::far_to_near;
 
-use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, VertexStage};
+use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, Switches, VertexStage};
 use crate::raster::Rect;
 use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
 
@@ -89,6 +89,7 @@ impl ObjectPlan {
     /// A plan without decisions yet, for an object that is not drawn.
     fn new(shading: Shading) -> Self {
         let stages = Stages {
+            switches: Switches::default(),
             vertices: VertexStage::MakeAnew,
             nearest: 0.0,
             lighting: Lighting::None,
@@ -184,6 +185,8 @@ pub struct Plan {
     pub(crate) order: Vec<usize>,
     /// The part of the screen that may show any of them.
     pub(crate) seen: Rect,
+    /// Vertices are made in 16.16.
+    pub(crate) is_integer: bool,
     /// See [`Plan::near_needed`].
     pub(crate) near_needed: Option<f32>,
 }
@@ -196,6 +199,7 @@ impl Default for Plan {
             objects: Vec::new(),
             order: Vec::new(),
             seen: Rect::NOWHERE,
+            is_integer: false,
             near_needed: None,
         }
     }

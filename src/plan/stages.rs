@@ -1,5 +1,6 @@
 //! The stages that an object goes through, as values for the renderer. Words and reasons are for people alone.
 
+use super::Effect;
 use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 
 /// The way in which an effect is done, of several.
@@ -95,9 +96,72 @@ pub(crate) enum Dither {
     Neutral,
 }
 
+/// Stages that an object goes through or does not, by the effects that call for them. None is there in a build that leaves
+/// its effect out, so the compiler leaves it out as well.
+macro_rules! switches {
+    ($($(#[$doc:meta])* $name:ident: $first:ident $(| $other:ident)*;)+) => {
+        /// The stages that an object goes through.
+        #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+        pub(crate) struct Switches {
+            $($name: bool,)+
+        }
+
+        impl Switches {
+            /// The stages of an object for which these effects are on.
+            pub(super) fn of(is_on: impl Fn(Effect) -> bool) -> Self {
+                Self { $($name: is_on(Effect::$first) $(|| is_on(Effect::$other))*,)+ }
+            }
+        }
+
+        impl Stages {
+            $(
+                $(#[$doc])*
+                #[inline]
+                pub(crate) const fn $name(&self) -> bool {
+                    self.switches.$name && !(Effect::$first.is_left_out() $(&& Effect::$other.is_left_out())*)
+                }
+            )+
+        }
+    };
+}
+
+switches! {
+    /// Returns whether vertices may lie before the near plane or outside the guard band.
+    clips: NearClipping | ScreenClipping;
+    /// Returns whether faces turned away are culled.
+    culls: BackFaceCulling;
+    /// Returns whether suns or lamps shine on it.
+    is_lit: Lighting;
+    /// Returns whether some material has a highlight.
+    has_highlights: Specular;
+    /// Returns whether a face has shades that differ.
+    interpolates: Gouraud;
+    /// Returns whether light is computed at pixels.
+    lights_pixels: Phong;
+    /// Returns whether faces are split.
+    tessellates: Tessellation;
+    /// Returns whether fog lies before it.
+    has_fog: Fog;
+    /// Returns whether there are three channels of light.
+    has_channels: RgbChannels;
+    /// Returns whether some surface has a texture.
+    has_texture: Texture;
+    /// Returns whether some surface mirrors an image.
+    has_environment: EnvironmentMap;
+    /// Returns whether textures have mipmaps.
+    has_mipmaps: Mipmaps;
+    /// Returns whether some surface is transparent.
+    is_transparent: Transparency;
+    /// Returns whether shades are dithered.
+    has_dither: Dither;
+    /// Returns whether pixels pass through tables.
+    needs_tables: Fog | RgbChannels | Texture | EnvironmentMap | Transparency;
+}
+
 /// The stages of one object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Stages {
+    pub(super) switches: Switches,
     pub(crate) vertices: VertexStage,
     /// The least distance of the object's bounds, along the view.
     pub(crate) nearest: f64,

@@ -2,7 +2,7 @@
 
 use super::pick::Look;
 use super::pipelines::PipelineKey;
-use super::{RenderError, Renderer, Screen, Stats, VertexPath};
+use super::{RenderError, Renderer, Screen, Stats};
 use crate::palette::Ramp;
 use crate::raster::effects::{Attributes, PixelPipeline};
 use crate::raster::{DrawStats, Interpolation, Vertex};
@@ -49,11 +49,11 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let is_integer = self.settings.vertex_path == VertexPath::Integer;
-        let kernel = self.settings.kernel;
+        let is_integer = self.cache.plan.is_integer;
+        let kernel = self.kernel;
         let Self { cache, scratch, .. } = self;
         let pipelines = cache.pipelines(scene, kernel);
-        scratch.each_run(scene, cache, is_integer, &mut stats, &mut |object, run| {
+        scratch.each_run(scene, cache, &mut stats, &mut |object, run| {
             let Look { surface, shading, effects, transparent, .. } = run.look;
             let surfaces = cache.states[object].triangle_surfaces(&scene.objects()[object]);
             for k in 0..run.picks.picks.len() {

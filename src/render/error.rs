@@ -30,8 +30,8 @@ pub enum RenderError {
     Fog(&'static str),
     /// The palette's animation.
     PaletteAnimation(&'static str),
-    /// The preferences.
-    Preferences(&'static str),
+    /// The settings, those of the scene or the renderer's.
+    Settings(&'static str),
 }
 
 impl fmt::Display for RenderError {
@@ -43,7 +43,7 @@ impl fmt::Display for RenderError {
             Self::Ambient => f.write_str("the ambient light must be finite"),
             Self::Fog(what) => write!(f, "fog: {what}"),
             Self::PaletteAnimation(what) => write!(f, "palette animation: {what}"),
-            Self::Preferences(what) => write!(f, "preferences: {what}"),
+            Self::Settings(what) => write!(f, "settings: {what}"),
         }
     }
 }
@@ -70,5 +70,5 @@ pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
     if let Some(animation) = &scene.palette_animation {
         animation.check().map_err(RenderError::PaletteAnimation)?;
     }
-    scene.preferences.check().map_err(RenderError::Preferences)
+    scene.settings.check().map_err(RenderError::Settings)
 }

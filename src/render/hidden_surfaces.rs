@@ -6,9 +6,9 @@ use super::integer::IntegerScratch;
 use super::pick::{Culler, Look, PickScratch, Picker, Run};
 use super::pipelines::{PipelineKey, Pipelines};
 use super::stats::Shares;
-use super::{Cache, HiddenSurfaces, Renderer, Stats, VertexPath};
+use super::{Cache, HiddenSurfaces, Renderer, Stats};
 use crate::fixed::U8F8;
-use crate::plan::{Effect, far_to_near};
+use crate::plan::far_to_near;
 use crate::raster::columns::{Picks, Triangles};
 use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
@@ -57,12 +57,11 @@ impl Scratch {
         &mut self,
         scene: &Scene,
         cache: &Cache,
-        is_integer: bool,
         stats: &mut Stats,
         visit: &mut dyn FnMut(usize, &Run<'_>),
     ) {
         let Self { pick, integer, counts, .. } = self;
-        each_run(scene, cache, (is_integer, None, false), (integer, pick, counts), stats, visit);
+        each_run(scene, cache, (None, false), (integer, pick, counts), stats, visit);
         pick.added.clear();
     }
 }
@@ -153,10 +152,10 @@ impl Painter<'_, '_> {
 impl Renderer {
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
         frame.clear(scene.background);
-        let Self { settings, cache, scratch, .. } = self;
+        let Self { kernel, cache, scratch, .. } = self;
         let Scratch { depths, effects, pick, integer, faces, transparent, far_to_near, triangles, lists, counts } =
             scratch;
-        let mut raster = Raster::new(frame).with_kernel(settings.kernel);
+        let mut raster = Raster::new(frame).with_kernel(*kernel);
         let method = cache.plan.hidden_surfaces();
         if method == HiddenSurfaces::DepthBuffer {
             raster = raster.with_depth_cleared_within(depths, cache.plan.seen);
@@ -168,7 +167,7 @@ impl Renderer {
             HiddenSurfaces::ScanLine => true,
         };
         transparent.clear();
-        transparent.reserve(cache.most_faces(scene, |plan| plan.is_on(Effect::Transparency)));
+        transparent.reserve(cache.most_faces(scene, |plan| plan.stages().is_transparent()));
         far_to_near.clear();
         far_to_near.reserve(transparent.capacity());
         faces.clear();
@@ -181,11 +180,11 @@ impl Renderer {
                 lists.reserve(faces.capacity());
             }
         }
-        let culler = Some(Culler { clip: raster.clip(), kernel: settings.kernel });
-        let pipelines = cache.pipelines(scene, settings.kernel);
+        let culler = Some(Culler { clip: raster.clip(), kernel: *kernel });
+        let pipelines = cache.pipelines(scene, *kernel);
         let mut painter = Painter { pipelines, raster: &mut raster, scratch: effects };
         let mut drawn = DrawStats::default();
-        let path = (settings.vertex_path == VertexPath::Integer, culler, deferred);
+        let path = (culler, deferred);
         each_run(scene, cache, path, (integer, pick, counts), stats, &mut |object, run| {
             if run.look.transparent {
                 transparent.extend(DeferredFace::of(object, run));
@@ -216,7 +215,7 @@ impl Renderer {
 fn each_run(
     scene: &Scene,
     cache: &Cache,
-    (is_integer, culler, keeps): (bool, Option<Culler>, bool),
+    (culler, keeps): (Option<Culler>, bool),
     (integer, pick, counts): (&mut IntegerScratch, &mut PickScratch, &mut Vec<Shares>),
     stats: &mut Stats,
     draw: &mut dyn FnMut(usize, &Run<'_>),
@@ -227,7 +226,7 @@ fn each_run(
     for &object in &cache.plan.order {
         let (of_scene, plan) = (&scene.objects()[object], &cache.plan.objects[object]);
         let mut of_object = |run: &Run<'_>| draw(object, run);
-        if is_integer {
+        if cache.plan.is_integer {
             let mut picker = Picker::new(culler, keeps, pick, &mut of_object);
             picker.added().make_room();
             let shading = stats.shading;

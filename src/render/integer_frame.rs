@@ -34,7 +34,7 @@ impl Renderer {
         scene: &'a Scene,
         screen: Screen,
     ) -> Result<IntegerFrame<'a>, RenderError> {
-        self.settings.vertex_path = VertexPath::Integer;
+        self.settings.vertex_path = Some(VertexPath::Integer);
         let (stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
         let Some((camera, focal, suns)) = self.cache.integer.frame() else {

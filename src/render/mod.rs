@@ -10,8 +10,7 @@
 //! | `budget` | the error budget: the shading for each triangle |
 //! | `hidden_surfaces` | the ways to visible surfaces: faces drawn as they come, far to near, or row by row |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
-//! | `vertex_path`, `integer` | the choice between f32 and 16.16; a scene for the latter |
-//! | `settings` | settings of a renderer and of the scene drawn, and whose choice counts |
+//! | `integer` | a scene in 16.16 |
 //! | `time_budget` | the least error that fits in a time |
 //! | `stats` | counts of a frame |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
@@ -36,13 +35,11 @@ mod paint;
 mod pick;
 mod pipelines;
 mod pixel_light;
-mod settings;
 mod stats;
 mod tables;
 mod tessellate;
 mod time_budget;
 mod vertex;
-mod vertex_path;
 
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -55,11 +52,12 @@ use self::tables::Tables;
 use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
 pub use crate::plan::FaceShading;
-use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Plan, decide};
+use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
 use crate::raster::columns::Triangles;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
 pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
+pub use crate::settings::{Accuracy, Settings, VertexPath};
 use crate::span::Kernel;
 use crate::vga::Vga;
 #[doc(hidden)]
@@ -67,9 +65,7 @@ pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use error::RenderError;
 use error::check;
-pub use settings::{Accuracy, ChosenBy, Resolved, Settings};
 pub use stats::{Shares, Stats};
-pub use vertex_path::VertexPath;
 
 /// Inputs of the last frame that was drawn, beside its objects.
 #[derive(Clone, PartialEq, Debug)]
@@ -77,7 +73,7 @@ struct Drawing {
     screen: Screen,
     background: u8,
     hidden_surfaces: HiddenSurfaces,
-    settings: Resolved,
+    settings: Settings,
     order: Vec<usize>,
     /// The palette: tables are made from it, and ramps lie in it.
     palette: Option<Palette>,
@@ -131,8 +127,12 @@ impl Cache {
 /// ```
 #[derive(Debug)]
 pub struct Renderer {
-    /// Settings: accuracy of shades, mapping of textures, hidden surfaces, arithmetic of the vertices, span kernel.
+    /// How to draw; the scene's own settings decide what is `None` here.
     pub settings: Settings,
+    /// Kernel that fills spans; the fastest by default. All give equal bytes.
+    pub kernel: Kernel,
+    /// Effects that are switched by hand.
+    overrides: Overrides,
     /// Bits after the point of projected vertices; 8 as the raster has them.
     vertex_bits: u32,
     cache: Cache,
@@ -151,6 +151,8 @@ impl Renderer {
     pub fn new() -> Self {
         Self {
             settings: Settings::default(),
+            kernel: Kernel::default(),
+            overrides: Overrides::default(),
             vertex_bits: VERTEX_BITS,
             cache: Cache::default(),
             scratch: Scratch::default(),
@@ -164,7 +166,13 @@ impl Renderer {
     #[must_use]
     #[doc(hidden)]
     pub fn with_same_settings(&self) -> Self {
-        Self { settings: self.settings.clone(), time_budget: self.time_budget.clone(), ..Self::new() }
+        Self {
+            settings: self.settings,
+            kernel: self.kernel,
+            overrides: self.overrides.clone(),
+            time_budget: self.time_budget.clone(),
+            ..Self::new()
+        }
     }
 
     /// Tells how long the frame took that was drawn last: what [`Settings::max_time`] chooses the errors of the next
@@ -211,14 +219,14 @@ impl Renderer {
     /// image that changes nothing). Clipping stays on where the plan calls for it.
     #[doc(hidden)]
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
-        self.settings.overrides.set(effect, on);
+        self.overrides.set(effect, on);
     }
 
     /// Switches an effect on or off for one object, by its index in the scene, whatever holds for every object. `None`
     /// takes that back. Palette animation is on as soon as it is for one. Otherwise like [`force`](Self::force).
     #[doc(hidden)]
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
-        self.settings.overrides.set_for(object, effect, on);
+        self.overrides.set_for(object, effect, on);
     }
 
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
@@ -261,7 +269,8 @@ impl Renderer {
     #[doc(hidden)]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
-        if plan.is_on(Effect::Phong) || (plan.is_on(Effect::Lighting) && !plan.is_on(Effect::Gouraud)) {
+        let stages = plan.stages();
+        if stages.lights_pixels() || (stages.is_lit() && !stages.interpolates()) {
             return None;
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::has_custom_response(object))?;
@@ -314,7 +323,7 @@ impl Renderer {
             vga.set_palette(palette);
         }
         match self.last {
-            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.settings.keeps_frames() => {
+            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.keeps_frames() => {
                 self.redrawn = false;
                 stats.redrawn = false;
                 stats.hidden_surfaces = last.hidden_surfaces;
@@ -365,8 +374,7 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let is_integer = self.settings.vertex_path == VertexPath::Integer;
-        self.scratch.each_run(scene, &self.cache, is_integer, &mut stats, &mut |_, run| {
+        self.scratch.each_run(scene, &self.cache, &mut stats, &mut |_, run| {
             for k in 0..run.picks.picks.len() {
                 let (vertices, interpolation) = run.vertices(k);
                 triangle(&vertices, if run.look.effects { Interpolation::default() } else { interpolation });
@@ -392,7 +400,7 @@ impl Renderer {
         whole: bool,
     ) -> Result<(Stats, bool), RenderError> {
         let view = self.checked(scene, screen)?;
-        if self.settings.vertex_path == VertexPath::Integer {
+        if self.settings.or(&scene.settings).is_integer() {
             self.cache.integer.prepare(scene, screen)?;
         }
         let settings = self.decide(scene, &view, whole);
@@ -414,7 +422,7 @@ impl Renderer {
             self.cache.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
         }
 
-        let mut stats = Stats::new(&settings, self.settings.kernel, self.cache.plan.hidden_surfaces());
+        let mut stats = Stats::new(&settings, self.kernel, self.cache.plan.hidden_surfaces());
         stats.fits = self.time_budget.as_ref().is_none_or(TimeBudget::fits);
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.cache.states).enumerate() {
             let plan = &self.cache.plan.objects[i];
@@ -422,12 +430,12 @@ impl Renderer {
                 state.invalidate();
                 continue;
             }
-            if self.settings.vertex_path == VertexPath::Integer {
+            if self.cache.plan.is_integer {
                 changed = true;
                 state.invalidate();
                 continue;
             }
-            if state.vertices(scene, object, &view, plan, self.settings.kernel, &mut stats) {
+            if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
                 if self.vertex_bits < VERTEX_BITS {
                     state.round_vertices(self.vertex_bits);
@@ -449,12 +457,12 @@ impl Renderer {
     /// The view of a scene in which nothing is wrong.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
-        self.settings.check(&scene.preferences).map_err(RenderError::Preferences)?;
+        self.settings.or(&scene.settings).check().map_err(RenderError::Settings)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }
 
     /// Makes the plan of a scene that has been checked. Returns what it is drawn by.
-    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Resolved {
+    fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Settings {
         self.cache.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
         self.cache.views.extend(scene.objects().iter().enumerate().map(placed));
@@ -468,17 +476,10 @@ impl Renderer {
             scene,
             views: &self.cache.views,
             change: &self.cache.change,
-            forced: &self.settings.overrides,
-            shading: settings.accuracy.shading(),
-            max_error: settings.accuracy.max_error(),
-            tessellates: settings.tessellates,
-            dither: settings.dither,
-            hidden_surfaces: settings.hidden_surfaces,
-            mapping: settings.mapping,
-            mipmaps: settings.mipmaps,
+            forced: &self.overrides,
+            settings: &settings,
             whole,
-            integer: settings.vertex_path == VertexPath::Integer,
-            keeps: settings.keeps_vertices,
+            keeps: self.keeps_frames() && !settings.is_integer(),
         };
         let states = &self.cache.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.cache.plan);
@@ -486,18 +487,23 @@ impl Renderer {
     }
 
     /// The settings for the next frame of a scene, with the error that fits in the time for it.
-    fn settings_now(&mut self, scene: &Scene) -> Resolved {
-        let mut settings = self.settings.resolve(&scene.preferences);
-        self.time_budget = match (settings.max_time, settings.accuracy) {
+    fn settings_now(&mut self, scene: &Scene) -> Settings {
+        let mut settings = self.settings.or(&scene.settings);
+        self.time_budget = match (settings.time_for_error(), settings.drawn_accuracy()) {
             (Some(max_time), Accuracy::WithinError(max_error)) => {
                 let known = self.time_budget.take().filter(|known| known.is_of(max_time, max_error));
                 let time_budget = known.unwrap_or_else(|| TimeBudget::new(max_time, max_error));
-                settings.accuracy = Accuracy::WithinError(time_budget.error());
+                settings.accuracy = Some(Accuracy::WithinError(time_budget.error()));
                 Some(time_budget)
             }
             _ => None,
         };
         settings
+    }
+
+    /// Returns whether what is there may stay where nothing has changed.
+    fn keeps_frames(&self) -> bool {
+        self.overrides.get(Effect::Transform) != Some(true)
     }
 
     /// Bytes that the renderer holds.

@@ -12,7 +12,7 @@ use super::faces::{FacePoint, Faces, face_points};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
-use super::settings::{Accuracy, Resolved};
+
 use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex;
@@ -20,16 +20,17 @@ use crate::fixed::U8F8;
 use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material, widen};
 use crate::mesh::Mesh;
 use crate::palette::{Lut64K, Palette};
-use crate::plan::stages::{Lamps, Lighting, LitAt, VertexStage};
-use crate::plan::{Change, Effect, FaceCounts, FaceShading, ObjectPlan};
+use crate::plan::stages::{Lamps, Lighting, LitAt, Stages, VertexStage};
+use crate::plan::{Change, FaceCounts, FaceShading, ObjectPlan};
 use crate::raster::columns::Triangles;
 use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
+use crate::settings::{Accuracy, Settings};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
 /// Inputs of an object's vertices, beside the plan.
 #[derive(Clone, PartialEq, Debug)]
-struct ShadeSource {
+struct VertexInputs {
     mesh: Shared<Mesh>,
     view: ObjectView,
     suns: Vec<Beam>,
@@ -43,10 +44,10 @@ struct ShadeSource {
     tolerance: f32,
 }
 
-impl ShadeSource {
+impl VertexInputs {
     /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
     /// allocated as long as there are no more lights or materials than before.
-    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> bool {
+    fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
             self.mesh = Shared::clone(object.shared_mesh());
@@ -62,13 +63,13 @@ impl ShadeSource {
         changed |= replace(&mut self.ambient, scene.ambient);
         changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
         changed |= replace(&mut self.fog, scene.fog);
-        changed |= replace(&mut self.accuracy, settings.accuracy);
-        changed | replace(&mut self.tolerance, settings.tolerance)
+        changed |= replace(&mut self.accuracy, settings.drawn_accuracy());
+        changed | replace(&mut self.tolerance, settings.tolerance())
     }
 
     /// The light that falls on it, as its plan has it: of the lamps those that are given.
     fn lights<'a>(&'a self, lamps: &'a [LampBeam], plan: &ObjectPlan) -> Lights<'a> {
-        let suns = if plan.is_on(Effect::Lighting) { self.suns.as_slice() } else { &[] };
+        let suns = if plan.stages().is_lit() { self.suns.as_slice() } else { &[] };
         Lights { suns, lamps, eye: self.view.eye() }
     }
 }
@@ -134,11 +135,11 @@ struct Made<'a> {
 /// One object of a renderer's scene.
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
-    source: Option<ShadeSource>,
+    source: Option<VertexInputs>,
     /// True if the source has changed since the vertices were made.
     stale: bool,
     /// The plan that the vertices were made by, its reasons aside.
-    made_by: Option<[bool; Effect::COUNT]>,
+    made_by: Option<Stages>,
     paints: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
@@ -163,11 +164,11 @@ pub(super) struct ObjectState {
 
 impl ObjectState {
     /// Takes on what the object is now, and what it is drawn by. Says what became of it since its vertices were made.
-    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Resolved) -> Change {
+    pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> Change {
         match &mut self.source {
             Some(source) => self.stale |= source.renew(scene, object, view, settings),
             None => {
-                let mut source = ShadeSource {
+                let mut source = VertexInputs {
                     mesh: Shared::clone(object.shared_mesh()),
                     view: *view,
                     suns: Vec::new(),
@@ -176,8 +177,8 @@ impl ObjectState {
                     ambient: scene.ambient,
                     ramps: 0,
                     fog: None,
-                    accuracy: settings.accuracy,
-                    tolerance: settings.tolerance,
+                    accuracy: settings.drawn_accuracy(),
+                    tolerance: settings.tolerance(),
                 };
                 source.renew(scene, object, view, settings);
                 self.source = Some(source);
@@ -210,12 +211,13 @@ impl ObjectState {
         kernel: Kernel,
         stats: &mut Stats,
     ) -> bool {
-        let on = Effect::ALL.map(|effect| effect != Effect::Transform && plan.is_on(effect));
-        let stages = plan.stages();
-        if stages.vertices == VertexStage::Keep && self.made_by == Some(on) {
+        let mut stages = *plan.stages();
+        // Neither says that vertices would be others.
+        (stages.vertices, stages.nearest) = (VertexStage::Make, 0.0);
+        if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) {
             return false;
         }
-        (self.made_by, self.stale) = (Some(on), false);
+        (self.made_by, self.stale) = (Some(stages), false);
         if self.source.is_none() {
             return false;
         }
@@ -238,8 +240,8 @@ impl ObjectState {
         let palette = scene.palette.as_ref();
         let surfaces = object.materials.iter().zip(object.mesh().surfaces());
         self.paints.extend(surfaces.map(|(material, surface)| match material.misses_ramp(palette) {
-            true => SurfaceMaterial::new(&material.in_own_colors(surface), scene.ambient, palette, plan),
-            false => SurfaceMaterial::new(material, scene.ambient, palette, plan),
+            true => SurfaceMaterial::new(&material.in_own_colors(surface), scene.ambient, palette, plan.stages()),
+            false => SurfaceMaterial::new(material, scene.ambient, palette, plan.stages()),
         }));
         self.lamps.clear();
         let bounds = object.mesh().bounds();
@@ -254,7 +256,7 @@ impl ObjectState {
 
     /// The faces, split where that is on.
     fn split_faces(&mut self, &Made { object, plan, .. }: &Made<'_>) {
-        self.is_tessellated = plan.is_on(Effect::Tessellation);
+        self.is_tessellated = plan.stages().tessellates();
         let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
         let points = match &mut self.points {
             Some((mesh, points)) if Shared::ptr_eq(mesh, object.shared_mesh()) => &*points,
@@ -271,7 +273,7 @@ impl ObjectState {
         let count = geometry.positions.len();
         stats.vertices += count as u64;
         self.columns.begin(count);
-        if plan.is_on(Effect::NearClipping) || plan.is_on(Effect::ScreenClipping) {
+        if plan.stages().clips() {
             vertex::project_tested(&source.view, &geometry, kernel, &mut self.columns);
         } else {
             vertex::project_inside(&source.view, &geometry, kernel, &mut self.columns);
@@ -281,14 +283,14 @@ impl ObjectState {
         }
         // Those that the plan asks for, also where an effect is forced to run on input that changes nothing.
         let VertexColumns { texture, fog, channels, .. } = &mut self.columns;
-        let image = plan.is_on(Effect::Texture) || plan.is_on(Effect::EnvironmentMap);
+        let image = plan.stages().has_texture() || plan.stages().has_environment();
         if image || plan.stages().neutral_image {
             texture.resize(count, [0; 2]);
         }
-        if plan.is_on(Effect::Fog) {
+        if plan.stages().has_fog() {
             fog.resize(count, U8F8::default());
         }
-        if plan.is_on(Effect::RgbChannels) {
+        if plan.stages().has_channels() {
             channels.resize(count, [[U8F8::default(); 3]; 2]);
         }
     }
@@ -299,7 +301,7 @@ impl ObjectState {
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         let (lights, stages) = (source.lights(&self.lamps, plan), plan.stages());
         // Of a closed body nobody sees the back.
-        let both = !plan.is_on(Effect::BackFaceCulling);
+        let both = !plan.stages().culls();
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += geometry.positions.len() as u64;
         }
@@ -333,13 +335,13 @@ impl ObjectState {
     fn add_attributes(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
-        if plan.is_on(Effect::Texture) {
+        if plan.stages().has_texture() {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.columns.texture);
         }
-        if plan.is_on(Effect::EnvironmentMap) {
+        if plan.stages().has_environment() {
             vertex::environment_coordinates(&geometry, &source.view, &self.paints, &mut self.columns.texture);
         }
-        if plan.is_on(Effect::Fog)
+        if plan.stages().has_fog()
             && let Some(fog) = &scene.fog
         {
             vertex::fog_levels(&geometry, &source.view, fog, &mut self.columns.fog);
@@ -473,14 +475,14 @@ impl ObjectState {
             paints: &self.paints,
             columns: &self.columns,
             face_points: self.face_points.as_ref().map_or(&[], |(_, points)| points),
-            culls: plan.is_on(Effect::BackFaceCulling),
+            culls: plan.stages().culls(),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
-            runs: plan.is_on(Effect::Gouraud),
+            runs: stages.interpolates(),
             full: stages.lighting == Lighting::All,
             lit_by_face: stages.lit_at == LitAt::Faces,
             channels: stages.lighting == Lighting::Channels,
             affine: stages.mapping == Mapping::Affine,
-            lights_pixels: plan.is_on(Effect::Phong),
+            lights_pixels: stages.lights_pixels(),
             kernel: self.budget().and_then(|budget| budget.kernel).unwrap_or(Kernel::PORTABLE),
         })
     }

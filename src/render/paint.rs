@@ -4,8 +4,7 @@ use crate::fixed::U8F8;
 use crate::lanes::{each, three};
 use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
-use crate::plan::stages::LitAt;
-use crate::plan::{Effect, ObjectPlan};
+use crate::plan::stages::{LitAt, Stages};
 use crate::texture::Texture;
 
 /// A material in its scene.
@@ -24,27 +23,22 @@ pub(super) struct SurfaceMaterial {
 }
 
 impl SurfaceMaterial {
-    pub(super) fn new(material: &Material, ambient: f32, palette: Option<&Palette>, plan: &ObjectPlan) -> Self {
-        let stages = plan.stages();
+    pub(super) fn new(material: &Material, ambient: f32, palette: Option<&Palette>, stages: &Stages) -> Self {
         let size = |texture: &Texture| [1_u32 << texture.width_bits(), 1 << texture.height_bits()];
-        let texture_size = material.texture.as_deref().filter(|_| plan.is_on(Effect::Texture)).map(size);
-        let environment_size = material
-            .environment
-            .as_deref()
-            .filter(|_| plan.is_on(Effect::EnvironmentMap) && texture_size.is_none())
-            .map(size);
-        let blend = if plan.is_on(Effect::Transparency) { material.blend } else { Blend::Opaque };
-        let channels = plan.is_on(Effect::RgbChannels);
+        let texture_size = material.texture.as_deref().filter(|_| stages.has_texture()).map(size);
+        let environment_size =
+            material.environment.as_deref().filter(|_| stages.has_environment() && texture_size.is_none()).map(size);
+        let blend = if stages.is_transparent() { material.blend } else { Blend::Opaque };
+        let channels = stages.has_channels();
         let image = texture_size.is_some() || environment_size.is_some();
-        let everywhere = [Effect::Fog, Effect::RgbChannels, Effect::Dither].iter().any(|effect| plan.is_on(*effect))
-            || stages.lit_at == LitAt::Pixels;
+        let everywhere = stages.has_fog() || channels || stages.has_dither() || stages.lit_at == LitAt::Pixels;
         // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
         let forced = stages.neutral_image || stages.neutral_blend;
         Self {
             answer: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
-                specular: if plan.is_on(Effect::Specular) && material.is_specular() {
+                specular: if stages.has_highlights() && material.is_specular() {
                     f64::from(material.specular)
                 } else {
                     0.0

@@ -9,7 +9,7 @@ use crate::light::{Blend, Material};
 use crate::palette::{Palette, Ramp};
 use crate::plan::FaceShading;
 use crate::plan::stages::Dither;
-use crate::plan::{Effect, ObjectPlan, Plan};
+use crate::plan::{ObjectPlan, Plan};
 use crate::raster::DrawStats;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureStage};
 use crate::scene::{Mapping, Scene, Shading};
@@ -23,7 +23,7 @@ const ONE_TEXEL: [u8; 1] = [0];
 /// The image of a surface, if one is on: its own, or what it mirrors.
 fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
     let (texture, has_levels) = if paint.texture_size.is_some() {
-        (&material.texture, plan.is_on(Effect::Mipmaps))
+        (&material.texture, plan.stages().has_mipmaps())
     } else if paint.environment_size.is_some() {
         (&material.environment, false)
     } else {
@@ -41,16 +41,15 @@ pub(super) fn ensure_tables(
     plan: &Plan,
     states: &[ObjectState],
 ) {
-    let effects = [Effect::Fog, Effect::RgbChannels, Effect::Texture, Effect::EnvironmentMap, Effect::Transparency];
-    if !effects.iter().any(|effect| plan.is_on_anywhere(*effect)) {
+    if !plan.objects().iter().any(|plan| plan.stages().needs_tables()) {
         return;
     }
     tables.use_palette(palette);
     for ((object, plan), state) in scene.objects().iter().zip(plan.objects()).zip(states) {
-        if plan.is_on(Effect::Fog) {
+        if plan.stages().has_fog() {
             tables.ensure_fog(scene.fog.map(|fog| fog.color));
         }
-        let channels = plan.is_on(Effect::RgbChannels);
+        let channels = plan.stages().has_channels();
         if channels {
             tables.ensure_mix();
         }
@@ -117,7 +116,7 @@ impl Pipelines<'_> {
         };
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.stages().dither;
-        let channels = plan.is_on(Effect::RgbChannels).then(|| self.tables.mix(dither != Dither::None));
+        let channels = plan.stages().has_channels().then(|| self.tables.mix(dither != Dither::None));
         let image = image(plan, material, paint);
         let texture_look = match image {
             Some(image) => {
@@ -154,7 +153,7 @@ impl Pipelines<'_> {
                 Dither::None => None,
             },
             texture: texture_look,
-            fog: if plan.is_on(Effect::Fog) { self.tables.fog(self.scene.fog.map(|fog| fog.color)) } else { None },
+            fog: if plan.stages().has_fog() { self.tables.fog(self.scene.fog.map(|fog| fog.color)) } else { None },
             blend: if blends { self.tables.blend(paint.blend) } else { None },
             keeps_depth: paint.blend == Blend::Opaque,
         };
@@ -169,7 +168,7 @@ fn source<'a>(
     table: Option<&'a [u8; 65_536]>,
     light: &'a PixelLight<'a>,
 ) -> ShadeSource<'a> {
-    if plan.is_on(Effect::Phong) && shading.lights_pixels() {
+    if plan.stages().lights_pixels() && shading.lights_pixels() {
         return match (shading, table) {
             (FaceShading::By(Shading::PhongTable), Some(table)) if !channels => ShadeSource::NormalTable(table),
             (FaceShading::By(_), _) => ShadeSource::Lit(light),

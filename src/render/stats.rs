@@ -4,10 +4,10 @@ use core::iter::Flatten;
 use core::ops::Index;
 use core::{array, fmt};
 
-use super::settings::{Accuracy, Resolved};
 use super::{HiddenSurfaces, Shading, VertexPath};
 use crate::plan::FaceShading;
 use crate::raster::DrawStats;
+use crate::settings::{Accuracy, Settings};
 use crate::span::Kernel;
 
 /// The work of one frame.
@@ -94,13 +94,14 @@ impl IntoIterator for Shares {
 }
 
 impl Stats {
-    pub(super) fn new(settings: &Resolved, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
+    pub(super) fn new(settings: &Settings, kernel: Kernel, hidden_surfaces: HiddenSurfaces) -> Self {
+        let accuracy = settings.drawn_accuracy();
         Self {
-            shading: settings.accuracy.shading(),
-            max_error: settings.accuracy.max_error(),
-            max_time: settings.max_time,
+            shading: accuracy.shading(),
+            max_error: accuracy.max_error(),
+            max_time: settings.time_for_error(),
             fits: true,
-            vertex_path: settings.vertex_path,
+            vertex_path: settings.vertex_path.unwrap_or_default(),
             kernel: kernel.name(),
             hidden_surfaces,
             redrawn: true,

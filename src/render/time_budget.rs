@@ -10,10 +10,10 @@
 //! once, so a load that comes suddenly is met within a few frames. An error that fits is kept as long as it takes no more than
 //! a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors alternate.
 
-use super::settings::MAX_ERROR;
+use crate::settings::Settings;
 
 /// Errors that are chosen from, in shades.
-const ERRORS: [f32; 6] = [MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
+const ERRORS: [f32; 6] = [Settings::MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
 
 /// Frames of a block.
 const BLOCK: usize = 8;
@@ -265,7 +265,7 @@ mod tests {
             for step in 0..20_u8 {
                 let max_time = model[0] * (1.2 * model[5] / model[0]).powf(f32::from(step) / 19.0);
                 let mut chance = u64::from(step) + 1;
-                let mut budget = TimeBudget::new(max_time, MAX_ERROR);
+                let mut budget = TimeBudget::new(max_time, Settings::MAX_ERROR);
                 let frames = run(&mut budget, 1232, |frame, error| {
                     let late = if frame == 0 || frame % 50 == 49 { 3.0 } else { 1.0 };
                     Some(model[place(error)] * POSES[frame % 8] * late * noise(&mut chance, deviation))
@@ -288,7 +288,7 @@ mod tests {
         /// so.
         #[test]
         fn a_steady_scene_gets_the_least_error_that_fits(times in times()) {
-            let mut budget = TimeBudget::new(T, MAX_ERROR);
+            let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
             let frames = run(&mut budget, 600, |_, error| Some(times[place(error)]));
             let chosen = place(frames[TRIED + HOLD].0);
             // Sums of eight are rounded.
@@ -305,7 +305,7 @@ mod tests {
             seed: u64,
             deviation in 0.0_f32..0.5,
             loads in prop::collection::vec((1_usize..200, 0.2_f32..4.0), 1..12),
-            max_error in prop_oneof![Just(MAX_ERROR), Just(3.0), Just(0.25), Just(100.0)],
+            max_error in prop_oneof![Just(Settings::MAX_ERROR), Just(3.0), Just(0.25), Just(100.0)],
         ) {
             let loads: Vec<f32> = loads.iter().flat_map(|(frames, load)| core::iter::repeat_n(*load, *frames)).collect();
             let mut chance = seed;
@@ -325,7 +325,7 @@ mod tests {
     fn a_sudden_load_is_met_within_two_blocks() {
         for (load, model) in [1.1, 1.3, 2.0, 3.0].into_iter().flat_map(|load| MODELS.map(|model| (load, model))) {
             let max_time = model[5];
-            let mut budget = TimeBudget::new(max_time, MAX_ERROR);
+            let mut budget = TimeBudget::new(max_time, Settings::MAX_ERROR);
             let frames =
                 run(&mut budget, 260, |frame, error| Some(model[place(error)] * if frame < 131 { 1.0 } else { load }));
             let fits = model[0] * load <= max_time;
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn a_late_frame_changes_nothing() {
         let times = [1.0, 1.5, 2.2, 2.9, 3.6, 5.0];
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let frames = run(&mut budget, 1000, |frame, error| {
             Some(times[place(error)] * if frame % BLOCK == 5 { 10.0 } else { 1.0 })
         });
@@ -354,7 +354,7 @@ mod tests {
         let times = [1.6, 2.0, 2.5, 3.1, 3.8, 4.5];
         let mut chance = 5;
         let load = |frame: usize| 1.0 + 0.5 * libm::sinf(frame as f32 * 0.01);
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let frames =
             run(&mut budget, 6000, |frame, error| Some(times[place(error)] * load(frame) * noise(&mut chance, 0.01)));
         assert_steady(&frames);
@@ -371,18 +371,18 @@ mod tests {
     /// Where the error changes no time there is nothing to gain by a great one.
     #[test]
     fn a_scene_whose_time_the_error_does_not_change_gets_the_least_error() {
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(3.0));
         assert!(frames[TRIED..].iter().all(|(error, _)| *error == 0.5));
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(5.0));
-        assert!(frames[TRIED..].iter().all(|(error, _)| *error == MAX_ERROR) && !budget.fits());
+        assert!(frames[TRIED..].iter().all(|(error, _)| *error == Settings::MAX_ERROR) && !budget.fits());
     }
 
     /// What is known is wrong now, as the scene is another: smaller errors are tried again, seldom, until they fit.
     #[test]
     fn old_times_are_tried_again() {
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let early = |error: f32| if error < 4.0 { 9.0 } else { 2.0 };
         let frames = run(&mut budget, 4000, |_, error| Some(early(error)));
         assert_eq!(budget.error(), 4.0);
@@ -395,7 +395,7 @@ mod tests {
     /// A picture that stands still is refined to the least error, and drawn again only for that.
     #[test]
     fn a_still_picture_is_refined() {
-        let mut budget = TimeBudget::new(T, MAX_ERROR);
+        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
         let (mut shown, mut drawn) = (None, 0);
         let frames = run(&mut budget, 400, |_, error| {
             let is_drawn = shown != Some(error);

@@ -1,4 +1,4 @@
-//! Scenes: objects, a camera, lights, fog, a palette; their motions; rendering preferences.
+//! Scenes: objects, a camera, lights, fog, a palette; their motions; settings.
 //!
 //! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it again. Errors in it
 //! (a position that is not finite, a camera that looks nowhere) are refused when it is drawn.
@@ -11,7 +11,6 @@
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
-//! | `preferences` | [`Preferences`]: shading, hidden surfaces, mapping, mipmaps, tessellation, dither |
 //! | `file` | scenes as TOML files (feature `scene-files`) |
 //! | `shipped` | those that are compiled in (feature `scene-files`) |
 
@@ -23,7 +22,6 @@ mod fog;
 pub(crate) mod framing;
 mod motion;
 pub(crate) mod object;
-mod preferences;
 #[cfg(feature = "scene-files")]
 pub mod shipped;
 
@@ -37,6 +35,7 @@ use crate::angle::Angle;
 use crate::light::Light;
 pub use crate::mapping::Mapping;
 use crate::palette::{Palette, Rgb, builtin};
+pub use crate::settings::{HiddenSurfaces, Settings};
 pub use crate::shading::Shading;
 pub use crate::shared::Shared;
 pub use crate::span::dither::DitherPattern;
@@ -47,7 +46,6 @@ pub use fog::Fog;
 pub use motion::{Motion, Moving, Path};
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
-pub use preferences::{HiddenSurfaces, Preferences};
 
 /// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -78,8 +76,10 @@ pub struct Scene {
     pub palette_animation: Option<PaletteAnimation>,
     /// The fog between the eye and distant surfaces.
     pub fog: Option<Fog>,
-    /// The rendering preferences.
-    pub preferences: Preferences,
+    /// How it is to be drawn, where the renderer's own settings are silent.
+    pub settings: Settings,
+    /// The palette is to be made from the scene's materials: see [`auto_palette`](crate::auto_palette).
+    pub auto_palette: bool,
     /// The motions; [`set_time`](Self::set_time) puts objects, lights and camera in their places.
     pub motions: Vec<Motion>,
     /// The duration of one round, in seconds; above 0. A film of that length that is played again and again has no
@@ -115,7 +115,8 @@ impl Scene {
             palette: Some(builtin::GREY.clone()),
             palette_animation: None,
             fog: None,
-            preferences: Preferences::default(),
+            settings: Settings::default(),
+            auto_palette: false,
             motions: Vec::new(),
             duration: 4.0,
             picture: 0.0,

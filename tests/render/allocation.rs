@@ -116,11 +116,9 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
             });
         }
         try_one(format!("{name}, in integers"), &scene, &|_, renderer| {
-            renderer.settings.vertex_path = VertexPath::Integer
+            renderer.settings.vertex_path = Some(VertexPath::Integer)
         });
-        try_one(format!("{name}, dithered"), &scene, &|scene, _| {
-            scene.preferences.dither = Some(DitherPattern::Ordered)
-        });
+        try_one(format!("{name}, dithered"), &scene, &|scene, _| scene.settings.dither = Some(DitherPattern::Ordered));
         for effect in Effect::ALL {
             try_one(format!("{name}, {effect} forced"), &scene, &|_, renderer| renderer.force(effect, Some(true)));
         }

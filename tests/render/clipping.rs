@@ -133,7 +133,7 @@ fn r7_a_corner_within_rounding_of_the_limit() {
         let mesh = Mesh::new(vec![p, q, r, s], vec![[0, 1, 2], [1, 0, 3]]).expect("a mesh");
         for (path, clipped) in VertexPath::ALL.into_iter().zip(&mut clipped) {
             let mut renderer = Renderer::new();
-            renderer.settings.vertex_path = path;
+            renderer.settings.vertex_path = Some(path);
             let (counts, stats) = counts_by(&mut renderer, &scene(mesh.clone()));
             *clipped += u64::from(stats.clipped == 1);
             let holes = counts.iter().filter(|&&times| times == 0).count();
@@ -162,7 +162,7 @@ fn r7_a_wall_fills_frames_of_every_size() {
         for path in VertexPath::ALL {
             for method in HiddenSurfaces::ALL {
                 let mut renderer = Renderer::new();
-                (renderer.settings.vertex_path, renderer.settings.hidden_surfaces) = (path, Some(method));
+                (renderer.settings.vertex_path, renderer.settings.hidden_surfaces) = (Some(path), Some(method));
                 let mut pixels = vec![0; (width * height) as usize];
                 let frame = Frame::new(&mut pixels, width, height, width as usize).expect("a frame");
                 renderer.draw_frame(&scene, frame, (1, 1)).expect("a legal scene");

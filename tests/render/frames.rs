@@ -53,7 +53,7 @@ fn check(scene: &Scene, shading: Shading) -> usize {
     }
     for kernel in Kernel::available() {
         let mut vga = Vga::new();
-        renderer.settings.kernel = kernel;
+        renderer.kernel = kernel;
         let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
         let differs = vga.pixels().iter().zip(&expected).position(|(is, should)| is != should);
         assert_eq!(differs, None, "kernel {}", kernel.name());

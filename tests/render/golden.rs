@@ -12,7 +12,7 @@ use mode13h::vga::Vga;
 
 fn draw(scene: &Scene, kernel: Kernel) -> Indexed {
     let mut renderer = Renderer::new();
-    renderer.settings.kernel = kernel;
+    renderer.kernel = kernel;
     let mut vga = Vga::new();
     renderer.draw(scene, &mut vga).expect("a legal scene");
     Indexed::of(&vga)
@@ -28,7 +28,7 @@ fn golden_frames() {
         let mut scene = crate::support::scenes::framed(shapes::by_name(name).expect("listed"));
         scene.palette = Some(builtin::COPPER.clone());
         scene.objects_mut()[0].angles = [0.5, 0.7, 0.1].map(Angle::from_radians);
-        scene.preferences.shading = Some(shading);
+        scene.settings.accuracy = Some(shading.into());
         wrong.extend(check(&format!("{name}-{shading}"), &mut tried, |kernel| draw(&scene, kernel)));
     }
     assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
@@ -43,7 +43,7 @@ fn golden_frames_of_every_scene() {
     let mut wrong = Vec::new();
     for shipped in &shipped::ALL {
         let mut scene = shipped.load().expect("a scene that loads").scene;
-        if scene.preferences.auto_palette {
+        if scene.auto_palette {
             mode13h::auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
         }
         for third in 0..3_u8 {
@@ -92,7 +92,7 @@ fn golden_frames_of_a_house() {
         scene
     };
     let mut in_cube = in_palette("cube");
-    in_cube.preferences.dither = Some(DitherPattern::Ordered);
+    in_cube.settings.dither = Some(DitherPattern::Ordered);
     let surfaces = house[id].mesh().surfaces();
     let own = in_cube[id].materials.iter().zip(surfaces).map(|(material, surface)| material.in_own_colors(surface));
     let own: Vec<_> = own.collect();

@@ -23,14 +23,14 @@ const HEIGHT: usize = 200;
 
 fn renderer(path: VertexPath) -> Renderer {
     let mut renderer = Renderer::new();
-    renderer.settings.vertex_path = path;
+    renderer.settings.vertex_path = Some(path);
     renderer
 }
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     let mut vga = Vga::new();
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    assert_eq!(stats.vertex_path, renderer.settings.vertex_path);
+    assert_eq!(Some(stats.vertex_path), renderer.settings.vertex_path);
     vga.pixels().to_vec()
 }
 

@@ -6,8 +6,8 @@ use mode13h::light::{Light, LightResponse};
 use mode13h::mesh::shapes;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Shading, VertexPath};
-use mode13h::scene::{Motion, Preferences};
+use mode13h::render::{Accuracy, RenderError, Renderer, Shading, VertexPath};
+use mode13h::scene::{Motion, Settings};
 use mode13h::scene::{Moving, Object, ObjectId, Path, Scene};
 use mode13h::vga::Vga;
 
@@ -40,7 +40,7 @@ fn a_hidden_object_is_as_one_that_was_removed() {
     for way in [None].into_iter().chain(mode13h::scene::HiddenSurfaces::ALL.into_iter().skip(1).map(Some)) {
         for i in 0..3 {
             let (mut hidden, ids) = three();
-            hidden.preferences = Preferences { hidden_surfaces: way, ..Preferences::default() };
+            hidden.settings = Settings { hidden_surfaces: way, ..Settings::default() };
             let all = drawn(&hidden);
             let mut removed = hidden.clone();
             hidden[ids[i]].visible = false;
@@ -105,7 +105,7 @@ fn parents_in_a_circle_and_on_the_integer_path_are_refused() {
     scene[cube].parent = Some(torus);
     let mut vga = Vga::new();
     let mut integer = Renderer::new();
-    integer.settings.vertex_path = VertexPath::Integer;
+    integer.settings.vertex_path = Some(VertexPath::Integer);
     let refused = |result| matches!(result, Err(RenderError::Object { .. }));
     assert!(refused(integer.draw(&scene, &mut vga)));
     scene[torus].parent = Some(cone);
@@ -153,9 +153,10 @@ fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
         let mut scene = Scene::showing(shapes::sphere(48, 24));
         scene.background = 77;
         // A budget lights such an object at every pixel: no bound is known for it.
-        scene.preferences.shading = Some(if budget.is_some() { Shading::Phong } else { shading });
+        scene.settings.accuracy = Some(if budget.is_some() { Shading::Phong } else { shading }.into());
         let plain = drawn(&scene);
-        scene.preferences = Preferences { shading: Some(shading), max_error: budget, ..Preferences::default() };
+        scene.settings =
+            Settings { accuracy: Some(budget.map_or(shading.into(), Accuracy::WithinError)), ..Settings::default() };
         scene.objects_mut()[0].materials[0].response = Some(step.clone());
         let stepped = drawn(&scene);
         let (mut black, mut white) = (0, 0);

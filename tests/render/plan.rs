@@ -373,7 +373,7 @@ fn a_shininess_of_0_is_no_highlight() {
                 let frame = |scene: &Scene| {
                     draw(scene, |renderer| {
                         renderer.settings.accuracy = Some(accuracy);
-                        renderer.settings.vertex_path = path;
+                        renderer.settings.vertex_path = Some(path);
                         renderer.force(Effect::Specular, force);
                     })
                 };
@@ -585,10 +585,10 @@ fn mipmaps_are_asked_for() {
         called_for(&renderer, Effect::Mipmaps)
     };
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [true, true, false]);
-    floor.preferences.mipmaps = Some(false);
+    floor.settings.mipmaps = Some(false);
     assert_eq!([None, Some(true), Some(false)].map(|asked| is_on(&floor, asked)), [false, true, false]);
     let mut plain = scenes::showing("torus");
-    plain.preferences.mipmaps = Some(true);
+    plain.settings.mipmaps = Some(true);
     assert!(!is_on(&plain, Some(true)));
     let reason = draw(&floor, |_| ()).2.plan().rows(&floor);
     let reason = reason.iter().find(|row| row.effect == Effect::Mipmaps).expect("a row");

@@ -84,7 +84,7 @@ fn wall(random: &mut Random) -> Scene {
         let place = [coordinate(), coordinate(), 0.3 * coordinate()];
         scene.add_light(Light::lamp(place, 0.2 + 3.0 * random.unit() as f32));
     }
-    scene.preferences.tessellation = Some(random.one_of(&[0.5, 1.0, 2.0, 8.0]));
+    scene.settings.tessellation = Some(random.one_of(&[0.5, 1.0, 2.0, 8.0]));
     scene
 }
 
@@ -133,7 +133,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
         scene.add(cube);
         let mut coordinate = || 2.4 * random.unit() as f32 - 1.2;
         scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
-        scene.preferences.tessellation = Some(1.0);
+        scene.settings.tessellation = Some(1.0);
         let (parts, _) = triangles(&scene);
         // Convex: what is seen of it has one outline, unless rounding turned a face over.
         let outlines = outlines(&parts);
@@ -192,7 +192,7 @@ fn n7_a_highlight_inside_a_face() {
 fn faces_far_from_a_highlight_are_not_split() {
     let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);
     let (whole, _) = triangles(&scene);
-    scene.preferences.tessellation = Some(2.0);
+    scene.settings.tessellation = Some(2.0);
     let (split, _) = triangles(&scene);
     assert!(split.len() > whole.len(), "{} of {}", split.len(), whole.len());
     let right = |corners: &&[Vertex; 3]| corners.iter().all(|corner| point(corner).0 > 200 * 256);
@@ -224,7 +224,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
                 let mut scene = crate::support::scenes::framed(mesh);
                 scene.background = BACKGROUND;
                 scene.palette = mode13h::palette::builtin::by_name("materials-4x64").map(|found| found.palette.clone());
-                scene.preferences.dither = dither;
+                scene.settings.dither = dither;
                 let material = &mut scene.objects_mut()[0].materials[0];
                 (material.specular, material.shininess) = (specular, 10.0);
                 material.ramp = mode13h::light::RampChoice::Number(2);
@@ -309,8 +309,8 @@ fn p2_dither_keeps_to_its_ramp() {
             [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
         {
             let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
-            scene.preferences.dither = Some(DitherPattern::Ordered);
-            scene.preferences.shading = Some(shading);
+            scene.settings.dither = Some(DitherPattern::Ordered);
+            scene.settings.accuracy = Some(shading.into());
             scene.objects_mut()[0].angles = [0.3, tried_angle(first, entries), 0.2].map(Angle::from_radians);
             let ramp = mode13h::palette::Ramp::new(first, entries).expect("a ramp");
             let material = &mut scene.objects_mut()[0].materials[0];

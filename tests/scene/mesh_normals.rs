@@ -57,7 +57,7 @@ fn brightest(mesh: Mesh, towards: Vec3, path: VertexPath) -> u16 {
     // Not along any of the normals.
     scene.camera = Camera { eye: 6.0 * towards, up: Vec3::new(0.1, 1.0, 0.3), ..Camera::default() };
     let mut renderer = Renderer::new();
-    renderer.settings.vertex_path = path;
+    renderer.settings.vertex_path = Some(path);
     let mut brightest = 0;
     let brighter = |vertices: &[Vertex; 3], _| {
         brightest = vertices.iter().map(|vertex| vertex.shade().to_bits()).fold(brightest, u16::max);

@@ -326,7 +326,7 @@ fn highlights_are_shown_in_their_colours() {
             let body = material.color[i] * (material.ambient + material.diffuse);
             f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
         });
-        scene.preferences.shading = Some(mode13h::render::Shading::Phong);
+        scene.settings.accuracy = Some(mode13h::render::Shading::Phong.into());
         let middle = 100 * Vga::WIDTH + 160;
         let mut own = scene.clone();
         let made = made(&mut scene);
@@ -375,7 +375,7 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
     };
     // A level of the DAC is 4 units, of which three are off.
     assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));
-    scene.preferences.mipmaps = Some(false);
+    scene.settings.mipmaps = Some(false);
     assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
 }
 
@@ -405,7 +405,7 @@ fn a_palette_without_ramps_means_the_nearest_entries_dithered() {
         let material = &mut scene.objects_mut()[0].materials[0];
         *material = material.in_own_colors(&surface);
         assert_eq!(material.ramp, RampChoice::Nearest);
-        scene.preferences.dither = Some(DitherPattern::Ordered);
+        scene.settings.dither = Some(DitherPattern::Ordered);
         assert!(draw(&scene) == bytes, "as asked for by hand");
     }
 }

@@ -10,6 +10,7 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
+use mode13h::render::Accuracy;
 use mode13h::scene::file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 use mode13h::scene::{
     DitherPattern, HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis,
@@ -525,6 +526,21 @@ range = 5
 path = { circle = { centre = [0, 1, 0], radius = 2, axis = "z", start = 90 }, rounds = -4 }
 "##;
 
+/// An error or a time counts before a shading.
+#[test]
+fn accuracy_is_one_choice() {
+    let of = |render: &str| {
+        let settings = scene(&format!("objects = [{{ shape = 'cube' }}]\n[render]\n{render}")).settings;
+        (settings.accuracy, settings.max_time)
+    };
+    let (flat, within) = (Some(Shading::Flat.into()), Some(Accuracy::WithinError(2.0)));
+    assert_eq!(of(""), (None, None));
+    assert_eq!(of("shading = 'flat'"), (flat, None));
+    assert_eq!(of("shading = 'flat'\nmax-error = 2"), (within, None));
+    assert_eq!(of("shading = 'flat'\nmax-time = 5"), (None, Some(5.0)));
+    assert_eq!(of("shading = 'flat'\nmax-time = 5\nmax-error = 2"), (within, Some(5.0)));
+}
+
 #[test]
 fn what_a_file_says_is_what_is_in_the_scene() {
     let scene = scene(EVERYTHING);
@@ -543,12 +559,13 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!((camera.up, camera.near), (Vec3::new(0.0, 0.5, 0.0), 0.5));
     assert_eq!(camera.field_of_view.to_radians() as f32, std::f32::consts::FRAC_PI_2);
 
-    assert_eq!(scene.preferences.shading, Some(Shading::Phong));
-    assert_eq!(scene.preferences.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
-    assert_eq!(scene.preferences.mapping, Some(Mapping::Every16));
-    assert_eq!((scene.preferences.tessellation, scene.preferences.max_error), (Some(1.5), Some(2.0)));
-    assert_eq!(scene.preferences.max_time, Some(2.5));
-    assert!(scene.preferences.dither == Some(DitherPattern::Ordered) && !scene.preferences.auto_palette);
+    // An error counts before a shading.
+    assert_eq!(scene.settings.accuracy, Some(Accuracy::WithinError(2.0)));
+    assert_eq!(scene.settings.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
+    assert_eq!(scene.settings.mapping, Some(Mapping::Every16));
+    assert_eq!(scene.settings.tessellation, Some(1.5));
+    assert_eq!(scene.settings.max_time, Some(2.5));
+    assert!(scene.settings.dither == Some(DitherPattern::Ordered) && !scene.auto_palette);
 
     let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };
     assert_eq!((bar.name.as_str(), bar.mesh().triangles().len()), ("bar", 16));
@@ -638,7 +655,7 @@ fn what_is_left_out_has_a_default() {
     let showing = Scene::new();
     assert_eq!((scene.duration, scene.ambient, scene.background), (4.0, 1.0, 0));
     assert_eq!(scene.palette, showing.palette);
-    assert_eq!((scene.fog, scene.preferences), (None, showing.preferences));
+    assert_eq!((scene.fog, scene.settings), (None, showing.settings));
     assert!(scene.lights().is_empty() && scene.motions.is_empty() && scene.palette_animation.is_none());
     let torus = &scene.objects()[0];
     assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
@@ -690,7 +707,7 @@ fn a_palette_is_a_name_a_file_or_left_to_the_program() {
     let palette = |text: &str| scene(&format!("{CUBE}palette = {text}"));
     assert_eq!(palette("'copper'").palette, Some(builtin::COPPER.clone()));
     assert_eq!(palette("'two.hex'").palette.map(|palette| palette[1]), Some(Rgb::WHITE));
-    assert!(palette("'auto'").preferences.auto_palette);
+    assert!(palette("'auto'").auto_palette);
 }
 
 #[test]

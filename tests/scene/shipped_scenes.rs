@@ -22,7 +22,7 @@ fn scene(name: &str) -> Scene {
 fn load(shipped: &Shipped) -> Scene {
     let Loaded { mut scene, warnings, .. } = shipped.load().unwrap_or_else(|error| panic!("{error}"));
     assert!(warnings.is_empty(), "{warnings:?}");
-    if scene.preferences.auto_palette {
+    if scene.auto_palette {
         auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
     }
     scene
@@ -187,7 +187,7 @@ fn a_face_between_two_lamps_shines_in_its_middle() {
     assert!(coarse.1 * 10 > coarse.0 * 9, "above: {coarse:?}");
     assert!(cut_up.1 * 3 < cut_up.0, "below: {cut_up:?}");
     // Right for both is what pixels are lit by.
-    scene.preferences.shading = Some(Shading::Phong);
+    scene.settings.accuracy = Some(Shading::Phong.into());
     let shown = draw(&scene).0;
     assert!(shown.at(160, 46).abs_diff(shown.at(160, 152)) <= 3 && shown.at(160, 46) * 3 < shown.at(24, 46));
 }
@@ -196,16 +196,16 @@ fn a_face_between_two_lamps_shines_in_its_middle() {
 fn painters_order_and_affine_mapping_show_their_faults() {
     let mut scene = self::scene("interlock");
     let right = draw(&scene).0;
-    scene.preferences.hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
+    scene.settings.hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
     assert!(draw(&scene).0 != right, "painter's order is right");
-    scene.preferences.hidden_surfaces = Some(HiddenSurfaces::ScanLine);
+    scene.settings.hidden_surfaces = Some(HiddenSurfaces::ScanLine);
     assert!(draw(&scene).0 == right, "the scan-line method is not");
 
     let mut scene = self::scene("crate");
     scene.set_time(0.06 * scene.duration);
     let right = draw(&scene).0;
     for (mapping, least) in [(Mapping::Affine, 2_000), (Mapping::Every16, 1)] {
-        scene.preferences.mapping = Some(mapping);
+        scene.settings.mapping = Some(mapping);
         let wrong = draw(&scene).0.pixels.iter().zip(&right.pixels).filter(|(a, b)| a != b).count();
         assert!(wrong >= least && wrong < 25_000, "{mapping}: {wrong} pixels differ");
     }

@@ -43,7 +43,7 @@ fn images_far_from_their_corner_are_brought_back() {
         let mut scene = crate::support::scenes::framed(mesh.with_texcoords(inner).expect("as many"));
         scene.objects_mut()[0].materials[0].texture = Some(Shared::clone(&texture));
         scene.objects_mut()[0].angles = [0.2, 0.9, 0.1].map(Angle::from_radians);
-        scene.preferences.mapping = Some(mapping);
+        scene.settings.mapping = Some(mapping);
         let mut vga = Vga::new();
         Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
         vga.pixels().to_vec()

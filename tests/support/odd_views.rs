@@ -48,7 +48,7 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
         }
         scene.camera.field_of_view = Angle::from_degrees(random.one_of(&[1.0, 40.0, 90.0, 179.0]));
         let mut renderer = Renderer::new();
-        renderer.settings.vertex_path = path;
+        renderer.settings.vertex_path = Some(path);
         let judged = judged(&mut renderer, &scene, screen);
         assert_eq!(judged.stats.faces, 256);
         seen += u64::from(judged.counts.iter().any(|&times| times > 0));

@@ -7,7 +7,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
-use mode13h::scene::{Camera, DitherPattern, Fog, Object, PaletteAnimation, Preferences, Scene, Shading, Shared};
+use mode13h::scene::{Camera, DitherPattern, Fog, Object, PaletteAnimation, Scene, Settings, Shading, Shared};
 use mode13h::texture::Texture;
 
 use mode13h_conformance::Random;
@@ -143,7 +143,7 @@ fn small() -> Vec<(&'static str, Scene)> {
     scenes.push(("far lamp", far_lamp));
 
     let mut split = lamp_on_wall(2);
-    split.preferences.tessellation = Some(1.0);
+    split.settings.tessellation = Some(1.0);
     scenes.push(("tessellated", split));
 
     let mut columns = Scene::new();
@@ -176,7 +176,7 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut colors = showing("sphere");
     colors.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
-    colors.preferences.dither = Some(DitherPattern::Ordered);
+    colors.settings.dither = Some(DitherPattern::Ordered);
     colors.clear_lights();
     colors.add_light(Light::sun([1.0, 0.0, 0.5]).with_color([1.0, 0.0, 0.0]));
     colors.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([0.0, 1.0, 0.2]));
@@ -195,12 +195,12 @@ fn small() -> Vec<(&'static str, Scene)> {
 
     let mut dithered = showing("sphere");
     dithered.palette = Some(builtin::by_name("materials-16x16").expect("built in").palette.clone());
-    dithered.preferences.dither = Some(DitherPattern::Ordered);
+    dithered.settings.dither = Some(DitherPattern::Ordered);
     scenes.push(("dither", dithered));
 
     for shading in [Shading::PhongTable, Shading::Phong, Shading::Flat, Shading::GouraudHyperbolic] {
         let mut phong = showing("cone");
-        phong.preferences = Preferences { shading: Some(shading), ..Preferences::default() };
+        phong.settings = Settings { accuracy: Some(shading.into()), ..Settings::default() };
         let white = material(&mut phong, 0);
         (white.specular, white.shininess, white.diffuse) = (0.5, 10.0, 0.5);
         scenes.push((shading.name(), phong));

@@ -7,7 +7,7 @@ use mode13h::scene::{Scene, shipped};
 pub fn scenes() -> impl Iterator<Item = (String, Scene)> {
     shipped::ALL.iter().map(|shipped| {
         let mut scene = shipped.load().expect("a scene that loads").scene;
-        if scene.preferences.auto_palette {
+        if scene.auto_palette {
             auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
         }
         scene.set_time(0.4 * scene.duration);

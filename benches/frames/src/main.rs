@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Err(_) => return Err("no such scene".into()),
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.settings.kernel = kernel.parse::<Kernel>()?;
+    renderer.kernel = kernel.parse::<Kernel>()?;
     if let Some(accuracy) = max_error {
         renderer.settings.accuracy = Some(match accuracy.parse() {
             Ok(shades) => Accuracy::WithinError(shades),

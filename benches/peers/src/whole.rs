@@ -145,7 +145,7 @@ pub fn measure(
     let (mut names, mut ours) = (Vec::new(), Vec::new());
     for (kernel, has_depth) in of_ours {
         let mut renderer = Renderer::new();
-        renderer.settings.kernel = kernel;
+        renderer.kernel = kernel;
         renderer.settings.mipmaps = Some(false);
         if has_depth {
             renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);

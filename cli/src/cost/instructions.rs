@@ -44,7 +44,7 @@ impl Counts {
 /// Draws all frames by each shading, and says which kernel did: what callgrind looks at.
 pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
     let mut vga = Vga::new();
-    let mut kernel = renderer().settings.kernel;
+    let mut kernel = renderer().kernel;
     for shading in shadings {
         let mut renderer = renderer();
         renderer.settings.accuracy = Some((*shading).into());
@@ -54,7 +54,7 @@ pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
         shading_is_done(shading);
-        kernel = renderer.settings.kernel;
+        kernel = renderer.kernel;
     }
     let level = if kernel.name() == "simd" { format!("simd-{}", kernel.level()) } else { kernel.name().to_string() };
     output::print(&format!("{level}\n"))

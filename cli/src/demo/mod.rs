@@ -34,7 +34,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
 use mode13h::render::{Mapping, Renderer, Screen, Stats};
-use mode13h::scene::{Preferences, Scene};
+use mode13h::scene::{Scene, Settings};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
@@ -271,7 +271,7 @@ impl Demo {
             triangles: 0,
             wrong: None,
             renderer: shading.renderer(drawing, kernel),
-            shading: ShadingChoice::of(shading.asked_for(&Preferences::default())),
+            shading: ShadingChoice::of(shading.asked_for(&Settings::default())),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -352,8 +352,7 @@ impl Demo {
         self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
         self.stage = stage;
         if !self.chose_shading {
-            let preferences = &self.stage.scene.preferences;
-            self.shading = ShadingChoice::of(shading.asked_for(preferences));
+            self.shading = ShadingChoice::of(shading.asked_for(&self.stage.scene.settings));
         }
         let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
         if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
@@ -597,7 +596,7 @@ impl Demo {
     fn draw_scene(&mut self) -> Result<(), Failure> {
         self.stage.show(self.motion.seconds(), self.motion.pose);
         self.shading.set(&mut self.renderer);
-        self.renderer.settings.kernel = *self.kernels.chosen();
+        self.renderer.kernel = *self.kernels.chosen();
         self.renderer.settings.mapping = *self.mappings.chosen();
         // Of a picture that stands still the time for its plan stays, too.
         if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
@@ -617,7 +616,7 @@ impl Demo {
             self.number += 1;
         }
         if self.compare.is_on {
-            self.compare.right.renderer.settings.kernel = *self.kernels.chosen();
+            self.compare.right.renderer.kernel = *self.kernels.chosen();
             self.compare.right.renderer.settings.mapping = *self.mappings.chosen();
             let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::from)?;
             self.number += u64::from(is_new);

@@ -96,7 +96,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut stage = drawing.stage(drawing.input(input)?)?;
     read_files::spare(&out)?;
     let mut renderer = Renderer::new();
-    renderer.settings.kernel = kernel;
+    renderer.kernel = kernel;
     renderer.settings.accuracy = shading.map(Into::into);
     if let Some(losses) = losses(&mut stage, &renderer)? {
         eprintln!("mode13h: {losses}");
@@ -118,7 +118,7 @@ fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Fail
     let mut renderer = like.with_same_settings();
     stage.show(0.0, Pose::FIRST);
     let called_for = |path: VertexPath, renderer: &mut Renderer| -> Result<Vec<Effect>, Failure> {
-        renderer.settings.vertex_path = path;
+        renderer.settings.vertex_path = Some(path);
         let plan = renderer.make_plan(&stage.scene, Screen::MODE_13H)?;
         Ok(Effect::ALL.into_iter().filter(|effect| plan.is_on_anywhere(*effect)).collect())
     };
@@ -152,9 +152,9 @@ fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Resul
 fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16) {
     let (seconds, pose) = stage.turned(0.0, 360.0 * f64::from(number) / f64::from(frames));
     stage.show(seconds, pose);
-    renderer.settings.vertex_path = VertexPath::Integer;
-    if stage.scene.preferences.hidden_surfaces == Some(HiddenSurfaces::PainterOrder) {
-        stage.scene.preferences.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+    renderer.settings.vertex_path = Some(VertexPath::Integer);
+    if stage.scene.settings.hidden_surfaces == Some(HiddenSurfaces::PainterOrder) {
+        stage.scene.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use mode13h::render::{Accuracy, Renderer, Settings, Shading};
-use mode13h::scene::{Preferences, Scene};
+use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::calibrate;
@@ -51,12 +51,11 @@ impl ShadingOptions {
         self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
     }
 
-    /// Accuracy and time that are asked for with these preferences of a scene.
-    pub(crate) fn asked_for(&self, preferences: &Preferences) -> (Accuracy, Option<f32>) {
-        let mut settings = Settings::default();
-        (settings.accuracy, settings.max_time) = (self.accuracy(), self.max_time);
-        let resolved = settings.resolve(preferences);
-        (resolved.asked, resolved.max_time)
+    /// Accuracy and time that are asked for with these settings of a scene.
+    pub(crate) fn asked_for(&self, of_scene: &Settings) -> (Accuracy, Option<f32>) {
+        let own = Settings { accuracy: self.accuracy(), max_time: self.max_time, ..Settings::default() };
+        let settings = own.or(of_scene);
+        (settings.asked_accuracy(), settings.time_for_error())
     }
 
     /// A renderer that is set as the command line says.
@@ -68,7 +67,7 @@ impl ShadingOptions {
 
     /// Where the error is to fit in a time, finds it for this scene, says so, and has the renderer draw within it.
     pub(crate) fn settle(renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
-        let Some(max_time) = renderer.settings.resolve(&scene.preferences).max_time else { return Ok(()) };
+        let Some(max_time) = renderer.settings.or(&scene.settings).time_for_error() else { return Ok(()) };
         let stats = calibrate(renderer, scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
         if let Some(error) = stats.max_error {
             let accuracy = Accuracy::WithinError(error);

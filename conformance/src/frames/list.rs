@@ -40,7 +40,7 @@ impl List {
 
     /// Adds a frame of the machine.
     fn vga(&mut self, name: String, settings: Settings, scene: impl Fn() -> Scene + 'static) {
-        self.add(name, move || Picture { scene: scene(), settings: settings.clone(), shape: Shape::Vga });
+        self.add(name, move || Picture { scene: scene(), settings, shape: Shape::Vga });
     }
 
     /// Every shape with every shading; the sphere, the cube and the torus in 16.16, too.
@@ -58,7 +58,7 @@ impl List {
                 self.vga(format!("shape/{name}/{shading}"), with(shading), scene);
                 if i < 3 {
                     let mut settings = with(shading);
-                    settings.vertex_path = VertexPath::Integer;
+                    settings.vertex_path = Some(VertexPath::Integer);
                     self.vga(format!("shape/{name}/{shading}/16.16"), settings, scene);
                 }
             }
@@ -143,7 +143,7 @@ impl List {
                 self.vga(format!("light/coloured-lamps/{name}/{shading}"), with(shading), move || {
                     let mut scene = pair(1.0);
                     scene.palette = colors();
-                    scene.preferences.dither = dither;
+                    scene.settings.dither = dither;
                     colored_lamps(&mut scene);
                     scene
                 });
@@ -156,7 +156,7 @@ impl List {
                 self.vga(format!("light/{name}-ramps/{shading}"), with(shading), move || {
                     let mut scene = pair(2.0);
                     scene.palette = Some(builtin::MATERIALS_16X16.clone());
-                    scene.preferences.dither = dither;
+                    scene.settings.dither = dither;
                     scene
                 });
             }
@@ -165,8 +165,7 @@ impl List {
             for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong, Shading::PhongTable] {
                 self.vga(format!("light/spot/{name}/{shading}"), with(shading), move || spots(color));
             }
-            let mut settings = Settings::default();
-            settings.accuracy = Some(Accuracy::WithinError(2.0));
+            let settings = Settings { accuracy: Some(Accuracy::WithinError(2.0)), ..Settings::default() };
             self.vga(format!("light/spot/{name}/within-2"), settings, move || spots(color));
         }
         self.vga("light/ten-lamps".into(), Settings::default(), || {
@@ -200,8 +199,7 @@ impl List {
     fn budgets(&mut self) {
         for name in ["torus", "cube", "phong", "fog", "flash", "still"] {
             for shades in [16.0_f32, 4.0, 2.0, 1.0, 0.5] {
-                let mut settings = Settings::default();
-                settings.accuracy = Some(Accuracy::WithinError(shades));
+                let settings = Settings { accuracy: Some(Accuracy::WithinError(shades)), ..Settings::default() };
                 self.vga(format!("budget/{name}/{shades}"), settings, move || by_name(name, 0.4));
             }
         }
@@ -213,7 +211,7 @@ impl List {
             for (i, shading) in Shading::ALL.into_iter().enumerate() {
                 let mut settings = with(shading);
                 settings.hidden_surfaces = Some(method);
-                settings.vertex_path = if i % 4 == 3 { VertexPath::Integer } else { VertexPath::Float };
+                settings.vertex_path = (i % 4 == 3).then_some(VertexPath::Integer);
                 let path = if i % 4 == 3 { "/16.16" } else { "" };
                 self.vga(format!("near/{method}/{shading}{path}"), settings, move || close_up(i as f64 * 0.7));
             }
@@ -328,9 +326,7 @@ impl List {
 }
 
 fn with(shading: Shading) -> Settings {
-    let mut settings = Settings::default();
-    settings.accuracy = Some(shading.into());
-    settings
+    Settings { accuracy: Some(shading.into()), ..Settings::default() }
 }
 
 /// One of the scenes of the program, at a part of its time.
@@ -394,9 +390,9 @@ const EFFECTS: [(&str, Change); 18] = [
     ("nearest", |scene| each(scene, |material| material.ramp = RampChoice::Nearest)),
     ("dither", |scene| {
         scene.palette = Some(builtin::MATERIALS_8X32.clone());
-        scene.preferences.dither = Some(DitherPattern::Ordered);
+        scene.settings.dither = Some(DitherPattern::Ordered);
     }),
-    ("tessellation", |scene| scene.preferences.tessellation = Some(2.0)),
+    ("tessellation", |scene| scene.settings.tessellation = Some(2.0)),
     ("texture", |scene| textured(scene, "checker", Mapping::Affine, false)),
     ("texture-every-16", |scene| textured(scene, "bricks", Mapping::Every16, false)),
     ("texture-perspective", |scene| textured(scene, "crate", Mapping::Perspective, false)),
@@ -422,7 +418,7 @@ const EFFECTS: [(&str, Change); 18] = [
         scene.objects_mut()[1].materials[0].texture = None;
         each(scene, |material| (material.diffuse, material.specular, material.shininess) = (0.5, 0.4, 12.0));
         scene.fog = Some(Fog { color: Rgb::new(60, 60, 90), start: 1.0, end: 6.0 });
-        scene.preferences.dither = Some(DitherPattern::Ordered);
+        scene.settings.dither = Some(DitherPattern::Ordered);
         colored_lamps(scene);
     }),
 ];
@@ -442,7 +438,7 @@ const CANVASES: [(&str, Change, Shading); 10] = [
         "blue-noise",
         |scene| {
             (EFFECTS[6].1)(scene);
-            scene.preferences.dither = Some(DitherPattern::BlueNoise);
+            scene.settings.dither = Some(DitherPattern::BlueNoise);
         },
         Shading::Gouraud88Reseeded,
     ),
@@ -465,7 +461,7 @@ fn textured(scene: &mut Scene, name: &str, mapping: Mapping, mipmaps: bool) {
     let texture = texture(name);
     each(scene, |material| material.texture.clone_from(&texture));
     scene.palette.clone_from(&colors());
-    (scene.preferences.mapping, scene.preferences.mipmaps) = (Some(mapping), Some(mipmaps));
+    (scene.settings.mapping, scene.settings.mipmaps) = (Some(mapping), Some(mipmaps));
 }
 
 fn colored_lamps(scene: &mut Scene) {

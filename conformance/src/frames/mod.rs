@@ -57,7 +57,7 @@ pub enum Shape {
 pub struct Picture {
     /// The scene.
     pub scene: Scene,
-    /// The renderer's settings; its kernel is the caller's choice.
+    /// The renderer's settings.
     pub settings: Settings,
     /// The target.
     pub shape: Shape,
@@ -149,7 +149,7 @@ impl Frame {
     pub fn draw_by(&self, renderer: &mut Renderer, kernel: Kernel) -> Result<Drawn, RenderError> {
         let Picture { scene, settings, shape } = self.picture();
         renderer.settings = settings;
-        renderer.settings.kernel = kernel;
+        renderer.kernel = kernel;
         let (width, height, pitch, bytes, palette) = match shape {
             Shape::Vga => {
                 let mut vga = Box::<Vga>::default();

@@ -45,7 +45,7 @@ pub const ALL: [Named; 18] = [
 /// A scene as it is drawn: with its automatic palette, if it asks for one, at a time in seconds.
 #[must_use]
 pub fn at(mut scene: Scene, seconds: f64) -> Scene {
-    if scene.preferences.auto_palette
+    if scene.auto_palette
         && let Ok(automatic) = auto_palette::of_scene(&scene)
     {
         automatic.apply(&mut scene);
@@ -159,7 +159,7 @@ fn cone() -> Scene {
 
 fn highlight(name: &str, shading: Shading) -> Scene {
     let mut scene = scene(name, Some(&builtin::COPPER), 1.48);
-    scene.preferences.shading = Some(shading);
+    scene.settings.accuracy = Some(shading.into());
     let torus = turned(object("torus", shapes::torus(16, 8)), [30.0, 0.0, 0.0]);
     spin(&mut scene, of_material(torus, shiny(0.08, 0.45, 0.5, 30.0)), [0.0, 1.0, 0.0]);
     scene.add_light(Light::sun([-0.5, 0.7, 1.0]));
@@ -196,7 +196,7 @@ fn flash(name: &str) -> Scene {
 
 fn flash_tessellated() -> Scene {
     let mut scene = flash("flash-tessellated");
-    scene.preferences.tessellation = Some(1.0);
+    scene.settings.tessellation = Some(1.0);
     scene
 }
 
@@ -243,8 +243,8 @@ fn fog() -> Scene {
 
 fn rgb() -> Scene {
     let mut scene = scene("rgb", None, 1.48);
-    scene.preferences.auto_palette = true;
-    scene.preferences.dither = Some(DitherPattern::Ordered);
+    scene.auto_palette = true;
+    scene.settings.dither = Some(DitherPattern::Ordered);
     let sphere = placed(object("sphere", shapes::sphere(40, 20)), vec3(0.0, 0.1, 0.0), 1.0);
     scene.add(of_material(sphere, matt(0.15, 0.85)));
     let floor = placed(turned(object("floor", shapes::wall(24, 24)), [-90.0, 0.0, 0.0]), vec3(0.0, -1.0, 0.0), 5.0);
@@ -265,8 +265,8 @@ fn rgb() -> Scene {
 
 fn wooden_crate() -> Scene {
     let mut scene = scene("crate", None, 1.48);
-    scene.preferences.auto_palette = true;
-    scene.preferences.mapping = Some(Mapping::Perspective);
+    scene.auto_palette = true;
+    scene.settings.mapping = Some(Mapping::Perspective);
     let cube = of_material(object("cube", shapes::cube()), matt(0.25, 0.75));
     spin(&mut scene, of_material(cube, |material| material.texture = texture("crate")), [0.0, 1.0, 0.0]);
     scene.add_light(Light::sun([-0.5, 0.8, 1.0]));
@@ -277,7 +277,7 @@ fn wooden_crate() -> Scene {
 
 fn mirror() -> Scene {
     let mut scene = scene("mirror", None, 0.0);
-    scene.preferences.auto_palette = true;
+    scene.auto_palette = true;
     let teapot = of_material(object("teapot", shapes::teapot(12)), matt(0.4, 0.6));
     spin(&mut scene, of_material(teapot, |material| material.environment = texture("sky")), [0.0, 1.0, 0.0]);
     scene.add_light(Light::sun([0.3, 0.8, 1.0]));
@@ -310,7 +310,7 @@ fn interlock() -> Scene {
 
 fn glenz() -> Scene {
     let mut scene = scene("glenz", Some(&builtin::PHOSPHOR), 1.48);
-    scene.preferences.shading = Some(Shading::Flat);
+    scene.settings.accuracy = Some(Shading::Flat.into());
     let wall = stretched(&shapes::wall(1, 1), vec3(3.4, 2.6, 1.0));
     let repeated: Vec<Vec2> =
         wall.texcoords().unwrap_or_default().iter().map(|t| *t * Vec2::new(1.3077, 1.0)).collect();
@@ -351,7 +351,7 @@ fn cycle() -> Scene {
 
 fn still() -> Scene {
     let mut scene = scene("still", Some(&builtin::MATERIALS_8X32), 0.0);
-    scene.preferences.dither = Some(DitherPattern::Ordered);
+    scene.settings.dither = Some(DitherPattern::Ordered);
     for (name, mesh, position, scale, angles, ramp, light) in [
         ("table", shapes::wall(16, 16), vec3(0.0, -0.7, 0.0), 4.2, [-90.0, 0.0, 0.0], 0, None),
         ("teapot", shapes::teapot(8), vec3(-0.2, -0.18, -0.3), 1.1, [0.0, 25.0, 0.0], 5, Some([0.1, 0.6, 0.4, 30.0])),

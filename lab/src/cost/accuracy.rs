@@ -278,7 +278,7 @@ impl Referee<'_> {
     /// where an object has none or is split, and on 16.16 vertices.
     fn linear_error(&self, scene: &Scene) -> Result<Option<f64>, CostError> {
         let mut renderer = (self.base)();
-        if renderer.settings.vertex_path == VertexPath::Integer {
+        if renderer.settings.vertex_path == Some(VertexPath::Integer) {
             return Ok(None);
         }
         renderer.settings.accuracy = Some(Shading::Gouraud88Reseeded.into());

@@ -109,7 +109,7 @@ impl<'a> Configuration<'a> {
         };
         let mut ways = Vec::new();
         for path in VertexPath::ALL {
-            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings.vertex_path = path)));
+            ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings.vertex_path = Some(path))));
         }
         for (bits, name) in [(8, "1/256 pixel"), (4, "1/16 pixel"), (0, "whole pixels")] {
             ways.push(with_shading(Aspect::VertexRounding, &name, Box::new(move |r| hooks::set_vertex_bits(r, bits))));
@@ -117,7 +117,7 @@ impl<'a> Configuration<'a> {
         let fastest = Kernel::default();
         let others = Kernel::available().filter(|kernel| kernel.level() != fastest.level());
         for kernel in core::iter::once(fastest).chain(others) {
-            ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.settings.kernel = kernel)));
+            ways.push(with_shading(Aspect::Kernel, &kernel, Box::new(move |r| r.kernel = kernel)));
         }
         for dither in core::iter::once(None).chain(DitherPattern::ALL.map(Some)) {
             let name = dither.map_or("none", DitherPattern::name);
@@ -131,7 +131,7 @@ impl<'a> Configuration<'a> {
         for shading in core::iter::once(REFERENCE).chain(others) {
             ways.push(Self::new(Kind::Choice(Aspect::PortableShading), shading, move |renderer| {
                 renderer.settings.accuracy = Some(shading.into());
-                renderer.settings.kernel = Kernel::PORTABLE;
+                renderer.kernel = Kernel::PORTABLE;
             }));
         }
         ways

@@ -117,7 +117,7 @@ pub fn measure(
     }
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
     let mut ways = Configuration::shadings_and_budgets(shadings);
-    if renderer().settings.vertex_path == VertexPath::Integer {
+    if renderer().settings.vertex_path == Some(VertexPath::Integer) {
         // It has no budget.
         ways.retain(|way| !matches!(way.kind, Kind::Budget(_)));
     }
@@ -151,7 +151,7 @@ pub fn measure(
     let study = Study {
         input: name.to_string(),
         host: Host { clock: clock.name.to_string(), clock_step: clock.step(), ..host.clone() },
-        kernel: renderer().settings.kernel.to_string(),
+        kernel: renderer().kernel.to_string(),
         frames: frames.len(),
         rounds: outcome.samples.rounds(),
         shadings: of_shadings,
@@ -193,7 +193,7 @@ fn choices(
 /// The frames with this dither or none.
 fn with_dither(frames: &[Scene], dither: Option<DitherPattern>) -> Vec<Scene> {
     let mut frames = frames.to_vec();
-    frames.iter_mut().for_each(|scene| scene.preferences.dither = dither);
+    frames.iter_mut().for_each(|scene| scene.settings.dither = dither);
     frames
 }
 

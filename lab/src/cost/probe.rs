@@ -75,7 +75,7 @@ impl Probe {
     pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
         let mut scene = scene.clone();
         scene.fog = None;
-        scene.preferences.dither = self.dither.flatten();
+        scene.settings.dither = self.dither.flatten();
         let ramp = if self.dither.is_some() { Ramp::new(0, COARSE).unwrap_or(Ramp::WHOLE) } else { Ramp::WHOLE };
         for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
             let ramp = RampChoice::Entries(ramp);
@@ -86,7 +86,7 @@ impl Probe {
             let step = 255.0 / f64::from(ramp.entries() - 1);
             shades.iter_mut().for_each(|shades| *shades = shades.map(|entry| entry * step));
         }
-        scene.preferences.dither = None;
+        scene.settings.dither = None;
         let faces = self.faces(scene, screen)?;
         Ok(Shown { width: screen.width, height: screen.height, faces, shades })
     }
@@ -118,7 +118,7 @@ impl Probe {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
         // Making a table for every digit would take long.
-        let accuracy = self.renderer.settings.resolve(&scene.preferences).asked;
+        let accuracy = self.renderer.settings.or(&scene.settings).asked_accuracy();
         let needs_tables = accuracy == Accuracy::Shading(Shading::PhongTable);
         let replaced = needs_tables.then(|| self.renderer.settings.accuracy.replace(Shading::Phong.into()));
         let numbers = self.numbers(scene, screen);

@@ -16,7 +16,7 @@ use mode13h::plan::{self, Effect};
 use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::effects::Attributes;
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{Accuracy, ChosenBy, HiddenSurfaces, Renderer, Resolved, Screen, Shading, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Screen, Settings, Shading, VertexPath};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -193,7 +193,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         hidden_surfaces: trace.stats.hidden_surfaces,
         hidden_surfaces_why: hidden.map(|row| row.reason.clone()).unwrap_or_default(),
         shading: trace.stats.shading,
-        shading_why: shading_why(&renderer.settings.resolve(&scene.preferences)),
+        shading_why: shading_why(&renderer.settings, &scene.settings),
         max_error: trace.stats.max_error,
         vertex_path: trace.stats.vertex_path,
         objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
@@ -213,23 +213,27 @@ fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
     vga.palette().colors()[usize::from(entry)]
 }
 
-fn shading_why(settings: &Resolved) -> String {
-    let Resolved { asked, asked_by, accuracy, .. } = *settings;
-    match asked_by {
-        _ if asked != accuracy => match asked {
-            Accuracy::Shading(shading) => format!("16.16 vertices have no {shading}"),
-            Accuracy::WithinError(_) => "16.16 vertices have no budget".into(),
-        },
-        ChosenBy::Renderer => "asked for".into(),
-        ChosenBy::Scene => "the scene asks for it".into(),
-        ChosenBy::Default => "the default".into(),
+fn shading_why(of_renderer: &Settings, of_scene: &Settings) -> String {
+    let settings = of_renderer.or(of_scene);
+    match settings.asked_accuracy() {
+        asked if asked == settings.drawn_accuracy() => {
+            let origin = if of_renderer.has_accuracy() {
+                "asked for"
+            } else if of_scene.has_accuracy() {
+                "the scene asks for it"
+            } else {
+                "the default"
+            };
+            origin.into()
+        }
+        Accuracy::Shading(shading) => format!("16.16 vertices have no {shading}"),
+        Accuracy::WithinError(_) => "16.16 vertices have no budget".into(),
     }
 }
 
 /// A triangle, with its place in the mesh.
 fn here(renderer: &Renderer, scene: &Scene, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
-    let is_part = renderer.settings.vertex_path == VertexPath::Float
-        && renderer.plan().objects()[met.object].is_on(Effect::Tessellation);
+    let is_part = renderer.plan().objects()[met.object].is_on(Effect::Tessellation);
     let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
     let object = &scene.objects()[met.object];
     let surface = triangle.and_then(|triangle| object.mesh().triangle_surfaces().get(triangle));

@@ -78,7 +78,7 @@ pub(super) fn trace(
     let (hidden_surfaces, chosen) = (plan.hidden_surfaces(), plan.is_chosen());
     // With the scan-line method every shading covers exactly.
     let exact = hidden_surfaces == HiddenSurfaces::ScanLine;
-    let mut pixel = OnePixel { screen, x, y, kernel: renderer.settings.kernel, row: vec![0; screen.width as usize] };
+    let mut pixel = OnePixel { screen, x, y, kernel: renderer.kernel, row: vec![0; screen.width as usize] };
     let (mut met, mut number) = (Vec::new(), 0);
     let stats = hooks::each_triangle(renderer, scene, screen, &mut |triangle| {
         met.extend(meet(triangle, number, &mut pixel, exact));

@@ -227,7 +227,7 @@ fn r12_neighbours_on_different_shadings_leave_no_crack() {
     let mut tried = Tried::new("r12_neighbours_on_different_shadings_leave_no_crack", 60);
     let (mut mixed, mut pixels, mut transparent) = (0, 0_u64, 0);
     for (name, mut scene) in scenes::all() {
-        scene.preferences.tessellation = None;
+        scene.settings.tessellation = None;
         let is_opaque = |object: &Object| object.materials.iter().all(|material| material.blend == Blend::Opaque);
         if !scene.objects().iter().all(is_opaque) {
             // What is behind shows through, and so do the backgrounds.
@@ -322,9 +322,9 @@ fn a_wider_budget_lights_fewer_pixels() {
 #[test]
 fn the_budget_is_the_renderers_or_the_scenes() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
-    scene.preferences.max_error = Some(3.0);
+    scene.settings.accuracy = Some(Accuracy::WithinError(3.0));
     let mut renderer = Renderer::new();
-    let drawn_by = |renderer: &Renderer| renderer.settings.resolve(&scene.preferences).accuracy;
+    let drawn_by = |renderer: &Renderer| renderer.settings.or(&scene.settings).drawn_accuracy();
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(3.0));
     assert_eq!(renderer.settings.accuracy.replace(Accuracy::WithinError(5.0)), None);
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(5.0));
@@ -335,7 +335,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     assert_eq!((stats.max_error, stats.shares[Shading::Phong]), (None, stats.drawn));
     for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let drawn = within(wrong).draw(&scene, &mut Vga::new());
-        assert!(matches!(drawn, Err(RenderError::Preferences(_))), "{wrong}");
+        assert!(matches!(drawn, Err(RenderError::Settings(_))), "{wrong}");
     }
 }
 
@@ -380,7 +380,7 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
     assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));
     // A shading leaves nothing to choose.
     renderer.settings.accuracy = Some(Shading::Phong.into());
-    assert!(matches!(renderer.draw(&scene, &mut vga), Err(RenderError::Preferences(_))));
+    assert!(matches!(renderer.draw(&scene, &mut vga), Err(RenderError::Settings(_))));
 }
 
 /// The 16.16 path has no budget, and says so.
@@ -388,7 +388,7 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
 fn integers_know_no_budget() {
     let scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let mut renderer = within(2.0);
-    renderer.settings.vertex_path = VertexPath::Integer;
+    renderer.settings.vertex_path = Some(VertexPath::Integer);
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
     assert_eq!(stats.max_error, None);
     assert_eq!(stats.shares[Shading::Gouraud88Reseeded], stats.drawn);
@@ -415,19 +415,6 @@ fn approximations_are_counted_apart() {
     let drawn = |shading: FaceShading| counts.iter().any(|(of, count)| *of == shading && *count > 0);
     assert!(drawn(FaceShading::Quadratic) && drawn(Shading::Phong.into()), "{counts:?}");
     assert!(SampleSpacing::ALL.into_iter().any(|spacing| drawn(FaceShading::PhongEvery(spacing))), "{counts:?}");
-}
-
-/// What a scene's shading would be counts for nothing where it accepts an error.
-#[test]
-fn a_scene_with_a_shading_and_an_error_accepts_the_error() {
-    for (name, mut scene) in scenes::all() {
-        (scene.preferences.shading, scene.preferences.max_error) = (None, Some(4.0));
-        let without = draw(&mut Renderer::new(), &scene, &mut Vga::new());
-        for shading in [Shading::Flat, Shading::GouraudTessellated, Shading::PhongTable] {
-            scene.preferences.shading = Some(shading);
-            assert!(draw(&mut Renderer::new(), &scene, &mut Vga::new()) == without, "{name}, {shading}");
-        }
-    }
 }
 
 /// The plan names the budget and what came of it.

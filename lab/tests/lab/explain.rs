@@ -156,7 +156,7 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
             for path in VertexPath::ALL {
                 let mut renderer = Renderer::new();
                 renderer.settings.hidden_surfaces = Some(way);
-                renderer.settings.vertex_path = path;
+                renderer.settings.vertex_path = Some(path);
                 if random.unit() < 0.3 {
                     renderer.settings.accuracy = Some(Shading::GouraudVintage.into());
                 }

@@ -52,7 +52,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     }
     let fresh = || {
         let mut renderer = Renderer::new();
-        renderer.settings.vertex_path = path;
+        renderer.settings.vertex_path = Some(path);
         renderer
     };
     let mesh = Shared::new(shapes::torus(8, 6));

@@ -58,7 +58,7 @@ fn load() -> Vec<(String, Scene)> {
         }
     }
     // What is split is another mesh, of which this one's vertices say little.
-    all.iter_mut().for_each(|(_, scene)| scene.preferences.tessellation = None);
+    all.iter_mut().for_each(|(_, scene)| scene.settings.tessellation = None);
     all
 }
 
@@ -391,7 +391,7 @@ fn the_probe_shows_what_is_drawn() {
             // As the probe sees it: grey, 256 shades, nothing over them.
             scene.palette = Some(builtin::GREY.clone());
             scene.fog = None;
-            scene.preferences.dither = None;
+            scene.settings.dither = None;
             for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
                 *material = Material { texture: None, environment: None, ..material.clone() };
                 material.ramp = Material::default().ramp;
@@ -486,7 +486,7 @@ fn the_probe_numbers_any_triangle() {
     let mut torus = crate::support::scenes::framed(shapes::torus(48, 24));
     torus.objects_mut()[0].angles = [0.3, 0.2, 0.0].map(Angle::from_radians);
     let mut probe = probe(Shading::Gouraud88Reseeded);
-    probe.renderer().settings.vertex_path = VertexPath::Integer;
+    probe.renderer().settings.vertex_path = Some(VertexPath::Integer);
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
     // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
@@ -966,7 +966,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
                         let mut probe = probe(Shading::ALL[setting % Shading::ALL.len()]);
                         probe.renderer().settings.hidden_surfaces = Some(way);
                         match setting {
-                            10 => probe.renderer().settings.vertex_path = VertexPath::Integer,
+                            10 => probe.renderer().settings.vertex_path = Some(VertexPath::Integer),
                             11 => {
                                 probe.renderer().settings.accuracy = Some(Accuracy::WithinError(4.0));
                             }

@@ -17,7 +17,8 @@ use super::{SceneErrorKind, motion};
 use crate::Angle;
 use crate::light::{Cone, Light};
 use crate::scene::framing::{Swept, Turning};
-use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Preferences, Scene};
+use crate::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Settings};
+use crate::settings::Accuracy;
 
 /// Makes one scene.
 pub(super) struct Builder<'a> {
@@ -48,7 +49,7 @@ impl<'a> Builder<'a> {
             self.scene.ambient = ambient.0;
         }
         if let Some(render) = &layout.render {
-            self.scene.preferences = preferences(render);
+            self.scene.settings = settings(render);
         }
         if let Some(name) = &layout.palette {
             self.palette(name)?;
@@ -68,7 +69,7 @@ impl<'a> Builder<'a> {
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
         if name.get_ref().0 == "auto" {
-            self.scene.preferences.auto_palette = true;
+            self.scene.auto_palette = true;
         } else {
             self.scene.palette = Some(self.named.palette(name)?);
         }
@@ -242,16 +243,18 @@ fn cone(
     Ok(Some(Cone { direction: direction.get_ref().vec3(), inner, outer }))
 }
 
-fn preferences(layout: &RenderLayout) -> Preferences {
-    Preferences {
-        shading: layout.shading.as_ref().map(|name| name.0),
+/// How a scene is to be drawn. An error or a time counts before a shading.
+fn settings(layout: &RenderLayout) -> Settings {
+    let max_time = layout.max_time.map(|milliseconds| milliseconds.0);
+    let shading = layout.shading.as_ref().filter(|_| max_time.is_none()).map(|name| Accuracy::Shading(name.0));
+    Settings {
+        accuracy: layout.max_error.map(|shades| Accuracy::WithinError(shades.0)).or(shading),
+        max_time,
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
         mipmaps: layout.mipmaps,
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.as_ref().and_then(|dither| dither.0),
-        max_error: layout.max_error.map(|shades| shades.0),
-        max_time: layout.max_time.map(|milliseconds| milliseconds.0),
-        auto_palette: false,
+        vertex_path: None,
     }
 }

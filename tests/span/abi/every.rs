@@ -220,7 +220,7 @@ fn s7_frames_keep_the_rules() {
         let (width, height) = random.one_of(&[(64_u32, 40_u32), (33, 77), (100, 30)]);
         try_kernels(&format!("case {case}, {shading:?}"), &mut random, &mut tried, |kernel| {
             let mut renderer = Renderer::new();
-            renderer.settings.kernel = kernel;
+            renderer.kernel = kernel;
             renderer.settings.hidden_surfaces = way;
             if is_budget {
                 renderer.settings.accuracy = Some(Accuracy::WithinError(2.0));

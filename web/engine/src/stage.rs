@@ -45,7 +45,7 @@ impl Stage {
     /// Opens the scene of a text. An error is JSON: its words, its line and its column.
     pub(crate) fn open(text: &[u8], files: &BTreeMap<String, Arc<[u8]>>) -> Result<Stage, Value> {
         let loaded = Scene::from_toml_bytes(text, PATH, |path| find(files, path)).map_err(|error| located(&error))?;
-        let colors = match loaded.scene.preferences.auto_palette {
+        let colors = match loaded.scene.auto_palette {
             true => Some(Colors::Auto),
             false => loaded.scene.palette.clone().map(Colors::from),
         };

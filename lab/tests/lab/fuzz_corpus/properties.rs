@@ -349,7 +349,7 @@ fn check_scene(mut scene: Scene) {
         scene.set_time(seconds);
         // What is still too large for f32, a camera that comes to its target, or a sun to zero, is refused when it is
         // drawn. Great scenes take long.
-        if triangles < 500 && scene.objects().len() < 20 && scene.preferences.tessellation.is_none() {
+        if triangles < 500 && scene.objects().len() < 20 && scene.settings.tessellation.is_none() {
             let _ = Renderer::new().draw(&scene, &mut Vga::new());
         }
     }

@@ -1,14 +1,14 @@
 //! R9: every float that a public structure of a scene has, from one list, which is compared with the sources.
 
 use std::fs;
-use std::path::Path;
+use std::path::PathBuf;
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light, Material};
 use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::{BIOS, Rgb};
-use mode13h::render::Renderer;
+use mode13h::render::{Accuracy, Renderer};
 use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene};
 use mode13h::vga::Vga;
 
@@ -142,9 +142,9 @@ const FLOATS: &[Row] = &[
     ("Surface.specular", 3, |s, bad, i| surface(s, |surface| surface.specular[i] = bad), "object 0"),
     ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
     ("Surface.opacity", 1, |s, bad, _| surface(s, |surface| surface.opacity = bad), "object 0"),
-    ("Preferences.max_error", 1, |s, bad, _| s.preferences.max_error = Some(bad), "preferences"),
-    ("Preferences.max_time", 1, |s, bad, _| s.preferences.max_time = Some(bad), "preferences"),
-    ("Preferences.tessellation", 1, |s, bad, _| s.preferences.tessellation = Some(bad), "preferences"),
+    ("Settings.accuracy", 1, |s, bad, _| s.settings.accuracy = Some(Accuracy::WithinError(bad)), "settings"),
+    ("Settings.max_time", 1, |s, bad, _| s.settings.max_time = Some(bad), "settings"),
+    ("Settings.tessellation", 1, |s, bad, _| s.settings.tessellation = Some(bad), "settings"),
 ];
 
 /// Minus zero, and the least numbers that f32 has, with and without all of their bits.
@@ -165,14 +165,22 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Scene.time", "in what it has moved"),
 ];
 
-/// The fields of public structures and enums below a folder whose types have floats in them.
-fn floats(folder: &Path, fields: &mut Vec<String>) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            // Scenes as text, and models, have numbers of their own kinds, which are checked where they are read.
-            continue;
-        }
+/// The sources whose fields are listed. Scenes as text, and models, which are in folders below, have numbers of their own
+/// kinds, which are checked where they are read.
+fn sources() -> Vec<PathBuf> {
+    let root = crate::support::workspace::root().join("src");
+    let mut files = vec![root.join("settings.rs")];
+    for folder in ["scene", "light", "mesh"] {
+        let entries = fs::read_dir(root.join(folder)).expect("a folder");
+        files.extend(entries.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file()));
+    }
+    files
+}
+
+/// The fields of public structures and enums whose types have floats in them.
+fn floats() -> Vec<String> {
+    let mut fields = Vec::new();
+    for path in sources() {
         let text = fs::read_to_string(&path).expect("a source");
         let (mut of, mut variant) = (None, None);
         for line in text.lines() {
@@ -188,7 +196,7 @@ fn floats(folder: &Path, fields: &mut Vec<String>) {
             let (Some(of), Some((name, kind))) = (of, words.split_once(": ")) else { continue };
             let is_float = kind
                 .split(|c: char| !c.is_alphanumeric())
-                .any(|word| ["Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
+                .any(|word| ["Accuracy", "Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
             if is_float && !words.starts_with("//") {
                 let name = name.trim_start_matches("pub ");
                 let variant = variant.as_ref().map_or(String::new(), |variant| format!("::{variant}"));
@@ -196,13 +204,11 @@ fn floats(folder: &Path, fields: &mut Vec<String>) {
             }
         }
     }
+    fields
 }
 
 pub(crate) fn every_float_is_refused(mut tried: Tried) {
-    let mut fields = Vec::new();
-    for folder in ["src/scene", "src/light", "src/mesh"] {
-        floats(&crate::support::workspace::root().join(folder), &mut fields);
-    }
+    let mut fields = floats();
     fields.sort_unstable();
     let mut listed: Vec<&str> = FLOATS.iter().map(|row| row.0).chain(ELSEWHERE.iter().map(|row| row.0)).collect();
     listed.sort_unstable();

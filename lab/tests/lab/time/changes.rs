@@ -11,7 +11,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Settings, Shading, VertexPath};
 use mode13h::scene::{DitherPattern, Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
@@ -20,33 +20,23 @@ use mode13h_lab::explain;
 
 use mode13h_conformance::Random;
 
-/// How a renderer is set: what a fresh one is given, so that it draws the same frame.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Settings {
-    accuracy: Option<Accuracy>,
-    max_time: Option<f32>,
-    mapping: Option<Mapping>,
-    mipmaps: Option<bool>,
-    vertex_path: VertexPath,
-    kernel: Kernel,
-    hidden_surfaces: Option<HiddenSurfaces>,
-    /// For one object or for every object, in the order in which they were forced.
-    forced: Vec<(Option<usize>, Effect, Option<bool>)>,
+/// A scene, the renderer that is kept, and the machines that it draws on: the first is drawn on next.
+pub(super) struct World {
+    pub(super) scene: Scene,
+    pub(super) settings: Settings,
+    pub(super) kernel: Kernel,
+    /// Effects for one object or for every object, in the order in which they were forced.
+    pub(super) forced: Vec<(Option<usize>, Effect, Option<bool>)>,
+    pub(super) kept: Renderer,
+    pub(super) machines: [Box<Vga>; 2],
 }
 
-impl Settings {
-    /// A fresh renderer that is set so.
-    pub(super) fn renderer(&self) -> Renderer {
-        let Self { accuracy, max_time, mapping, mipmaps, vertex_path, kernel, hidden_surfaces, forced } = self;
+impl World {
+    /// A fresh renderer that is set as the one that is kept.
+    pub(super) fn fresh(&self) -> Renderer {
         let mut renderer = Renderer::new();
-        renderer.settings.accuracy = *accuracy;
-        renderer.settings.max_time = *max_time;
-        renderer.settings.mapping = *mapping;
-        renderer.settings.mipmaps = *mipmaps;
-        renderer.settings.vertex_path = *vertex_path;
-        renderer.settings.kernel = *kernel;
-        renderer.settings.hidden_surfaces = *hidden_surfaces;
-        for (object, effect, on) in forced {
+        (renderer.settings, renderer.kernel) = (self.settings, self.kernel);
+        for (object, effect, on) in &self.forced {
             match object {
                 Some(object) => renderer.force_for(*object, *effect, *on),
                 None => renderer.force(*effect, *on),
@@ -54,14 +44,6 @@ impl Settings {
         }
         renderer
     }
-}
-
-/// A scene, the renderer that is kept, and the machines that it draws on: the first is drawn on next.
-pub(super) struct World {
-    pub(super) scene: Scene,
-    pub(super) settings: Settings,
-    pub(super) kept: Renderer,
-    pub(super) machines: [Box<Vga>; 2],
 }
 
 /// One thing that a caller may do between two frames.
@@ -82,11 +64,10 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
 }
 
 /// What no frame depends on, and what is no state of a scene.
-pub(super) const EXEMPT: [(&str, &str); 5] = [
+pub(super) const EXEMPT: [(&str, &str); 4] = [
     ("Shipped.name", "of a file that is compiled in"),
     ("Shipped.text", "a file that is compiled in"),
     ("Renderer.settings", "its fields are changed one by one"),
-    ("Settings.overrides", "changed by Renderer::force"),
     ("Renderer::report_frame_time", "chooses another error, which a new renderer is not told of; tried in budget.rs"),
 ];
 
@@ -101,7 +82,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.palette", |w, r| w.scene.palette = sometimes(r, palette)),
     seen("Scene.palette_animation", |w, r| w.scene.palette_animation = sometimes(r, |r| fade(r, palette))),
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
-    seen("Scene.preferences", |w, _| w.scene.preferences = Default::default()),
+    seen("Scene.settings", |w, _| w.scene.settings = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
     // When a picture is taken of it, which the program asks for.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
@@ -179,24 +160,31 @@ pub(super) const CHANGES: &[Change] = &[
     seen("PaletteAnimation::Cycle.period", |w, r| {
         animate(w, r, |r| PaletteAnimation::Cycle { range: 1..=255, period: 0.5 + r.unit() });
     }),
-    // Preferences
-    seen("Preferences.shading", |w, r| w.scene.preferences.shading = sometimes(r, |r| r.one_of(&Shading::ALL))),
-    seen("Preferences.hidden_surfaces", |w, r| {
-        w.scene.preferences.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
+    // The scene's settings
+    seen("Scene.settings.accuracy", |w, r| {
+        w.scene.settings.accuracy = match r.within(0, 2) {
+            0 => None,
+            1 => Some(r.one_of(&Shading::ALL).into()),
+            _ => Some(Accuracy::WithinError(between(r, 0.5, 16.0))),
+        };
+        w.scene.settings.max_time = None;
     }),
-    seen("Preferences.mapping", |w, r| {
+    seen("Scene.settings.hidden_surfaces", |w, r| {
+        w.scene.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
+    }),
+    seen("Scene.settings.mapping", |w, r| {
         w.settings.mapping = None;
         w.kept.settings.mapping = None;
         let (before, after) = two_mappings(r);
-        w.scene.preferences.mapping = before;
+        w.scene.settings.mapping = before;
         textured(w, r);
-        w.scene.preferences.mapping = after;
+        w.scene.settings.mapping = after;
     }),
-    seen("Preferences.mipmaps", |w, r| {
+    seen("Scene.settings.mipmaps", |w, r| {
         textured(w, r);
-        w.scene.preferences.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
+        w.scene.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
-    seen("Preferences.tessellation", |w, r| {
+    seen("Scene.settings.tessellation", |w, r| {
         // By a lamp near a large face, which is split otherwise then.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
@@ -206,24 +194,29 @@ pub(super) const CHANGES: &[Change] = &[
                 w.scene.remove_light(id);
             }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
-            w.scene.preferences.max_error = None;
-            w.settings.accuracy = None;
-            w.kept.settings.accuracy = None;
-            w.scene.preferences.tessellation = Some(4.0);
+            (w.scene.settings.accuracy, w.scene.settings.max_time) = (None, None);
+            (w.settings.accuracy, w.settings.max_time) = (None, None);
+            (w.kept.settings.accuracy, w.kept.settings.max_time) = (None, None);
+            w.scene.settings.tessellation = Some(4.0);
             drawn(w);
-            w.scene.preferences.tessellation = Some(between(r, 0.5, 1.0));
+            w.scene.settings.tessellation = Some(between(r, 0.5, 1.0));
         } else {
-            w.scene.preferences.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
+            w.scene.settings.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
         }
     }),
-    seen("Preferences.dither", |w, r| {
-        w.scene.preferences.dither = r.one_of(&[None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]);
+    seen("Scene.settings.dither", |w, r| {
+        w.scene.settings.dither = r.one_of(&[None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]);
     }),
-    seen("Preferences.max_error", |w, r| w.scene.preferences.max_error = sometimes(r, |r| between(r, 0.5, 16.0))),
     // No frame says how long it took: all are drawn within 16 shades, or what the scene says.
-    seen("Preferences.max_time", |w, r| w.scene.preferences.max_time = sometimes(r, |r| between(r, 0.5, 16.0))),
+    seen("Scene.settings.max_time", |w, r| {
+        w.scene.settings.accuracy = sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError);
+        w.scene.settings.max_time = sometimes(r, |r| between(r, 0.5, 16.0));
+    }),
+    seen("Scene.settings.vertex_path", |w, r| {
+        w.scene.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL))
+    }),
     // The program makes it, no renderer.
-    unseen("Preferences.auto_palette", |w, r| w.scene.preferences.auto_palette = r.within(0, 1) == 1),
+    unseen("Scene.auto_palette", |w, r| w.scene.auto_palette = r.within(0, 1) == 1),
     // Motions
     seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),
     seen("Motion::Spin.start", |w, r| {
@@ -396,13 +389,21 @@ pub(super) const CHANGES: &[Change] = &[
         w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
         w.kept.settings.mipmaps = w.settings.mipmaps;
     }),
+    seen("Settings.tessellation", |w, r| {
+        w.settings.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
+        w.kept.settings.tessellation = w.settings.tessellation;
+    }),
+    seen("Settings.dither", |w, r| {
+        w.settings.dither = sometimes(r, |r| r.one_of(&DitherPattern::ALL));
+        w.kept.settings.dither = w.settings.dither;
+    }),
     seen("Settings.vertex_path", |w, r| {
-        w.settings.vertex_path = r.one_of(&VertexPath::ALL);
+        w.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL));
         w.kept.settings.vertex_path = w.settings.vertex_path;
     }),
-    unseen("Settings.kernel", |w, r| {
-        w.settings.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
-        w.kept.settings.kernel = w.settings.kernel;
+    unseen("Renderer.kernel", |w, r| {
+        w.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
+        w.kept.kernel = w.kernel;
     }),
     seen("Settings.hidden_surfaces", |w, r| {
         // Two bodies that pass through each other, so that each way shows them otherwise.
@@ -420,13 +421,13 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Renderer::force", |w, r| {
         let (effect, on) = forced(r);
-        w.settings.forced.push((None, effect, on));
+        w.forced.push((None, effect, on));
         w.kept.force(effect, on);
     }),
     seen("Renderer::force_for", |w, r| {
         let (effect, on) = forced(r);
         let object = r.within(0, 2) as usize;
-        w.settings.forced.push((Some(object), effect, on));
+        w.forced.push((Some(object), effect, on));
         w.kept.force_for(object, effect, on);
     }),
     unseen("Renderer::make_plan", |w, r| {
@@ -442,7 +443,8 @@ pub(super) const CHANGES: &[Change] = &[
         let screen = (r.within(1, 90) as u32, r.within(1, 60) as u32);
         let first = r.within(0, i64::from(screen.1) - 1) as u32;
         let rows = r.one_of(&[0, first])..screen.1;
-        let [kept, fresh] = [&mut w.kept, &mut w.settings.renderer()].map(|renderer| {
+        let mut fresh = w.fresh();
+        let [kept, fresh] = [&mut w.kept, &mut fresh].map(|renderer| {
             let mut bytes = vec![7; (screen.0 * screen.1) as usize];
             let frame = Frame::band(&mut bytes, screen.0, screen.1, screen.0 as usize, rows.clone()).expect("a band");
             let drawn = renderer.draw_frame(&w.scene, frame, (1, 1)).map(drop);
@@ -451,7 +453,8 @@ pub(super) const CHANGES: &[Change] = &[
         assert!(kept == fresh, "a frame of {screen:?}, rows {rows:?}");
     }),
     unseen("Renderer::for_each_triangle", |w, _| {
-        let [kept, fresh] = [&mut w.kept, &mut w.settings.renderer()].map(|renderer| {
+        let mut fresh = w.fresh();
+        let [kept, fresh] = [&mut w.kept, &mut fresh].map(|renderer| {
             let mut all: Vec<([Vertex; 3], Interpolation)> = Vec::new();
             let drawn = renderer
                 .for_each_triangle(&w.scene, Screen::MODE_13H, |v, interpolation| all.push((*v, interpolation)));
@@ -506,15 +509,15 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     unseen("one set alike draws the same", |w, _| {
         w.kept.force(Effect::Lighting, Some(false));
-        w.settings.forced.push((None, Effect::Lighting, Some(false)));
-        let [alike, fresh] = [w.kept.with_same_settings(), w.settings.renderer()].map(|mut renderer| {
+        w.forced.push((None, Effect::Lighting, Some(false)));
+        let [alike, fresh] = [w.kept.with_same_settings(), w.fresh()].map(|mut renderer| {
             let mut vga = w.machines[0].clone();
             vga.pixels_mut().fill(3);
             (renderer.draw(&w.scene, &mut vga).map(drop), vga.pixels().to_vec())
         });
         assert!(alike == fresh, "one set alike");
         w.kept.force(Effect::Lighting, None);
-        w.settings.forced.push((None, Effect::Lighting, None));
+        w.forced.push((None, Effect::Lighting, None));
     }),
     unseen("nothing", |_, _| {}),
     unseen("a line within a rectangle of the frame", |w, r| {
@@ -534,10 +537,10 @@ pub(super) const CHANGES: &[Change] = &[
             1 => w.scene.ambient = f32::INFINITY,
             2 => one_object(w, r).position.y = f32::NAN,
             3 => one_material(w, r).shininess = f32::NAN,
-            4 => w.scene.preferences.max_error = Some(-1.0),
+            4 => w.scene.settings.tessellation = Some(-1.0),
             _ => w.scene.fog = Some(Fog { color: Rgb::BLACK, start: 2.0, end: 1.0 }),
         }
-        let fresh = w.settings.renderer().draw(&w.scene, &mut w.machines[0].clone());
+        let fresh = w.fresh().draw(&w.scene, &mut w.machines[0].clone());
         let before = w.machines[0].pixels().to_vec();
         let kept = w.kept.draw(&w.scene, &mut w.machines[0]);
         assert_eq!(kept.map(drop), fresh.map(drop));
@@ -849,7 +852,7 @@ fn fewer_objects(world: &mut World) {
     let old = std::mem::take(&mut world.scene);
     let mut scene = Scene::new();
     (scene.camera, scene.ambient, scene.background) = (old.camera, old.ambient, old.background);
-    (scene.palette, scene.fog, scene.preferences) = (old.palette.clone(), old.fog, old.preferences);
+    (scene.palette, scene.fog, scene.settings) = (old.palette.clone(), old.fog, old.settings);
     for &light in old.lights() {
         scene.add_light(light);
     }
@@ -914,8 +917,11 @@ pub(super) fn in_the_sources() -> Vec<String> {
     }
     let mut names: Vec<String> =
         paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
-    let settings = fs::read_to_string(root.join("render/settings.rs")).expect("a file");
-    names.extend(names_in(&settings).into_iter().filter(|name| name.starts_with("Settings.")));
+    // Of a renderer and of a scene.
+    let settings = names_in(&fs::read_to_string(root.join("settings.rs")).expect("a file"));
+    let fields: Vec<String> = settings.into_iter().filter(|name| name.starts_with("Settings.")).collect();
+    names.extend(fields.iter().map(|name| format!("Scene.{}", name.replacen('S', "s", 1))));
+    names.extend(fields);
     names.sort();
     names
 }

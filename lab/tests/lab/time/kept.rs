@@ -8,10 +8,11 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use mode13h::palette::Palette;
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
-use super::changes::{CHANGES, EXEMPT, Settings, World, in_the_sources, names_in, start};
+use super::changes::{CHANGES, EXEMPT, World, in_the_sources, names_in, start};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
 
@@ -37,18 +38,20 @@ type Shown = (Vec<u8>, Palette);
 
 impl World {
     fn new(scene: Scene) -> Self {
-        let settings = Settings::default();
-        Self { scene, kept: settings.renderer(), settings, machines: [Box::new(Vga::new()), Box::new(Vga::new())] }
+        let kept = Renderer::new();
+        let machines = [Box::new(Vga::new()), Box::new(Vga::new())];
+        Self { scene, settings: kept.settings, kernel: kept.kernel, forced: Vec::new(), kept, machines }
     }
 
     /// Draws by the kept renderer and by a fresh one, over other bytes; what both show, or how they differ.
     fn draw(&mut self) -> Result<Shown, String> {
+        let mut fresh = self.fresh();
         let vga = &mut self.machines[0];
         let before = vga.pixels().to_vec();
         let mut other = vga.clone();
         other.pixels_mut().fill(0xA5);
         let kept = self.kept.draw(&self.scene, vga).map(drop);
-        let fresh = self.settings.renderer().draw(&self.scene, &mut other).map(drop);
+        let fresh = fresh.draw(&self.scene, &mut other).map(drop);
         if kept != fresh {
             return Err(format!("{kept:?}, and by a fresh renderer {fresh:?}"));
         }
