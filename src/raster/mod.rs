@@ -21,7 +21,7 @@
 //! | [`vintage`] | both as the sources print them |
 //! | [`depth`] | whether it is in front |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
-//! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over pieces of a row |
+//! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
 //! | `triangles` | the same by vertices: [`Raster::triangles`] |
@@ -61,8 +61,6 @@ pub mod fixed16;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod float;
-#[cfg(feature = "alloc")]
-mod found;
 pub mod frame;
 #[doc(hidden)]
 pub mod hyperbolic;

@@ -14,7 +14,7 @@ use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePl
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
 use crate::span::Kernel;
-use crate::span::list::{DepthSteps, SpanList, Spans8};
+use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8};
 
 /// Most rows of eight small triangles that are found row by row, and put into the triangles' order afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
@@ -77,18 +77,32 @@ impl<S: Lanes8> Lane<S> for OneTriangle {
 
 /// Drawn parts of eight rows, in columns from the box's first on, as sums with `ROUND_MAGIC`.
 pub(super) struct Parts<S: Lanes8> {
-    /// The row's first covered pixel inside the frame, or where it starts anew, ...
-    pub(super) origin: S::F64,
-    /// ... the one behind its last, ...
+    /// The row's first covered pixel inside the frame, ...
+    pub(super) row: S::F64,
+    /// ... and the one behind its last.
     pub(super) end: S::F64,
-    /// ... and the first that is drawn.
+    /// Where the row starts anew, ...
+    pub(super) seed: S::F64,
+    /// ... and the first pixel that is drawn.
     pub(super) start: S::F64,
+}
+
+/// A shade, and above it the step, so many pixels on.
+#[inline(always)]
+pub(super) fn advance<S: Lanes8>(s: S, paint: S::I32, pixels: S::I32) -> S::I32 {
+    let step = s.and_i32(paint, s.splat_i32(!0xFFFF));
+    // Both in upper halves, as the step is.
+    let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, pixels));
+    s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step)
 }
 
 /// Shades of eight triangles, and of spans in their rows.
 pub(super) trait Shades8 {
-    /// False where a shade with its step above it is all that fills a span.
-    const STARTS: bool;
+    /// True where a shade with its step above it is all that fills a span.
+    const IS_LINEAR: bool;
+
+    /// What eight spans have beyond that.
+    type Columns<S: Lanes8>: SpanColumns<S>;
 
     /// Returns whether spans have to be drawn before eight more triangles are set up.
     fn is_full(&self) -> bool;
@@ -107,19 +121,19 @@ pub(super) trait Shades8 {
         setup: &TriangleSetup8,
         rows: (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, [S::I64; 2]);
+    ) -> (S::I32, Self::Columns<S>);
 
     /// Puts eight spans into a list.
     fn append<S: Lanes8, const DEPTHS: bool>(
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S>,
+        spans: &Spans8<S, Self::Columns<S>>,
         dz: DepthSteps<S>,
     );
 
     /// Sets up what is left to do of triangle `i` of the eight, which is no small one.
-    fn set_up_large(&mut self, i: usize);
+    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
 
     /// Draws the spans of a list, with `DEPTHS` where they are nearer than cells. The list is then empty.
     fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
@@ -136,7 +150,8 @@ pub(super) trait Shades8 {
 pub(super) struct Linear;
 
 impl Shades8 for Linear {
-    const STARTS: bool = false;
+    const IS_LINEAR: bool = true;
+    type Columns<S: Lanes8> = ();
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -157,9 +172,8 @@ impl Shades8 for Linear {
         setup: &TriangleSetup8,
         (ends, _): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, [S::I64; 2]) {
-        let zero = s.splat_i64(0);
-        (ends.paint(s, lane, setup, parts.origin), [zero, zero])
+    ) -> (S::I32, ()) {
+        (ends.paint(s, lane, setup, parts.seed), ())
     }
 
     #[inline(always)]
@@ -167,14 +181,14 @@ impl Shades8 for Linear {
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S>,
+        spans: &Spans8<S, ()>,
         dz: DepthSteps<S>,
     ) {
-        list.append::<S, DEPTHS>(s, spans, dz);
+        list.append::<S, _, DEPTHS>(s, spans, dz);
     }
 
     #[inline(always)]
-    fn set_up_large(&mut self, _: usize) {}
+    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
 
     #[inline(always)]
     fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
@@ -217,16 +231,8 @@ impl<S: Lanes8> RowEnds<S> {
 
     /// The shade at these columns, and above it the step.
     #[inline(always)]
-    fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
+    pub(super) fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
         value_at(s, lane, (&setup.shade, &setup.inverse), self.shade_n, columns)
-    }
-
-    /// Another value at the first pixels of row `j` of each of eight triangles, and above it the step.
-    #[cfg(feature = "alloc")]
-    #[inline(always)]
-    pub(super) fn value(&self, s: S, planes: (&ValuePlanes8, &Floats), j: S::F64) -> S::I32 {
-        let n = s.mul_add(s.load_f64(&planes.0.per_row), j, s.load_f64(&planes.0.n));
-        value_at(s, EachTriangle, planes, n, self.left)
     }
 }
 
@@ -234,6 +240,20 @@ impl<S: Lanes8> RowEnds<S> {
 #[inline(always)]
 fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, n: S::F64, columns: S::F64) -> S::F64 {
     s.mul_add(lane.load_f64(s, &planes.per_column), s.sub(columns, s.splat_f64(ROUND_MAGIC)), n)
+}
+
+/// A value at these columns of rows `j`, and above it the step.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(super) fn value_of<S: Lanes8>(
+    s: S,
+    lane: impl Lane<S>,
+    (planes, inverse): (&ValuePlanes8, &Floats),
+    j: S::F64,
+    columns: S::F64,
+) -> S::I32 {
+    let n = s.mul_add(lane.load_f64(s, &planes.per_row), j, lane.load_f64(s, &planes.n));
+    value_at(s, lane, (planes, inverse), n, columns)
 }
 
 /// A value at these columns, and above it the step, from the numerator at the first column.
@@ -277,14 +297,14 @@ impl<S: Lanes8> RowCursor8<S> {
 
     /// Row `number`, and goes on to the next.
     #[inline(always)]
-    fn row<const DEPTHS: bool>(
+    fn row<P: Shades8, const DEPTHS: bool>(
         &mut self,
         s: S,
         setup: &TriangleSetup8,
-        shades: &impl Shades8,
+        shades: &P,
         list: &SpanList,
         number: i32,
-    ) -> Spans8<S> {
+    ) -> Spans8<S, P::Columns<S>> {
         let lane = EachTriangle;
         let j = s.splat_f64(f64::from(number));
         let number = s.splat_i32(number);
@@ -296,15 +316,15 @@ impl<S: Lanes8> RowCursor8<S> {
             z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), s.load_i64(&setup.z_per_column)));
             self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
-        let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
-        let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+        let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
+        let (paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
             length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
             paint,
             z,
-            starts,
+            columns,
         };
         self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
         if DEPTHS {
@@ -328,15 +348,15 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     if most_rows <= 0 {
         return;
     }
-    let first = cursor.row::<DEPTHS>(s, setup, shades, list, 0);
+    let first = cursor.row::<P, DEPTHS>(s, setup, shades, list, 0);
     if most_rows == 1 {
         let dz = if DEPTHS { DepthSteps::Each(s.load_i64(&setup.z_per_column)) } else { DepthSteps::All(0) };
         shades.append::<S, DEPTHS>(s, list, &first, dz);
         return;
     }
-    let second = cursor.row::<DEPTHS>(s, setup, shades, list, 1);
+    let second = cursor.row::<P, DEPTHS>(s, setup, shades, list, 1);
     if most_rows == 2 {
-        let [low, high] = first.zip(s, &second, list, (DEPTHS, P::STARTS));
+        let [low, high] = first.zip(s, &second, list, DEPTHS);
         let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
         if DEPTHS {
             let dz = s.load_i64(&setup.z_per_column);
@@ -347,12 +367,12 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         shades.append::<S, DEPTHS>(s, list, &high, of_high);
         return;
     }
-    let third = cursor.row::<DEPTHS>(s, setup, shades, list, 2);
-    let fourth = cursor.row::<DEPTHS>(s, setup, shades, list, 3);
-    let even = first.zip(s, &third, list, (DEPTHS, P::STARTS));
-    let odd = second.zip(s, &fourth, list, (DEPTHS, P::STARTS));
+    let third = cursor.row::<P, DEPTHS>(s, setup, shades, list, 2);
+    let fourth = cursor.row::<P, DEPTHS>(s, setup, shades, list, 3);
+    let even = first.zip(s, &third, list, DEPTHS);
+    let odd = second.zip(s, &fourth, list, DEPTHS);
     for (half, even) in even.iter().enumerate() {
-        for (quarter, spans) in even.zip(s, &odd[half], list, (DEPTHS, P::STARTS)).iter().enumerate() {
+        for (quarter, spans) in even.zip(s, &odd[half], list, DEPTHS).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
             let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
             shades.append::<S, DEPTHS>(s, list, spans, dz);
@@ -360,15 +380,18 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
 }
 
+/// The ends of eight rows, their numbers, and the rows as spans.
+type EightRows<S, P> = (RowEnds<S>, <S as Lanes8>::F64, Spans8<S, <P as Shades8>::Columns<S>>);
+
 /// Eight rows of triangle `i` from number `first` on. Beyond its last row they have no length.
 #[inline(always)]
-fn eight_rows<S: Lanes8, const DEPTHS: bool>(
+fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
-    shades: &impl Shades8,
+    shades: &P,
     (i, first): (usize, i32),
     list: &SpanList,
-) -> (RowEnds<S>, S::F64, Spans8<S>) {
+) -> EightRows<S, P> {
     let lane = OneTriangle(i);
     let number = s.add_i32(s.splat_i32(first), s.load_i32(&NUMBERS));
     let j = s.to_f64(number);
@@ -383,30 +406,17 @@ fn eight_rows<S: Lanes8, const DEPTHS: bool>(
         z = s.add_i64(z, lane.load_i64(s, &setup.z));
         z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
     }
-    let parts = Parts { origin: ends.left, end: ends.right, start: ends.left };
-    let (paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+    let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
+    let (paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
     let spans = Spans8 {
         at: s.add_i32(at, left),
         cell: s.add_i32(cell, left),
         length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
         paint,
         z,
-        starts,
+        columns,
     };
     (ends, j, spans)
-}
-
-/// Row `number` of each of eight small triangles: its ends, and the first column that is covered, the one behind the last,
-/// and the first shade with the step above it.
-#[cfg(feature = "alloc")]
-#[inline(always)]
-pub(super) fn find_row<S: Lanes8>(s: S, setup: &TriangleSetup8, number: i32) -> (RowEnds<S>, [S::I32; 3]) {
-    let lane = EachTriangle;
-    let ends = RowEnds::of(s, lane, setup, s.splat_f64(f64::from(number)), s.splat_i32(number));
-    let column = s.load_i32(&setup.column);
-    let [left, right] = [s.add_i32(column, s.low_bits(ends.left)), s.add_i32(column, s.low_bits(ends.right))];
-    let paint = ends.paint(s, lane, setup, ends.left);
-    (ends, [left, right, paint])
 }
 
 /// Lists eight rows of small triangle `i` from number `first` on. There is room for eight.
@@ -418,7 +428,7 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     (i, first): (usize, i32),
     list: &mut SpanList,
 ) {
-    let (_, _, spans) = eight_rows::<S, DEPTHS>(s, setup, shades, (i, first), list);
+    let (_, _, spans) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
     shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
@@ -435,7 +445,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let lane = OneTriangle(i);
-    let (ends, j, rows) = eight_rows::<S, DEPTHS>(s, setup, shades, (i, first), list);
+    let (ends, j, rows) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame from the box's first on. All are below 4,096.
     let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
@@ -449,7 +459,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         is_row = s.and(is_row, s.is_greater(s.splat_i32(clip.y1 as i32), number));
     }
     let row_origin = left;
-    let (step, dz) = (lane.load_i32(s, &setup.shade.step), lane.load_i64(s, &setup.z_per_column));
+    let dz = lane.load_i64(s, &setup.z_per_column);
     for _ in 0..pieces {
         let end = s.add(left, s.splat_f64(longest.into()));
         let (mut start, mut right) = (left, s.min(ends.right, end));
@@ -457,16 +467,11 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             start = s.max(left, side(clip.x0));
             right = s.min(right, side(clip.x1));
         }
-        // Linear shades start anew with each piece.
-        let origin = if P::STARTS { row_origin } else { left };
-        let parts = Parts { origin, end: last, start };
-        let (mut paint, starts) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
-        if !P::STARTS && clip.is_some() {
+        let parts = Parts { row: row_origin, end: last, seed: left, start };
+        let (mut paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+        if P::IS_LINEAR && clip.is_some() {
             // A piece that begins left of the rectangle goes on from its start.
-            let skipped = s.sub_i32(s.low_bits(start), s.low_bits(left));
-            // Both in upper halves, as the step is.
-            let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, skipped));
-            paint = s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step);
+            paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
         }
         let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
         let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
@@ -476,7 +481,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             length: s.select_i32(is_row, length, s.splat_i32(0)),
             paint,
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
-            starts,
+            columns,
         };
         shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;

@@ -10,7 +10,6 @@
 
 use super::columns::{Picks, Triangles};
 use super::pick::{LANES, Pick};
-use super::rows::RowEnds;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
@@ -41,7 +40,7 @@ pub(super) struct AffinePlanes8 {
     /// The coordinate of the first corner by height.
     first: [Ints; 2],
     /// Change from a pixel to the next one, where a row has more than one.
-    pub(super) step: [Ints; 2],
+    step: [Ints; 2],
     /// A bit for each triangle whose corners lie near enough to each other.
     pub(super) fits: u32,
 }
@@ -93,20 +92,24 @@ impl AffinePlanes8 {
         }
     }
 
-    /// The coordinates at the first pixel of a row of each triangle.
+    /// The coordinates of triangle `lane` at column i of row j.
     #[inline(always)]
-    pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::I32; 2] {
-        let magic = s.splat_f64(ROUND_MAGIC);
-        let columns = s.sub(ends.left, magic);
-        let inverse = s.load_f64(&self.inverse);
-        let mut starts = [s.splat_i32(0); 2];
-        // Not by a closure, which would not be inlined.
-        for (i, start) in starts.iter_mut().enumerate() {
-            let n = s.mul_add(s.load_f64(&self.per_row[i]), j, s.load_f64(&self.n[i]));
-            let n = s.mul_add(s.load_f64(&self.per_column[i]), columns, n);
-            *start = s.add_i32(s.low_bits(s.mul_add(n, inverse, magic)), s.load_i32(&self.first[i]));
+    pub(super) fn start(&self, lane: usize, [i, j]: [i32; 2]) -> [u32; 2] {
+        let (lane, [column, row]) = (lane % LANES, [i, j].map(f64::from));
+        let mut starts = [0; 2];
+        for (of, start) in starts.iter_mut().enumerate() {
+            let n = self.n[of][lane] + self.per_row[of][lane] * row + self.per_column[of][lane] * column;
+            // The low bits; the sum is meant modulo 2³².
+            let change = (n * self.inverse[lane] + ROUND_MAGIC).to_bits() as u32;
+            *start = change.wrapping_add(self.first[of][lane].cast_unsigned());
         }
         starts
+    }
+
+    /// Change from a pixel of triangle `lane` to the next one.
+    #[inline(always)]
+    pub(super) fn step(&self, lane: usize) -> [u32; 2] {
+        [self.step[0][lane % LANES].cast_unsigned(), self.step[1][lane % LANES].cast_unsigned()]
     }
 }
 
@@ -119,7 +122,7 @@ pub(super) struct PerspectivePlanes8 {
     /// u, v and 1 of each corner, times its depth.
     values: [[Floats; 3]; 3],
     /// Change of the sums from a pixel to the next one.
-    pub(super) step: [Floats; 3],
+    step: [Floats; 3],
 }
 
 impl PerspectivePlanes8 {
@@ -160,18 +163,24 @@ impl PerspectivePlanes8 {
         }
     }
 
-    /// The sums at the first pixel of a row of each triangle.
+    /// The sums of triangle `lane` at column i of row j.
     #[inline(always)]
-    pub(super) fn start<S: Lanes8>(&self, s: S, j: S::F64, ends: &RowEnds<S>) -> [S::F64; 3] {
-        let columns = s.sub(ends.left, s.splat_f64(ROUND_MAGIC));
-        let mut sums = [s.splat_f64(0.0); 3];
-        for (corner, weights) in self.weights.iter().enumerate() {
-            let weight = s.mul_add(s.load_f64(&weights[1]), j, s.load_f64(&weights[0]));
-            let weight = s.mul_add(s.load_f64(&weights[2]), columns, weight);
-            for (i, sum) in sums.iter_mut().enumerate() {
-                *sum = s.mul_add(weight, s.load_f64(&self.values[corner][i]), *sum);
+    pub(super) fn start(&self, lane: usize, [i, j]: [i32; 2]) -> [f64; 3] {
+        let (lane, [column, row]) = (lane % LANES, [i, j].map(f64::from));
+        let mut sums = [0.0; 3];
+        for (weights, values) in self.weights.iter().zip(&self.values) {
+            let weight = weights[0][lane] + weights[1][lane] * row + weights[2][lane] * column;
+            for (sum, values) in sums.iter_mut().zip(values) {
+                *sum += weight * values[lane];
             }
         }
         sums
+    }
+
+    /// Change of the sums of triangle `lane` from a pixel to the next one.
+    #[inline(always)]
+    pub(super) fn step(&self, lane: usize) -> [f64; 3] {
+        let lane = lane % LANES;
+        [self.step[0][lane], self.step[1][lane], self.step[2][lane]]
     }
 }

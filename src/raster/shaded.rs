@@ -47,7 +47,7 @@ use crate::simd::Lanes8;
 use crate::span::Kernel;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float;
-use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8};
+use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8, Starts8};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -273,7 +273,8 @@ fn product<S: Lanes8>(s: S, a: S::F64, b: S::F64) -> S::I64 {
 }
 
 impl Shades8 for Shaded8<'_> {
-    const STARTS: bool = true;
+    const IS_LINEAR: bool = false;
+    type Columns<S: Lanes8> = Starts8<S>;
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -303,23 +304,23 @@ impl Shades8 for Shaded8<'_> {
         setup: &TriangleSetup8,
         (ends, j): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, [S::I64; 2]) {
+    ) -> (S::I32, Starts8<S>) {
         let magic = s.splat_f64(ROUND_MAGIC);
         // At most 255.
         let face = s.add_i32(s.splat_i32((self.listed.batch * LANES) as i32), lane.numbers(s));
         let steps = &self.listed.steps[self.listed.batch];
         if self.kind == Kind::Fixed16 {
-            let n = ends.shade_numerator(s, lane, setup, parts.origin);
+            let n = ends.shade_numerator(s, lane, setup, parts.row);
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
-            let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.origin));
+            let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
             let start = s.add_i32(start, s.mul_i32(lane.load_i32(s, &steps.fixed16), skipped));
-            return (face, [s.to_i64(start), s.splat_i64(0)]);
+            return (face, Starts8([s.to_i64(start), s.splat_i64(0)]));
         }
         let (mut at, mut paint) = (parts.start, face);
         if self.kind != Kind::Hyperbolic {
             let falls = s.is_less(lane.load_f64(s, &steps.sums[1]), s.splat_f64(0.0));
-            at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.origin);
+            at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
             let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
             paint = s.or_i32(face, s.shl_i32(first, 16));
         }
@@ -334,7 +335,7 @@ impl Shades8 for Shaded8<'_> {
                 *sum = s.add(*sum, s.mul(weight, lane.load_f64(s, &values[i])));
             }
         }
-        (paint, [s.bits(sums[0]), s.bits(sums[1])])
+        (paint, Starts8([s.bits(sums[0]), s.bits(sums[1])]))
     }
 
     #[inline(always)]
@@ -342,16 +343,16 @@ impl Shades8 for Shaded8<'_> {
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S>,
+        spans: &Spans8<S, Starts8<S>>,
         dz: DepthSteps<S>,
     ) {
-        let places = list.append::<S, DEPTHS>(s, spans, dz);
-        self.starts.put(s, places, spans.starts);
+        let places = list.append::<S, _, DEPTHS>(s, spans, dz);
+        self.starts.put(s, places, spans.columns);
     }
 
     /// The exact steps in f32 of a triangle that is too large for sums of 64 bits.
     #[inline(never)]
-    fn set_up_large(&mut self, i: usize) {
+    fn set_up_large(&mut self, i: usize, _: &TriangleSetup8) {
         #[cfg(feature = "alloc")]
         if self.kind == Kind::Float {
             let triangle = self.listed.triangle(self.listed.batch * LANES + i);

@@ -36,10 +36,10 @@ use crate::span::list::SpanList;
 
 /// Triangles, and whether their rows are cut into pieces of 64 pixels, with which linear shades start anew.
 #[derive(Clone, Copy)]
-struct Drawn<'a> {
-    triangles: &'a Triangles<'a>,
-    picks: Picks<'a>,
-    in_pieces: bool,
+pub(super) struct Drawn<'a> {
+    pub(super) triangles: &'a Triangles<'a>,
+    pub(super) picks: Picks<'a>,
+    pub(super) in_pieces: bool,
 }
 
 impl Drawn<'_> {
@@ -73,8 +73,7 @@ impl<D: Cell> Raster<'_, D> {
         let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
-        // Offsets of pixels are kept in 32 bits, and a depth buffer has to hold the frame's rows and no others.
-        let fits = pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows));
+        let fits = self.fits_lists();
         // Cells of 16 bits are for small machines: other shadings are drawn one by one there.
         let has_cells = self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some());
         let kind = Kind::of(interpolation).filter(|_| has_cells && picks.flat.is_empty());
@@ -120,8 +119,18 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
+impl<D: Cell> Raster<'_, D> {
+    /// Returns whether lists hold the places of spans: offsets of pixels are kept in 32 bits, and a depth buffer has to hold the
+    /// frame's rows and no others.
+    pub(super) fn fits_lists(&mut self) -> bool {
+        let (_, pitch) = self.frame.pixels_mut();
+        let (width, rows) = (self.frame.width(), self.frame.rows());
+        pitch <= 1 << 16 && self.depth.as_ref().is_none_or(|depth| depth.holds(width, &rows))
+    }
+}
+
 /// Where and with what triangles are drawn: the pixels' layout, the clip rectangle, and the kernel.
-type Target = (FrameLayout, Rect, Kernel);
+pub(super) type Target = (FrameLayout, Rect, Kernel);
 
 // Without type parameters, so that they are compiled in this crate, and not in each that draws.
 compiled_for_each_level! {
@@ -131,7 +140,8 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8]) -> DrawStats {
-    draw_triangles::<S, u32, Linear, false>(s, of, target, (pixels, &mut []), &mut Linear)
+    let list = &mut { SpanList::NONE };
+    draw_triangles::<S, u32, Linear, false, false>(s, of, target, (pixels, &mut []), &mut Linear, list)
 }
 
 /// Likewise, where they are nearer than cells.
@@ -152,13 +162,15 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats {
-    draw_triangles::<S, u32, Linear, true>(s, of, target, (pixels, cells), &mut Linear)
+    let list = &mut { SpanList::NONE };
+    draw_triangles::<S, u32, Linear, true, true>(s, of, target, (pixels, cells), &mut Linear, list)
 }
 
 /// Cells of 16 bits are for small machines: by what every processor of the target has.
 #[inline(never)]
 fn draw_nearer_in_16_bits(of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u16]) -> DrawStats {
-    draw_triangles::<_, u16, Linear, true>(BASELINE, of, target, (pixels, cells), &mut Linear)
+    let list = &mut { SpanList::NONE };
+    draw_triangles::<_, u16, Linear, true, true>(BASELINE, of, target, (pixels, cells), &mut Linear, list)
 }
 
 compiled_for_each_level! {
@@ -183,17 +195,20 @@ fn draw_shaded_by<S: Lanes8>(
     }
     let has_cells = !cells.is_empty();
     let mut shades = Shaded8::new(kind, of.triangles, of.picks, target.0);
-    let drawn = draw_triangles::<S, u32, _, true>(s, of, target, (pixels, cells), &mut shades);
+    let list = &mut { SpanList::NONE };
+    let drawn = draw_triangles::<S, u32, _, true, true>(s, of, target, (pixels, cells), &mut shades, list);
     if has_cells { drawn } else { DrawStats { pixels: drawn.covered, tested: 0, ..drawn } }
 }
 
+/// Draws triangles, with `DEPTHS` where they are nearer than cells; the list has depths if they are `LISTED`.
 #[inline(always)]
-fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
+pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
     s: S,
     of: Drawn<'_>,
     (layout, clip, kernel): Target,
     (pixels, cells): (&mut [u8], &mut [D]),
     shades: &mut P,
+    list: &mut SpanList,
 ) -> DrawStats {
     // Nobody comes here then, and a chip's program must not hold what follows.
     if !HAS_F64 {
@@ -201,7 +216,7 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
     }
     // Depths without cells are not looked at.
     let of_cells = if cells.is_empty() { (pixels.len(), layout.pitch) } else { (cells.len(), layout.width) };
-    let mut list = SpanList::new((pixels.len(), layout.pitch), of_cells);
+    list.begin((pixels.len(), layout.pitch), of_cells);
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
@@ -209,7 +224,7 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
     corners.gather::<DEPTHS>(triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
-            shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+            shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
         }
         shades.begin(number * LANES);
         let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout);
@@ -219,13 +234,13 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
         corners.gather::<DEPTHS>(triangles, &picks.range(count.min((number + 1) * LANES), count));
         setup.rows[eight.len().min(LANES)..].fill(0);
         if !list.has_room(LANES * LANES) {
-            shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+            shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
         }
         let are_small = Pick::are_small(eight);
         if are_small {
             let most = setup.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
             if most <= rows::MAX_SHORT_ROWS {
-                rows::list_short::<S, P, DEPTHS>(s, &setup, shades, most, &mut list);
+                rows::list_short::<S, P, LISTED>(s, &setup, shades, most, list);
                 continue;
             }
         }
@@ -234,9 +249,9 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
                     if !list.has_room(LANES) {
-                        shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+                        shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
                     }
-                    rows::list_eight_rows::<S, P, DEPTHS>(s, &setup, shades, (i, first), &mut list);
+                    rows::list_eight_rows::<S, P, LISTED>(s, &setup, shades, (i, first), list);
                 }
                 continue;
             }
@@ -247,7 +262,7 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
             if DEPTHS {
                 setup.put_depth_plane(i, &of.depth_plane(pick));
             }
-            shades.set_up_large(i);
+            shades.set_up_large(i, &setup);
             let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
             let pieces = of.pieces(pick);
             // Otherwise a row is one piece, however long.
@@ -260,11 +275,11 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
             }
             #[cfg(simd_x86_64)]
             if !DEPTHS
-                && !P::STARTS
+                && P::IS_LINEAR
                 && pick.class() == SizeClass::Large
                 && let Some(avx512) = kernel.avx512()
             {
-                shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+                shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
                 list.count_drawn(crate::span::fill_large(
                     avx512,
                     pixels,
@@ -274,15 +289,15 @@ fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool>(
             }
             while first < end {
                 if !list.has_room(LANES * pieces) {
-                    shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+                    shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
-                rows::list_pieces::<S, P, DEPTHS>(s, &setup, shades, part, cut, (clip, layout.width), &mut list);
+                rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list);
                 first += LANES as i32;
             }
         }
     }
-    shades.draw::<S, D, DEPTHS>(s, &mut list, kernel, pixels, cells);
+    shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
     let (spans, covered, nearer) = list.counts();
     let (pixels, tested) = if DEPTHS { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }

@@ -22,6 +22,7 @@ type Numbers = [u32; CAPACITY + LANES];
 type Depths = [i64; CAPACITY + LANES];
 
 /// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
+#[derive(Clone, Debug)]
 pub(crate) struct SpanList {
     /// Offsets of the first pixels.
     at: Numbers,
@@ -49,8 +50,22 @@ pub(crate) struct SpanList {
     nearer: u32,
 }
 
+/// What eight spans have beyond a linear shade.
+pub(crate) trait SpanColumns<S: Lanes8>: Copy {
+    /// Those of spans 0 of both, spans 1 of both, and so on.
+    fn zip(self, s: S, other: Self) -> [Self; 2];
+}
+
+/// Nothing.
+impl<S: Lanes8> SpanColumns<S> for () {
+    #[inline(always)]
+    fn zip(self, _: S, (): Self) -> [Self; 2] {
+        [(); 2]
+    }
+}
+
 /// Eight spans. Those of no length are none.
-pub(crate) struct Spans8<S: Lanes8> {
+pub(crate) struct Spans8<S: Lanes8, C> {
     pub(crate) at: S::I32,
     pub(crate) cell: S::I32,
     pub(crate) length: S::I32,
@@ -58,8 +73,7 @@ pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) paint: S::I32,
     /// Depths, as those of the list.
     pub(crate) z: S::I64,
-    /// What their fill begins with, where there is such.
-    pub(crate) starts: [S::I64; 2],
+    pub(crate) columns: C,
 }
 
 /// The changes of depth of eight spans from one pixel to the next, as those of the list.
@@ -70,10 +84,10 @@ pub(crate) enum DepthSteps<S: Lanes8> {
     All(i64),
 }
 
-impl<S: Lanes8> Spans8<S> {
+impl<S: Lanes8, C: SpanColumns<S>> Spans8<S, C> {
     /// Spans 0 of both, spans 1 of both, and so on.
     #[inline(always)]
-    pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, (has_depths, has_starts): (bool, bool)) -> [Self; 2] {
+    pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, has_depths: bool) -> [Self; 2] {
         let [at, more_at] = s.interleave_i32(self.at, other.at);
         let [cell, more_cell] = if has_depths && !list.cells_are_pixels() {
             s.interleave_i32(self.cell, other.cell)
@@ -83,34 +97,30 @@ impl<S: Lanes8> Spans8<S> {
         let [length, more_length] = s.interleave_i32(self.length, other.length);
         let [paint, more_paint] = s.interleave_i32(self.paint, other.paint);
         let [z, more_z] = if has_depths { s.interleave_i64(self.z, other.z) } else { [self.z, other.z] };
-        let (mut starts, mut more_starts) = (self.starts, other.starts);
-        if has_starts {
-            for i in 0..2 {
-                [starts[i], more_starts[i]] = s.interleave_i64(self.starts[i], other.starts[i]);
-            }
-        }
+        let [columns, more_columns] = self.columns.zip(s, other.columns);
         [
-            Self { at, cell, length, paint, z, starts },
+            Self { at, cell, length, paint, z, columns },
             Self {
                 at: more_at,
                 cell: more_cell,
                 length: more_length,
                 paint: more_paint,
                 z: more_z,
-                starts: more_starts,
+                columns: more_columns,
             },
         ]
     }
 }
 
 impl SpanList {
-    /// An empty list for these numbers of pixels and cells, and of those from one row to the next.
-    #[inline(always)]
-    pub(crate) fn new((pixels, pitch): (usize, u32), (cells, width): (usize, u32)) -> Self {
+    /// Spans that a list has room for.
+    #[cfg(feature = "alloc")]
+    pub(crate) const CAPACITY: usize = CAPACITY;
+
+    /// A list for no pixels.
+    pub(crate) const NONE: Self = {
         const NUMBERS: Numbers = [0; CAPACITY + LANES];
         const DEPTHS: Depths = [0; CAPACITY + LANES];
-        // Offsets beyond are never those of a frame.
-        let most = |length: usize| length.min(i32::MAX as usize) as i32;
         Self {
             at: NUMBERS,
             cell: NUMBERS,
@@ -119,14 +129,32 @@ impl SpanList {
             z: DEPTHS,
             dz: DEPTHS,
             count: 0,
-            pixels: most(pixels),
-            cells: most(cells),
-            pitch: pitch as i32,
-            width: width as i32,
+            pixels: 0,
+            cells: 0,
+            pitch: 0,
+            width: 0,
             covered: [0; LANES],
             drawn: 0,
             nearer: 0,
         }
+    };
+
+    /// An empty list for these numbers of pixels and cells, and of those from one row to the next.
+    #[inline(always)]
+    pub(crate) fn new(pixels: (usize, u32), cells: (usize, u32)) -> Self {
+        let mut list = Self::NONE;
+        list.begin(pixels, cells);
+        list
+    }
+
+    /// Empties the list, for other pixels and cells, and begins to count anew.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, (pixels, pitch): (usize, u32), (cells, width): (usize, u32)) {
+        // Offsets beyond are never those of a frame.
+        let most = |length: usize| length.min(i32::MAX as usize) as i32;
+        (self.pixels, self.pitch) = (most(pixels), pitch as i32);
+        (self.cells, self.width) = (most(cells), width as i32);
+        (self.count, self.covered, self.drawn, self.nearer) = (0, [0; LANES], 0, 0);
     }
 
     /// Spans, pixels that they cover, and those that were nearer, of all that was drawn.
@@ -155,7 +183,7 @@ impl SpanList {
 
     /// Those of eight spans that have a length, and lie inside.
     #[inline(always)]
-    fn inside<S: Lanes8, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S>) -> S::Mask {
+    fn inside<S: Lanes8, C, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S, C>) -> S::Mask {
         // Each is negative where a span has no length, begins before the pixels, ends behind 2³¹, or ends behind them.
         let end = s.add_i32(spans.at, spans.length);
         let mut sign = s.or_i32(s.sub_i32(spans.length, s.splat_i32(1)), s.or_i32(spans.at, end));
@@ -175,14 +203,14 @@ impl SpanList {
     /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
     /// left out. Returns which they are, and the number of the first.
     #[inline(always)]
-    pub(crate) fn append<S: Lanes8, const DEPTHS: bool>(
+    pub(crate) fn append<S: Lanes8, C, const DEPTHS: bool>(
         &mut self,
         s: S,
-        spans: &Spans8<S>,
+        spans: &Spans8<S, C>,
         dz: DepthSteps<S>,
     ) -> (S::Mask, usize) {
         let &Spans8 { at, cell, length, paint, z, .. } = spans;
-        let mask = self.inside::<S, DEPTHS>(s, spans);
+        let mask = self.inside::<S, C, DEPTHS>(s, spans);
         let covered = s.select_i32(mask, length, s.splat_i32(0));
         s.store_i32(s.add_i32(s.load_i32(&self.covered), covered), &mut self.covered);
         let count = self.count.min(CAPACITY);
@@ -240,7 +268,35 @@ impl SpanList {
         (self.length[k] as usize, self.paint[k])
     }
 
+    /// Puts a span without a depth behind the others, if it lies inside and there is room. Its pixels and its cells have one
+    /// offset. Returns its number.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn push(&mut self, (at, length): (usize, usize), paint: u32) -> Option<usize> {
+        let end = at.checked_add(length)?;
+        if self.count >= CAPACITY || length == 0 || end > self.pixels.min(self.cells) as usize {
+            return None;
+        }
+        let k = self.count;
+        // Below 2³¹.
+        (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, at as u32, length as u32, paint);
+        self.covered[0] = self.covered[0].wrapping_add(length as i32);
+        self.count += 1;
+        Some(k)
+    }
+
+    /// The offset of the first cell of span `k`, whose first pixel is in this column and row.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) fn cell_at(&self, k: usize, [column, row]: [i32; 2], first_row: u32) -> usize {
+        if self.cells_are_pixels() {
+            return self.offset(k) as usize;
+        }
+        // Of a frame: neither is negative.
+        (row as usize - first_row as usize) * self.width as usize + column as usize
+    }
+
     /// The offset of the first pixel of span `k`, likewise.
+    #[inline(always)]
     pub(crate) fn offset(&self, k: usize) -> u32 {
         self.at[k.min(CAPACITY)]
     }
@@ -363,7 +419,20 @@ impl SpanList {
     }
 }
 
-/// What the fill of each span of a list begins with, where it is more than a linear shade.
+/// What the fill of eight spans begins with, where it is more than a linear shade.
+#[derive(Clone, Copy)]
+pub(crate) struct Starts8<S: Lanes8>(pub(crate) [S::I64; 2]);
+
+impl<S: Lanes8> SpanColumns<S> for Starts8<S> {
+    #[inline(always)]
+    fn zip(self, s: S, other: Self) -> [Self; 2] {
+        let [a, more_a] = s.interleave_i64(self.0[0], other.0[0]);
+        let [b, more_b] = s.interleave_i64(self.0[1], other.0[1]);
+        [Self([a, b]), Self([more_a, more_b])]
+    }
+}
+
+/// What the fill of each span of a list begins with, as [`Starts8`].
 pub(crate) struct SpanStarts([Depths; 2]);
 
 impl SpanStarts {
@@ -371,9 +440,9 @@ impl SpanStarts {
 
     /// Puts those of the mask into the places from `at` on.
     #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: [S::I64; 2]) {
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S>) {
         let [first, second] = &mut self.0;
-        s.compress_i64(mask, starts, [eight(first, at), eight(second, at)]);
+        s.compress_i64(mask, starts.0, [eight(first, at), eight(second, at)]);
     }
 
     /// Those of span `k`.
@@ -381,6 +450,37 @@ impl SpanStarts {
     pub(crate) fn of(&self, k: usize) -> [i64; 2] {
         let k = k.min(CAPACITY);
         [self.0[0][k], self.0[1][k]]
+    }
+}
+
+/// Numbers of each span of a list, `N` of them, beside those of the list.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug)]
+pub(crate) struct SpanNumbers<const N: usize>([Numbers; N]);
+
+#[cfg(feature = "alloc")]
+impl<const N: usize> SpanNumbers<N> {
+    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
+
+    /// Puts the first `count` of those of the mask into the places from `at` on.
+    #[inline(always)]
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), numbers: [S::I32; N], count: usize) {
+        for (numbers, to) in numbers.into_iter().zip(&mut self.0).take(count) {
+            s.compress_i32(mask, [numbers], [eight(to, at)]);
+        }
+    }
+
+    /// Number `i` of span `k`.
+    #[inline(always)]
+    pub(crate) fn of(&self, k: usize, i: usize) -> u32 {
+        self.0[i % N][k.min(CAPACITY)]
+    }
+
+    pub(crate) fn set(&mut self, k: usize, numbers: [u32; N]) {
+        let k = k.min(CAPACITY);
+        for (to, number) in self.0.iter_mut().zip(numbers) {
+            to[k] = number;
+        }
     }
 }
 
@@ -464,7 +564,7 @@ pub struct ListedDepths {
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
     let mut list = SpanList::new((pixels.len(), 0), (0, 0));
     for eight in spans.chunks(LANES) {
-        list.append::<Portable, false>(Portable, &lanes(eight), DepthSteps::All(0));
+        list.append::<Portable, (), false>(Portable, &lanes(eight), DepthSteps::All(0));
         if !list.has_room(LANES) {
             list.draw_by::<u32, false>(kernel, pixels, &mut []);
         }
@@ -490,7 +590,7 @@ pub fn fill_where_nearer<D: Cell>(
         for (i, depths) in depths.iter().enumerate() {
             (eight.cell[i], eight.z[i], dz[i]) = (depths.at.cast_signed(), depths.z << 8, depths.dz << 8);
         }
-        list.append::<Portable, true>(Portable, &eight, DepthSteps::Each(dz));
+        list.append::<Portable, (), true>(Portable, &eight, DepthSteps::Each(dz));
         if !list.has_room(LANES) {
             list.draw_by::<D, true>(kernel, pixels, cells);
         }
@@ -499,15 +599,9 @@ pub fn fill_where_nearer<D: Cell>(
     list.counts().2
 }
 
-fn lanes(spans: &[Listed]) -> Spans8<Portable> {
-    let mut eight: Spans8<Portable> = Spans8 {
-        at: [0; LANES],
-        cell: [0; LANES],
-        length: [0; LANES],
-        paint: [0; LANES],
-        z: [0; LANES],
-        starts: [[0; LANES]; 2],
-    };
+fn lanes(spans: &[Listed]) -> Spans8<Portable, ()> {
+    let mut eight: Spans8<Portable, ()> =
+        Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], paint: [0; LANES], z: [0; LANES], columns: () };
     for (i, span) in spans.iter().enumerate() {
         eight.at[i] = span.at.cast_signed();
         eight.length[i] = span.length.cast_signed();

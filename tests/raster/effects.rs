@@ -506,6 +506,52 @@ fn triangles_with_effects_are_the_oracles() {
 }
 
 /// With a depth buffer a pixel is drawn where it is nearer, and the depth is kept if the look says so.
+/// A face without any effect has the bytes of a plain triangle, to the bit: whatever interpolates its shades, and its channels
+/// one by one; whole or within a clip rectangle; by every kernel.
+#[test]
+fn without_effects_faces_are_plain_triangles() {
+    let mut tried = Tried::new("without_effects_faces_are_plain_triangles", 3_000);
+    let mut random = Random::named("plain");
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let mut long = 0;
+    while tried.more() {
+        // Of spans that begin anew, too.
+        let wide = Size { width: 1_021, height: 40, pitch: 1_030 };
+        let size = if random.within(0, 1) == 0 { wide } else { Size::any(&mut random) };
+        let vertices = triangles::triangle(&mut random, size.width.into(), size.height.into());
+        // That of the sources covers other pixels.
+        let exact = Interpolation::INTERPOLATED.iter().filter(|of| **of != Interpolation::GouraudVintage);
+        let mut exact: Vec<Interpolation> = exact.copied().collect();
+        exact.push(Interpolation::Flat(random.within(0, 255) as u8));
+        let interpolation = random.one_of(&exact);
+        let kernel = random.one_of(&kernels);
+        let clip = (random.within(0, 2) == 0).then(|| {
+            let side = |random: &mut Random, end: i32| {
+                let (a, b) = (random.within(0, end.into()) as u32, random.within(0, end.into()) as u32);
+                (a.min(b), a.max(b))
+            };
+            let ((x0, x1), (y0, y1)) = (side(&mut random, size.width), side(&mut random, size.height));
+            Rect { x0, y0, x1, y1 }
+        });
+        let mut plain = size.pixels();
+        let mut drawn = DrawStats::default();
+        size.draw(&mut plain, size.rows(), |frame| {
+            let mut raster = Raster::new(frame).with_kernel(kernel).with_clip(clip.unwrap_or(size.rect()));
+            drawn = raster.triangle(&vertices, interpolation);
+        });
+        long += u32::from(drawn.pixels > 64 * drawn.spans.max(1) / 2);
+        let shaded = PixelPipeline { source: ShadeSource::Shaded(interpolation), ..PixelPipeline::PLAIN };
+        let attributes = vertices.map(|vertex| Attributes { channels: [vertex.shade(); 3], ..Attributes::default() });
+        assert!(draw(size, &vertices, &attributes, &shaded, clip, kernel) == plain, "{kernel}: {interpolation:?}");
+        if !matches!(interpolation, Interpolation::Flat(_)) {
+            let channel = PixelPipeline { channels: Some(Mix::Only(random.within(0, 2) as usize)), ..shaded };
+            assert!(draw(size, &vertices, &attributes, &channel, clip, kernel) == plain, "{kernel}: {interpolation:?}");
+        }
+        tried.add(1);
+    }
+    assert!(long > 50, "{long} with long spans");
+}
+
 #[test]
 fn effects_keep_to_the_depth_buffer() {
     let mut tried = Tried::new("effects_keep_to_the_depth_buffer", 400);

@@ -16,7 +16,7 @@
 //! 2⁻²⁰ · M together, of shades to 1 by a thousandth of one.
 
 use super::Limits;
-use super::pieces::FaceCorners;
+use super::spans::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
 use crate::raster::weights::Weights;
@@ -76,7 +76,7 @@ pub(super) struct CurvePlane {
 
 impl CurvePlane {
     pub(super) fn new(face: &FaceCorners<'_>, limits: [Limits; 3], channels: usize) -> Self {
-        let (triangle, corners) = (face.triangle, face.lit());
+        let (triangle, corners) = (&face.triangle, face.lit());
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;

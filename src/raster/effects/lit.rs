@@ -1,7 +1,7 @@
 //! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
 
-use super::pieces::{FaceCorners, Faces, PIECE, Piece, Pieces};
 use super::pipeline::{Lighting, SampleSpacing};
+use super::spans::{FaceCorners, LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;
@@ -9,8 +9,8 @@ use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
 
-/// The most places in a piece that are lit where not all are, its end being one, and as many as are lit at once.
-const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
+/// The most places in a span that are lit where not all are, its end being one, and as many as are lit at once.
+const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade at eight points, or three channels.
 pub(super) trait Lit<const N: usize> {
@@ -43,7 +43,7 @@ pub(super) struct LitPlane {
 
 impl LitPlane {
     pub(super) fn new(face: &FaceCorners<'_>) -> Self {
-        let (triangle, corners) = (face.triangle, face.lit());
+        let (triangle, corners) = (&face.triangle, face.lit());
         let mut values = [[0.0; 7]; 3];
         for (k, values) in values.iter_mut().enumerate() {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
@@ -84,7 +84,7 @@ fn places(first: usize) -> Lanes<f64> {
 struct Waiting {
     /// Those of the first eight are whole; behind them is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
-    /// The place of each among the pixels of all pieces.
+    /// The place of each among the pixels of all spans.
     places: [usize; 2 * LANES],
     count: usize,
 }
@@ -140,27 +140,21 @@ impl Waiting {
     }
 }
 
-impl Pieces {
+impl Spans<'_> {
     /// Lights every pixel. Eight are lit together: those of a row, and what is left of several rows and triangles. A
     /// pixel's point is made from its own row's first pixel, so its shade does not depend on the other seven.
     #[inline(never)]
-    pub(super) fn light_each<const N: usize>(
-        &self,
-        faces: Faces<'_>,
-        kernel: Kernel,
-        light: &impl Lit<N>,
-        mut out: [&mut [u16]; N],
-    ) {
+    pub(super) fn light_each<const N: usize>(&self, kernel: Kernel, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
         let mut waiting = Waiting::new();
-        let mut nothing = [(); super::pieces::PIXELS];
-        self.each(faces, &mut nothing, LitPlane::new, |plane, piece, _| {
-            let ((a, d), (da, dd)) = (plane.at(piece.place()), &plane.step);
-            let length = piece.len();
+        let mut nothing = [(); ROOM];
+        self.each(&mut nothing, LitPlane::new, |plane, span, _| {
+            let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
+            let length = span.len;
             let mut first = 0;
             while length - first >= LANES {
                 let lit = light.at(&kernel.interpolate_at(&places(first), &a, da, d, *dd));
                 for (i, out) in out.iter_mut().enumerate() {
-                    if let Some(to) = out[piece.first() + first..].first_chunk_mut() {
+                    if let Some(to) = out[span.first + first..].first_chunk_mut() {
                         *to = lit[i];
                     }
                 }
@@ -168,7 +162,7 @@ impl Pieces {
             }
             if first < length {
                 let numerators = kernel.numerators(&places(first), &a, da, d, *dd);
-                waiting.push(&numerators, piece.first() + first..piece.first() + length);
+                waiting.push(&numerators, span.first + first..span.first + length);
                 if waiting.count >= LANES {
                     waiting.light(kernel, light, &mut out);
                     waiting.advance();
@@ -184,17 +178,16 @@ impl Pieces {
     #[inline(never)]
     pub(super) fn light_some<const N: usize>(
         &self,
-        faces: Faces<'_>,
         kernel: Kernel,
         (spacing, light): (SampleSpacing, &impl Lit<N>),
         thresholds: Thresholds,
         mut out: [&mut [u8]; N],
     ) {
-        let mut nothing = [(); super::pieces::PIXELS];
-        self.each(faces, &mut nothing, LitPlane::new, |plane, piece, _| {
-            let knots = Knots::new(piece, spacing);
+        let mut nothing = [(); ROOM];
+        self.each(&mut nothing, LitPlane::new, |plane, span, _| {
+            let knots = Knots::new(span, spacing);
             let mut lit = [[0; KNOTS]; N];
-            knots.light(plane, piece, kernel, |first, points| {
+            knots.light(plane, span, kernel, |first, points| {
                 let shades = light.at(points);
                 for (i, lit) in lit.iter_mut().enumerate() {
                     if let Some(to) = lit[first..].first_chunk_mut() {
@@ -203,38 +196,38 @@ impl Pieces {
                 }
             });
             for (lit, out) in lit.iter().zip(&mut out) {
-                knots.fill(lit, piece.thresholds(thresholds), piece.column(), &mut out[piece.pixels()]);
+                knots.fill(lit, span.thresholds(thresholds), span.column(), &mut out[span.pixels()]);
             }
         });
     }
 }
 
-/// Pixels of a piece that are lit, and those between.
+/// Pixels of a span that are lit, and those between.
 #[derive(Clone, Copy, Debug)]
 struct Knots {
     spacing: usize,
-    /// From the piece's first pixel, in pixels.
+    /// From the span's first pixel, in pixels.
     places: [i32; KNOTS],
     /// Number of knots, at least two.
     count: usize,
 }
 
 impl Knots {
-    /// The lit pixels of a piece.
-    /// Where the row ends inside of the piece, its last pixel is lit, whatever the clip rectangle.
-    fn new(piece: &Piece, spacing: SampleSpacing) -> Self {
+    /// The lit pixels of a span.
+    /// Where the row ends inside of the span, its last pixel is lit, whatever the clip rectangle.
+    fn new(span: &Span, spacing: SampleSpacing) -> Self {
         let spacing = spacing.pixels();
         let mut places = [0; KNOTS];
         for (place, number) in places.iter_mut().zip(0..) {
             // At most 24 · 16.
-            *place = (number * spacing as i32).min((piece.row.last - piece.seed).max(0));
+            *place = (number * spacing as i32).min(span.last());
         }
-        Self { spacing, places, count: piece.len().div_ceil(spacing) + 1 }
+        Self { spacing, places, count: span.len.div_ceil(spacing) + 1 }
     }
 
     /// Lights them, eight at a time, and hands the eight on with the number of the first.
-    fn light(&self, plane: &LitPlane, piece: &Piece, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
-        let ((a, d), (da, dd)) = (plane.at(piece.place()), &plane.step);
+    fn light(&self, plane: &LitPlane, span: &Span, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
+        let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
             let mut places = [0.0; LANES];
             for (lane, place) in eight.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! The first stages of a piece: shades from their source, with an image, or mixed of three channels.
+//! The first stages of a span: shades from their source, with an image, or mixed of three channels.
 
 use super::Buffers;
 use super::curve::CurvePlane;
-use super::pieces::{FaceCorners, Faces, Pieces, Shaded};
 use super::pipeline::{Mix, PixelPipeline, ShadeSource};
+use super::spans::{FaceCorners, Shaded, Spans};
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{to_bytes, to_nearest_bytes};
@@ -12,15 +12,15 @@ use crate::span::dither::Thresholds;
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
-impl Pieces {
-    /// The bytes of all pieces before fog and blending.
-    pub(super) fn shade(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+impl Spans<'_> {
+    /// The bytes of all spans before fog and blending.
+    pub(super) fn shade(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let n = self.pixels();
         let Some(stage) = pipeline.texture() else {
             match pipeline.channels() {
-                None => self.shade_bytes(faces, buffers, pipeline, kernel),
+                None => self.shade_bytes(buffers, pipeline, kernel),
                 Some(mix) => {
-                    self.shade_channels(faces, buffers, pipeline, kernel);
+                    self.shade_channels(buffers, pipeline, kernel);
                     self.mix(buffers, mix, pipeline.dither());
                 }
             }
@@ -28,9 +28,9 @@ impl Pieces {
         };
         let image = (stage, pipeline.levels());
         if let Some(mix) = pipeline.channels() {
-            self.shade_channels(faces, buffers, pipeline, kernel);
+            self.shade_channels(buffers, pipeline, kernel);
             let Buffers { other, channels, places, .. } = &mut *buffers;
-            self.texels((), faces, image, (&mut other[..n], places), kernel);
+            self.texels((), image, (&mut other[..n], places), kernel);
             for (channel, table) in channels.iter_mut().zip(stage.tables) {
                 for (i, byte) in channel[..n].iter_mut().enumerate() {
                     table.show(byte, other[i]);
@@ -46,41 +46,41 @@ impl Pieces {
             _ => None,
         };
         if row.is_none() {
-            self.shade_bytes(faces, buffers, pipeline, kernel);
+            self.shade_bytes(buffers, pipeline, kernel);
         }
         let Buffers { bytes, places, .. } = buffers;
         match row {
-            Some(row) => self.texels(row, faces, image, (&mut bytes[..n], places), kernel),
-            None => self.texels(stage.tables[0], faces, image, (&mut bytes[..n], places), kernel),
+            Some(row) => self.texels(row, image, (&mut bytes[..n], places), kernel),
+            None => self.texels(stage.tables[0], image, (&mut bytes[..n], places), kernel),
         }
     }
 
     /// The bytes of shades, of which there is one at a pixel.
     #[inline(never)]
-    fn shade_bytes(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+    fn shade_bytes(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
         match pipeline.source {
             ShadeSource::Shaded(interpolation) => {
-                self.fill(Shaded { value: None, interpolation, dither: pipeline.dither() }, faces, bytes, kernel);
+                self.fill(Shaded { value: None, interpolation, dither: pipeline.dither() }, bytes, kernel);
             }
             ShadeSource::NormalTable(table) => {
                 for (i, out) in [&mut *bytes, other].into_iter().enumerate() {
-                    self.fill(Shaded::linear(Value::Slope(i)), faces, out, kernel);
+                    self.fill(Shaded::linear(Value::Slope(i)), out, kernel);
                 }
                 lookup(&mut bytes[..self.pixels()], other, table);
             }
             ShadeSource::Lit(light) => {
-                self.light_each::<1>(faces, kernel, &light, [shades]);
+                self.light_each::<1>(kernel, &light, [shades]);
                 self.round(shades, pipeline.dither(), bytes);
             }
             ShadeSource::LitEvery(spacing, light) => {
                 let thresholds = pipeline.dither().unwrap_or(Thresholds::HALVES);
-                self.light_some::<1>(faces, kernel, (spacing, &light), thresholds, [bytes]);
+                self.light_some::<1>(kernel, (spacing, &light), thresholds, [bytes]);
             }
             ShadeSource::Curved(limits) => {
                 let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 1);
-                self.each(faces, shades, plane, |plane, piece, shades| {
-                    plane.fill(piece.place(), 0, shades, kernel);
+                self.each(shades, plane, |plane, span, shades| {
+                    plane.fill((span.x, span.y), 0, shades, kernel);
                 });
                 self.round(shades, pipeline.dither(), bytes);
             }
@@ -89,7 +89,7 @@ impl Pieces {
 
     /// The bytes of three channels.
     #[inline(never)]
-    fn shade_channels(&self, faces: Faces<'_>, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
+    fn shade_channels(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { channels, shades, .. } = buffers;
         let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
         let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
@@ -102,21 +102,19 @@ impl Pieces {
                 };
                 for (i, bytes) in bytes.iter_mut().enumerate() {
                     let value = Some(Value::Channel(i));
-                    self.fill(Shaded { value, interpolation, dither: None }, faces, bytes, kernel);
+                    self.fill(Shaded { value, interpolation, dither: None }, bytes, kernel);
                 }
                 return;
             }
             ShadeSource::LitEvery(spacing, light) => {
-                return self.light_some::<3>(faces, kernel, (spacing, &light), Thresholds::HALVES, bytes);
+                return self.light_some::<3>(kernel, (spacing, &light), Thresholds::HALVES, bytes);
             }
-            ShadeSource::Lit(light) => {
-                self.light_each::<3>(faces, kernel, &light, shades.each_mut().map(|of| &mut **of))
-            }
+            ShadeSource::Lit(light) => self.light_each::<3>(kernel, &light, shades.each_mut().map(|of| &mut **of)),
             ShadeSource::Curved(limits) => {
                 for (i, shades) in shades.iter_mut().enumerate() {
                     let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 3);
-                    self.each(faces, shades, plane, |plane, piece, shades| {
-                        plane.fill(piece.place(), i, shades, kernel);
+                    self.each(shades, plane, |plane, span, shades| {
+                        plane.fill((span.x, span.y), i, shades, kernel);
                     });
                 }
             }
@@ -132,9 +130,9 @@ impl Pieces {
             let n = self.pixels();
             return to_nearest_bytes(&shades[..n], &mut bytes[..n]);
         };
-        for piece in self.pieces() {
-            let pixels = piece.pixels();
-            to_bytes(&shades[pixels.clone()], piece.thresholds(dither), piece.column(), &mut bytes[pixels]);
+        for span in self.iter() {
+            let pixels = span.pixels();
+            to_bytes(&shades[pixels.clone()], span.thresholds(dither), span.column(), &mut bytes[pixels]);
         }
     }
 
@@ -145,12 +143,12 @@ impl Pieces {
         if let Mix::Only(channel) = mix {
             return bytes.copy_from_slice(&channels[channel.min(2)]);
         }
-        for piece in self.pieces() {
-            let bytes = &mut bytes[piece.pixels()];
+        for span in self.iter() {
+            let bytes = &mut bytes[span.pixels()];
             let [red, green, blue] = &*channels;
-            let pixels = piece.pixels();
+            let pixels = span.pixels();
             let (red, green, blue) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels]);
-            let (thresholds, column) = (piece.thresholds(dither), piece.column());
+            let (thresholds, column) = (span.thresholds(dither), span.column());
             match mix {
                 Mix::Nearest { map, spread } => {
                     mix_nearest(bytes, red, green, blue, thresholds, column, spread, map);

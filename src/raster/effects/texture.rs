@@ -4,8 +4,8 @@
 //! a guess of the processor that costs as much as several pixels.
 
 use super::level::{self, LevelPlane};
-use super::pieces::{FaceCorners, FaceSetup, FaceSpans, Faces, PIECE, Piece, Pieces, SetUp};
 use super::pipeline::TextureStage;
+use super::spans::{FaceCorners, LONGEST, Span, Spans};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::mapping::Mapping;
 use crate::raster::cover::SortedTriangle;
@@ -22,13 +22,12 @@ const EVERY_WHOLE: i32 = 16;
 /// An image, with its levels where one of them is chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 
-impl Pieces {
-    /// The texels of every piece, from the levels of the image where there are any, and what is shown of them; and room for
+impl Spans<'_> {
+    /// The texels of every span, from the levels of the image where there are any, and what is shown of them; and room for
     /// their places.
     pub(super) fn texels(
         &self,
         shown: impl Shown,
-        faces: Faces<'_>,
         (stage, levels): (&TextureStage<'_>, Option<Levels<'_>>),
         (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
@@ -36,16 +35,16 @@ impl Pieces {
         let image = (stage.texels, levels);
         // A function for each, so that none is compiled otherwise where another is left out.
         match (stage.mapping, levels) {
-            (Mapping::Affine, None) => find_affine(kernel.simd_level(), self, faces, stage.texels, places),
+            (Mapping::Affine, None) => find_affine(kernel.simd_level(), self, stage.texels, places),
             (Mapping::Affine, Some(_)) => {
-                return self.affine_levels(shown, faces, image, (out, places));
+                return self.affine_levels(shown, image, (out, places));
             }
-            (Mapping::Perspective, None) => find_perspective(kernel.simd_level(), self, faces, stage.texels, places),
+            (Mapping::Perspective, None) => find_perspective(kernel.simd_level(), self, stage.texels, places),
             (Mapping::Perspective, Some(_)) => {
-                return self.perspective_levels::<false>(shown, faces, image, (out, places), kernel);
+                return self.perspective_levels::<false>(shown, image, (out, places), kernel);
             }
             (Mapping::Every16, _) => {
-                return self.perspective_levels::<true>(shown, faces, image, (out, places), kernel);
+                return self.perspective_levels::<true>(shown, image, (out, places), kernel);
             }
         }
         show(shown, out, stage.texels, places);
@@ -53,17 +52,11 @@ impl Pieces {
 
     /// Texels whose coordinates are linear on the screen, of the level of each face.
     #[inline(never)]
-    fn affine_levels(
-        &self,
-        shown: impl Shown,
-        faces: Faces<'_>,
-        image: Image<'_>,
-        (out, places): (&mut [u8], &mut [i32]),
-    ) {
+    fn affine_levels(&self, shown: impl Shown, image: Image<'_>, (out, places): (&mut [u8], &mut [i32])) {
         let plane = |face: &FaceCorners<'_>| AffineTexture::new(face, image);
-        self.each(faces, out, plane, |texture, piece, pixels| {
+        self.each(out, plane, |texture, span, pixels| {
             let lines = AffineLines::new(BASELINE, texture.texels, texture.steps());
-            lines.places(places, pixels.len(), texture.start(piece));
+            lines.places(places, pixels.len(), texture.start(span));
             show(shown, pixels, texture.texels, places);
         });
     }
@@ -72,95 +65,99 @@ impl Pieces {
     fn perspective_levels<const EVERY_16: bool>(
         &self,
         shown: impl Shown,
-        faces: Faces<'_>,
         (image, levels): Image<'_>,
         (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
         let Some(levels) = levels else {
-            return self.each(faces, out, PerspectiveTexture::new, |plane, piece, pixels| {
-                plane.places::<EVERY_16>((image, 0), piece, piece.seed, (&mut *places, pixels.len()), kernel);
+            return self.each(out, PerspectiveTexture::new, |plane, span, pixels| {
+                plane.places::<EVERY_16>((image, 0), span, span.x, (&mut *places, pixels.len()), kernel);
                 show(shown, pixels, image, places);
             });
         };
         let plane = |face: &FaceCorners<'_>| {
-            let depths = |corner: usize| i128::from(depth(face.triangle, corner));
+            let depths = |corner: usize| i128::from(depth(&face.triangle, corner));
             let texture = [face.texture(0), face.texture(1)];
-            let levels = LevelPlane::new(face.triangle, texture, [depths(0), depths(1), depths(2)]);
+            let levels = LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)]);
             (PerspectiveTexture::new(face), levels)
         };
-        self.each(faces, out, plane, |(plane, of_pixels), piece, pixels| {
-            plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, piece, (pixels, &mut *places), kernel);
+        self.each(out, plane, |(plane, of_pixels), span, pixels| {
+            plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, span, (pixels, &mut *places), kernel);
         });
     }
 }
 
 compiled_for_each_level! {
     #[inline(never)]
-    fn find_affine[][](pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) = find_affine_by;
+    fn find_affine[][](spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) = find_affine_by;
 }
 
 /// Places of texels whose coordinates are linear on the screen.
 #[inline(always)]
-fn find_affine_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) {
-    let mut first = 0;
-    for covered in pieces.triangles() {
-        let range = first..covered.end;
-        first = covered.end;
-        if let SetUp::Lanes(FaceSetup { affine: Some(steps), .. }) = covered.set_up {
-            let lines = AffineLines::new(s, image, steps);
-            let (of_face, starts) = pieces.with_starts(range);
-            for (i, piece) in of_face.iter().enumerate() {
-                lines.places(&mut places[piece.first()..], piece.len(), starts[i].affine);
+fn find_affine_by<S: Lanes8>(s: S, spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) {
+    let mut i = 0;
+    while i < spans.count() {
+        let end = spans.end_of_face(i);
+        if let Some((planes, lane)) = spans.affine(i) {
+            let lines = AffineLines::new(s, image, planes.step(lane));
+            while i < end {
+                let (first, len) = spans.range(i);
+                lines.places(&mut places[first..], len, planes.start(lane, spans.place(i)));
+                i += 1;
             }
             continue;
         }
-        let texture = affine_texture(covered, faces, (image, None));
+        let texture = affine_texture(spans, i, (image, None));
         let lines = AffineLines::new(s, image, texture.steps());
-        for piece in &pieces.pieces()[range] {
-            lines.places(&mut places[piece.first()..], piece.len(), texture.start(piece));
+        while i < end {
+            let span = spans.span(i);
+            lines.places(&mut places[span.first..], span.len, texture.start(&span));
+            i += 1;
         }
     }
 }
 
 #[inline(never)]
-fn affine_texture<'a>(covered: &FaceSpans, faces: Faces<'_>, image: Image<'a>) -> AffineTexture<'a> {
-    AffineTexture::new(&covered.corners(faces, &mut None), image)
+fn affine_texture<'a>(spans: &Spans<'_>, i: usize, image: Image<'a>) -> AffineTexture<'a> {
+    AffineTexture::new(&spans.corners(&spans.span(i)), image)
 }
 
 compiled_for_each_level! {
     #[inline(never)]
-    fn find_perspective[][](pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
+    fn find_perspective[][](spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
 }
 
 /// Places of texels whose coordinates are linear on the face, exact at every pixel.
 #[inline(always)]
-fn find_perspective_by<S: Lanes8>(s: S, pieces: &Pieces, faces: Faces<'_>, image: Texels<'_>, places: &mut [i32]) {
-    let mut first = 0;
-    for covered in pieces.triangles() {
-        let range = first..covered.end;
-        first = covered.end;
-        let SetUp::Lanes(FaceSetup { perspective: Some([du, dv, dd]), .. }) = covered.set_up else {
-            let plane = perspective_texture(covered, faces);
-            for piece in &pieces.pieces()[range] {
-                plane.exact(s, (image, 0), piece.place(), (&mut places[piece.first()..], piece.len()));
+fn find_perspective_by<S: Lanes8>(s: S, spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) {
+    let mut i = 0;
+    while i < spans.count() {
+        let end = spans.end_of_face(i);
+        let Some((planes, lane)) = spans.perspective(i) else {
+            let plane = perspective_texture(spans, i);
+            while i < end {
+                let span = spans.span(i);
+                plane.exact(s, (image, 0), (span.x, span.y), (&mut places[span.first..], span.len));
+                i += 1;
             }
             continue;
         };
-        let (of_face, starts) = pieces.with_starts(range);
-        for (i, piece) in of_face.iter().enumerate() {
-            let (places, n, [u, v, d]) = (&mut places[piece.first()..], piece.len(), starts[i].perspective);
-            if !perspective_places(s, places, n, image, [[u, du], [v, dv]], [d, dd]) {
-                let plane = perspective_texture(covered, faces);
-                plane.in_integers((image, 0), plane.weights.at(piece.seed, piece.row.y), &mut places[..n]);
+        let [du, dv, dd] = planes.step(lane);
+        while i < end {
+            let (first, len) = spans.range(i);
+            let (places, [u, v, d]) = (&mut places[first..], planes.start(lane, spans.place(i)));
+            if !perspective_places(s, places, len, image, [[u, du], [v, dv]], [d, dd]) {
+                let (plane, span) = (perspective_texture(spans, i), spans.span(i));
+                plane.in_integers((image, 0), plane.weights.at(span.x, span.y), &mut places[..len]);
             }
+            i += 1;
         }
     }
 }
 
 #[inline(never)]
-fn perspective_texture(covered: &FaceSpans, faces: Faces<'_>) -> PerspectiveTexture {
-    PerspectiveTexture::new(&covered.corners(faces, &mut None))
+fn perspective_texture(spans: &Spans<'_>, i: usize) -> PerspectiveTexture {
+    PerspectiveTexture::new(&spans.corners(&spans.span(i)))
 }
 
 /// The depth of a corner, at least 1.
@@ -180,7 +177,7 @@ impl<'a> AffineTexture<'a> {
     #[inline]
     fn new(face: &FaceCorners<'_>, (image, levels): Image<'a>) -> Self {
         let area = Divisor::new(face.triangle.area());
-        let plane = |i: usize| AffinePlane::new(face.triangle, area, face.texture(i));
+        let plane = |i: usize| AffinePlane::new(&face.triangle, area, face.texture(i));
         let planes = [plane(0), plane(1)];
         let Some(levels) = levels else { return Self { texels: image, planes } };
         let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient[direction]));
@@ -196,11 +193,11 @@ impl<'a> AffineTexture<'a> {
         [u.step as u32, v.step as u32]
     }
 
-    /// The coordinates at the first pixel of a piece.
+    /// The coordinates at the first pixel of a span.
     #[inline(always)]
-    fn start(&self, piece: &Piece) -> [u32; 2] {
-        let ([u, v], (x, y)) = (&self.planes, piece.place());
-        [u.start(x, y), v.start(x, y)]
+    fn start(&self, span: &Span) -> [u32; 2] {
+        let [u, v] = &self.planes;
+        [u.start(span.x, span.y), v.start(span.x, span.y)]
     }
 }
 
@@ -340,7 +337,7 @@ fn floor(estimate: f64, n: i128, d: i128) -> i64 {
 impl PerspectiveTexture {
     #[inline]
     fn new(face: &FaceCorners<'_>) -> Self {
-        let triangle = face.triangle;
+        let triangle = &face.triangle;
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
         let times =
             |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
@@ -358,7 +355,7 @@ impl PerspectiveTexture {
         Self { weights, values, estimated, steps }
     }
 
-    /// Shows the texels of a piece, from levels, one of which is chosen for every 16 pixels.
+    /// Shows the texels of a span, from levels, one of which is chosen for every 16 pixels.
     /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
     /// rectangle.
     #[inline(never)]
@@ -367,26 +364,26 @@ impl PerspectiveTexture {
         shown: impl Shown,
         (plane, levels): (&LevelPlane, Levels<'_>),
         image: Texels<'_>,
-        piece: &Piece,
+        span: &Span,
         (pixels, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
-        let (row, seed) = (&piece.row, piece.seed);
-        let mut chosen = [0; PIECE / EVERY];
+        let last = span.x + span.last();
+        let mut chosen = [0; LONGEST / EVERY];
         let chosen = &mut chosen[..pixels.len().div_ceil(EVERY)];
-        let across = plane.across(row.y);
-        for (level, x) in chosen.iter_mut().zip((seed..).step_by(EVERY)) {
-            let x = (x + EVERY as i32 / 2).min(row.last).max(x);
-            let denominator = exact(self.weights.at(x, row.y), self.values[2]);
+        let across = plane.across(span.y);
+        for (level, x) in chosen.iter_mut().zip((span.x..).step_by(EVERY)) {
+            let x = (x + EVERY as i32 / 2).min(last).max(x);
+            let denominator = exact(self.weights.at(x, span.y), self.values[2]);
             *level = plane.at(across, x, denominator, levels.last());
         }
-        let (mut x, mut rest) = (seed, pixels);
+        let (mut x, mut rest) = (span.x, pixels);
         for alike in chosen.chunk_by(|a, b| a == b) {
             let part;
             (part, rest) = rest.split_at_mut((alike.len() * EVERY).min(rest.len()));
             let level = alike[0];
             let of_level = levels.get(level).unwrap_or(image);
-            self.places::<EVERY_16>((of_level, level), piece, x, (places, part.len()), kernel);
+            self.places::<EVERY_16>((of_level, level), span, x, (places, part.len()), kernel);
             show(shown, part, of_level, places);
             // At most 64.
             x += part.len() as i32;
@@ -398,12 +395,12 @@ impl PerspectiveTexture {
     fn places<const EVERY_16: bool>(
         &self,
         (texels, shift): (Texels<'_>, u32),
-        piece: &Piece,
+        span: &Span,
         mut x: i32,
         (places, n): (&mut [i32], usize),
         kernel: Kernel,
     ) {
-        let y = piece.row.y;
+        let (y, last) = (span.y, span.x + span.last());
         if !EVERY_16 {
             return exact_places_of(kernel.simd_level(), self, (texels, shift), (x, y), (places, n));
         }
@@ -412,7 +409,7 @@ impl PerspectiveTexture {
         for first in (0..n).step_by(EVERY) {
             // The row's last pixel inside the frame, whatever the clip rectangle: beyond the
             // triangle there may be no coordinates at all.
-            let next = (x + EVERY as i32).min(piece.row.last).max(x);
+            let next = (x + EVERY as i32).min(last).max(x);
             let to = at(next);
             let step = |i: usize| {
                 // Wrapping is intended: texels repeat.
@@ -510,12 +507,12 @@ mod tests {
 
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
-    use crate::raster::cover::Row;
     use crate::raster::cull::{PickList, cull, pick};
     use crate::raster::depth::DepthPlane;
-    use crate::raster::found::{FoundRows, Wanted, find_rows};
+    use crate::raster::effects::PixelPipeline;
+    use crate::raster::effects::spans::recorded::record;
     use crate::raster::frame::Rect;
-    use crate::raster::pick::{LANES, Pick, SizeClass};
+    use crate::raster::pick::{Pick, SizeClass};
     use crate::raster::vertex::Vertex;
 
     /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
@@ -603,7 +600,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every level sets eight small triangles up as each alone is: affine coordinates and depths
+        /// Every level sets eight triangles up as each alone is: affine coordinates and depths
         /// to the bit, the sums of perspective ones within the four roundings of their terms.
         #[test]
         fn eight_triangles_are_each_its_own(given in given()) {
@@ -631,40 +628,35 @@ mod tests {
             for (kernel, which) in
                 Kernel::available().flat_map(|k| [(k, Mapping::Affine), (k, Mapping::Perspective)])
             {
-                let wanted = Wanted { depths: true, texture: Some(which), values: [None; 4], slots: 0 };
-                let mut rows = FoundRows::NONE;
+                let texels = Texels::new(&[0], 0, 0).expect("an image");
+                let stage = TextureStage { texels, levels: None, mapping: which, tables: [&[0; 65_536]; 3] };
+                let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
                 let masks = cull(kernel.simd_level(), &at, &indices, clip, false);
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
-                let is_small = |pick: &u32| Pick(*pick).class() == SizeClass::Small;
-                let small: Vec<u32> = list.as_slice().iter().copied().filter(is_small).collect();
-                for numbers in small.chunks(LANES) {
-                    find_rows(kernel.simd_level(), &all, &Picks { picks: numbers, flat: &[] }, wanted, &mut rows);
-                    for (lane, &number) in numbers.iter().enumerate() {
-                        let (triangle, texture) = &triangles[Pick(number).index()];
-                        let of = |i: usize| texture.map(|corner| corner[i]);
-                        let is_near = |[a, b, c]: [i32; 3]| {
-                            i64::from(a.max(b).max(c)) - i64::from(a.min(b).min(c)) < 1 << 22
-                        };
-                        let step = rows.affine_step(lane);
-                        if which == Mapping::Affine {
-                            prop_assert_eq!(step.is_some(), is_near(of(0)) && is_near(of(1)));
+                let picks = list.as_slice();
+                for found in record(kernel, &all, Picks { picks, flat: &[] }, &pipeline) {
+                    let pick = Pick(picks[found.pick]);
+                    let (triangle, texture) = &triangles[pick.index()];
+                    let of = |i: usize| texture.map(|corner| corner[i]);
+                    let is_near = |[a, b, c]: [i32; 3]| {
+                        i64::from(a.max(b).max(c)) - i64::from(a.min(b).min(c)) < 1 << 22
+                    };
+                    let fits = pick.class() == SizeClass::Small && is_near(of(0)) && is_near(of(1));
+                    let (x, y) = (found.span.x, found.span.y);
+                    let depths = DepthPlane::new(triangle);
+                    let right = [depths.fixed_at(x, y), depths.step()];
+                    prop_assert_eq!(found.depth.map(|z| z << 8), right.map(|z| z << 8));
+                    let is_row = found.span.len > 1;
+                    match which {
+                        Mapping::Affine => {
+                            prop_assert_eq!(found.affine.is_some(), fits);
+                            let Some([start, step]) = found.affine else { continue };
+                            affine_is_right(triangle, texture, step, is_row, start, (x, y))?;
                         }
-                        for j in 0..rows.count(lane) {
-                            let (Row { x0, x1, y, .. }, _) = rows.row(lane, j);
-                            if x0 < x1 {
-                                let depths = DepthPlane::new(triangle);
-                                let depth = [rows.depth(lane, j, x0), rows.depth_step(lane)];
-                                let right = [depths.fixed_at(x0, y), depths.step()];
-                                prop_assert_eq!(depth.map(|z| z << 8), right.map(|z| z << 8));
-                                let is_row = x0 + 1 < x1;
-                                match which {
-                                    Mapping::Affine => affine_is_right(triangle, texture, step, is_row,
-                                        rows.affine_start(lane, j), (x0, y))?,
-                                    _ => sums_are_right(triangle, texture,
-                                        rows.perspective_start(lane, j), rows.perspective_step(lane), (x0, y))?,
-                                }
-                            }
+                        _ => {
+                            let [start, step] = found.perspective.expect("in f64");
+                            sums_are_right(triangle, texture, start, step, (x, y))?;
                         }
                     }
                 }
@@ -675,12 +667,11 @@ mod tests {
     fn affine_is_right(
         triangle: &SortedTriangle,
         texture: &[[i32; 2]; 3],
-        step: Option<[u32; 2]>,
+        step: [u32; 2],
         is_row: bool,
         start: [u32; 2],
         place: (i32, i32),
     ) -> Result<(), TestCaseError> {
-        let Some(step) = step else { return Ok(()) };
         for i in 0..2 {
             let values = texture.map(|corner| corner[i]);
             prop_assert_eq!(start[i], defined(triangle, values, 0, place));
