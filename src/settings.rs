@@ -42,7 +42,7 @@ named! {
 pub enum Accuracy {
     /// Every face gets this shading, and shades are as exact as it makes them.
     Shading(Shading),
-    /// Within so many shades of error, 1/255 of full intensity each: every face gets the cheapest shading that is known to
+    /// Within this many shades of error, 1/255 of full intensity each: every face gets the cheapest shading that is known to
     /// keep within. A number that is not above 0 and finite is an error when a scene is drawn.
     WithinError(f32),
 }

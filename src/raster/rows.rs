@@ -87,7 +87,7 @@ pub(super) struct Parts<S: Lanes8> {
     pub(super) start: S::F64,
 }
 
-/// A shade, and above it the step, so many pixels on.
+/// A shade, with its step above it, this number of pixels on.
 #[inline(always)]
 pub(super) fn advance<S: Lanes8>(s: S, paint: S::I32, pixels: S::I32) -> S::I32 {
     let step = s.and_i32(paint, s.splat_i32(!0xFFFF));
@@ -96,12 +96,69 @@ pub(super) fn advance<S: Lanes8>(s: S, paint: S::I32, pixels: S::I32) -> S::I32 
     s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step)
 }
 
+/// Batches of eight triangles whose planes are kept until their spans are drawn. A face is counted from the first of batch 0.
+#[derive(Clone, Copy)]
+pub(super) struct Batches {
+    /// The one that is set up.
+    current: usize,
+    /// The index of the first pick of batch 0.
+    pub(super) first: usize,
+}
+
+impl Batches {
+    pub(super) const COUNT: usize = 8;
+    pub(super) const NONE: Self = Self::from_pick(0);
+
+    /// Batch 0, from this pick on.
+    pub(super) const fn from_pick(first: usize) -> Self {
+        Self { current: 0, first }
+    }
+
+    /// Returns whether there is no room for another.
+    #[inline(always)]
+    pub(super) fn are_full(&self) -> bool {
+        self.current + 1 >= Self::COUNT
+    }
+
+    /// Begins the batch from pick `first` on; batch 0 where the spans of all have been drawn.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, first: usize) {
+        let starts_anew = first == 0 || self.are_full();
+        *self = if starts_anew { Self { current: 0, first } } else { Self { current: self.current + 1, ..*self } };
+    }
+
+    /// The one that is set up.
+    #[inline(always)]
+    pub(super) fn current(&self) -> usize {
+        self.current % Self::COUNT
+    }
+
+    /// The index of its first pick.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(super) fn first_pick(&self) -> usize {
+        self.first + self.current * LANES
+    }
+
+    /// The batch and the lane of a face.
+    #[inline(always)]
+    pub(super) fn of_face(face: usize) -> (usize, usize) {
+        (face / LANES % Self::COUNT, face % LANES)
+    }
+
+    /// The faces of the lanes of the batch that is set up: below 64.
+    #[inline(always)]
+    pub(super) fn faces<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> S::I32 {
+        s.add_i32(s.splat_i32((self.current() * LANES) as i32), lane.numbers(s))
+    }
+}
+
 /// Shades of eight triangles, and of spans in their rows.
 pub(super) trait Shades8 {
     /// True where a shade with its step above it is all that fills a span.
     const IS_LINEAR: bool;
 
-    /// What eight spans have beyond that.
+    /// Columns of eight spans beyond that.
     type Columns<S: Lanes8>: SpanColumns<S>;
 
     /// Returns whether spans have to be drawn before eight more triangles are set up.

@@ -39,7 +39,7 @@ use super::float::FloatPlane;
 use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
 use super::pick::{LANES, NUMBERS};
-use super::rows::{Lane, Parts, RowEnds, Shades8};
+use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use super::shade::RESEED;
 use crate::fixed::ROUND_MAGIC;
@@ -82,8 +82,6 @@ struct Steps8 {
     greatest: Ints,
 }
 
-/// Batches of eight triangles whose steps are kept until their spans are filled.
-const BATCHES: usize = 8;
 const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
 
 /// Triangles whose spans may be listed.
@@ -91,21 +89,20 @@ struct Listed<'a> {
     triangles: &'a Triangles<'a>,
     picks: Picks<'a>,
     layout: FrameLayout,
-    steps: [Steps8; BATCHES],
-    /// The batch that is set up, and the number of the first pick of batch 0.
-    batch: usize,
-    first: usize,
+    steps: [Steps8; Batches::COUNT],
+    batches: Batches,
 }
 
 impl Listed<'_> {
     fn triangle(&self, face: usize) -> SortedTriangle {
-        SortedTriangle::new(&self.triangles.vertices(&self.picks, self.first + face))
+        SortedTriangle::new(&self.triangles.vertices(&self.picks, self.batches.first + face))
     }
 
     /// The step of a triangle in 16.16.
     #[inline(always)]
     fn step_16_16(&self, face: usize) -> u32 {
-        self.steps[face / LANES % BATCHES].fixed16[face % LANES].cast_unsigned()
+        let (batch, lane) = Batches::of_face(face);
+        self.steps[batch].fixed16[lane].cast_unsigned()
     }
 }
 
@@ -132,7 +129,7 @@ impl<'a> Shaded8<'a> {
         let steps = Steps8 { sums: [floats; 2], fixed16: ints, least: ints, greatest: ints };
         Self {
             kind,
-            listed: Listed { triangles, picks, layout, steps: [steps; BATCHES], batch: 0, first: 0 },
+            listed: Listed { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
             starts: SpanStarts::NONE,
             bytes: SpanBytes::NONE,
             fraction: floats,
@@ -151,7 +148,7 @@ impl<'a> Shaded8<'a> {
         s.store_f64(fraction, &mut self.fraction);
         s.store_f64(basis.area, &mut self.area);
         let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
-        s.store_i32(step, &mut self.listed.steps[self.listed.batch].fixed16);
+        s.store_i32(step, &mut self.listed.steps[self.listed.batches.current()].fixed16);
     }
 
     #[inline(always)]
@@ -183,7 +180,7 @@ impl<'a> Shaded8<'a> {
                 sums[i] = s.mul_add(s.mul(gradient, pixel), values[corner][i], sums[i]);
             }
         }
-        let steps = &mut self.listed.steps[self.listed.batch];
+        let steps = &mut self.listed.steps[self.listed.batches.current()];
         if is_estimate {
             s.store_f64(sums[0], &mut steps.sums[0]);
             s.store_f64(sums[1], &mut steps.sums[1]);
@@ -278,14 +275,12 @@ impl Shades8 for Shaded8<'_> {
 
     #[inline(always)]
     fn is_full(&self) -> bool {
-        self.listed.batch + 1 >= BATCHES
+        self.listed.batches.are_full()
     }
 
     #[inline(always)]
     fn begin(&mut self, first: usize) {
-        let starts_anew = first == 0 || self.is_full();
-        (self.listed.batch, self.listed.first) =
-            if starts_anew { (0, first) } else { (self.listed.batch + 1, self.listed.first) };
+        self.listed.batches.begin(first);
     }
 
     #[inline(always)]
@@ -307,8 +302,8 @@ impl Shades8 for Shaded8<'_> {
     ) -> (S::I32, Starts8<S>) {
         let magic = s.splat_f64(ROUND_MAGIC);
         // At most 255.
-        let face = s.add_i32(s.splat_i32((self.listed.batch * LANES) as i32), lane.numbers(s));
-        let steps = &self.listed.steps[self.listed.batch];
+        let face = self.listed.batches.faces(s, lane);
+        let steps = &self.listed.steps[self.listed.batches.current()];
         if self.kind == Kind::Fixed16 {
             let n = ends.shade_numerator(s, lane, setup, parts.row);
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
@@ -355,9 +350,9 @@ impl Shades8 for Shaded8<'_> {
     fn set_up_large(&mut self, i: usize, _: &TriangleSetup8) {
         #[cfg(feature = "alloc")]
         if self.kind == Kind::Float {
-            let triangle = self.listed.triangle(self.listed.batch * LANES + i);
+            let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
             let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps();
-            for (to, step) in self.listed.steps[self.listed.batch].sums.iter_mut().zip(steps) {
+            for (to, step) in self.listed.steps[self.listed.batches.current()].sums.iter_mut().zip(steps) {
                 to[i % LANES] = step.into();
             }
         }
@@ -438,8 +433,9 @@ struct Hyperbolic;
 impl Stage for Hyperbolic {
     #[inline(always)]
     fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let [dn, dd] = &all.steps[span.face / LANES % BATCHES].sums;
-        let (dn, dd) = (dn[span.face % LANES], dd[span.face % LANES]);
+        let (batch, lane) = Batches::of_face(span.face);
+        let [dn, dd] = &all.steps[batch].sums;
+        let (dn, dd) = (dn[lane], dd[lane]);
         let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
         if !HyperbolicPlane::is_sure(d0, dd, span.length) {
             return false;
@@ -482,8 +478,8 @@ struct Float;
 impl Stage for Float {
     #[inline(always)]
     fn fill<S: Lanes8>(&self, _: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[span.face / LANES % BATCHES];
-        let lane = span.face % LANES;
+        let (batch, lane) = Batches::of_face(span.face);
+        let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[batch];
         let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
         // Rounded once: a division by 256 changes no bit of them.
         let (n_and_step, d_and_step) = ([(n0 / 256.0) as f32, dn[lane] as f32], [d0 as f32, dd[lane] as f32]);

@@ -50,7 +50,7 @@ pub(crate) struct SpanList {
     nearer: u32,
 }
 
-/// What eight spans have beyond a linear shade.
+/// Columns of eight spans beyond a linear shade.
 pub(crate) trait SpanColumns<S: Lanes8>: Copy {
     /// Those of spans 0 of both, spans 1 of both, and so on.
     fn zip(self, s: S, other: Self) -> [Self; 2];

@@ -16,7 +16,7 @@
 //! 2⁻²⁰ · M together, of shades to 1 by a thousandth of one.
 
 use super::Limits;
-use super::spans::FaceCorners;
+use super::listing::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
 use crate::raster::weights::Weights;

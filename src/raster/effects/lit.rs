@@ -1,7 +1,8 @@
 //! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
 
+use super::listing::FaceCorners;
 use super::pipeline::{Lighting, SampleSpacing};
-use super::spans::{FaceCorners, LONGEST, ROOM, Span, Spans};
+use super::spans::{LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
 use crate::raster::weights::Weights;

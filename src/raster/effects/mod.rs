@@ -25,8 +25,11 @@
 mod batch;
 mod curve;
 mod level;
+mod listing;
 mod lit;
 mod pipeline;
+#[cfg(all(test, feature = "std"))]
+mod recorded;
 mod shades;
 mod spans;
 mod texture;
@@ -34,9 +37,9 @@ mod texture;
 use alloc::vec::Vec;
 
 pub use self::batch::EffectBatch;
+use self::listing::{Columns, EffectSpans, Faces, Listed};
 pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
-pub(super) use self::spans::EffectSpans;
-use self::spans::{Columns, Faces, ROOM, Shaded, Spans};
+use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
 use super::cover::Row;
@@ -151,11 +154,30 @@ fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
     add(by_table || matches!(pipeline.source, ShadeSource::Lit(_)), &mut drawn.lit);
 }
 
-/// What spans are drawn into: pixels, and cells of the depth buffer, if there is one.
+/// Destination of spans: pixels, and cells of the depth buffer, if there is one.
 struct Target<'a, D> {
     pixels: &'a mut [u8],
     cells: Option<&'a mut [D]>,
     kernel: Kernel,
+}
+
+/// Draws the spans of a list. Returns the number of pixels that were nearer.
+#[inline(never)]
+fn draw_listed<D: Cell>(
+    listed: &Listed<'_>,
+    list: &SpanList,
+    pipeline: &PixelPipeline<'_>,
+    buffers: &mut Buffers,
+    target: &mut Target<'_, D>,
+) -> u32 {
+    let (mut first, mut nearer) = (0, 0);
+    while first < list.count() {
+        let spans = Spans::of(listed, list, first);
+        run_stages(&spans, pipeline, buffers, target.kernel);
+        nearer += write(&spans, pipeline, &mut buffers.bytes, target);
+        first += spans.count();
+    }
+    nearer
 }
 
 /// Passes spans through the stages up to what the frame holds: their bytes are then in the buffers.

@@ -2,8 +2,9 @@
 
 use super::Buffers;
 use super::curve::CurvePlane;
+use super::listing::FaceCorners;
 use super::pipeline::{Mix, PixelPipeline, ShadeSource};
-use super::spans::{FaceCorners, Shaded, Spans};
+use super::spans::{Shaded, Spans};
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{to_bytes, to_nearest_bytes};

@@ -4,8 +4,9 @@
 //! a guess of the processor that costs as much as several pixels.
 
 use super::level::{self, LevelPlane};
+use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
-use super::spans::{FaceCorners, LONGEST, Span, Spans};
+use super::spans::{LONGEST, Span, Spans};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::mapping::Mapping;
 use crate::raster::cover::SortedTriangle;
@@ -510,7 +511,7 @@ mod tests {
     use crate::raster::cull::{PickList, cull, pick};
     use crate::raster::depth::DepthPlane;
     use crate::raster::effects::PixelPipeline;
-    use crate::raster::effects::spans::recorded::record;
+    use crate::raster::effects::recorded::record;
     use crate::raster::frame::Rect;
     use crate::raster::pick::{Pick, SizeClass};
     use crate::raster::vertex::Vertex;

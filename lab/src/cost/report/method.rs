@@ -28,6 +28,11 @@ pub(super) fn section(study: &Study) -> Markup {
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
             }
             p {
+                "All shadings share one road, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ by what they do at pixels "
+                "and by their planes. Two walk a way of their own: gouraud-vintage is drawn triangle by triangle, and gouraud-tessellated splits faces first; phong-table and phong pass "
+                "their spans through the stages of effects. Spans are separated from set-up by a frame of the same scene that is twice as wide."
+            }
+            p {
                 "Truth is reckoned in 64-bit floating point by code that shares nothing with the engine but scene and mesh. Errors are taken where frame and truth show the same triangle; "
                 "all other pixels are counted as cover errors. Every time that was taken is in samples.csv."
             }

@@ -1,0 +1,501 @@
+//! Faces with effects become spans: the list that plain triangles have, and what the stages need beside it.
+//!
+//! A span is up to 64 pixels of a row. It begins where its shades begin anew, so that every value is exact at its first pixel,
+//! a multiple of 64 pixels from the row's first covered pixel inside the frame; a clip rectangle may hide its first pixels,
+//! and changes no byte of the others.
+//!
+//! A linear value has its start and its step in a column beside the list. Starts of texture coordinates, depths and light
+//! are worked out by the stage that asks for them, from the planes of eight faces that set-up leaves and the span's [`Mark`].
+
+use super::pipeline::{PixelPipeline, ShadeSource};
+use super::{Buffers, Target, draw_listed};
+use crate::fixed::{ROUND_MAGIC, U8F8};
+use crate::lanes::three;
+use crate::mapping::Mapping;
+use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
+use crate::raster::cover::{Row, SortedTriangle};
+use crate::raster::depth::{Cell, DepthPlane};
+use crate::raster::interpolation::Interpolation;
+use crate::raster::pick::{LANES, Pick, SizeClass};
+use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value_of};
+use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
+use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
+use crate::raster::shade::{RESEED, ShadePlane};
+use crate::simd::Lanes8;
+use crate::span::Kernel;
+use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, Spans8};
+
+/// Where a span lies in its face, in two numbers of 32 bits.
+///
+/// | bits | the first | the second |
+/// |---|---|---|
+/// | 0 to 5, 0 to 15 | the face, among those whose planes are kept | the column, from that of the planes |
+/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row, likewise |
+/// | 12 to 18 | the number of the span in its row | |
+/// | 19 to 31 | the row's last pixel inside the frame, from the first one of the span | |
+#[derive(Clone, Copy)]
+pub(super) struct Mark([u32; 2]);
+
+impl Mark {
+    fn new(face: u32, [skipped, number, last]: [i32; 3], [column, row]: [i32; 2]) -> Self {
+        // Below 64, 128 and 8,192; below 65,536.
+        let place = column.cast_unsigned() | row.cast_unsigned() << 16;
+        Self([face | (skipped << 6 | number << 12 | last << 19).cast_unsigned(), place])
+    }
+
+    #[inline(always)]
+    pub(super) const fn face(self) -> usize {
+        (self.0[0] & 63) as usize
+    }
+
+    #[inline(always)]
+    pub(super) const fn skipped(self) -> u32 {
+        self.0[0] >> 6 & 63
+    }
+
+    /// Pixels of the row before the span.
+    #[inline(always)]
+    pub(super) const fn before(self) -> i32 {
+        (self.0[0] >> 12 & 127).cast_signed() * RESEED
+    }
+
+    #[inline(always)]
+    pub(super) const fn last(self) -> i32 {
+        (self.0[0] >> 19).cast_signed()
+    }
+
+    /// Column and row.
+    #[inline(always)]
+    pub(super) const fn place(self) -> [i32; 2] {
+        [(self.0[1] & 0xFFFF).cast_signed(), (self.0[1] >> 16).cast_signed()]
+    }
+}
+
+/// Numbers of a span: its mark, and the first of each value with its step above it.
+const NUMBERS: usize = 2 + Value::MAX_COUNT;
+
+/// Numbers of eight spans.
+#[derive(Clone, Copy)]
+pub(crate) struct Marks8<S: Lanes8> {
+    /// The mark's two, and those of the slots that are taken.
+    numbers: [S::I32; NUMBERS],
+    count: usize,
+}
+
+impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
+    #[inline(always)]
+    fn zip(self, s: S, other: Self) -> [Self; 2] {
+        let (mut low, mut high) = (self, other);
+        for i in 0..self.count.min(NUMBERS) {
+            [low.numbers[i], high.numbers[i]] = s.interleave_i32(self.numbers[i], other.numbers[i]);
+        }
+        [low, high]
+    }
+}
+
+/// Triangles as the stages read them: those that were picked, by their index among these.
+#[derive(Clone, Copy)]
+pub(super) struct Faces<'a> {
+    pub(super) triangles: &'a Triangles<'a>,
+    pub(super) picks: Picks<'a>,
+}
+
+impl Faces<'_> {
+    /// Face `k` in the order of its heights, and where its corners' values are.
+    #[inline]
+    pub(super) fn sorted(&self, k: usize) -> SortedFace {
+        let pick = self.picks.get(k);
+        let (triangle, order) = SortedTriangle::with_order(&self.triangles.vertices(&self.picks, k));
+        let of = self.triangles.corners(pick);
+        let flat = self.picks.flat.get(k).copied();
+        SortedFace { triangle, corners: three(order, |corner| of[corner]), side: pick.side(), flat }
+    }
+}
+
+/// A face in the order of its heights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SortedFace {
+    triangle: SortedTriangle,
+    /// Indices of its vertices.
+    corners: [usize; 3],
+    side: usize,
+    /// The channels that all corners have.
+    flat: Option<[U8F8; 3]>,
+}
+
+/// A face, and the values of its corners from top to bottom.
+pub(super) struct FaceCorners<'a> {
+    pub(super) triangle: SortedTriangle,
+    face: SortedFace,
+    columns: &'a EffectColumns<'a>,
+}
+
+impl FaceCorners<'_> {
+    /// Texture coordinates: `i` is 0 for u, 1 for v.
+    #[inline]
+    pub(super) fn texture(&self, i: usize) -> [i32; 3] {
+        three(self.face.corners, |vertex| self.columns.texture[vertex][i])
+    }
+
+    /// A linear value.
+    #[inline]
+    pub(super) fn value(&self, value: Value) -> [i64; 3] {
+        if let (Value::Channel(i), Some(flat)) = (value, self.face.flat) {
+            return [i64::from(flat[i].to_bits()); 3];
+        }
+        three(self.face.corners, |vertex| i64::from(self.columns.value(value, vertex, self.face.side)))
+    }
+
+    /// Input of light, or the shades of a curve.
+    #[inline]
+    pub(super) fn lit(&self) -> [[f32; 6]; 3] {
+        three(self.face.corners, |vertex| self.columns.lit.get(vertex, self.face.side))
+    }
+}
+
+/// Planes of eight faces.
+#[derive(Clone, Debug)]
+pub(super) struct FacePlanes8 {
+    /// The box's first pixel.
+    pub(super) column: Ints,
+    pub(super) row: Ints,
+    /// The depth there, with 32 fraction bits, and its change from a column and from a row to the next.
+    pub(super) z: [[i64; 3]; LANES],
+    values: [ValuePlanes8; Value::MAX_COUNT],
+    pub(super) affine: AffinePlanes8,
+    pub(super) perspective: PerspectivePlanes8,
+}
+
+impl FacePlanes8 {
+    const NONE: Self = Self {
+        column: [0; LANES],
+        row: [0; LANES],
+        z: [[0; 3]; LANES],
+        values: [ValuePlanes8::NONE; Value::MAX_COUNT],
+        affine: AffinePlanes8::NONE,
+        perspective: PerspectivePlanes8::NONE,
+    };
+}
+
+/// Memory beside the list of spans, which is used again: planes of their faces, and numbers of each.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    planes: [FacePlanes8; Batches::COUNT],
+    numbers: SpanNumbers<NUMBERS>,
+}
+
+impl Columns {
+    pub(super) const NONE: Self = Self { planes: [FacePlanes8::NONE; Batches::COUNT], numbers: SpanNumbers::NONE };
+}
+
+/// Values that are set up for each face beside its shade.
+#[derive(Clone, Copy)]
+struct Wanted {
+    /// Texture coordinates that are linear on the screen, or on the face.
+    texture: Option<Mapping>,
+    /// Linear values, each in its slot.
+    values: [Option<Value>; Value::MAX_COUNT],
+    /// Slots up to the last that is taken.
+    slots: usize,
+    /// Shades and channels begin anew with each span.
+    reseeds: bool,
+}
+
+impl Wanted {
+    fn by(pipeline: &PixelPipeline<'_>) -> Self {
+        let texture = match pipeline.texture() {
+            // Otherwise a stage sets up each face by itself.
+            Some(stage) if pipeline.levels().is_none() && stage.mapping != Mapping::Every16 => Some(stage.mapping),
+            _ => None,
+        };
+        let mut values = [None; Value::MAX_COUNT];
+        let mut want =
+            |value: Value, is_wanted: bool| values[value.slot()] = is_wanted.then_some(value).or(values[value.slot()]);
+        want(Value::Fog, pipeline.fog().is_some());
+        let channels = pipeline.channels().is_some();
+        let by_table = matches!(pipeline.source, ShadeSource::NormalTable(_));
+        for i in 0..3 {
+            want(Value::Channel(i), channels && (by_table || matches!(pipeline.source, ShadeSource::Shaded(_))));
+            want(Value::Slope(i), by_table && !channels && i < 2);
+        }
+        let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud));
+        let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        Self { texture, values, slots, reseeds }
+    }
+}
+
+/// A face whose edges are walked down, for it is too large for set-up in f64, or there is none.
+pub(super) struct WalkedFace {
+    pub(super) face: SortedFace,
+    shade: ShadePlane,
+    pub(super) depth: DepthPlane,
+    values: [Option<ShadePlane>; Value::MAX_COUNT],
+}
+
+/// Spans of a list as the stages know them: their marks, and the planes of their faces.
+pub(super) struct Listed<'a> {
+    pub(super) faces: Faces<'a>,
+    wanted: Wanted,
+    pub(super) planes: &'a mut [FacePlanes8; Batches::COUNT],
+    pub(super) batches: Batches,
+    pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,
+    /// The only face, if its edges are walked down.
+    pub(super) walked: Option<WalkedFace>,
+    /// The first row of the frame.
+    pub(super) first_row: u32,
+}
+
+impl Listed<'_> {
+    /// The mark of span `k` of the list.
+    #[inline(always)]
+    pub(super) fn mark(&self, k: usize) -> Mark {
+        Mark([self.numbers.of(k, 0), self.numbers.of(k, 1)])
+    }
+
+    /// A face, and its corners' values.
+    #[inline]
+    pub(super) fn corners(&self, face: usize) -> FaceCorners<'_> {
+        let face = match &self.walked {
+            Some(walked) => walked.face,
+            None => self.faces.sorted(self.batches.first + face),
+        };
+        FaceCorners { triangle: face.triangle, face, columns: &self.faces.triangles.columns.effects }
+    }
+
+    /// The batch and the lane of a face.
+    #[inline(always)]
+    pub(super) fn planes(&self, face: usize) -> (&FacePlanes8, usize) {
+        let (batch, lane) = Batches::of_face(face);
+        (&self.planes[batch], lane)
+    }
+}
+
+/// Spans with effects: set-up of their faces, and the stages that they pass.
+pub(in crate::raster) struct EffectSpans<'a> {
+    pub(super) listed: Listed<'a>,
+    pipeline: &'a PixelPipeline<'a>,
+    buffers: &'a mut Buffers,
+}
+
+impl<'a> EffectSpans<'a> {
+    /// None yet, of these faces.
+    pub(super) fn new(
+        faces: Faces<'a>,
+        pipeline: &'a PixelPipeline<'a>,
+        Columns { planes, numbers }: &'a mut Columns,
+        buffers: &'a mut Buffers,
+        first_row: u32,
+    ) -> Self {
+        let wanted = Wanted::by(pipeline);
+        let listed = Listed { faces, wanted, planes, batches: Batches::NONE, numbers, walked: None, first_row };
+        Self { listed, pipeline, buffers }
+    }
+
+    /// Begins face `k`, whose rows are added one by one.
+    pub(super) fn walk(&mut self, k: usize) -> SortedTriangle {
+        let face = self.listed.faces.sorted(k);
+        let triangle = face.triangle;
+        let columns = &self.listed.faces.triangles.columns.effects;
+        let corners = FaceCorners { triangle, face, columns };
+        self.listed.walked = Some(WalkedFace {
+            face,
+            shade: ShadePlane::of_values(&triangle, triangle.shades()),
+            depth: DepthPlane::new(&triangle),
+            values: self.listed.wanted.values.map(|value| {
+                let value = value?;
+                Some(ShadePlane::of_values(&triangle, corners.value(value)))
+            }),
+        });
+        // Columns and rows are those of the frame.
+        self.listed.batches = Batches::from_pick(k);
+        (self.listed.planes[0].column, self.listed.planes[0].row) = ([0; LANES], [0; LANES]);
+        triangle
+    }
+
+    /// Adds the drawn part of a row of the face that is walked down, whose pixels and cells the target's are.
+    pub(super) fn add_row<D: Cell>(&mut self, row: &Row, list: &mut SpanList, target: &mut Target<'_, D>) {
+        let mut number = (row.x0 - row.origin) / RESEED;
+        let mut x = row.x0;
+        while x < row.x1 {
+            let seed = row.origin + number * RESEED;
+            let end = row.x1.min(seed + RESEED);
+            if !list.has_room(1) {
+                self.draw_spans(list, target);
+            }
+            let Some(WalkedFace { shade, values, .. }) = &self.listed.walked else { return };
+            let reseeds = self.listed.wanted.reseeds;
+            let value = |plane: &ShadePlane, reseeds: bool| {
+                let start = match reseeds {
+                    true => plane.start(seed, row.y),
+                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+                    false => {
+                        let steps = (seed - row.origin) as u16;
+                        plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
+                    }
+                };
+                u32::from(start) | u32::from(plane.step()) << 16
+            };
+            let paint = value(shade, reseeds);
+            let mut of_slots = [0; Value::MAX_COUNT];
+            for (slot, plane) in values.iter().enumerate() {
+                let reseeds = reseeds || slot == Value::Fog.slot();
+                of_slots[slot] = plane.as_ref().map_or(0, |plane| value(plane, reseeds));
+            }
+            // A column of a frame.
+            if let Some(k) = list.push((x as usize, (end - x) as usize), paint) {
+                let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
+                let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
+                self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);
+            }
+            number += 1;
+            x = end;
+        }
+    }
+
+    /// Draws the spans of a list, which is then empty.
+    #[inline(never)]
+    pub(super) fn draw_spans<D: Cell>(&mut self, list: &mut SpanList, target: &mut Target<'_, D>) {
+        let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
+        list.clear(nearer);
+    }
+}
+
+impl Shades8 for EffectSpans<'_> {
+    const IS_LINEAR: bool = false;
+    type Columns<S: Lanes8> = Marks8<S>;
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.listed.batches.are_full()
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, first: usize) {
+        self.listed.batches.begin(first);
+    }
+
+    #[inline(always)]
+    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
+        let Listed { faces: Faces { triangles, picks }, wanted, planes, batches, .. } = &mut self.listed;
+        let first = batches.first_pick();
+        let picks = &picks.range(first, picks.picks.len().min(first + LANES));
+        let planes = &mut planes[batches.current()];
+        (planes.column, planes.row) = (setup.column, setup.row);
+        for (i, z) in planes.z.iter_mut().enumerate() {
+            *z = [setup.z[i], setup.z_per_column[i], setup.z_per_row[i]];
+        }
+        if let Some(mapping) = wanted.texture {
+            let of_corners = texture_of_corners(triangles, picks);
+            match mapping {
+                Mapping::Affine => {
+                    planes.affine.set_up(s, basis, &of_corners);
+                    // Sums of large ones do not fit in f64.
+                    for (lane, &pick) in picks.picks.iter().enumerate() {
+                        planes.affine.fits &= !(u32::from(Pick(pick).class() != SizeClass::Small) << lane);
+                    }
+                }
+                _ => planes.perspective.set_up(s, basis, corners, &of_corners),
+            }
+        }
+        for (planes, value) in planes.values.iter_mut().zip(wanted.values) {
+            if let Some(value) = value {
+                planes.set_up(s, basis, &value_of_corners(triangles, picks, value));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        setup: &TriangleSetup8,
+        (ends, j): (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
+    ) -> (S::I32, Marks8<S>) {
+        let (row, seed) = (s.low_bits(parts.row), s.low_bits(parts.seed));
+        let before = s.sub_i32(seed, row);
+        let Wanted { values: wanted, slots, reseeds, .. } = &self.listed.wanted;
+        let begin = if *reseeds { parts.seed } else { parts.row };
+        let mut paint = ends.paint(s, lane, setup, begin);
+        if !reseeds {
+            paint = advance(s, paint, before);
+        }
+        let planes = &self.listed.planes[self.listed.batches.current()];
+        let mut values = [s.splat_i32(0); Value::MAX_COUNT];
+        for slot in 0..(*slots).min(Value::MAX_COUNT) {
+            let Some(value) = wanted[slot] else { continue };
+            let reseeds = *reseeds || !matches!(value, Value::Channel(_));
+            let begin = if reseeds { parts.seed } else { parts.row };
+            values[slot] = value_of(s, lane, (&planes.values[slot], &setup.inverse), j, begin);
+            if !reseeds {
+                values[slot] = advance(s, values[slot], before);
+            }
+        }
+        let face = self.listed.batches.faces(s, lane);
+        let skipped = s.sub_i32(s.low_bits(parts.start), seed);
+        let last = s.sub_i32(s.sub_i32(s.low_bits(parts.end), s.splat_i32(1)), seed);
+        // Those of a span that there is are in their ranges: see `Mark`.
+        let mark = s.or_i32(face, s.shl_i32(skipped, 6));
+        let mark = s.or_i32(mark, s.shl_i32(s.shr_i32(before, 6), 12));
+        let mark = s.or_i32(mark, s.shl_i32(last, 19));
+        let number = s.low_bits(s.add(j, s.splat_f64(ROUND_MAGIC)));
+        let [v0, v1, v2, v3] = values;
+        let numbers = [mark, s.or_i32(seed, s.shl_i32(number, 16)), v0, v1, v2, v3];
+        (paint, Marks8 { numbers, count: 2 + *slots })
+    }
+
+    #[inline(always)]
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S, Marks8<S>>,
+        dz: DepthSteps<S>,
+    ) {
+        let places = list.append::<S, _, DEPTHS>(s, spans, dz);
+        self.listed.numbers.put(s, places, spans.columns.numbers, 2 + self.listed.wanted.slots);
+    }
+
+    #[inline(always)]
+    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
+        let (planes, i) = (&mut self.listed.planes[self.listed.batches.current()], i % LANES);
+        planes.z[i] = [setup.z[i], setup.z_per_column[i], setup.z_per_row[i]];
+    }
+
+    #[inline(always)]
+    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
+        &mut self,
+        _: S,
+        list: &mut SpanList,
+        kernel: Kernel,
+        pixels: &mut [u8],
+        cells: &mut [D],
+    ) {
+        // Without a depth buffer there are none.
+        let cells = if cells.is_empty() { None } else { Some(cells) };
+        self.draw_spans(list, &mut Target { pixels, cells, kernel });
+    }
+}
+
+/// A value of the corners of up to eight triangles. Lanes without a triangle have 0.
+#[inline(always)]
+fn value_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>, value: Value) -> [Ints; 3] {
+    let mut gathered = [[0; LANES]; 3];
+    let columns = &triangles.columns.effects;
+    for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+        let pick = Pick(pick);
+        // The channels of a face that is lit as one.
+        if let (Value::Channel(i), Some(flat)) = (value, picks.flat.get(lane)) {
+            for corner in &mut gathered {
+                corner[lane] = i32::from(flat[i].to_bits());
+            }
+            continue;
+        }
+        let indices = triangles.indices[pick.index()];
+        for (corner, vertex) in indices.into_iter().enumerate() {
+            gathered[corner][lane] = i32::from(columns.value(value, vertex as usize, pick.side()));
+        }
+    }
+    gathered
+}

@@ -1,0 +1,133 @@
+//! Records each span with the starts of its values, for tests.
+
+use alloc::vec::Vec;
+
+use super::listing::{Columns, EffectSpans, Faces, Marks8};
+use super::spans::{Span, Spans};
+use super::{Buffers, PixelPipeline};
+use crate::raster::columns::{Picks, Triangles};
+use crate::raster::depth::Cell;
+use crate::raster::frame::Rect;
+use crate::raster::rows::{Lane, Parts, RowEnds, Shades8};
+use crate::raster::setup::{Basis, Corners8, FrameLayout, TriangleSetup8};
+use crate::raster::spans::{Drawn, draw_triangles};
+use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::span::Kernel;
+use crate::span::list::{DepthSteps, SpanList, Spans8};
+
+/// A span and the starts of its values.
+pub(super) struct Recorded {
+    /// The index of its pick.
+    pub(super) pick: usize,
+    pub(super) span: Span,
+    /// Start and step.
+    pub(super) affine: Option<[[u32; 2]; 2]>,
+    pub(super) perspective: Option<[[f64; 3]; 2]>,
+    pub(super) depth: [i64; 2],
+}
+
+struct Recorder<'a> {
+    spans: EffectSpans<'a>,
+    recorded: Vec<Recorded>,
+}
+
+impl Shades8 for Recorder<'_> {
+    const IS_LINEAR: bool = false;
+    type Columns<S: Lanes8> = Marks8<S>;
+
+    fn is_full(&self) -> bool {
+        self.spans.is_full()
+    }
+
+    fn begin(&mut self, first: usize) {
+        self.spans.begin(first);
+    }
+
+    #[inline(always)]
+    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
+        self.spans.set_up(s, basis, corners, setup);
+    }
+
+    #[inline(always)]
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        setup: &TriangleSetup8,
+        rows: (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
+    ) -> (S::I32, Marks8<S>) {
+        self.spans.fill_of(s, lane, setup, rows, parts)
+    }
+
+    #[inline(always)]
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S, Marks8<S>>,
+        dz: DepthSteps<S>,
+    ) {
+        self.spans.append::<S, DEPTHS>(s, list, spans, dz);
+    }
+
+    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
+        self.spans.set_up_large(i, setup);
+    }
+
+    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
+        &mut self,
+        _: S,
+        list: &mut SpanList,
+        _: Kernel,
+        _: &mut [u8],
+        _: &mut [D],
+    ) {
+        let (listed, mut first) = (&self.spans.listed, 0);
+        while first < list.count() {
+            let spans = Spans::of(listed, list, first);
+            for i in 0..spans.count() {
+                let place = spans.place(i);
+                self.recorded.push(Recorded {
+                    pick: listed.batches.first + listed.mark(first + i).face(),
+                    span: spans.span(i),
+                    affine: spans.affine(i).map(|(planes, lane)| [planes.start(lane, place), planes.step(lane)]),
+                    perspective: spans
+                        .perspective(i)
+                        .map(|(planes, lane)| [planes.start(lane, place), planes.step(lane)]),
+                    depth: spans.depth(i).1,
+                });
+            }
+            first += spans.count();
+        }
+        list.clear(0);
+    }
+}
+
+compiled_for_each_level! {
+    fn record_at_level[][](of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 = record_by;
+}
+
+#[inline(always)]
+fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
+    // Every row has the same pixels.
+    let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
+    let mut pixels = [0; 4_096];
+    let (target, list) = ((layout, clip, Kernel::PORTABLE), &mut { SpanList::NONE });
+    draw_triangles::<S, u32, _, true, false>(s, of, target, (&mut pixels, &mut []), recorder, list).spans
+}
+
+/// The spans of faces of which none is unbatched, in a frame of 4,096 x 4,096 pixels.
+pub(super) fn record(
+    kernel: Kernel,
+    triangles: &Triangles<'_>,
+    picks: Picks<'_>,
+    pipeline: &PixelPipeline<'_>,
+) -> Vec<Recorded> {
+    let (mut columns, mut buffers) = (Columns::NONE, Buffers::default());
+    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut columns, &mut buffers, 0);
+    let mut recorder = Recorder { spans, recorded: Vec::new() };
+    let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
+    record_at_level(kernel.simd_level(), Drawn { triangles, picks, in_pieces: true }, &mut recorder, clip);
+    recorder.recorded
+}
