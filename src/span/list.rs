@@ -52,7 +52,7 @@ pub(crate) struct SpanList {
 
 /// Columns of eight spans beyond a linear shade.
 pub(crate) trait SpanColumns<S: Lanes8>: Copy {
-    /// Those of spans 0 of both, spans 1 of both, and so on.
+    /// Interleaves the columns: span 0 of both, span 1 of both, and so on.
     fn zip(self, s: S, other: Self) -> [Self; 2];
 }
 
@@ -419,7 +419,7 @@ impl SpanList {
     }
 }
 
-/// What the fill of eight spans begins with, where it is more than a linear shade.
+/// First sums of eight spans, where their fill is more than a linear shade.
 #[derive(Clone, Copy)]
 pub(crate) struct Starts8<S: Lanes8>(pub(crate) [S::I64; 2]);
 
@@ -432,7 +432,7 @@ impl<S: Lanes8> SpanColumns<S> for Starts8<S> {
     }
 }
 
-/// What the fill of each span of a list begins with, as [`Starts8`].
+/// First sums of each span of a list, as [`Starts8`].
 pub(crate) struct SpanStarts([Depths; 2]);
 
 impl SpanStarts {
