@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use super::pick::{MAX_PIECES, Pick};
-use super::shade::RESEED;
+use super::reference::shade::RESEED;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 use crate::lanes::three;

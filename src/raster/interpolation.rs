@@ -5,10 +5,10 @@
 /// | shading | off from exact by less than | in |
 /// |---|---|---|
 /// | `GouraudVintage` | – (from other vertices) | [`vintage`](super::vintage) |
-/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::shade) |
-/// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::shade) |
-/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`fixed16`](super::fixed16) |
-/// | `GouraudHyperbolic` | ½, or just that | [`hyperbolic`](super::hyperbolic) |
+/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::reference::shade) |
+/// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::reference::shade) |
+/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`fixed16`](super::reference::fixed16) |
+/// | `GouraudHyperbolic` | ½, or just that | [`hyperbolic`](super::reference::hyperbolic) |
 /// | `Float` | ½ + 1/8,192 | `float` |
 ///
 /// Exact is linear on the screen, and for the last two linear on the face.

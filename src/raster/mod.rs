@@ -5,8 +5,9 @@
 //! (x + ½, y + ½), lies inside the triangle or on a top or left edge. Two triangles that share an
 //! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
 //! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
-//! clamping pixels: [`edge`] walks the edges with quotient and remainder, [`shade`] says why no
-//! sum can leave the range. One [`Interpolation`] has neither: that of the sources, [`vintage`].
+//! clamping pixels: [`reference::edge`] walks the edges with quotient and remainder,
+//! [`reference::shade`] says why no sum can leave the range. One [`Interpolation`] has neither:
+//! that of the sources, [`vintage`].
 //!
 //! The stages, in the order in which a triangle passes them:
 //!
@@ -15,11 +16,10 @@
 //! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
 //! | [`clip`] | what clipping before the projection leaves of a triangle, in triangles |
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
-//! | [`quotient`] | one reciprocal per divisor, exact floors from then on |
-//! | [`edge`], [`cover`] | which pixels |
-//! | [`interpolation`], [`shade`], [`fixed16`], [`hyperbolic`], `float` | which byte |
+//! | [`reference`](mod@reference) | one triangle in integers, the definition: which pixels, which byte, which depth |
+//! | [`interpolation`] | the shadings there are |
 //! | [`vintage`] | both as the sources print them |
-//! | [`depth`] | whether it is in front |
+//! | [`depth`] | depth buffers |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
@@ -44,41 +44,28 @@
 #[doc(hidden)]
 pub mod clip;
 pub(crate) mod columns;
-#[doc(hidden)]
-pub mod cover;
 pub(crate) mod cull;
 pub mod depth;
 mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
-#[doc(hidden)]
-pub mod edge;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod effects;
-#[doc(hidden)]
-pub mod fixed16;
-#[cfg(feature = "alloc")]
-#[doc(hidden)]
-pub mod float;
 pub mod frame;
-#[doc(hidden)]
-pub mod hyperbolic;
 pub mod interpolation;
 mod paint;
 pub(crate) mod pick;
 #[doc(hidden)]
 pub mod polygon;
 #[doc(hidden)]
-pub mod quotient;
+pub mod reference;
 mod rows;
 #[doc(hidden)]
 pub mod scan_line;
 mod setup;
 #[cfg(feature = "alloc")]
 mod setup_texture;
-#[doc(hidden)]
-pub mod shade;
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod shade_trace;
@@ -89,7 +76,6 @@ mod triangles;
 pub mod vertex;
 #[doc(hidden)]
 pub mod vintage;
-mod weights;
 
 pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;

@@ -4,15 +4,16 @@
 
 use core::ops::Range;
 
-use super::cover::{Row, SortedTriangle};
-use super::depth::{Cell, DepthPlane};
+use super::depth::Cell;
 use super::draw_stats::DrawStats;
-use super::fixed16::ShadePlane16;
-#[cfg(feature = "alloc")]
-use super::float::FloatPlane;
-use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
-use super::shade::{RESEED, ShadePlane};
+use super::reference::cover::{Row, SortedTriangle};
+use super::reference::depth::DepthPlane;
+use super::reference::fixed16::ShadePlane16;
+#[cfg(feature = "alloc")]
+use super::reference::float::FloatPlane;
+use super::reference::hyperbolic::HyperbolicPlane;
+use super::reference::shade::{RESEED, ShadePlane};
 use super::vintage::{Ramp, VintageTriangle};
 #[cfg(feature = "alloc")]
 use crate::lanes::{LANES, each};

@@ -1,6 +1,6 @@
 //! Triangles that are to be drawn, each in one number; and what bounds their sizes.
 
-use super::shade::RESEED;
+use super::reference::shade::RESEED;
 
 /// Triangles that are culled at a time.
 pub(crate) const CHUNK: usize = 64;

@@ -23,17 +23,17 @@
 //! be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
 //! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
 //! the shades of its edge's ends; start and step along the row are rounded back toward where shades
-//! come from, as in [`shade`](super::shade), so every sum lies between the two crossings' shades.
+//! come from, as in [`shade`](super::reference::shade), so every sum lies between the two crossings' shades.
 
 use core::fmt;
 
-use super::cover::point;
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
-use super::quotient::Divisor;
-use super::shade::RESEED;
+use super::reference::cover::point;
+use super::reference::quotient::Divisor;
+use super::reference::shade::RESEED;
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};

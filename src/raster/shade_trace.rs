@@ -5,13 +5,13 @@
 
 use alloc::vec::Vec;
 
-use super::cover::{Row, SortedTriangle};
-use super::fixed16::ShadePlane16;
-use super::float::FloatPlane;
 use super::frame::Rect;
-use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
-use super::shade::{RESEED, ShadePlane};
+use super::reference::cover::{Row, SortedTriangle};
+use super::reference::fixed16::ShadePlane16;
+use super::reference::float::FloatPlane;
+use super::reference::hyperbolic::HyperbolicPlane;
+use super::reference::shade::{RESEED, ShadePlane};
 use super::vintage::VintageTriangle;
 use crate::span::float::{fill_float, quotient};
 

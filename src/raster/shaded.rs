@@ -2,9 +2,9 @@
 //!
 //! | shading | a row starts with | its bytes |
 //! |---|---|---|
-//! | 16.16 | the shade of [`fixed16`](super::fixed16) | sums of 32 bits |
-//! | perspective-correct | numerator and divisor of [`hyperbolic`](super::hyperbolic) in f64 | quotients, exact where they cannot decide |
-//! | in f32 | numerator and divisor of [`float`](super::float) | quotients |
+//! | 16.16 | the shade of [`fixed16`](super::reference::fixed16) | sums of 32 bits |
+//! | perspective-correct | numerator and divisor of [`hyperbolic`](super::reference::hyperbolic) in f64 | quotients, exact where they cannot decide |
+//! | in f32 | numerator and divisor of [`float`](super::reference::float) | quotients |
 //!
 //! # 16.16 in two quotients
 //!
@@ -23,7 +23,7 @@
 //! # Perspective-correct shades
 //!
 //! Weights of corners are whole numbers below 2⁴⁴ in a box of 2¹⁸ pixels, and so exact, whatever pixel they are counted from.
-//! The estimate's bound in [`hyperbolic`](super::hyperbolic) asks for no more than three products and two sums, each
+//! The estimate's bound in [`hyperbolic`](super::reference::hyperbolic) asks for no more than three products and two sums, each
 //! rounded at most once.
 //!
 //! Bytes in f32 depend on the order in which three products are added: that of the corners by height, and of two at one
@@ -32,16 +32,16 @@
 //! 2¹², in 64 bits, as products of depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
 
 use super::columns::{Picks, Triangles};
-use super::cover::SortedTriangle;
 use super::depth::Cell;
-#[cfg(feature = "alloc")]
-use super::float::FloatPlane;
-use super::hyperbolic::HyperbolicPlane;
 use super::interpolation::Interpolation;
 use super::pick::{LANES, NUMBERS};
+use super::reference::cover::SortedTriangle;
+#[cfg(feature = "alloc")]
+use super::reference::float::FloatPlane;
+use super::reference::hyperbolic::HyperbolicPlane;
+use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
-use super::shade::RESEED;
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
 use crate::span::Kernel;

@@ -18,14 +18,15 @@
 //! it for each triangle in turn.
 
 use super::columns::{Picks, Triangles};
-use super::depth::{Cell, DepthBuffer, DepthPlane};
+use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::pick::{LANES, MAX_WIDTH, Pick, SizeClass};
+use super::reference::depth::DepthPlane;
+use super::reference::shade::RESEED;
 use super::rows::{self, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
-use super::shade::RESEED;
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;

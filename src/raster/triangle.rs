@@ -1,11 +1,12 @@
 //! A triangle, from three vertices to bytes.
 
-use super::cover::{Row, SortedTriangle};
-use super::depth::{Cell, DepthBuffer, DepthPlane};
+use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
 use super::paint::RowShader;
+use super::reference::cover::{Row, SortedTriangle};
+use super::reference::depth::DepthPlane;
 use super::vertex::Vertex;
 use super::vintage::VintageTriangle;
 use crate::span::Kernel;

@@ -35,8 +35,8 @@
 
 use core::ops::Range;
 
-use super::cover::{Row, SortedTriangle};
 use super::frame::Rect;
+use super::reference::cover::{Row, SortedTriangle};
 
 /// A corner on a whole pixel; its shade in 8.8.
 #[derive(Clone, Copy)]

@@ -3,9 +3,9 @@
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
-use mode13h::raster::cover::SortedTriangle;
 use mode13h::raster::polygon::{PolygonError, TableRow};
-use mode13h::raster::shade::ShadePlane;
+use mode13h::raster::reference::cover::SortedTriangle;
+use mode13h::raster::reference::shade::ShadePlane;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};

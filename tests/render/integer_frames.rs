@@ -10,7 +10,7 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::Effect;
-use mode13h::raster::cover::SortedTriangle;
+use mode13h::raster::reference::cover::SortedTriangle;
 use mode13h::raster::{Frame, Rect, Vertex};
 use mode13h::render::{RenderError, Renderer, Screen, Shading, Stats, VertexPath};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};

@@ -105,7 +105,7 @@ fn r12_walls_that_are_split_are_closed() {
         let mut counts = vec![0_u32; Vga::SHOWN];
         for corners in &parts {
             let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
-            mode13h::raster::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
+            mode13h::raster::reference::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
                 (row.x0..row.x1).for_each(|x| counts[(row.y * 320 + x) as usize] += 1);
             });
         }

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use mode13h::hooks::{Progression, ShadeTrace, rows_of};
-use mode13h::raster::cover::{Row, SortedTriangle};
-use mode13h::raster::shade::RESEED;
+use mode13h::raster::reference::cover::{Row, SortedTriangle};
+use mode13h::raster::reference::shade::RESEED;
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 

@@ -19,7 +19,7 @@ use super::Limits;
 use super::listing::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
-use crate::raster::weights::Weights;
+use crate::raster::reference::weights::Weights;
 use crate::span::Kernel;
 
 /// Greatest shade at a point, in 8.8: 2⁸ times the brightest that is shown. So no sum is infinite.

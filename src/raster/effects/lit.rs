@@ -5,7 +5,7 @@ use super::pipeline::{Lighting, SampleSpacing};
 use super::spans::{LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
-use crate::raster::weights::Weights;
+use crate::raster::reference::weights::Weights;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;

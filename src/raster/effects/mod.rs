@@ -18,13 +18,12 @@
 //! the same bytes sooner.
 //!
 //! Shades and channels are what the [`Interpolation`](super::Interpolation) makes of them; fog and the table's normals
-//! are linear, started anew with every span, whatever the shading, and keep the guarantees of [`shade`](super::shade): no
+//! are linear, started anew with every span, whatever the shading, and keep the guarantees of [`shade`](super::reference::shade): no
 //! sum leaves the range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a
 //! byte lies in [min >> 8, ⌈max⌉].
 
 mod batch;
 mod curve;
-mod level;
 mod listing;
 mod lit;
 mod pipeline;
@@ -42,10 +41,10 @@ pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, Sh
 use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
-use super::cover::Row;
 use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::pick::Pick;
+use super::reference::cover::Row;
 use super::setup::FrameLayout;
 use super::spans::{Drawn, Target as Layout, draw_triangles};
 use super::triangle::Raster;

@@ -4,12 +4,12 @@ use core::ops::Range;
 
 use super::listing::{FaceCorners, FacePlanes8, Listed, Mark};
 use crate::raster::columns::Value;
-use crate::raster::cover::Row;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
 use crate::raster::pick::LANES;
+use crate::raster::reference::cover::Row;
+use crate::raster::reference::shade::RESEED;
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8};
-use crate::raster::shade::RESEED;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};

@@ -3,18 +3,16 @@
 //! The places of all texels are found first, row by row, then the texels of all places in one loop: how long a row is, is
 //! a guess of the processor that costs as much as several pixels.
 
-use super::level::{self, LevelPlane};
 use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
-use crate::fixed::{HAS_F64, nearest_whole};
 use crate::mapping::Mapping;
-use crate::raster::cover::SortedTriangle;
-use crate::raster::quotient::Divisor;
-use crate::raster::weights::WholeWeights;
+use crate::raster::reference::level::{self, LevelPlane};
+use crate::raster::reference::quotient::Divisor;
+use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{AffineLines, Levels, Shown, Texels, exact_places, perspective_places, show};
+use crate::span::texture::{AffineLines, Levels, Shown, Texels, perspective_places, show};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -71,7 +69,7 @@ impl Spans<'_> {
         kernel: Kernel,
     ) {
         let Some(levels) = levels else {
-            return self.each(out, PerspectiveTexture::new, |plane, span, pixels| {
+            return self.each(out, perspective, |plane, span, pixels| {
                 plane.places::<EVERY_16>((image, 0), span, span.x, (&mut *places, pixels.len()), kernel);
                 show(shown, pixels, image, places);
             });
@@ -80,7 +78,7 @@ impl Spans<'_> {
             let depths = |corner: usize| i128::from(depth(&face.triangle, corner));
             let texture = [face.texture(0), face.texture(1)];
             let levels = LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)]);
-            (PerspectiveTexture::new(face), levels)
+            (perspective(face), levels)
         };
         self.each(out, plane, |(plane, of_pixels), span, pixels| {
             plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, span, (pixels, &mut *places), kernel);
@@ -149,22 +147,20 @@ fn find_perspective_by<S: Lanes8>(s: S, spans: &Spans<'_>, image: Texels<'_>, pl
             let (places, [u, v, d]) = (&mut places[first..], planes.start(lane, spans.place(i)));
             if !perspective_places(s, places, len, image, [[u, du], [v, dv]], [d, dd]) {
                 let (plane, span) = (perspective_texture(spans, i), spans.span(i));
-                plane.in_integers((image, 0), plane.weights.at(span.x, span.y), &mut places[..len]);
+                plane.in_integers((image, 0), (span.x, span.y), &mut places[..len]);
             }
             i += 1;
         }
     }
 }
 
-#[inline(never)]
-fn perspective_texture(spans: &Spans<'_>, i: usize) -> PerspectiveTexture {
-    PerspectiveTexture::new(&spans.corners(&spans.span(i)))
+fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
+    PerspectiveTexture::new(&face.triangle, [face.texture(0), face.texture(1)])
 }
 
-/// The depth of a corner, at least 1.
-#[inline]
-fn depth(triangle: &SortedTriangle, corner: usize) -> i64 {
-    i64::from(triangle.vertices[corner].depth().max(1))
+#[inline(never)]
+fn perspective_texture(spans: &Spans<'_>, i: usize) -> PerspectiveTexture {
+    perspective(&spans.corners(&spans.span(i)))
 }
 
 /// Texture coordinates that are linear on the screen, and the level of the image that is shown.
@@ -181,7 +177,7 @@ impl<'a> AffineTexture<'a> {
         let plane = |i: usize| AffinePlane::new(&face.triangle, area, face.texture(i));
         let planes = [plane(0), plane(1)];
         let Some(levels) = levels else { return Self { texels: image, planes } };
-        let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient[direction]));
+        let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient()[direction]));
         let level = level::of_face(change(0), change(1), area.get(), levels.last());
         Self { texels: levels.get(level).unwrap_or(image), planes: planes.map(|plane| plane.of_level(level)) }
     }
@@ -191,7 +187,7 @@ impl<'a> AffineTexture<'a> {
     fn steps(&self) -> [u32; 2] {
         let [u, v] = &self.planes;
         // Wrapping is intended: texels repeat.
-        [u.step as u32, v.step as u32]
+        [u.step() as u32, v.step() as u32]
     }
 
     /// The coordinates at the first pixel of a span.
@@ -202,160 +198,7 @@ impl<'a> AffineTexture<'a> {
     }
 }
 
-/// A texture coordinate that is linear on the screen.
-///
-/// With c the first corner's coordinate, A twice the area, and the numerators g of the gradient,
-///
-/// ```text
-/// u(x, y) = c + (gx·(256·x + 128 − x₀) + gy·(256·y + 128 − y₀)) / A
-/// ```
-///
-/// It is rounded back toward where it comes from, as shades are, so no sum leaves the range of the corners. Inside the
-/// triangle the fraction's value is at most D, by which the corners differ most. Where D·A is below 2⁶¹, which it is for
-/// triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms are.
-///
-/// Level n has c and the quotient, rounded already, divided by 2ⁿ and rounded once more: the same as if it were rounded once.
-#[derive(Clone, Copy, Debug)]
-struct AffinePlane {
-    area: Divisor,
-    /// c.
-    coordinate: i64,
-    /// (x₀, y₀) from the centre of pixel (0, 0).
-    corner: [i64; 2],
-    /// (gx, gy), each within 2⁵⁵.
-    gradient: [i64; 2],
-    /// D·A is below 2⁶¹.
-    fits: bool,
-    /// Added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
-    bias: [i64; 2],
-    /// n.
-    level: u32,
-    /// Change from one pixel to the next, rounded toward zero.
-    step: i64,
-}
-
-impl AffinePlane {
-    #[inline]
-    fn new(triangle: &SortedTriangle, area: Divisor, [a, b, c]: [i32; 3]) -> Self {
-        let (gx, gy) = triangle.gradient([a.into(), b.into(), c.into()]);
-        let first = &triangle.vertices[0];
-        let range = a.max(b).max(c).abs_diff(a.min(b).min(c));
-        let most = u64::from(range).saturating_mul(area.get().unsigned_abs());
-        let fits = most < 1 << 61;
-        // In a row of two pixels or more it is within D, and gx·256 within D·A. In a row of one it is not used.
-        let step = if !fits {
-            (256 * i128::from(gx) / i128::from(area.get())) as i64
-        } else if gx.unsigned_abs() <= most >> 8 {
-            area.truncate(gx * 256)
-        } else {
-            0
-        };
-        Self {
-            area,
-            coordinate: a.into(),
-            corner: [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128],
-            gradient: [gx, gy],
-            fits,
-            bias: [if gx < 0 { area.get() - 1 } else { 0 }, 0],
-            level: 0,
-            step,
-        }
-    }
-
-    /// The coordinate in level n of the image.
-    fn of_level(self, n: u32) -> Self {
-        let bias = (1 << n) - 1;
-        let upward = if self.gradient[0] < 0 { bias } else { 0 };
-        Self { bias: [self.bias[0], upward], level: n, step: (self.step + upward) >> n, ..self }
-    }
-
-    /// The coordinate at a pixel whose centre lies in the triangle; 16.16.
-    #[inline]
-    fn start(&self, x: i32, y: i32) -> u32 {
-        let ([gx, gy], [bias, of_level]) = (self.gradient, self.bias);
-        let (dx, dy) = (i64::from(x) * 256 - self.corner[0], i64::from(y) * 256 - self.corner[1]);
-        let quotient = if self.fits {
-            self.area.floor(gx.wrapping_mul(dx).wrapping_add(gy.wrapping_mul(dy)).wrapping_add(bias))
-        } else {
-            let n = i128::from(gx) * i128::from(dx) + i128::from(gy) * i128::from(dy) + i128::from(bias);
-            // Within D.
-            n.div_euclid(self.area.get().into()) as i64
-        };
-        // Modulo 2³².
-        ((self.coordinate + quotient + of_level) >> self.level) as u32
-    }
-}
-
-/// Texture coordinates that are linear on the face.
-///
-/// ```text
-/// u(x, y) = Σ λᵢ·dᵢ·uᵢ / Σ λᵢ·dᵢ
-/// ```
-///
-/// with λ the [weights](WholeWeights) of the corners and d their depths. No λ is negative at a covered centre, so a
-/// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than 2⁻¹⁹.
-#[derive(Clone, Copy, Debug)]
-struct PerspectiveTexture {
-    weights: WholeWeights,
-    /// Each corner's u, v and 1, times its depth; below 2⁶³.
-    values: [[i64; 3]; 3],
-    estimated: [[f64; 3]; 3],
-    /// Change of the sums from one pixel to the next, in f64.
-    steps: [f64; 3],
-}
-
-/// The sum over the corners of weights times values, exact.
-#[inline]
-fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
-    let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
-    product(wa, a) + product(wb, b) + product(wc, c)
-}
-
-/// Weights in f64, which is exact: they are at most 2⁴⁴.
-#[inline]
-fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
-    if HAS_F64 { [a as f64, b as f64, c as f64] } else { [0.0; 3] }
-}
-
-/// The sum in f64.
-#[inline]
-fn estimate([wa, wb, wc]: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
-    wa * a + wb * b + wc * c
-}
-
-/// The floor of a coordinate n / d, whose estimate is less than ½ off.
-#[inline]
-fn floor(estimate: f64, n: i128, d: i128) -> i64 {
-    if !HAS_F64 {
-        // A mean of coordinates.
-        return n.div_euclid(d) as i64;
-    }
-    // The floor or the next number up.
-    let near = nearest_whole(estimate);
-    near - i64::from(n < i128::from(near) * d)
-}
-
 impl PerspectiveTexture {
-    #[inline]
-    fn new(face: &FaceCorners<'_>) -> Self {
-        let triangle = &face.triangle;
-        let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
-        let times =
-            |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
-        let of = |i: usize| times(face.texture(i));
-        let values = [of(0), of(1), depths];
-        let weights = WholeWeights::new(triangle);
-        let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
-        if HAS_F64 {
-            let per_column = in_f64(weights.per_column());
-            for (i, [a, b, c]) in values.into_iter().enumerate() {
-                estimated[i] = [a as f64, b as f64, c as f64];
-                steps[i] = estimate(per_column, estimated[i]);
-            }
-        }
-        Self { weights, values, estimated, steps }
-    }
-
     /// Shows the texels of a span, from levels, one of which is chosen for every 16 pixels.
     /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
     /// rectangle.
@@ -375,7 +218,7 @@ impl PerspectiveTexture {
         let across = plane.across(span.y);
         for (level, x) in chosen.iter_mut().zip((span.x..).step_by(EVERY)) {
             let x = (x + EVERY as i32 / 2).min(last).max(x);
-            let denominator = exact(self.weights.at(x, span.y), self.values[2]);
+            let denominator = self.denominator(x, span.y);
             *level = plane.at(across, x, denominator, levels.last());
         }
         let (mut x, mut rest) = (span.x, pixels);
@@ -430,53 +273,6 @@ impl PerspectiveTexture {
             (x, from) = (next, to);
         }
     }
-
-    /// The places of `n` texels of one level, from a pixel on, each exact.
-    #[inline(always)]
-    fn exact<S: Lanes8>(
-        &self,
-        s: S,
-        (texels, shift): (Texels<'_>, u32),
-        (x, y): (i32, i32),
-        (places, n): (&mut [i32], usize),
-    ) {
-        let weights = self.weights.at(x, y);
-        if HAS_F64 {
-            let at = in_f64(weights);
-            let mut sums = [[0.0; 2]; 3];
-            for (sum, (values, step)) in sums.iter_mut().zip(self.estimated.iter().zip(self.steps)) {
-                *sum = [estimate(at, *values), step];
-            }
-            let size = f64::from(1_u32 << shift);
-            let [u, v, [d, dd]] = sums;
-            if perspective_places(s, places, n, texels, [u, v], [d * size, dd * size]) {
-                return;
-            }
-        }
-        self.in_integers((texels, shift), weights, &mut places[..n]);
-    }
-
-    /// [`exact`](Self::exact) in whole numbers, for where an estimate cannot decide.
-    #[inline(never)]
-    fn in_integers(&self, (texels, shift): (Texels<'_>, u32), weights: [i64; 3], places: &mut [i32]) {
-        let step = self.weights.per_column();
-        let [u, v, [d, dd]] = self.values.map(|values| [exact(weights, values), exact(step, values)]);
-        exact_places(places, texels, [u, v], [d << shift, dd << shift]);
-    }
-
-    /// The coordinates at a pixel, rounded down; 16.16.
-    #[inline]
-    fn at(&self, x: i32, y: i32) -> [i32; 2] {
-        let weights = self.weights.at(x, y);
-        let of_f64 = in_f64(weights);
-        let d = exact(weights, self.values[2]);
-        let reciprocal = if HAS_F64 { 1.0 / estimate(of_f64, self.estimated[2]) } else { 0.0 };
-        // A mean of the corners' coordinates, so it fits in 32 bits.
-        let of = |i: usize| {
-            floor(estimate(of_f64, self.estimated[i]) * reciprocal, exact(weights, self.values[i]), d) as i32
-        };
-        [of(0), of(1)]
-    }
 }
 
 compiled_for_each_level! {
@@ -509,11 +305,14 @@ mod tests {
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
     use crate::raster::cull::{PickList, cull, pick};
-    use crate::raster::depth::DepthPlane;
     use crate::raster::effects::PixelPipeline;
     use crate::raster::effects::recorded::record;
     use crate::raster::frame::Rect;
     use crate::raster::pick::{Pick, SizeClass};
+    use crate::raster::reference::cover::SortedTriangle;
+    use crate::raster::reference::depth::DepthPlane;
+    use crate::raster::reference::texture::exact;
+    use crate::raster::reference::weights::WholeWeights;
     use crate::raster::vertex::Vertex;
 
     /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
@@ -559,7 +358,7 @@ mod tests {
                     prop_assert_eq!(plane.start(x, row.y), defined(&triangle, coordinates, level, (x, row.y)));
                 }
                 if row.x0 < row.last {
-                    prop_assert_eq!(plane.step as u32, step as u32);
+                    prop_assert_eq!(plane.step() as u32, step as u32);
                 }
             }
         }

@@ -1,12 +1,11 @@
 //! The active list: the faces that the row at hand crosses, each with its two edges.
 
 use super::Key;
-use crate::raster::cover::{SortedTriangle, point};
-use crate::raster::depth::DepthPlane;
-use crate::raster::edge::Edge;
 use crate::raster::frame::Rect;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
+use crate::raster::reference::cover::{Row, RowWalk, SortedTriangle};
+use crate::raster::reference::depth::DepthPlane;
 use crate::raster::vertex::Vertex;
 
 /// A face on its way down the rows: the two edges that the row at hand crosses. Opaque; the caller
@@ -17,22 +16,9 @@ pub struct EdgePair {
     pub(super) interpolation: Interpolation,
     /// Its index among the faces: the first of equal depths has the pixel.
     pub(super) order: usize,
-    /// From the top to the bottom.
-    long: Edge,
-    /// From the top to the middle, then from there to the bottom.
-    short: Edge,
-    /// The first row of the lower short edge.
-    split: i32,
-    /// The row after the last.
-    end: i32,
-    /// The row's first pixel inside the frame.
-    pub(super) origin: i32,
-    /// The row's first pixel inside the clip rectangle.
-    pub(super) x0: i32,
-    /// The pixel after the row's last; not after `x0` where the row has none.
-    pub(super) x1: i32,
-    /// The row's last pixel inside the frame.
-    pub(super) last: i32,
+    walk: RowWalk,
+    /// Its pixels on the row at hand.
+    pub(super) row: Row,
     /// True if it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
@@ -42,51 +28,23 @@ pub struct EdgePair {
 }
 
 impl EdgePair {
-    fn new(order: usize, vertices: &[Vertex; 3], interpolation: Interpolation, y: i32, clip: Rect) -> Self {
+    fn new(order: usize, vertices: &[Vertex; 3], interpolation: Interpolation, clip: Rect) -> Self {
         let triangle = SortedTriangle::new(vertices);
-        let [top, middle, bottom] = triangle.vertices.each_ref().map(point);
-        let split = triangle.vertices[1].y().first_centre();
-        let short = if y < split { (top, middle) } else { (middle, bottom) };
         Self {
             triangle,
             interpolation,
             order,
-            long: Edge::at_row(top, bottom, y),
-            short: Edge::at_row(short.0, short.1, y),
-            split,
-            // As in `SortedTriangle::extent`.
-            end: triangle.vertices[2].y().first_centre().min(clip.y1 as i32),
+            // Only faces that have rows are given.
+            walk: triangle.extent(clip).map(|rows| RowWalk::new(&triangle, rows)).unwrap_or_default(),
             hides_background: vertices.iter().all(|v| v.depth() > 0),
             ..Self::default()
         }
     }
 
-    /// Its pixels on the row.
+    /// Steps to the next row. Returns whether it has one.
     #[inline]
-    fn cross(&mut self, clip: Rect, frame_width: u32) {
-        let (left, right) =
-            if self.triangle.doubled_area > 0 { (self.long.x, self.short.x) } else { (self.short.x, self.long.x) };
-        // A frame has at most 4,096 columns.
-        self.origin = left.max(0);
-        self.x0 = self.origin.max(clip.x0 as i32);
-        self.x1 = right.min(frame_width.min(clip.x1) as i32);
-        self.last = right.min(frame_width as i32) - 1;
-    }
-
-    /// Steps to row `y`, the next. Returns whether it has that row.
-    #[inline]
-    fn down(&mut self, y: i32) -> bool {
-        if y >= self.end {
-            return false;
-        }
-        self.long.down();
-        if y == self.split {
-            let [_, middle, bottom] = self.triangle.vertices.each_ref().map(point);
-            self.short = Edge::at_row(middle, bottom, y);
-        } else {
-            self.short.down();
-        }
-        true
+    fn down(&mut self) -> bool {
+        self.walk.down(&self.triangle)
     }
 
     /// Its shades, worked out when it first has a pixel.
@@ -158,9 +116,9 @@ impl<'a> List<'a> {
                 self.free = self.pairs[slot].next_free;
             }
             let pair = &mut self.pairs[slot];
-            *pair = EdgePair::new(order, vertices, *interpolation, y, self.clip);
-            pair.cross(self.clip, self.frame_width);
-            *key = Key::new(pair.x0, slot).0;
+            *pair = EdgePair::new(order, vertices, *interpolation, self.clip);
+            pair.row = pair.walk.row(self.frame_width, self.clip);
+            *key = Key::new(pair.row.x0, slot).0;
         }
         // Two sorted lists, merged from their ends, so that none is overwritten before it is read.
         coming.sort_unstable();
@@ -182,13 +140,13 @@ impl<'a> List<'a> {
         for i in 0..self.active {
             let slot = Key(self.keys[i]).number();
             let pair = &mut self.pairs[slot];
-            if !pair.down(self.y) {
+            if !pair.down() {
                 pair.next_free = self.free;
                 self.free = slot;
                 continue;
             }
-            pair.cross(self.clip, self.frame_width);
-            let key = Key::new(pair.x0, slot).0;
+            pair.row = pair.walk.row(self.frame_width, self.clip);
+            let key = Key::new(pair.row.x0, slot).0;
             let mut place = kept;
             while place > 0 && self.keys[place - 1] > key {
                 self.keys[place] = self.keys[place - 1];

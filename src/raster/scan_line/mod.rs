@@ -11,7 +11,7 @@
 //! ```
 //!
 //! The picture is the depth buffer's, byte for byte: cover by the same edges, depth by the same
-//! [`DepthPlane`](super::depth::DepthPlane), of equal depths the first submitted, and each shade from
+//! [`DepthPlane`](super::reference::depth::DepthPlane), of equal depths the first submitted, and each shade from
 //! the start that the triangle alone would have. It needs no depth for every pixel and paints no
 //! pixel that another face hides; a face that no other overlaps needs no depth at all.
 //!
@@ -36,10 +36,10 @@ mod nearest;
 use core::fmt;
 
 pub use self::active::EdgePair;
-use super::cover::{Row, SortedTriangle};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
+use super::reference::cover::{Row, SortedTriangle};
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::span::Kernel;
@@ -257,8 +257,8 @@ impl Sweep {
             }
             while let Some(key) = list.key(next).filter(|key| key.place() <= x) {
                 let pair = list.pair(key.number());
-                if pair.x0 < pair.x1 {
-                    self.drawn.covered += (pair.x1 - pair.x0) as u32;
+                if pair.row.x0 < pair.row.x1 {
+                    self.drawn.covered += (pair.row.x1 - pair.row.x0) as u32;
                     open[opened] = key.number() as u64;
                     opened += 1;
                 }
@@ -266,7 +266,7 @@ impl Sweep {
             }
             let mut end = list.key(next).map_or(i32::MAX, Key::place);
             for slot in &open[..opened] {
-                end = end.min(list.pair(*slot as usize).x1);
+                end = end.min(list.pair(*slot as usize).row.x1);
             }
             let faces = &open[..opened];
             while !faces.is_empty() && x < end {
@@ -278,7 +278,7 @@ impl Sweep {
             }
             let mut kept = 0;
             for i in 0..opened {
-                if list.pair(open[i] as usize).x1 > x {
+                if list.pair(open[i] as usize).row.x1 > x {
                     open[kept] = open[i];
                     kept += 1;
                 }
@@ -320,7 +320,7 @@ impl Sweep {
         let Some(pixels) = raster.frame.row_mut(y as u32) else { return };
         let Run { slot, x0, x1 } = run;
         let pair = list.pair_mut(slot);
-        let row = Row { y, origin: pair.origin, x0, x1, last: pair.last };
+        let row = Row { y, x0, x1, ..pair.row };
         if !paint(pair.order, &row, pixels, raster.kernel, &mut self.drawn) {
             pair.paint().row(&row, pixels, raster.kernel, &mut self.drawn);
         }

@@ -15,7 +15,7 @@
 //! The background counts as a face of depth 0 submitted before all others.
 
 use super::active::List;
-use crate::raster::depth::DepthPlane;
+use crate::raster::reference::depth::DepthPlane;
 
 /// A unit of depth.
 const UNIT: i64 = 1 << 24;

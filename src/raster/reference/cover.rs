@@ -1,8 +1,8 @@
 //! Cover: the pixels of a triangle, as rows from top to bottom.
 
 use super::edge::Edge;
-use super::frame::Rect;
-use super::vertex::Vertex;
+use crate::raster::frame::Rect;
+use crate::raster::vertex::Vertex;
 
 /// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
 /// first. The pixels depend on the three points alone, not on the order they were given in.
@@ -26,7 +26,7 @@ impl SortedTriangle {
     /// Puts three vertices in order, and says which of them stands in each place. Without branches: which corner is the
     /// top is anybody's guess.
     #[inline]
-    pub(super) fn with_order(vertices: &[Vertex; 3]) -> (Self, [usize; 3]) {
+    pub(in crate::raster) fn with_order(vertices: &[Vertex; 3]) -> (Self, [usize; 3]) {
         let key = |v: &Vertex| (i64::from(v.y().to_bits()) << 32) + i64::from(v.x().to_bits());
         let [a, b, c] = [key(&vertices[0]), key(&vertices[1]), key(&vertices[2])];
         let (b_before_a, c_before_b) = (b < a, c < b);
@@ -98,35 +98,75 @@ impl SortedTriangle {
     #[inline]
     pub fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row)) {
         let Some(rows) = self.extent(clip) else { return };
-        let (first, end) = (rows.start, rows.end);
-        let [top, middle, bottom] = &self.vertices;
-        // As in `extent`.
-        let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
-        let split = middle.y().first_centre();
-        let mut long = Edge::at_row(point(top), point(bottom), first);
-        let mut y = first;
-        for (from, to, until) in [(top, middle, split.min(end)), (middle, bottom, end)] {
-            if y >= until {
-                continue;
+        let mut walk = RowWalk::new(self, rows);
+        loop {
+            let covered = walk.row(frame_width, clip);
+            if covered.x0 < covered.x1 {
+                row(covered);
             }
-            let mut short = Edge::at_row(point(from), point(to), y);
-            while y < until {
-                let (x_left, x_right) = if self.doubled_area > 0 { (long.x, short.x) } else { (short.x, long.x) };
-                let origin = x_left.max(0);
-                let (x0, x1) = (origin.max(clip_x0), x_right.min(width).min(clip_x1));
-                if x0 < x1 {
-                    row(Row { y, origin, x0, x1, last: x_right.min(width) - 1 });
-                }
-                long.down();
-                short.down();
-                y += 1;
+            if !walk.down(self) {
+                return;
             }
         }
     }
 }
 
+/// A triangle's rows one after the other: the two edges that the row at hand crosses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::raster) struct RowWalk {
+    /// From the top to the bottom.
+    long: Edge,
+    /// From the top to the middle, then from there to the bottom.
+    short: Edge,
+    is_long_left: bool,
+    y: i32,
+    /// The first row of the lower short edge.
+    split: i32,
+    /// The row after the last.
+    end: i32,
+}
+
+impl RowWalk {
+    /// Begins at the first of rows that lie in the triangle's [extent](SortedTriangle::extent).
+    #[inline]
+    pub(in crate::raster) fn new(triangle: &SortedTriangle, rows: core::ops::Range<i32>) -> Self {
+        let [top, middle, bottom] = triangle.vertices.each_ref().map(point);
+        let (y, split) = (rows.start, triangle.vertices[1].y().first_centre());
+        let (from, to) = if y < split { (top, middle) } else { (middle, bottom) };
+        let (long, short) = (Edge::at_row(top, bottom, y), Edge::at_row(from, to, y));
+        Self { long, short, is_long_left: triangle.doubled_area > 0, y, split, end: rows.end }
+    }
+
+    /// The row at hand. It may be empty: `x0` is then not below `x1`.
+    #[inline]
+    pub(in crate::raster) fn row(&self, frame_width: u32, clip: Rect) -> Row {
+        let (left, right) = if self.is_long_left { (self.long.x, self.short.x) } else { (self.short.x, self.long.x) };
+        // A frame has at most 4,096 columns.
+        let (origin, width) = (left.max(0), frame_width as i32);
+        let (x0, x1) = (origin.max(clip.x0 as i32), right.min(width).min(clip.x1 as i32));
+        Row { y: self.y, origin, x0, x1, last: right.min(width) - 1 }
+    }
+
+    /// Steps to the next row. Returns whether there is one.
+    #[inline]
+    pub(in crate::raster) fn down(&mut self, triangle: &SortedTriangle) -> bool {
+        self.y += 1;
+        if self.y >= self.end {
+            return false;
+        }
+        self.long.down();
+        if self.y == self.split {
+            let [_, middle, bottom] = triangle.vertices.each_ref().map(point);
+            self.short = Edge::at_row(middle, bottom, self.y);
+        } else {
+            self.short.down();
+        }
+        true
+    }
+}
+
 /// The covered pixels of one row.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Row {
     /// The row.
     pub y: i32,
@@ -152,7 +192,7 @@ impl Row {
 }
 
 #[inline]
-pub(super) fn point(v: &Vertex) -> (i32, i32) {
+pub(in crate::raster) fn point(v: &Vertex) -> (i32, i32) {
     (v.x().to_bits(), v.y().to_bits())
 }
 

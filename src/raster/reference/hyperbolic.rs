@@ -50,7 +50,7 @@ impl HyperbolicPlane {
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.
     #[cfg(feature = "alloc")]
-    pub(super) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
+    pub(in crate::raster) fn shade(&self, x: i32, y: i32) -> (i128, i128) {
         self.sums(self.weights.at(x, y), 0)
     }
 
@@ -69,7 +69,7 @@ impl HyperbolicPlane {
     }
 
     /// The bytes from pixel (`x`, `y`) on, all of whose centres lie in the triangle.
-    pub(super) fn fill(&self, x: i32, y: i32, pixels: &mut [u8]) {
+    pub(in crate::raster) fn fill(&self, x: i32, y: i32, pixels: &mut [u8]) {
         if self.fill_estimated(x, y, pixels) {
             return;
         }
@@ -119,7 +119,7 @@ impl HyperbolicPlane {
     /// Returns whether divisors of so many pixels, the first one and its change from one to the next, lie near enough to each
     /// other for quotients in f64.
     #[inline(always)]
-    pub(super) fn is_sure(d: f64, dd: f64, pixels: usize) -> bool {
+    pub(in crate::raster) fn is_sure(d: f64, dd: f64, pixels: usize) -> bool {
         const MAX_RATIO: f64 = 32_768.0;
         // At most 4,096 pixels.
         let last = d + pixels.saturating_sub(1) as f64 * dd;
@@ -130,10 +130,10 @@ impl HyperbolicPlane {
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::Rect;
-    use super::super::vertex::Vertex;
     use super::*;
     use crate::fixed::{I24F8, U8F8};
+    use crate::raster::frame::Rect;
+    use crate::raster::vertex::Vertex;
     use proptest::prelude::*;
 
     fn corner() -> impl Strategy<Value = (i32, i32, u16, u32)> {

@@ -107,19 +107,19 @@ impl ShadePlane {
 
     /// N at the pixel (`x`, `y`). Inside the triangle it is 0 to 2⁵⁸; the terms on the way stay below 2⁶¹.
     #[inline]
-    pub(super) fn numerator(&self, x: i32, y: i32) -> i64 {
+    pub(in crate::raster) fn numerator(&self, x: i32, y: i32) -> i64 {
         self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)
     }
 
     /// Change of N from one pixel to the next: within 2⁴⁶.
     #[inline]
-    pub(super) fn per_column(&self) -> i64 {
+    pub(in crate::raster) fn per_column(&self) -> i64 {
         self.per_column
     }
 
     /// A.
     #[inline]
-    pub(super) fn area(&self) -> &Divisor {
+    pub(in crate::raster) fn area(&self) -> &Divisor {
         &self.area
     }
 }

@@ -17,7 +17,7 @@
 //! so one numerator is the same all along a row, and the other linear. The depth D / A is taken in whole sixteenths,
 //! rounded down. All else is exact.
 
-use crate::raster::cover::SortedTriangle;
+use super::cover::SortedTriangle;
 use crate::span::hyperbolic::floor_quotient;
 
 /// Twice the length of a step.
@@ -42,7 +42,7 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
 
 /// The level of a face whose coordinates are linear on the screen. They change by these from one pixel of a row, and of a
 /// column, to the next, times the area.
-pub(super) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
+pub(in crate::raster) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
     let (across, down) = (doubled(across), doubled(down));
     // Coordinates have 16 fraction bits. The area is at most 2⁴².
     choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
@@ -50,7 +50,7 @@ pub(super) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) 
 
 /// Levels of a face whose coordinates follow the perspective.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LevelPlane {
+pub(in crate::raster) struct LevelPlane {
     area: i64,
     /// The sums Σ dᵢdⱼ(uᵢ − uⱼ) for u and for v. Below: each term times yₖ, and each times xₖ.
     sums: [i128; 2],
@@ -60,7 +60,7 @@ pub(super) struct LevelPlane {
 
 impl LevelPlane {
     /// The plane of a triangle that is not degenerate, with these coordinates, u and v, and depths at its corners.
-    pub(super) fn new(triangle: &SortedTriangle, coordinates: [[i32; 3]; 2], depths: [i128; 3]) -> Self {
+    pub(in crate::raster) fn new(triangle: &SortedTriangle, coordinates: [[i32; 3]; 2], depths: [i128; 3]) -> Self {
         let (mut sums, mut times_y, mut times_x) = ([0; 2], [0; 2], [0; 2]);
         for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let corner = &triangle.vertices[k];
@@ -82,12 +82,12 @@ impl LevelPlane {
     }
 
     /// Returns the part of [`at`](Self::at) that is a row's: twice the length of a step along it.
-    pub(super) fn across(&self, y: i32) -> u128 {
+    pub(in crate::raster) fn across(&self, y: i32) -> u128 {
         self.doubled_at(y, &self.times_y)
     }
 
     /// The level at a pixel of column `x` whose centre lies in the triangle, where D is `denominator`.
-    pub(super) fn at(&self, across: u128, x: i32, denominator: i128, last: u32) -> u32 {
+    pub(in crate::raster) fn at(&self, across: u128, x: i32, denominator: i128, last: u32) -> u32 {
         // A mean of depths from 1 to 2³², in sixteenths.
         let depth = floor_quotient(16 * denominator, i128::from(self.area)).unsigned_abs();
         // In texels a step is 256 · A · S / D² / 2¹⁶ = S / (A · (16 D / A)²), S being the sum.

@@ -42,7 +42,7 @@ use crate::lanes::three;
 
 /// The shades of a triangle in f32.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FloatPlane {
+pub(in crate::raster) struct FloatPlane {
     weights: Weights,
     /// The depth of each vertex times its shade, then its depth.
     values: [[f64; 2]; 3],
@@ -54,18 +54,18 @@ pub(super) struct FloatPlane {
 
 /// A row's n and d at its start, each with its step: what [`fill_float`](crate::span::float::fill_float) takes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FloatRow {
+pub(in crate::raster) struct FloatRow {
     /// The column at which k is 0.
-    pub(super) start: i32,
-    pub(super) n: [f32; 2],
-    pub(super) d: [f32; 2],
-    pub(super) range: [f32; 2],
+    pub(in crate::raster) start: i32,
+    pub(in crate::raster) n: [f32; 2],
+    pub(in crate::raster) d: [f32; 2],
+    pub(in crate::raster) range: [f32; 2],
 }
 
 impl FloatPlane {
     /// The plane of any three shades of 0 to 0xFF00 at the corners of a triangle that is not degenerate.
     /// The shades are in the order of its vertices. A depth of 0 counts as 1.
-    pub(super) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
+    pub(in crate::raster) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
         let weights = Weights::new(triangle);
         let step = |products: [i128; 3]| {
@@ -83,12 +83,12 @@ impl FloatPlane {
     }
 
     /// Change of n and of d from one pixel to the next.
-    pub(super) fn steps(&self) -> [f32; 2] {
+    pub(in crate::raster) fn steps(&self) -> [f32; 2] {
         self.steps
     }
 
     /// A row of the triangle.
-    pub(super) fn row(&self, row: &Row) -> FloatRow {
+    pub(in crate::raster) fn row(&self, row: &Row) -> FloatRow {
         let start = if self.steps[1] < 0.0 { row.last } else { row.origin };
         let [wa, wb, wc] = self.weights.at(start, row.y);
         let [a, b, c] = &self.values;

@@ -11,7 +11,7 @@ use crate::lanes::three;
 
 /// The weights of the three corners, as whole numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WholeWeights {
+pub(in crate::raster) struct WholeWeights {
     /// At column 0's centre of row 0.
     origin: [i64; 3],
     per_column: [i64; 3],
@@ -20,7 +20,7 @@ pub(super) struct WholeWeights {
 
 impl WholeWeights {
     /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
-    pub(super) fn new(triangle: &SortedTriangle) -> Self {
+    pub(in crate::raster) fn new(triangle: &SortedTriangle) -> Self {
         let first = &triangle.vertices[0];
         let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
         let mut weights = Self { origin: [0; 3], per_column: [0; 3], per_row: [0; 3] };
@@ -37,7 +37,7 @@ impl WholeWeights {
 
     /// Returns the weights at the centre of pixel (`x`, `y`).
     #[inline]
-    pub(super) fn at(&self, x: i32, y: i32) -> [i64; 3] {
+    pub(in crate::raster) fn at(&self, x: i32, y: i32) -> [i64; 3] {
         let (x, y) = (i64::from(x), i64::from(y));
         let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
         [at(0), at(1), at(2)]
@@ -45,7 +45,7 @@ impl WholeWeights {
 
     /// Change of the weights from one pixel to the next. They add up to 0, and are within 2³⁰.
     #[inline]
-    pub(super) fn per_column(&self) -> [i64; 3] {
+    pub(in crate::raster) fn per_column(&self) -> [i64; 3] {
         self.per_column
     }
 }
@@ -53,7 +53,7 @@ impl WholeWeights {
 /// The weights of the three corners in f64, exact like [`WholeWeights`].
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Weights {
+pub(in crate::raster) struct Weights {
     /// At column 0's centre of row 0.
     origin: [f64; 3],
     per_column: [f64; 3],
@@ -63,7 +63,7 @@ pub(super) struct Weights {
 #[cfg(feature = "alloc")]
 impl Weights {
     /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
-    pub(super) fn new(triangle: &SortedTriangle) -> Self {
+    pub(in crate::raster) fn new(triangle: &SortedTriangle) -> Self {
         let whole = WholeWeights::new(triangle);
         let exact = |weights: [i64; 3]| three(weights, |weight| weight as f64);
         Self { origin: exact(whole.origin), per_column: exact(whole.per_column), per_row: exact(whole.per_row) }
@@ -71,7 +71,7 @@ impl Weights {
 
     /// Returns the weights at the centre of pixel (`x`, `y`).
     #[inline]
-    pub(super) fn at(&self, x: i32, y: i32) -> [f64; 3] {
+    pub(in crate::raster) fn at(&self, x: i32, y: i32) -> [f64; 3] {
         let (x, y) = (f64::from(x), f64::from(y));
         let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
         [at(0), at(1), at(2)]
@@ -79,7 +79,7 @@ impl Weights {
 
     /// Change of the weights from one pixel to the next; they add up to 0.
     #[inline]
-    pub(super) fn per_column(&self) -> [f64; 3] {
+    pub(in crate::raster) fn per_column(&self) -> [f64; 3] {
         self.per_column
     }
 }

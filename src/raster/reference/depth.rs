@@ -1,0 +1,117 @@
+//! Depth: which of two triangles is in front.
+//!
+//! A vertex's depth is `d = round(2³⁰ · near / w)`, a u32: greater is nearer, and there is no far
+//! plane. 1/w is linear on the screen, so over a triangle d is a plane. [`DepthPlane::at`] is the
+//! *definition* of a triangle's depth at a pixel; every hidden-surface method decides by it.
+//!
+//! ```text
+//! at(x, y) = (d0·2²⁴ + gx·(X − x0) + gy·(Y − y0) + 2²³) >> 24     X, Y: the pixel's centre, 1/256 pixel
+//! gx = nearest(2²⁴ · ((d1 − d0)·(y2 − y0) − (d2 − d0)·(y1 − y0)) / A)
+//! ```
+//!
+//! vertex 0 being the first in (y, x) order: gradients a pixel with 16 fraction bits. They are
+//! within half a unit, and no vertex is further than 2²¹ units away in x and in y, so the sum is
+//! within 2²¹ of exact: an eighth of a depth step. The byte shift rounds to the nearest, so a
+//! depth lies within that of its vertices, without a clamp.
+//!
+//! A sliver's gradients don't fit in 64 bits. The *sum* does, so all is taken modulo 2⁶⁴, where
+//! wrapping is intended; only the division needs 128 bits, and only then.
+
+use super::cover::SortedTriangle;
+use super::quotient::Divisor;
+use crate::lanes::three;
+
+/// The depth plane of a triangle.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub struct DepthPlane {
+    /// At column 0's centre of row 0, with 24 fraction bits, the half included, modulo 2⁶⁴.
+    origin: i64,
+    per_column: i64,
+    per_row: i64,
+}
+
+impl DepthPlane {
+    /// The plane of a triangle that is not degenerate.
+    #[must_use]
+    #[inline]
+    pub fn new(triangle: &SortedTriangle) -> Self {
+        let area = Divisor::new(triangle.area());
+        let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth()));
+        // At most 2⁵⁴ both.
+        let (gx, gy) = triangle.gradient(depths);
+        let (gx, gy) = (gradient(gx, &area), gradient(gy, &area));
+        let first = &triangle.vertices[0];
+        let (x0, y0) = (i64::from(first.x().to_bits()), i64::from(first.y().to_bits()));
+        let origin = ((depths[0] << 24) + (1 << 23))
+            .wrapping_add(gx.wrapping_mul(128 - x0))
+            .wrapping_add(gy.wrapping_mul(128 - y0));
+        Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
+    }
+
+    /// The plane of three corners (x, y, depth) in any order, without branches that the order decides.
+    #[inline]
+    pub(in crate::raster) fn of_corners(corners: [(i32, i32, u32); 3]) -> Self {
+        let [(x0, y0, d0), (x1, y1, d1), (x2, y2, d2)] =
+            three(corners, |(x, y, depth)| (i64::from(x), i64::from(y), i64::from(depth)));
+        let (dx1, dy1, dx2, dy2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        let signed = dx1 * dy2 - dx2 * dy1;
+        // −1 or 0: with it the sign of a number is turned, or not.
+        let turned = signed >> 63;
+        let area = Divisor::new((signed ^ turned) - turned);
+        let gx = (d1 - d0) * dy2 - (d2 - d0) * dy1;
+        let gy = (d2 - d0) * dx1 - (d1 - d0) * dx2;
+        let (gx, gy) = (gradient((gx ^ turned) - turned, &area), gradient((gy ^ turned) - turned, &area));
+        // The first by (y, x), in one number: x is within ±2²⁰.
+        let key = |x: i64, y: i64| (y << 32) + x;
+        let (mut first, mut depth) = (key(x0, y0), d0);
+        for (x, y, d) in [(x1, y1, d1), (x2, y2, d2)] {
+            let is_before = key(x, y) < first;
+            first = if is_before { key(x, y) } else { first };
+            depth = if is_before { d } else { depth };
+        }
+        let x = i64::from(first as i32);
+        let y = (first - x) >> 32;
+        let origin =
+            ((depth << 24) + (1 << 23)).wrapping_add(gx.wrapping_mul(128 - x)).wrapping_add(gy.wrapping_mul(128 - y));
+        Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
+    }
+
+    /// The depth at pixel (`x`, `y`), whose centre lies in the triangle.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, x: i32, y: i32) -> u32 {
+        // Within the vertices' depths, so non-negative and below 2³².
+        (self.fixed_at(x, y) >> 24) as u32
+    }
+
+    /// The depth with 24 fraction bits, the half included, modulo 2⁶⁴: where a depth span starts.
+    #[must_use]
+    #[inline]
+    pub fn fixed_at(&self, x: i32, y: i32) -> i64 {
+        self.origin
+            .wrapping_add(self.per_column.wrapping_mul(i64::from(x)))
+            .wrapping_add(self.per_row.wrapping_mul(i64::from(y)))
+    }
+
+    /// Change from one pixel to the next, with 24 fraction bits, modulo 2⁶⁴.
+    #[must_use]
+    #[inline]
+    pub fn step(&self) -> i64 {
+        self.per_column
+    }
+}
+
+/// `nearest(2²⁴ · numerator / area)` modulo 2⁶⁴, halves upward; |numerator| at most 2⁵⁴.
+#[inline]
+fn gradient(numerator: i64, area: &Divisor) -> i64 {
+    // Below 2³⁷ the product is below 2⁶¹; the quotient is then within the proved range if the area
+    // is at least 2¹⁵, half a pixel.
+    if numerator.unsigned_abs() < 1 << 37 && area.get() >= 1 << 15 {
+        area.floor((numerator << 24) + (area.get() >> 1))
+    } else {
+        let wide = (i128::from(numerator) << 24) + i128::from(area.get() >> 1);
+        // Wrapping is intended: see the module's head.
+        wide.div_euclid(i128::from(area.get())) as i64
+    }
+}

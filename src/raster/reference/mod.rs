@@ -1,0 +1,30 @@
+//! One triangle in integers: the definition of every byte and depth.
+//!
+//! `spans` draws eight triangles at a time, in floats that are proved and tested to
+//! round to these integers. This draws one, and is used where that is slower or impossible: by
+//! [`Raster::triangle`](super::Raster::triangle), for triangles beyond 2¹⁸ pixels, on processors
+//! without floating point, where an estimate cannot decide, and by tests.
+//!
+//! | file | what it defines |
+//! |---|---|
+//! | [`edge`], [`cover`] | the fill rule: which pixels a triangle covers |
+//! | [`quotient`] | exact floors by one reciprocal per divisor |
+//! | [`shade`], [`fixed16`], [`hyperbolic`], `float` | the shade at a pixel, for each [`Interpolation`](super::Interpolation) |
+//! | `weights` | what a corner counts at a pixel |
+//! | [`depth`] | the depth at a pixel |
+//! | `texture`, `level` | the texture coordinates at a pixel, and the level of a mipmap |
+
+pub mod cover;
+pub mod depth;
+pub mod edge;
+pub mod fixed16;
+#[cfg(feature = "alloc")]
+pub mod float;
+pub mod hyperbolic;
+#[cfg(feature = "alloc")]
+pub(super) mod level;
+pub mod quotient;
+pub mod shade;
+#[cfg(feature = "alloc")]
+pub(super) mod texture;
+pub(super) mod weights;

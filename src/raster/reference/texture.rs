@@ -1,0 +1,235 @@
+//! Texture coordinates of a triangle at a pixel: linear on the screen, or on the face.
+
+use super::cover::SortedTriangle;
+use super::quotient::Divisor;
+use super::weights::WholeWeights;
+use crate::fixed::{HAS_F64, nearest_whole};
+use crate::simd::Lanes8;
+use crate::span::texture::{Texels, exact_places, perspective_places};
+
+/// The depth of a corner, at least 1.
+#[inline]
+pub(in crate::raster) fn depth(triangle: &SortedTriangle, corner: usize) -> i64 {
+    i64::from(triangle.vertices[corner].depth().max(1))
+}
+
+/// A texture coordinate that is linear on the screen.
+///
+/// With c the first corner's coordinate, A twice the area, and the numerators g of the gradient,
+///
+/// ```text
+/// u(x, y) = c + (gx·(256·x + 128 − x₀) + gy·(256·y + 128 − y₀)) / A
+/// ```
+///
+/// It is rounded back toward where it comes from, as shades are, so no sum leaves the range of the corners. Inside the
+/// triangle the fraction's value is at most D, by which the corners differ most. Where D·A is below 2⁶¹, which it is for
+/// triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms are.
+///
+/// Level n has c and the quotient, rounded already, divided by 2ⁿ and rounded once more: the same as if it were rounded once.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::raster) struct AffinePlane {
+    area: Divisor,
+    /// c.
+    coordinate: i64,
+    /// (x₀, y₀) from the centre of pixel (0, 0).
+    corner: [i64; 2],
+    /// (gx, gy), each within 2⁵⁵.
+    gradient: [i64; 2],
+    /// D·A is below 2⁶¹.
+    fits: bool,
+    /// Added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
+    bias: [i64; 2],
+    /// n.
+    level: u32,
+    /// Change from one pixel to the next, rounded toward zero.
+    step: i64,
+}
+
+impl AffinePlane {
+    #[inline]
+    pub(in crate::raster) fn new(triangle: &SortedTriangle, area: Divisor, [a, b, c]: [i32; 3]) -> Self {
+        let (gx, gy) = triangle.gradient([a.into(), b.into(), c.into()]);
+        let first = &triangle.vertices[0];
+        let range = a.max(b).max(c).abs_diff(a.min(b).min(c));
+        let most = u64::from(range).saturating_mul(area.get().unsigned_abs());
+        let fits = most < 1 << 61;
+        // In a row of two pixels or more it is within D, and gx·256 within D·A. In a row of one it is not used.
+        let step = if !fits {
+            (256 * i128::from(gx) / i128::from(area.get())) as i64
+        } else if gx.unsigned_abs() <= most >> 8 {
+            area.truncate(gx * 256)
+        } else {
+            0
+        };
+        Self {
+            area,
+            coordinate: a.into(),
+            corner: [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128],
+            gradient: [gx, gy],
+            fits,
+            bias: [if gx < 0 { area.get() - 1 } else { 0 }, 0],
+            level: 0,
+            step,
+        }
+    }
+
+    /// The numerators of the change from one 1/256 pixel to the next, in x and in y.
+    pub(in crate::raster) fn gradient(&self) -> [i64; 2] {
+        self.gradient
+    }
+
+    /// Change from one pixel to the next, rounded toward zero.
+    #[inline(always)]
+    pub(in crate::raster) fn step(&self) -> i64 {
+        self.step
+    }
+
+    /// The coordinate in level n of the image.
+    pub(in crate::raster) fn of_level(self, n: u32) -> Self {
+        let bias = (1 << n) - 1;
+        let upward = if self.gradient[0] < 0 { bias } else { 0 };
+        Self { bias: [self.bias[0], upward], level: n, step: (self.step + upward) >> n, ..self }
+    }
+
+    /// The coordinate at a pixel whose centre lies in the triangle; 16.16.
+    #[inline]
+    pub(in crate::raster) fn start(&self, x: i32, y: i32) -> u32 {
+        let ([gx, gy], [bias, of_level]) = (self.gradient, self.bias);
+        let (dx, dy) = (i64::from(x) * 256 - self.corner[0], i64::from(y) * 256 - self.corner[1]);
+        let quotient = if self.fits {
+            self.area.floor(gx.wrapping_mul(dx).wrapping_add(gy.wrapping_mul(dy)).wrapping_add(bias))
+        } else {
+            let n = i128::from(gx) * i128::from(dx) + i128::from(gy) * i128::from(dy) + i128::from(bias);
+            // Within D.
+            n.div_euclid(self.area.get().into()) as i64
+        };
+        // Modulo 2³².
+        ((self.coordinate + quotient + of_level) >> self.level) as u32
+    }
+}
+
+/// Texture coordinates that are linear on the face.
+///
+/// ```text
+/// u(x, y) = Σ λᵢ·dᵢ·uᵢ / Σ λᵢ·dᵢ
+/// ```
+///
+/// with λ the [weights](WholeWeights) of the corners and d their depths. No λ is negative at a covered centre, so a
+/// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than 2⁻¹⁹.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::raster) struct PerspectiveTexture {
+    weights: WholeWeights,
+    /// Each corner's u, v and 1, times its depth; below 2⁶³.
+    values: [[i64; 3]; 3],
+    estimated: [[f64; 3]; 3],
+    /// Change of the sums from one pixel to the next, in f64.
+    steps: [f64; 3],
+}
+
+/// The sum over the corners of weights times values, exact.
+#[inline]
+pub(in crate::raster) fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
+    let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
+    product(wa, a) + product(wb, b) + product(wc, c)
+}
+
+/// Weights in f64, which is exact: they are at most 2⁴⁴.
+#[inline]
+fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
+    if HAS_F64 { [a as f64, b as f64, c as f64] } else { [0.0; 3] }
+}
+
+/// The sum in f64.
+#[inline]
+fn estimate([wa, wb, wc]: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
+    wa * a + wb * b + wc * c
+}
+
+/// The floor of a coordinate n / d, whose estimate is less than ½ off.
+#[inline]
+fn floor(estimate: f64, n: i128, d: i128) -> i64 {
+    if !HAS_F64 {
+        // A mean of coordinates.
+        return n.div_euclid(d) as i64;
+    }
+    // The floor or the next number up.
+    let near = nearest_whole(estimate);
+    near - i64::from(n < i128::from(near) * d)
+}
+
+impl PerspectiveTexture {
+    #[inline]
+    pub(in crate::raster) fn new(triangle: &SortedTriangle, [u, v]: [[i32; 3]; 2]) -> Self {
+        let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
+        let times =
+            |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
+        let values = [times(u), times(v), depths];
+        let weights = WholeWeights::new(triangle);
+        let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
+        if HAS_F64 {
+            let per_column = in_f64(weights.per_column());
+            for (i, [a, b, c]) in values.into_iter().enumerate() {
+                estimated[i] = [a as f64, b as f64, c as f64];
+                steps[i] = estimate(per_column, estimated[i]);
+            }
+        }
+        Self { weights, values, estimated, steps }
+    }
+
+    /// The sum that all coordinates at a pixel are divided by: Σ λᵢ·dᵢ.
+    pub(in crate::raster) fn denominator(&self, x: i32, y: i32) -> i128 {
+        exact(self.weights.at(x, y), self.values[2])
+    }
+
+    /// The places of `n` texels of one level, from a pixel on, each exact.
+    #[inline(always)]
+    pub(in crate::raster) fn exact<S: Lanes8>(
+        &self,
+        s: S,
+        (texels, shift): (Texels<'_>, u32),
+        (x, y): (i32, i32),
+        (places, n): (&mut [i32], usize),
+    ) {
+        let weights = self.weights.at(x, y);
+        if HAS_F64 {
+            let at = in_f64(weights);
+            let mut sums = [[0.0; 2]; 3];
+            for (sum, (values, step)) in sums.iter_mut().zip(self.estimated.iter().zip(self.steps)) {
+                *sum = [estimate(at, *values), step];
+            }
+            let size = f64::from(1_u32 << shift);
+            let [u, v, [d, dd]] = sums;
+            if perspective_places(s, places, n, texels, [u, v], [d * size, dd * size]) {
+                return;
+            }
+        }
+        self.in_integers((texels, shift), (x, y), &mut places[..n]);
+    }
+
+    /// [`exact`](Self::exact) in whole numbers, for where an estimate cannot decide.
+    #[inline(never)]
+    pub(in crate::raster) fn in_integers(
+        &self,
+        (texels, shift): (Texels<'_>, u32),
+        (x, y): (i32, i32),
+        places: &mut [i32],
+    ) {
+        let (weights, step) = (self.weights.at(x, y), self.weights.per_column());
+        let [u, v, [d, dd]] = self.values.map(|values| [exact(weights, values), exact(step, values)]);
+        exact_places(places, texels, [u, v], [d << shift, dd << shift]);
+    }
+
+    /// The coordinates at a pixel, rounded down; 16.16.
+    #[inline]
+    pub(in crate::raster) fn at(&self, x: i32, y: i32) -> [i32; 2] {
+        let weights = self.weights.at(x, y);
+        let of_f64 = in_f64(weights);
+        let d = exact(weights, self.values[2]);
+        let reciprocal = if HAS_F64 { 1.0 / estimate(of_f64, self.estimated[2]) } else { 0.0 };
+        // A mean of the corners' coordinates, so it fits in 32 bits.
+        let of = |i: usize| {
+            floor(estimate(of_f64, self.estimated[i]) * reciprocal, exact(weights, self.values[i]), d) as i32
+        };
+        [of(0), of(1)]
+    }
+}
