@@ -5,6 +5,7 @@
 use super::frame::Rect;
 use super::frame::{Frame, FrameError};
 pub use crate::span::depth::Cell;
+use crate::span::depth::Cells;
 
 /// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines ([`Cell`] says
 /// what that loses); greater is nearer, 0 is farthest. The slice is the caller's.
@@ -59,8 +60,8 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 
     /// All values, row by row.
     #[inline]
-    pub(super) fn values_mut(&mut self) -> &mut [D] {
-        self.values
+    pub(super) fn cells(&mut self) -> Cells<'_> {
+        D::cells(self.values)
     }
 
     /// The depths from column `x` of row `y` on, those of later rows among them, or `None` if the buffer does not hold the row.

@@ -7,14 +7,12 @@
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
-use super::depth::Cell;
 use super::frame::Rect;
 use super::pick::{LANES, NUMBERS};
 use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
-use crate::span::Kernel;
-use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8};
+use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
 /// Most rows of eight small triangles that are found row by row, and put into the triangles' order afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
@@ -192,15 +190,8 @@ pub(super) trait Shades8 {
     /// Sets up what is left to do of triangle `i` of the eight, which is no small one.
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
 
-    /// Draws the spans of a list, with `DEPTHS` where they are nearer than cells. The list is then empty.
-    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        kernel: Kernel,
-        pixels: &mut [u8],
-        cells: &mut [D],
-    );
+    /// Draws the spans of a list, with `DEPTHS` where they are nearer than the target's cells. The list is then empty.
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
 }
 
 /// Linear shades in 8.8.
@@ -248,15 +239,8 @@ impl Shades8 for Linear {
     fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
 
     #[inline(always)]
-    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
-        &mut self,
-        _: S,
-        list: &mut SpanList,
-        kernel: Kernel,
-        pixels: &mut [u8],
-        cells: &mut [D],
-    ) {
-        list.draw_by::<D, DEPTHS>(kernel, pixels, cells);
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+        list.draw_by::<DEPTHS>(target);
     }
 }
 

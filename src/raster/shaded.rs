@@ -32,7 +32,6 @@
 //! 2¹², in 64 bits, as products of depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
 
 use super::columns::{Picks, Triangles};
-use super::depth::Cell;
 use super::interpolation::Interpolation;
 use super::pick::{LANES, NUMBERS};
 use super::reference::cover::SortedTriangle;
@@ -44,10 +43,9 @@ use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::ROUND_MAGIC;
 use crate::simd::Lanes8;
-use crate::span::Kernel;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float;
-use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8, Starts8};
+use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -224,8 +222,7 @@ impl<'a> Shaded8<'a> {
         s: S,
         stage: &impl Stage,
         list: &mut SpanList,
-        kernel: Kernel,
-        (pixels, mut cells): (&mut [u8], Option<&mut [u32]>),
+        Target { pixels, cells, kernel }: &mut Target<'_>,
     ) {
         let (count, mut first, mut nearer) = (list.count(), 0, 0);
         while first < count {
@@ -245,7 +242,7 @@ impl<'a> Shaded8<'a> {
                     exact_bytes(&self.listed, &fill, list.offset(k), bytes);
                 }
             }
-            nearer += kernel.copy_spans(pixels, cells.as_deref_mut(), (list, first..end), &self.bytes);
+            nearer += kernel.copy_spans(pixels, cells, (list, first..end), &self.bytes);
             first = end;
         }
         list.clear(nearer);
@@ -360,27 +357,18 @@ impl Shades8 for Shaded8<'_> {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        kernel: Kernel,
-        pixels: &mut [u8],
-        cells: &mut [D],
-    ) {
-        // Without a depth buffer there are none.
-        let mut cells = D::as_u32(cells).filter(|cells| !cells.is_empty());
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
         match self.kind {
             Kind::Fixed16 => {
                 let shades = |k: usize, face: u32| (self.starts.of(k)[0] as u32, self.listed.step_16_16(face as usize));
-                match kernel.fill_spans_16_16(pixels, cells.as_deref_mut(), list, shades) {
+                match target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, shades) {
                     Some(nearer) => list.clear(nearer),
-                    None => self.draw_by(s, &Fixed16, list, kernel, (pixels, cells)),
+                    None => self.draw_by(s, &Fixed16, list, target),
                 }
             }
-            Kind::Hyperbolic => self.draw_by(s, &Hyperbolic, list, kernel, (pixels, cells)),
+            Kind::Hyperbolic => self.draw_by(s, &Hyperbolic, list, target),
             #[cfg(feature = "alloc")]
-            Kind::Float => self.draw_by(s, &Float, list, kernel, (pixels, cells)),
+            Kind::Float => self.draw_by(s, &Float, list, target),
         }
     }
 }

@@ -31,9 +31,8 @@ use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 use crate::lanes::three;
-use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
-use crate::span::Kernel;
-use crate::span::list::SpanList;
+use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::span::list::{SpanList, Target};
 
 /// Triangles, and whether their rows are cut into pieces of 64 pixels, with which linear shades start anew.
 #[derive(Clone, Copy)]
@@ -75,9 +74,7 @@ impl<D: Cell> Raster<'_, D> {
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
         let fits = self.fits_lists();
-        // Cells of 16 bits are for small machines: other shadings are drawn one by one there.
-        let has_cells = self.depth.as_mut().is_none_or(|depth| D::as_u32(depth.values_mut()).is_some());
-        let kind = Kind::of(interpolation).filter(|_| has_cells && picks.flat.is_empty());
+        let kind = Kind::of(interpolation).filter(|_| picks.flat.is_empty());
         let in_pieces = match interpolation {
             Interpolation::GouraudReseeded if HAS_F64 && fits => picks.flat.is_empty(),
             Interpolation::Gouraud | Interpolation::Flat(_) if HAS_F64 && fits => false,
@@ -102,17 +99,13 @@ impl<D: Cell> Raster<'_, D> {
             let (pixels, _) = self.frame.pixels_mut();
             // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-            let target = (layout, self.clip, self.kernel);
+            let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel };
+            let place = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
-            drawn += match depth.map(DepthBuffer::values_mut) {
-                cells if kind.is_some() => match kind {
-                    Some(kind) => {
-                        draw_shaded(level, of, kind, target, pixels, cells.and_then(D::as_u32).unwrap_or_default())
-                    }
-                    None => DrawStats::default(),
-                },
-                None => draw_all(level, of, target, pixels),
-                Some(cells) => draw_where_nearer(of, target, pixels, cells),
+            drawn += match (kind, &target.cells) {
+                (Some(kind), _) => draw_shaded(level, of, kind, place, target),
+                (None, Some(_)) => draw_nearer(level, of, place, target),
+                (None, None) => draw_all(level, of, place, target),
             };
             first += together;
         }
@@ -130,84 +123,54 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
-/// Where and with what triangles are drawn: the pixels' layout, the clip rectangle, and the kernel.
-pub(super) type Target = (FrameLayout, Rect, Kernel);
+/// Where triangles are drawn: the pixels' layout, and the clip rectangle.
+pub(super) type Place = (FrameLayout, Rect);
 
 // Without type parameters, so that they are compiled in this crate, and not in each that draws.
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched.
-    fn draw_all[][](of: Drawn<'_>, target: Target, pixels: &mut [u8]) -> DrawStats = draw_all_by;
+    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_all_by;
 }
 
 #[inline(always)]
-fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8]) -> DrawStats {
-    let list = &mut { SpanList::NONE };
-    draw_triangles::<S, u32, Linear, false, false>(s, of, target, (pixels, &mut []), &mut Linear, list)
-}
-
-/// Likewise, where they are nearer than cells.
-fn draw_where_nearer<D: Cell>(of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [D]) -> DrawStats {
-    if let Some(cells) = D::as_u32(cells) {
-        return draw_nearer(target.2.simd_level(), of, target, pixels, cells);
-    }
-    match D::as_u16(cells) {
-        Some(cells) => draw_nearer_in_16_bits(of, target, pixels, cells),
-        None => DrawStats::default(),
-    }
+fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
+    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
 }
 
 compiled_for_each_level! {
-    fn draw_nearer[][](of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats
-        = draw_nearer_by;
+    /// Likewise, where they are nearer than cells.
+    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_nearer_by;
 }
 
 #[inline(always)]
-fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats {
-    let list = &mut { SpanList::NONE };
-    draw_triangles::<S, u32, Linear, true, true>(s, of, target, (pixels, cells), &mut Linear, list)
-}
-
-/// Cells of 16 bits are for small machines: by what every processor of the target has.
-#[inline(never)]
-fn draw_nearer_in_16_bits(of: Drawn<'_>, target: Target, pixels: &mut [u8], cells: &mut [u16]) -> DrawStats {
-    let list = &mut { SpanList::NONE };
-    draw_triangles::<_, u16, Linear, true, true>(BASELINE, of, target, (pixels, cells), &mut Linear, list)
+fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
+    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
 }
 
 compiled_for_each_level! {
     /// Draws triangles by another shading than a linear one in 8.8, where there are cells those that are nearer.
     #[inline(never)]
-    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, target: Target, pixels: &mut [u8], cells: &mut [u32]) -> DrawStats
+    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats
         = draw_shaded_by;
 }
 
 #[inline(always)]
-fn draw_shaded_by<S: Lanes8>(
-    s: S,
-    of: Drawn<'_>,
-    kind: Kind,
-    target: Target,
-    pixels: &mut [u8],
-    cells: &mut [u32],
-) -> DrawStats {
+fn draw_shaded_by<S: Lanes8>(s: S, of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats {
     // A chip's program must not hold what follows.
     if !HAS_F64 {
         return DrawStats::default();
     }
-    let has_cells = !cells.is_empty();
-    let mut shades = Shaded8::new(kind, of.triangles, of.picks, target.0);
-    let list = &mut { SpanList::NONE };
-    let drawn = draw_triangles::<S, u32, _, true, true>(s, of, target, (pixels, cells), &mut shades, list);
-    if has_cells { drawn } else { DrawStats { pixels: drawn.covered, tested: 0, ..drawn } }
+    let mut shades = Shaded8::new(kind, of.triangles, of.picks, place.0);
+    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, &mut { SpanList::NONE })
 }
 
-/// Draws triangles, with `DEPTHS` where they are nearer than cells; the list has depths if they are `LISTED`.
+/// Draws triangles, with `DEPTHS` where they are nearer than the target's cells; the list has depths if they are `LISTED`.
 #[inline(always)]
-pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
+pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
     s: S,
     of: Drawn<'_>,
-    (layout, clip, kernel): Target,
-    (pixels, cells): (&mut [u8], &mut [D]),
+    (layout, clip): Place,
+    target: &mut Target<'_>,
     shades: &mut P,
     list: &mut SpanList,
 ) -> DrawStats {
@@ -215,9 +178,10 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
     if !HAS_F64 {
         return DrawStats::default();
     }
+    let of_pixels = (target.pixels.len(), layout.pitch);
     // Depths without cells are not looked at.
-    let of_cells = if cells.is_empty() { (pixels.len(), layout.pitch) } else { (cells.len(), layout.width) };
-    list.begin((pixels.len(), layout.pitch), of_cells);
+    let has_cells = target.cells.is_some();
+    list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
@@ -225,7 +189,7 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
     corners.gather::<DEPTHS>(triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
-            shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+            shades.draw::<S, LISTED>(s, list, target);
         }
         shades.begin(number * LANES);
         let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout);
@@ -235,7 +199,7 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
         corners.gather::<DEPTHS>(triangles, &picks.range(count.min((number + 1) * LANES), count));
         setup.rows[eight.len().min(LANES)..].fill(0);
         if !list.has_room(LANES * LANES) {
-            shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+            shades.draw::<S, LISTED>(s, list, target);
         }
         let are_small = Pick::are_small(eight);
         if are_small {
@@ -250,7 +214,7 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
                     if !list.has_room(LANES) {
-                        shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+                        shades.draw::<S, LISTED>(s, list, target);
                     }
                     rows::list_eight_rows::<S, P, LISTED>(s, &setup, shades, (i, first), list);
                 }
@@ -278,19 +242,19 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
             if !DEPTHS
                 && P::IS_LINEAR
                 && pick.class() == SizeClass::Large
-                && let Some(avx512) = kernel.avx512()
+                && let Some(avx512) = target.kernel.avx512()
             {
-                shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+                shades.draw::<S, LISTED>(s, list, target);
                 list.count_drawn(crate::span::fill_large(
                     avx512,
-                    pixels,
+                    target.pixels,
                     &setup.large_triangle(i, layout, of.in_pieces),
                 ));
                 continue;
             }
             while first < end {
                 if !list.has_room(LANES * pieces) {
-                    shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+                    shades.draw::<S, LISTED>(s, list, target);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
                 rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list);
@@ -298,8 +262,8 @@ pub(super) fn draw_triangles<S: Lanes8, D: Cell, P: Shades8, const DEPTHS: bool,
             }
         }
     }
-    shades.draw::<S, D, LISTED>(s, list, kernel, pixels, cells);
+    shades.draw::<S, LISTED>(s, list, target);
     let (spans, covered, nearer) = list.counts();
-    let (pixels, tested) = if DEPTHS { (nearer, covered) } else { (covered, 0) };
+    let (pixels, tested) = if DEPTHS && has_cells { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
 }

@@ -9,26 +9,36 @@
 //! then `d` is narrowed first ([`Cell`]).
 
 mod sealed {
+    /// Cells of a depth buffer, of either width.
+    #[derive(Debug)]
+    pub enum Cells<'a> {
+        U16(&'a mut [u16]),
+        /// These have kernels of their own.
+        U32(&'a mut [u32]),
+    }
+
     pub trait Sealed: Sized {
-        /// The cells as `u32`, if they are of 32 bits: those have kernels of their own.
-        fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]>;
-        /// The cells as `u16`, if they are of 16 bits.
-        fn as_u16(cells: &mut [Self]) -> Option<&mut [u16]>;
+        fn cells(cells: &mut [Self]) -> Cells<'_>;
     }
     impl Sealed for u32 {
-        fn as_u32(cells: &mut [Self]) -> Option<&mut [u32]> {
-            Some(cells)
-        }
-        fn as_u16(_: &mut [Self]) -> Option<&mut [u16]> {
-            None
+        fn cells(cells: &mut [Self]) -> Cells<'_> {
+            Cells::U32(cells)
         }
     }
     impl Sealed for u16 {
-        fn as_u32(_: &mut [Self]) -> Option<&mut [u32]> {
-            None
+        fn cells(cells: &mut [Self]) -> Cells<'_> {
+            Cells::U16(cells)
         }
-        fn as_u16(cells: &mut [Self]) -> Option<&mut [u16]> {
-            Some(cells)
+    }
+}
+
+pub(crate) use sealed::Cells;
+
+impl Cells<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::U16(cells) => cells.len(),
+            Self::U32(cells) => cells.len(),
         }
     }
 }

@@ -10,7 +10,7 @@
 use core::ops::Range;
 
 use super::Kernel;
-use super::depth::{Cell, copy_nearer, fill_nearer};
+use super::depth::{Cell, Cells, copy_nearer, fill_nearer};
 use crate::simd::{Lanes8, Portable};
 
 /// Spans that a list has room for.
@@ -240,15 +240,16 @@ impl SpanList {
     /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. With fewer pixels or cells than
     /// the list was made for, nothing is drawn.
     #[inline(always)]
-    pub(crate) fn draw_by<D: Cell, const DEPTHS: bool>(&mut self, kernel: Kernel, pixels: &mut [u8], cells: &mut [D]) {
+    pub(crate) fn draw_by<const DEPTHS: bool>(&mut self, Target { pixels, cells, kernel }: &mut Target<'_>) {
         if self.count == 0 {
             return;
         }
-        if DEPTHS {
-            let nearer = kernel.fill_spans_nearer(pixels, cells, self);
-            self.nearer = self.nearer.wrapping_add(nearer);
-        } else {
-            kernel.fill_spans(pixels, self);
+        match cells {
+            Some(cells) if DEPTHS => {
+                let nearer = kernel.fill_spans_nearer(pixels, cells, self);
+                self.nearer = self.nearer.wrapping_add(nearer);
+            }
+            _ => kernel.fill_spans(pixels, self),
         }
         // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
@@ -400,11 +401,11 @@ impl SpanList {
 
     /// Copies the bytes of some where they are nearer. Returns the number of pixels written.
     #[inline(never)]
-    pub(super) fn each_copied(
+    pub(super) fn each_copied<D: Cell>(
         &self,
         range: Range<usize>,
         pixels: &mut [u8],
-        cells: &mut [u32],
+        cells: &mut [D],
         bytes: &SpanBytes,
     ) -> u32 {
         let mut written = 0;
@@ -507,6 +508,14 @@ impl SpanBytes {
     }
 }
 
+/// Destination of spans.
+pub(crate) struct Target<'a> {
+    pub(crate) pixels: &'a mut [u8],
+    /// Those of the depth buffer, if there is one.
+    pub(crate) cells: Option<Cells<'a>>,
+    pub(crate) kernel: Kernel,
+}
+
 /// A span of a list.
 #[derive(Clone, Copy)]
 pub(super) struct Span {
@@ -563,13 +572,14 @@ pub struct ListedDepths {
 /// Draws spans, in order, as the batches do it with this kernel: those that lie inside the pixels. For tests.
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
     let mut list = SpanList::new((pixels.len(), 0), (0, 0));
+    let target = &mut Target { pixels, cells: None, kernel };
     for eight in spans.chunks(LANES) {
         list.append::<Portable, (), false>(Portable, &lanes(eight), DepthSteps::All(0));
         if !list.has_room(LANES) {
-            list.draw_by::<u32, false>(kernel, pixels, &mut []);
+            list.draw_by::<false>(target);
         }
     }
-    list.draw_by::<u32, false>(kernel, pixels, &mut []);
+    list.draw_by::<false>(target);
 }
 
 /// Draws spans, in order, where they are nearer, as the batches do it with this kernel: those that lie inside the pixels and
@@ -584,6 +594,7 @@ pub fn fill_where_nearer<D: Cell>(
     // Of one pitch, or of two, so that offsets of cells are their own.
     let is_shared = spans.iter().zip(depths).all(|(span, depths)| span.at == depths.at);
     let mut list = SpanList::new((pixels.len(), 0), (cells.len(), u32::from(!is_shared)));
+    let target = &mut Target { pixels, cells: Some(D::cells(cells)), kernel };
     for (spans, depths) in spans.chunks(LANES).zip(depths.chunks(LANES)) {
         let mut eight = lanes(spans);
         let mut dz = [0; LANES];
@@ -592,10 +603,10 @@ pub fn fill_where_nearer<D: Cell>(
         }
         list.append::<Portable, (), true>(Portable, &eight, DepthSteps::Each(dz));
         if !list.has_room(LANES) {
-            list.draw_by::<D, true>(kernel, pixels, cells);
+            list.draw_by::<true>(target);
         }
     }
-    list.draw_by::<D, true>(kernel, pixels, cells);
+    list.draw_by::<true>(target);
     list.counts().2
 }
 

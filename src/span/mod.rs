@@ -49,6 +49,7 @@ use core::hash::{Hash, Hasher};
 use core::ops::Range;
 use core::str::FromStr;
 
+use self::depth::Cells;
 use crate::names::{KERNELS, UnknownName};
 use crate::simd::Level;
 #[cfg(simd_x86_64)]
@@ -177,7 +178,7 @@ fn find_simd() -> Option<Found> {
 
 fn find_arrays() -> Option<Found> {
     #[cfg(feature = "simd")]
-    return (!cfg!(mode13h_leave_out = "simd-arrays")).then_some((Level::Arrays, simd::arrays::fill as Fill));
+    return Some((Level::Arrays, simd::arrays::fill));
     #[cfg(not(feature = "simd"))]
     return None;
 }
@@ -279,17 +280,18 @@ impl Kernel {
 
     /// Fills every span, in order, with the depth test of [`depth::fill_nearer`]. Returns the number of pixels written.
     #[inline]
-    fn fill_spans_nearer<D: depth::Cell>(self, pixels: &mut [u8], cells: &mut [D], spans: &list::SpanList) -> u32 {
+    fn fill_spans_nearer(self, pixels: &mut [u8], cells: &mut Cells<'_>, spans: &list::SpanList) -> u32 {
         #[cfg(simd_x86_64)]
-        if let Some(avx2) = self.avx2()
-            && let Some(cells) = D::as_u32(cells)
-        {
+        if let (Some(avx2), Cells::U32(cells)) = (self.avx2(), &mut *cells) {
             return match self.avx512() {
                 Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans),
                 None => simd::nearer::fill_spans(avx2, pixels, cells, spans),
             };
         }
-        spans.each_nearer(pixels, cells)
+        match cells {
+            Cells::U16(cells) => spans.each_nearer(pixels, cells),
+            Cells::U32(cells) => spans.each_nearer(pixels, cells),
+        }
     }
 
     /// Copies the bytes of some spans of a list to the pixels, where there are cells those that are nearer. Of the spans none has
@@ -298,22 +300,25 @@ impl Kernel {
     pub(crate) fn copy_spans(
         self,
         pixels: &mut [u8],
-        cells: Option<&mut [u32]>,
+        cells: &mut Option<Cells<'_>>,
         (spans, range): (&list::SpanList, Range<usize>),
         bytes: &list::SpanBytes,
     ) -> u32 {
-        let Some(cells) = cells else {
-            for (k, (span, _)) in spans.tested_spans_of(range).enumerate() {
-                let row = pixels.get_mut(span.at as usize..).unwrap_or_default();
-                self.copy(span.length as usize, row, bytes.of(k));
-            }
-            return 0;
-        };
         #[cfg(simd_x86_64)]
-        if let Some(avx2) = self.avx2() {
+        if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
             return simd::nearer::copy_spans(avx2, pixels, cells, (spans, range), bytes);
         }
-        spans.each_copied(range, pixels, cells, bytes)
+        match cells {
+            None => {
+                for (k, (span, _)) in spans.tested_spans_of(range).enumerate() {
+                    let row = pixels.get_mut(span.at as usize..).unwrap_or_default();
+                    self.copy(span.length as usize, row, bytes.of(k));
+                }
+                0
+            }
+            Some(Cells::U32(cells)) => spans.each_copied(range, pixels, cells, bytes),
+            Some(Cells::U16(cells)) => spans.each_copied(range, pixels, cells, bytes),
+        }
     }
 
     /// Fills every span, in order, with shades in 16.16 where they are nearer: `shades` gives the first one and the step of a
@@ -323,13 +328,13 @@ impl Kernel {
     pub(crate) fn fill_spans_16_16(
         self,
         pixels: &mut [u8],
-        cells: Option<&mut [u32]>,
+        cells: &mut Option<Cells<'_>>,
         spans: &list::SpanList,
         shades: impl Fn(usize, u32) -> (u32, u32),
     ) -> Option<u32> {
         #[cfg(simd_x86_64)]
-        if let Some(avx2) = self.avx2() {
-            return cells.map(|cells| simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades));
+        if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
+            return Some(simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades));
         }
         let _ = (pixels, cells, spans, shades);
         None
@@ -354,7 +359,7 @@ impl Kernel {
     ) -> u32 {
         #[cfg(simd_x86_64)]
         if let Some(avx2) = self.avx2()
-            && let Some(cells) = D::as_u32(cells)
+            && let Cells::U32(cells) = D::cells(cells)
             && let Some(written) = simd::nearer::copy::<KEEPS>(avx2, length, row, cells, bytes, z, dz)
         {
             return written;

@@ -8,12 +8,11 @@
 //! are worked out by the stage that asks for them, from the planes of eight faces that set-up leaves and the span's [`Mark`].
 
 use super::pipeline::{PixelPipeline, ShadeSource};
-use super::{Buffers, Target, draw_listed};
+use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
 use crate::lanes::three;
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
-use crate::raster::depth::Cell;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::pick::{LANES, Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
@@ -23,8 +22,7 @@ use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value
 use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::simd::Lanes8;
-use crate::span::Kernel;
-use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, Spans8};
+use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, Spans8, Target};
 
 /// Where a span lies in its face, in two numbers of 32 bits.
 ///
@@ -314,7 +312,7 @@ impl<'a> EffectSpans<'a> {
     }
 
     /// Adds the drawn part of a row of the face that is walked down, whose pixels and cells the target's are.
-    pub(super) fn add_row<D: Cell>(&mut self, row: &Row, list: &mut SpanList, target: &mut Target<'_, D>) {
+    pub(super) fn add_row(&mut self, row: &Row, list: &mut SpanList, target: &mut Target<'_>) {
         let mut number = (row.x0 - row.origin) / RESEED;
         let mut x = row.x0;
         while x < row.x1 {
@@ -355,7 +353,7 @@ impl<'a> EffectSpans<'a> {
 
     /// Draws the spans of a list, which is then empty.
     #[inline(never)]
-    pub(super) fn draw_spans<D: Cell>(&mut self, list: &mut SpanList, target: &mut Target<'_, D>) {
+    pub(super) fn draw_spans(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
         list.clear(nearer);
     }
@@ -465,17 +463,8 @@ impl Shades8 for EffectSpans<'_> {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
-        &mut self,
-        _: S,
-        list: &mut SpanList,
-        kernel: Kernel,
-        pixels: &mut [u8],
-        cells: &mut [D],
-    ) {
-        // Without a depth buffer there are none.
-        let cells = if cells.is_empty() { None } else { Some(cells) };
-        self.draw_spans(list, &mut Target { pixels, cells, kernel });
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+        self.draw_spans(list, target);
     }
 }
 

@@ -46,12 +46,13 @@ use super::draw_stats::DrawStats;
 use super::pick::Pick;
 use super::reference::cover::Row;
 use super::setup::FrameLayout;
-use super::spans::{Drawn, Target as Layout, draw_triangles};
+use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 pub use crate::mapping::Mapping;
-use crate::simd::{BASELINE, Lanes8, at_best_level, compiled_for_each_level};
-use crate::span::list::SpanList;
+use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
+use crate::span::depth::Cells;
+use crate::span::list::{SpanList, Target};
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
@@ -128,7 +129,7 @@ impl EffectScratch {
         self.make_room();
         let Some((list, columns)) = self.lists.first_mut() else { return };
         list.begin((pixels.len(), 0), (pixels.len(), 0));
-        let mut target = Target { pixels, cells: None::<&mut [u32]>, kernel };
+        let mut target = Target { pixels, cells: None, kernel };
         let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers, 0);
         spans.walk(k);
         spans.add_row(row, list, &mut target);
@@ -153,21 +154,14 @@ fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
     add(by_table || matches!(pipeline.source, ShadeSource::Lit(_)), &mut drawn.lit);
 }
 
-/// Destination of spans: pixels, and cells of the depth buffer, if there is one.
-struct Target<'a, D> {
-    pixels: &'a mut [u8],
-    cells: Option<&'a mut [D]>,
-    kernel: Kernel,
-}
-
 /// Draws the spans of a list. Returns the number of pixels that were nearer.
 #[inline(never)]
-fn draw_listed<D: Cell>(
+fn draw_listed(
     listed: &Listed<'_>,
     list: &SpanList,
     pipeline: &PixelPipeline<'_>,
     buffers: &mut Buffers,
-    target: &mut Target<'_, D>,
+    target: &mut Target<'_>,
 ) -> u32 {
     let (mut first, mut nearer) = (0, 0);
     while first < list.count() {
@@ -191,21 +185,28 @@ fn run_stages(spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, buffers: &mut Buf
 }
 
 /// Writes spans, all of each or where it is nearer. Returns the number of pixels that were nearer.
-fn write<D: Cell>(
+fn write(
     spans: &Spans<'_>,
     pipeline: &PixelPipeline<'_>,
     bytes: &mut [u8],
-    Target { pixels, cells, kernel }: &mut Target<'_, D>,
+    Target { pixels, cells, kernel }: &mut Target<'_>,
 ) -> u32 {
-    let (kernel, blend) = (*kernel, pipeline.blend());
-    let Some(cells) = cells else {
-        return match blend {
-            None => write_all::<false>(kernel, kernel, spans, bytes, None, pixels),
-            Some(_) => write_all::<true>(kernel, kernel, spans, bytes, blend, pixels),
-        };
-    };
-    let target = (&mut **pixels, &mut **cells);
-    match (blend, pipeline.keeps_depth) {
+    match (cells, pipeline.blend()) {
+        (Some(Cells::U32(cells)), _) => write_where_nearer(spans, pipeline, bytes, (pixels, cells), *kernel),
+        (Some(Cells::U16(cells)), _) => write_where_nearer(spans, pipeline, bytes, (pixels, cells), *kernel),
+        (None, None) => write_all::<false>(*kernel, *kernel, spans, bytes, None, pixels),
+        (None, blend) => write_all::<true>(*kernel, *kernel, spans, bytes, blend, pixels),
+    }
+}
+
+fn write_where_nearer<D: Cell>(
+    spans: &Spans<'_>,
+    pipeline: &PixelPipeline<'_>,
+    bytes: &mut [u8],
+    target: (&mut [u8], &mut [D]),
+    kernel: Kernel,
+) -> u32 {
+    match (pipeline.blend(), pipeline.keeps_depth) {
         (None, true) => write_nearer::<D, false, true>(kernel, kernel, spans, bytes, None, target),
         (None, false) => write_nearer::<D, false, false>(kernel, kernel, spans, bytes, None, target),
         (blend, true) => write_nearer::<D, true, true>(kernel, kernel, spans, bytes, blend, target),
@@ -274,36 +275,14 @@ fn write_each<D: Cell, const BLENDS: bool, const KEEPS: bool>(
     nearer
 }
 
-/// Draws triangles with effects, where there are cells those that are nearer.
-fn draw_effects<D: Cell>(
-    of: Drawn<'_>,
-    (effects, list): (&mut EffectSpans<'_>, &mut SpanList),
-    target: Layout,
-    pixels: &mut [u8],
-    cells: &mut [D],
-) -> DrawStats {
-    let has_cells = !cells.is_empty();
-    let level = target.2.simd_level();
-    let drawn = if !has_cells {
-        draw_effects_in_32_bits(level, of, (effects, list), target, pixels, &mut [])
-    } else if let Some(cells) = D::as_u32(cells) {
-        draw_effects_in_32_bits(level, of, (effects, list), target, pixels, cells)
-    } else if let Some(cells) = D::as_u16(cells) {
-        draw_effects_in_16_bits(of, (effects, list), target, pixels, cells)
-    } else {
-        DrawStats::default()
-    };
-    if has_cells { drawn } else { DrawStats { pixels: drawn.covered, tested: 0, ..drawn } }
-}
-
 compiled_for_each_level! {
+    /// Draws triangles with effects, where there are cells those that are nearer.
     #[inline(never)]
-    fn draw_effects_in_32_bits[][](
+    fn draw_effects[][](
         of: Drawn<'_>,
         effects: (&mut EffectSpans<'_>, &mut SpanList),
-        target: Layout,
-        pixels: &mut [u8],
-        cells: &mut [u32],
+        place: Place,
+        target: &mut Target<'_>,
     ) -> DrawStats = draw_effects_by;
 }
 
@@ -312,22 +291,10 @@ fn draw_effects_by<S: Lanes8>(
     s: S,
     of: Drawn<'_>,
     (effects, list): (&mut EffectSpans<'_>, &mut SpanList),
-    target: Layout,
-    pixels: &mut [u8],
-    cells: &mut [u32],
+    place: Place,
+    target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_triangles::<S, u32, _, true, false>(s, of, target, (pixels, cells), effects, list)
-}
-
-#[inline(never)]
-fn draw_effects_in_16_bits(
-    of: Drawn<'_>,
-    (effects, list): (&mut EffectSpans<'_>, &mut SpanList),
-    target: Layout,
-    pixels: &mut [u8],
-    cells: &mut [u16],
-) -> DrawStats {
-    draw_triangles::<_, u16, _, true, false>(BASELINE, of, target, (pixels, cells), effects, list)
+    draw_triangles::<S, _, true, false>(s, of, place, target, effects, list)
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -358,8 +325,8 @@ impl<D: Cell> Raster<'_, D> {
                 let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers, rows.start);
                 let of = Drawn { triangles, picks, in_pieces: true };
                 let (pixels, _) = self.frame.pixels_mut();
-                let cells = depth.map(DepthBuffer::values_mut).unwrap_or_default();
-                drawn += draw_effects(of, (&mut spans, list), (layout, clip, kernel), pixels, cells);
+                let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
+                drawn += draw_effects(kernel.simd_level(), of, (&mut spans, list), (layout, clip), target);
                 first += together;
                 continue;
             }
@@ -392,7 +359,7 @@ impl<D: Cell> Raster<'_, D> {
             };
             let cell_count = cells.as_ref().map_or(pixels.len(), |cells| cells.len());
             list.begin((pixels.len(), 0), (cell_count, 0));
-            let mut target = Target { pixels, cells, kernel };
+            let mut target = Target { pixels, cells: cells.map(D::cells), kernel };
             spans.add_row(&row, list, &mut target);
             spans.draw_spans(list, &mut target);
             let of_row = list.counts();

@@ -6,14 +6,13 @@ use super::listing::{Columns, EffectSpans, Faces, Marks8};
 use super::spans::{Span, Spans};
 use super::{Buffers, PixelPipeline};
 use crate::raster::columns::{Picks, Triangles};
-use crate::raster::depth::Cell;
 use crate::raster::frame::Rect;
 use crate::raster::rows::{Lane, Parts, RowEnds, Shades8};
 use crate::raster::setup::{Basis, Corners8, FrameLayout, TriangleSetup8};
 use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::list::{DepthSteps, SpanList, Spans8};
+use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
 
 /// A span and the starts of its values.
 pub(super) struct Recorded {
@@ -75,14 +74,7 @@ impl Shades8 for Recorder<'_> {
         self.spans.set_up_large(i, setup);
     }
 
-    fn draw<S: Lanes8, D: Cell, const DEPTHS: bool>(
-        &mut self,
-        _: S,
-        list: &mut SpanList,
-        _: Kernel,
-        _: &mut [u8],
-        _: &mut [D],
-    ) {
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, _: &mut Target<'_>) {
         let (listed, mut first) = (&self.spans.listed, 0);
         while first < list.count() {
             let spans = Spans::of(listed, list, first);
@@ -113,8 +105,8 @@ fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: 
     // Every row has the same pixels.
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
     let mut pixels = [0; 4_096];
-    let (target, list) = ((layout, clip, Kernel::PORTABLE), &mut { SpanList::NONE });
-    draw_triangles::<S, u32, _, true, false>(s, of, target, (&mut pixels, &mut []), recorder, list).spans
+    let target = &mut Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
+    draw_triangles::<S, _, true, false>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
 }
 
 /// The spans of faces of which none is unbatched, in a frame of 4,096 x 4,096 pixels.
