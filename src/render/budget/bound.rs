@@ -37,9 +37,9 @@ pub(super) struct Shapes {
 
 /// Strengths of one light on one surface, on each channel, with their signs.
 #[derive(Clone, Copy, Debug)]
-struct Strength<const N: usize> {
-    body: [f32; N],
-    highlight: [f32; N],
+struct Strength {
+    body: [f32; 3],
+    highlight: [f32; 3],
 }
 
 /// Light on a surface.
@@ -49,6 +49,8 @@ pub(super) struct Incident<'a> {
     pub(super) answer: &'a Reflectance,
     /// The greatest coordinate of the object's vertices.
     pub(super) extent: f32,
+    /// True if it is lit on red, green and blue apart.
+    pub(super) in_color: bool,
     /// True if light is meant as it goes on below the horizon, less than none.
     pub(super) below: bool,
 }
@@ -299,19 +301,20 @@ struct Eye<D> {
     turn: Lanes<f32>,
 }
 
-/// Sums of all terms on the patches, for each channel.
-struct Sums<const N: usize> {
-    of: [Terms; N],
+/// Sums of all terms on the patches, for each of the first channels.
+struct Sums {
+    of: [Terms; 3],
+    channels: usize,
     normals: [Normals; LANES],
     below: bool,
 }
 
-impl<const N: usize> Sums<N> {
+impl Sums {
     #[inline(always)]
-    fn add(&mut self, strengths: &[f32; N], terms: &Terms) {
+    fn add(&mut self, strengths: &[f32; 3], terms: &Terms) {
         // Index loops, here and below, as in `light::lanes`.
         let mut channel = 0;
-        while channel < N {
+        while channel < self.channels.min(3) {
             let (sums, strength) = (&mut self.of[channel], strengths[channel]);
             let size = strength.abs();
             let (above, below) = (strength.max(0.0), strength.min(0.0));
@@ -334,7 +337,7 @@ impl<const N: usize> Sums<N> {
         directions: &P::Directions,
         (weighted, falls): (Option<[Lanes<f32>; 2]>, &[FallOff; LANES]),
         eye: Option<&Eye<P::Directions>>,
-        strength: &Strength<N>,
+        strength: &Strength,
     ) {
         let (normals, below) = (self.normals, self.below);
         let facing = patches.facing(directions);
@@ -361,7 +364,7 @@ impl<const N: usize> Sums<N> {
 impl Incident<'_> {
     /// Returns whether all strengths together are so small that their sums are numbers, and places and inverse ranges so
     /// small that their squares are.
-    fn is_moderate<const N: usize>(&self) -> bool {
+    fn is_moderate(&self) -> bool {
         const MODERATE: f32 = 1e6;
         let Lights { suns, lamps, eye } = self.lights;
         let is_near = |at: [f64; 3]| at.iter().all(|c| c.abs() < f64::from(HUGE));
@@ -369,22 +372,28 @@ impl Incident<'_> {
         if self.extent >= HUGE || !lamps_are_near || (self.answer.specular != 0.0 && !is_near(eye)) {
             return false;
         }
-        let suns = suns.iter().map(|sun| self.strength::<N>(sun.intensity, sun.channels));
-        let lamps = lamps.iter().map(|lamp| self.strength::<N>(lamp.intensity, lamp.channels));
-        let size = |of: Strength<N>| of.body.iter().chain(&of.highlight).map(|share| share.abs()).sum::<f32>();
+        let suns = suns.iter().map(|sun| self.strength(sun.intensity, sun.channels));
+        let lamps = lamps.iter().map(|lamp| self.strength(lamp.intensity, lamp.channels));
+        let size = |of: Strength| of.body.iter().chain(&of.highlight).map(|share| share.abs()).sum::<f32>();
         let colors = self.answer.color.map(|color| color.abs() as f32);
         let ambient = self.answer.ambient.abs() as f32 * (1.0 + colors.iter().sum::<f32>());
         suns.chain(lamps).map(size).sum::<f32>() + ambient < MODERATE
     }
 
+    /// The number of channels that are lit.
     #[inline(always)]
-    fn strength<const N: usize>(&self, intensity: f32, channels: [f32; 3]) -> Strength<N> {
+    fn channels(&self) -> usize {
+        if self.in_color { 3 } else { 1 }
+    }
+
+    #[inline(always)]
+    fn strength(&self, intensity: f32, channels: [f32; 3]) -> Strength {
         let (kd, ks) = (self.answer.diffuse as f32, self.answer.specular as f32);
         let of = |channel: usize, share: f32, color: [f64; 3]| {
-            if N == 1 { share * intensity } else { share * channels[channel] * color[channel] as f32 }
+            if self.in_color { share * channels[channel] * color[channel] as f32 } else { share * intensity }
         };
-        let mut strength = Strength { body: [0.0; N], highlight: [0.0; N] };
-        for channel in 0..N {
+        let mut strength = Strength { body: [0.0; 3], highlight: [0.0; 3] };
+        for channel in 0..self.channels() {
             strength.body[channel] = of(channel, kd, self.answer.color);
             strength.highlight[channel] = of(channel, ks, self.answer.highlight);
         }
@@ -395,10 +404,10 @@ impl Incident<'_> {
 at_best_level! {
     /// [`interpolation_error`] as the kernel's processor does it best: the same numbers.
     #[inline(never)]
-    pub(super) fn error_at_best[const N: usize, const WHOLE: bool, P: Patches][N, WHOLE, P](
+    pub(super) fn error_at_best[const WHOLE: bool, P: Patches][WHOLE, P](
         kernel: Kernel, patches: &P, shapes: &Shapes, incident: &Incident<'_>,
     ) -> Bounds {
-        interpolation_error::<N, WHOLE, P>(patches, shapes, incident)
+        interpolation_error::<WHOLE, P>(patches, shapes, incident)
     }
 }
 
@@ -406,7 +415,7 @@ at_best_level! {
 /// is of whole faces, the corners of which have unit normals; otherwise the bound is of any part of the faces of the
 /// size that `shapes` says, between light at the part's own corners.
 #[inline(always)]
-pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>(
+pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     patches: &P,
     shapes: &Shapes,
     incident: &Incident<'_>,
@@ -416,7 +425,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     // Coordinates of f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
     let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
     // Beyond that nothing is said, and below nothing overflows.
-    if !incident.is_moderate::<N>() {
+    if !incident.is_moderate() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
     let mut normals = [Normals { spread: 0.0, deficit: 0.0, part: 0.0 }; LANES];
@@ -427,12 +436,12 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
         *normals = Normals { spread, deficit, part: shapes.part[lane] };
     }
     let ambient = incident.answer.ambient as f32;
-    let mut of = [[[0.0; LANES]; 4]; N];
+    let mut of = [[[0.0; LANES]; 4]; 3];
     for (channel, of) in of.iter_mut().enumerate() {
-        let ambient = if N == 1 { ambient } else { ambient * incident.answer.color[channel] as f32 };
+        let ambient = if incident.in_color { ambient * incident.answer.color[channel] as f32 } else { ambient };
         (of[2], of[3]) = ([ambient; LANES], [ambient; LANES]);
     }
-    let mut sums = Sums::<N> { of, normals, below: incident.below };
+    let mut sums = Sums { of, channels: incident.channels(), normals, below: incident.below };
     let eye = if incident.answer.specular != 0.0 {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
         let turn = each!(lane => lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
@@ -442,7 +451,7 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
     };
     for sun in suns {
         let directions = patches.sun(sun.towards.to_array());
-        let strength = incident.strength::<N>(sun.intensity, sun.channels);
+        let strength = incident.strength(sun.intensity, sun.channels);
         let falls = (None, &[FallOff::NONE; LANES]);
         sums.add_light::<WHOLE, P>(patches, &directions, falls, eye.as_ref(), &strength);
     }
@@ -465,11 +474,11 @@ pub(super) fn interpolation_error<const N: usize, const WHOLE: bool, P: Patches>
                 below[lane] *= if below[lane] > 0.0 { share.least } else { share.most };
             }
         }
-        let strength = incident.strength::<N>(lamp.intensity, lamp.channels);
+        let strength = incident.strength(lamp.intensity, lamp.channels);
         sums.add_light::<WHOLE, P>(patches, &sight.directions, (Some(weighted), &falls), eye.as_ref(), &strength);
     }
     let mut bounds = Bounds { on_screen: [0.0; LANES], on_face: [0.0; LANES] };
-    for [errors, ranges, most, least] in sums.of {
+    for [errors, ranges, most, least] in &sums.of[..sums.channels.min(3)] {
         for lane in 0..LANES {
             let (error, range, most, least) = (errors[lane], ranges[lane], most[lane], least[lane]);
             // Lemma 4: what is cut off at 1 and at 0.

@@ -250,7 +250,7 @@ impl Case {
     }
 
     fn incident(&self, extent: f32) -> Incident<'_> {
-        Incident { lights: self.lights(), answer: &self.answer, extent, below: false }
+        Incident { lights: self.lights(), answer: &self.answer, extent, in_color: self.in_color, below: false }
     }
 
     fn clusters(&self) -> Clusters {
@@ -288,19 +288,11 @@ impl Case {
         let parts = Shapes { part: [self.part; LANES], ..shapes };
         let chunk = &clusters.chunks[0];
         let of_chunk = Shapes { spread: chunk.spread, edge: chunk.edge, part: [1.0; LANES], bend: ZERO };
-        if self.in_color {
-            (
-                interpolation_error::<3, true, _>(&faces, &shapes, &incident),
-                interpolation_error::<3, false, _>(&faces, &parts, &incident),
-                interpolation_error::<3, true, _>(&chunk.clusters, &of_chunk, &incident),
-            )
-        } else {
-            (
-                interpolation_error::<1, true, _>(&faces, &shapes, &incident),
-                interpolation_error::<1, false, _>(&faces, &parts, &incident),
-                interpolation_error::<1, true, _>(&chunk.clusters, &of_chunk, &incident),
-            )
-        }
+        (
+            interpolation_error::<true, _>(&faces, &shapes, &incident),
+            interpolation_error::<false, _>(&faces, &parts, &incident),
+            interpolation_error::<true, _>(&chunk.clusters, &of_chunk, &incident),
+        )
     }
 
     /// The greatest error among points of a part of a face: the triangle of these corners.
@@ -442,9 +434,12 @@ fn bounds_do_not_depend_on_the_kernel() {
         let (faces, incident) = (case.faces(), case.incident(clusters.extent));
         let bits = |bounds: Bounds| (bounds.on_screen.map(f32::to_bits), bounds.on_face.map(f32::to_bits));
         let all = |kernel: Kernel| {
-            let of_faces = error_at_best::<3, false, _>(kernel, &faces, &shapes, &incident);
-            let of_nodes = error_at_best::<1, true, _>(kernel, &clusters.chunks[0].clusters, &shapes, &incident);
-            (bits(of_faces), bits(of_nodes))
+            [false, true].map(|in_color| {
+                let incident = Incident { in_color, ..incident };
+                let of_faces = error_at_best::<false, _>(kernel, &faces, &shapes, &incident);
+                let of_nodes = error_at_best::<true, _>(kernel, &clusters.chunks[0].clusters, &shapes, &incident);
+                (bits(of_faces), bits(of_nodes))
+            })
         };
         let portable = all(Kernel::PORTABLE);
         for kernel in Kernel::available() {

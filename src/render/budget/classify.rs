@@ -59,12 +59,9 @@ impl Faces<'_> {
         below: bool,
     ) -> Bounds {
         let answer = &self.paints[usize::from(surface)].answer;
-        let incident = Incident { lights: self.lights, answer, extent: budget.clusters.extent, below };
-        if self.channels {
-            error_at_best::<3, WHOLE, P>(self.kernel, patches, shapes, &incident)
-        } else {
-            error_at_best::<1, WHOLE, P>(self.kernel, patches, shapes, &incident)
-        }
+        let (extent, in_color) = (budget.clusters.extent, self.channels);
+        let incident = Incident { lights: self.lights, answer, extent, in_color, below };
+        error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
     }
 
     /// Faces of a chunk whose clusters are linear, where they show their fronts or their backs.
