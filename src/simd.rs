@@ -33,7 +33,7 @@ pub(crate) use lanes::Lanes8;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
 #[cfg(feature = "alloc")]
-pub(crate) use singles::{F32Lanes8, Light8};
+pub(crate) use singles::F32Lanes8;
 
 #[cfg(simd_neon)]
 pub(crate) const NEON: wide128::Wide128<neon::Neon> = wide128::Wide128(neon::Neon);
@@ -173,27 +173,6 @@ impl Avx512 {
         Avx2::find().filter(|_| found).map(Self)
     }
 }
-
-/// A function that takes a proof and calls another, which is inlined and so compiled for AVX2.
-///
-/// Where the portable form is another one; [`at_best_level`] is for one form.
-#[cfg(all(feature = "alloc", simd_x86_64))]
-macro_rules! compiled_for_avx2 {
-    (fn $name:ident $(<const $constant:ident: bool>)? ($lanes:ident: Avx2, $($argument:ident: $type:ty),*) -> $result:ty { $body:expr }) => {
-        #[inline]
-        #[expect(unsafe_code, reason = "code for processors found only when the program runs")]
-        fn $name $(<const $constant: bool>)? ($lanes: crate::simd::Avx2, $($argument: $type),*) -> $result {
-            #[target_feature(enable = "avx2")]
-            fn avx2 $(<const $constant: bool>)? ($lanes: crate::simd::Avx2, $($argument: $type),*) -> $result {
-                $body
-            }
-            // SAFETY: the processor has AVX2, says the token.
-            unsafe { avx2 $(::<$constant>)? ($lanes, $($argument),*) }
-        }
-    };
-}
-#[cfg(all(feature = "alloc", simd_x86_64))]
-pub(crate) use compiled_for_avx2;
 
 /// A function that is compiled for AVX2, too, and whose kernel says which of both runs.
 ///

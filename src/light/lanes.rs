@@ -4,16 +4,14 @@
 //! their order are the same, and each of them (sum, product, quotient, square root) rounds alike in a vector and alone.
 //! If a point has no part in a light, zero is added, which changes no sum: none is −0, as each begins at +0.
 //!
-//! Lanes stay in vectors ([`Light8`]): of index loops over arrays the compiler once made some vectors and some single
-//! numbers, and three coloured lamps took a sixth longer. Other levels than AVX2 have the arrays.
+//! Lanes stay in vectors ([`F32Lanes8`]): of index loops over arrays the compiler once made some vectors and some single
+//! numbers, and three coloured lamps took a sixth longer.
 
+use super::ConeBeam;
 use super::intensity::{Lights, Reflectance, Wide};
 use super::power::Shininess;
-use super::{Beam, ConeBeam, LampBeam};
 use crate::lanes::{LANES, Lanes, Points};
-#[cfg(simd_x86_64)]
-use crate::simd::compiled_for_avx2;
-use crate::simd::{Lanes8, Light8, Portable};
+use crate::simd::{F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 
 type Wides = Lanes<f64>;
@@ -48,7 +46,7 @@ impl<L: Lanes8, const N: usize> Front<L, N> {
 /// The normals at the points: as they are if they are `UNIT`, or made unit and rounded to f32; 0 for those that vanish
 /// because their ends cancel.
 #[inline(always)]
-fn normals_of<L: Light8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3] {
+fn normals_of<L: F32Lanes8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3] {
     let [x, y, z] = [l.load_f32(&points[0]), l.load_f32(&points[1]), l.load_f32(&points[2])];
     if UNIT {
         return [x, y, z];
@@ -66,64 +64,37 @@ fn normals_of<L: Light8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3]
     ]
 }
 
-/// The intensities of a light on `N` channels.
-trait Intensities<const N: usize> {
-    fn intensities(&self) -> [f64; N];
-}
-
-macro_rules! intensities {
-    ($light:ty) => {
-        impl Intensities<1> for $light {
-            #[inline(always)]
-            fn intensities(&self) -> [f64; 1] {
-                [f64::from(self.intensity)]
-            }
+/// A light on one channel, or on red, green and blue.
+#[inline(always)]
+fn channels<const N: usize>(intensity: f32, colors: [f32; 3]) -> [f64; N] {
+    let mut channels = [f64::from(intensity); N];
+    if N == 3 {
+        let mut i = 0;
+        while i < N {
+            channels[i] = f64::from(colors[i % 3]);
+            i += 1;
         }
-
-        impl Intensities<3> for $light {
-            #[inline(always)]
-            fn intensities(&self) -> [f64; 3] {
-                let [r, g, b] = self.channels;
-                [f64::from(r), f64::from(g), f64::from(b)]
-            }
-        }
-    };
+    }
+    channels
 }
-intensities!(Beam);
-intensities!(LampBeam);
 
 impl Lights<'_> {
     /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of any length, point away
     /// from.
     pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        #[cfg(simd_x86_64)]
-        if let Some(avx2) = kernel.avx2() {
-            return one_channel_avx2::<false>(avx2, self, answer, points);
-        }
-        let _ = kernel;
-        self.one_channel_apart::<false>(answer, points)
+        self.one::<false>(answer, points, kernel)
     }
 
     /// Sums all light on one channel for unit normals, which are taken as they are. Otherwise like
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        #[cfg(simd_x86_64)]
-        if let Some(avx2) = kernel.avx2() {
-            return one_channel_avx2::<true>(avx2, self, answer, points);
-        }
-        let _ = kernel;
-        self.one_channel_apart::<true>(answer, points)
+        self.one::<true>(answer, points, kernel)
     }
 
     /// Sums all light on three channels: red, green, blue. Otherwise like
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
-        #[cfg(simd_x86_64)]
-        if let Some(avx2) = kernel.avx2() {
-            return three_channels_avx2::<false>(avx2, self, answer, points);
-        }
-        let _ = kernel;
-        self.three_channels_apart::<false>(answer, points)
+        self.three::<false>(answer, points, kernel)
     }
 
     /// Sums all light on three channels for unit normals, which are taken as they are. Otherwise like
@@ -134,93 +105,32 @@ impl Lights<'_> {
         points: &Points,
         kernel: Kernel,
     ) -> [Wides; 3] {
-        #[cfg(simd_x86_64)]
-        if let Some(avx2) = kernel.avx2() {
-            return three_channels_avx2::<true>(avx2, self, answer, points);
-        }
-        let _ = kernel;
-        self.three_channels_apart::<true>(answer, points)
+        self.three::<true>(answer, points, kernel)
     }
 
-    #[inline(never)]
-    fn one_channel_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> Wides {
-        self.one_channel_of_eight::<_, UNIT, true>(Portable, answer, points)
-    }
-
-    #[inline(never)]
-    fn three_channels_apart<const UNIT: bool>(&self, answer: &Reflectance, points: &Points) -> [Wides; 3] {
-        self.three_channels_of_eight::<_, UNIT, true>(Portable, answer, points)
-    }
-
-    /// Inlined, with all that it calls, into code that is compiled for a processor; but with highlights `APART`.
-    #[inline(always)]
-    fn one_channel_of_eight<L: Light8, const UNIT: bool, const APART: bool>(
-        &self,
-        l: L,
-        answer: &Reflectance,
-        points: &Points,
-    ) -> Wides {
-        let normals = normals_of::<L, UNIT>(l, points);
-        let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
-        let sum = if answer.shines() {
-            let Front { diffuse: [body], specular: [highlight] } =
-                self.front::<L, 1, APART, true>(l, answer, &normals, points);
-            l.add(l.add(ambient, l.mul(diffuse, body)), l.mul(l.splat_f64(answer.specular), highlight))
-        } else {
-            let [body] = self.front::<L, 1, APART, false>(l, answer, &normals, points).diffuse;
-            // Zero is the highlight: −0 becomes 0, as with one.
-            l.add(l.add(ambient, l.mul(diffuse, body)), l.splat_f64(0.0))
-        };
-        let mut lanes = [0.0; LANES];
-        l.store_f64(sum, &mut lanes);
+    fn one<const UNIT: bool>(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
+        let (level, shines) = (kernel.simd_level(), answer.shines());
+        let sum = if shines { shiny_one::<UNIT> } else { matt_one::<UNIT> };
+        let [lanes] = sum(level, self, answer, points);
         lanes
     }
 
-    #[inline(always)]
-    fn three_channels_of_eight<L: Light8, const UNIT: bool, const APART: bool>(
-        &self,
-        l: L,
-        answer: &Reflectance,
-        points: &Points,
-    ) -> [Wides; 3] {
-        let normals = normals_of::<L, UNIT>(l, points);
-        let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
-        let mut lanes = [[0.0; LANES]; 3];
-        let mut i = 0;
-        if answer.shines() {
-            let front = self.front::<L, 3, APART, true>(l, answer, &normals, points);
-            while i < 3 {
-                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.splat_f64(answer.color[i]));
-                let mirrored = l.mul(l.splat_f64(answer.specular), front.specular[i]);
-                l.store_f64(l.add(own, l.mul(mirrored, l.splat_f64(answer.highlight[i]))), &mut lanes[i]);
-                i += 1;
-            }
-        } else {
-            let front = self.front::<L, 3, APART, false>(l, answer, &normals, points);
-            while i < 3 {
-                let own = l.mul(l.add(ambient, l.mul(diffuse, front.diffuse[i])), l.splat_f64(answer.color[i]));
-                // As on one channel.
-                l.store_f64(l.add(own, l.splat_f64(0.0)), &mut lanes[i]);
-                i += 1;
-            }
-        }
-        lanes
+    fn three<const UNIT: bool>(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
+        let (level, shines) = (kernel.simd_level(), answer.shines());
+        let sum = if shines { shiny_three::<UNIT> } else { matt_three::<UNIT> };
+        sum(level, self, answer, points)
     }
 
     /// Sums the light that falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is
     /// specular.
     #[inline(always)]
-    fn front<L: Light8, const N: usize, const APART: bool, const SHINES: bool>(
+    fn front<L: F32Lanes8, const N: usize, const SHINES: bool>(
         &self,
         l: L,
         answer: &Reflectance,
         narrow: &[L::F32; 3],
         points: &Points,
-    ) -> Front<L, N>
-    where
-        Beam: Intensities<N>,
-        LampBeam: Intensities<N>,
-    {
+    ) -> Front<L, N> {
         let (zero, one) = (l.splat_f64(0.0), l.splat_f64(1.0));
         let mut front = Front { diffuse: [zero; N], specular: [zero; N] };
         // As in `Lights::sum_by`.
@@ -245,9 +155,9 @@ impl Lights<'_> {
             let mut highlights = None;
             if let Some(eye) = &eye {
                 let towards = [l.splat_f64(x.into()), l.splat_f64(y.into()), l.splat_f64(z.into())];
-                highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
+                highlights = Some(eye.highlights(l, &towards, cosines, shininess));
             }
-            front.add(l, sun.intensities(), None, cosines, highlights);
+            front.add(l, channels(sun.intensity, sun.channels), None, cosines, highlights);
         }
         for lamp in lamps {
             let to_lamp = from(l, &lamp.position, &places);
@@ -265,31 +175,72 @@ impl Lights<'_> {
             }
             let mut highlights = None;
             if let Some(eye) = &eye {
-                highlights = Some(eye.highlights_by::<APART>(l, &towards, cosines, shininess));
+                highlights = Some(eye.highlights(l, &towards, cosines, shininess));
             }
-            front.add(l, lamp.intensities(), Some(fall_off), cosines, highlights);
+            front.add(l, channels(lamp.intensity, lamp.channels), Some(fall_off), cosines, highlights);
         }
         front
     }
 }
 
-// Frames lit at every pixel: `teapot` and `phong` 8 % sooner than by SSE2, the torus, whose rows are of four pixels, no sooner.
-#[cfg(simd_x86_64)]
-compiled_for_avx2! {
-    fn one_channel_avx2<const UNIT: bool>(
-        l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
-    ) -> Wides {
-        lights.one_channel_of_eight::<_, UNIT, false>(l, answer, points)
+/// The sum of all light on the points, for each channel.
+#[inline(always)]
+fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
+    l: L,
+    lights: &Lights<'_>,
+    answer: &Reflectance,
+    points: &Points,
+) -> [Wides; N] {
+    let normals = normals_of::<L, UNIT>(l, points);
+    let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
+    let front = lights.front::<L, N, SHINES>(l, answer, &normals, points);
+    let mut lanes = [[0.0; LANES]; N];
+    let mut i = 0;
+    while i < N {
+        let mut own = l.add(ambient, l.mul(diffuse, front.diffuse[i]));
+        // Without a highlight zero is added: −0 becomes 0, as with one.
+        let mut mirrored = l.splat_f64(0.0);
+        if SHINES {
+            mirrored = l.mul(l.splat_f64(answer.specular), front.specular[i]);
+        }
+        if N == 3 {
+            own = l.mul(own, l.splat_f64(answer.color[i % 3]));
+            if SHINES {
+                mirrored = l.mul(mirrored, l.splat_f64(answer.highlight[i % 3]));
+            }
+        }
+        l.store_f64(l.add(own, mirrored), &mut lanes[i]);
+        i += 1;
     }
+    lanes
 }
 
-#[cfg(simd_x86_64)]
-compiled_for_avx2! {
-    fn three_channels_avx2<const UNIT: bool>(
-        l: Avx2, lights: &Lights<'_>, answer: &Reflectance, points: &Points
-    ) -> [Wides; 3] {
-        lights.three_channels_of_eight::<_, UNIT, false>(l, answer, points)
-    }
+/// [`sum`] on so many channels, with highlights or without, under a name of its own for `.ci/off_is_free`.
+macro_rules! sums {
+    ($($name:ident = $by:ident: $channels:literal, $shines:literal;)*) => {
+        $(
+            compiled_for_each_level! {
+                #[inline(never)]
+                fn $name[const UNIT: bool][UNIT](lights: &Lights<'_>, answer: &Reflectance, points: &Points)
+                    -> [Wides; $channels] = $by;
+            }
+            #[inline(always)]
+            fn $by<L: F32Lanes8, const UNIT: bool>(
+                l: L,
+                lights: &Lights<'_>,
+                answer: &Reflectance,
+                points: &Points,
+            ) -> [Wides; $channels] {
+                sum::<L, $channels, UNIT, $shines>(l, lights, answer, points)
+            }
+        )*
+    };
+}
+sums! {
+    matt_one = matt_one_by: 1, false;
+    shiny_one = shiny_one_by: 1, true;
+    matt_three = matt_three_by: 3, false;
+    shiny_three = shiny_three_by: 3, true;
 }
 
 /// The eye, for highlights.
@@ -300,31 +251,10 @@ struct Eye<L: Lanes8> {
     cosines: L::F64,
 }
 
-impl<L: Light8> Eye<L> {
+impl<L: F32Lanes8> Eye<L> {
     #[inline(always)]
     fn new(l: L, towards: Vectors<L>, normals: &Vectors<L>) -> Self {
         Self { towards, cosines: dot(l, normals, &towards) }
-    }
-
-    #[inline(always)]
-    fn highlights_by<const APART: bool>(
-        &self,
-        l: L,
-        towards: &Vectors<L>,
-        cosines: L::F64,
-        shininess: Shininess,
-    ) -> L::F64 {
-        if APART {
-            self.highlights_apart(l, towards, &cosines, shininess)
-        } else {
-            self.highlights(l, towards, cosines, shininess)
-        }
-    }
-
-    // A function of its own, so that `.ci/off_is_free` can see where it is entered.
-    #[inline(never)]
-    fn highlights_apart(&self, l: L, towards: &Vectors<L>, cosines: &L::F64, shininess: Shininess) -> L::F64 {
-        self.highlights(l, towards, *cosines, shininess)
     }
 
     /// max(0, r·v)^s; 0 if the light's own cosine is.
@@ -339,13 +269,13 @@ impl<L: Light8> Eye<L> {
 
 /// Replaces values that are not above 0, or not numbers, by zero.
 #[inline(always)]
-fn positive<L: Light8>(l: L, values: L::F64) -> L::F64 {
+fn positive<L: F32Lanes8>(l: L, values: L::F64) -> L::F64 {
     l.if_less(l.splat_f64(0.0), values, values)
 }
 
 /// [`ConeBeam::share`].
 #[inline(always)]
-fn share<L: Light8>(l: L, cone: &ConeBeam, towards: &Vectors<L>) -> L::F64 {
+fn share<L: F32Lanes8>(l: L, cone: &ConeBeam, towards: &Vectors<L>) -> L::F64 {
     let back = [l.splat_f64(cone.back[0]), l.splat_f64(cone.back[1]), l.splat_f64(cone.back[2])];
     let beyond = l.mul(l.sub(l.splat_f64(cone.inner), dot(l, &back, towards)), l.splat_f64(cone.inverse_width));
     let x = positive(l, l.sub(l.splat_f64(1.0), positive(l, beyond)));
@@ -366,7 +296,7 @@ fn dot<L: Lanes8>(l: L, a: &Vectors<L>, b: &Vectors<L>) -> L::F64 {
 
 /// The vectors made unit; not a number if there is no direction.
 #[inline(always)]
-fn unit<L: Light8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
+fn unit<L: F32Lanes8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
     let parts = l.div(l.splat_f64(1.0), l.sqrt(dot(l, vectors, vectors)));
     [l.mul(vectors[0], parts), l.mul(vectors[1], parts), l.mul(vectors[2], parts)]
 }
@@ -375,7 +305,7 @@ fn unit<L: Light8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
 mod tests {
     use super::*;
     use crate::Angle;
-    use crate::light::Cone;
+    use crate::light::{Beam, Cone, LampBeam};
     use crate::mesh::normals;
     use glam::Vec3;
     use proptest::prelude::*;

@@ -1,7 +1,7 @@
 //! The power of a highlight.
 
 use crate::lanes::LANES;
-use crate::simd::Light8;
+use crate::simd::F32Lanes8;
 
 /// The max whole shininess that is raised to by products.
 const MAX_EXPONENT: f64 = 1_024.0;
@@ -56,7 +56,7 @@ impl Shininess {
 
     /// base ^ exponent of each base above 0; 0 of any other. Bit by bit what [`of`](Self::of) gives.
     #[inline(always)]
-    pub(crate) fn of_lanes<L: Light8>(self, lanes: L, bases: L::F64) -> L::F64 {
+    pub(crate) fn of_lanes<L: F32Lanes8>(self, lanes: L, bases: L::F64) -> L::F64 {
         let zero = lanes.splat_f64(0.0);
         let mut bits = match self {
             Self::Whole(exponent) => exponent,

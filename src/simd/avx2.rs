@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 #[cfg(feature = "alloc")]
-use super::singles::{F32Lanes8, Light8, singles_of_256_bits};
+use super::singles::{F32Lanes8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
 
 // Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
@@ -262,13 +262,6 @@ impl F32Lanes8 for Avx2 {
         }
         fn narrow(from: F64) -> __m256 { _mm256_set_m128(_mm256_cvtpd_ps(from[1]), _mm256_cvtpd_ps(from[0])) }
         fn whole(from: F64) -> __m256i { _mm256_set_m128i(_mm256_cvttpd_epi32(from[1]), _mm256_cvttpd_epi32(from[0])) }
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl Light8 for Avx2 {
-    lanes! {
-        fn load_f32(from: &[f32; 8]) -> __m256 { _mm256_loadu_ps(from.as_ptr()) }
         fn sqrt(of: F64) -> F64 { halves!(h => _mm256_sqrt_pd(of[h])) }
         fn if_less(a: F64, b: F64, value: F64) -> F64 {
             halves!(h => _mm256_and_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a[h], b[h]), value[h]))

@@ -139,5 +139,13 @@ impl F32Lanes8 for Avx512 {
         fn widen(from: __m256) -> __m512d { _mm512_cvtps_pd(from) }
         fn narrow(from: __m512d) -> __m256 { _mm512_cvtpd_ps(from) }
         fn whole(from: __m512d) -> __m256i { _mm512_cvttpd_epi32(from) }
+        fn sqrt(of: __m512d) -> __m512d { _mm512_sqrt_pd(of) }
+        fn if_less(a: __m512d, b: __m512d, value: __m512d) -> __m512d {
+            _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b), value)
+        }
+        fn is_zero(values: __m512d) -> bool {
+            let bits = _mm512_castpd_si512(values);
+            _mm512_test_epi64_mask(bits, bits) == 0
+        }
     }
 }

@@ -123,5 +123,7 @@ impl Singles128 for Neon {
         fn whole(low: float64x2_t, high: float64x2_t) -> int32x4_t {
             vmovn_high_s64(vmovn_s64(vcvtq_s64_f64(low)), vcvtq_s64_f64(high))
         }
+        fn load_f32(from: &[f32; 4]) -> float32x4_t { vld1q_f32(from.as_ptr()) }
+        fn sqrt(of: float64x2_t) -> float64x2_t { vsqrtq_f64(of) }
     }
 }

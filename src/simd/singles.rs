@@ -1,4 +1,4 @@
-//! Eight lanes of f32 beside those of [`Lanes8`]: what the stages of vertices are written in.
+//! Eight lanes of f32 beside those of [`Lanes8`]: what the stages of vertices and the light at points are written in.
 
 use glam::Vec3;
 
@@ -30,10 +30,6 @@ pub(crate) trait F32Lanes8: Lanes8 {
     fn narrow(self, from: Self::F64) -> Self::F32;
     /// The whole parts of values of at least 0 and below 2³¹; of others some number.
     fn whole(self, from: Self::F64) -> Self::I32;
-}
-
-/// What light at points needs beside them.
-pub(crate) trait Light8: F32Lanes8 {
     fn load_f32(self, from: &[f32; 8]) -> Self::F32;
     /// The number nearest to the root.
     fn sqrt(self, of: Self::F64) -> Self::F64;
@@ -41,34 +37,6 @@ pub(crate) trait Light8: F32Lanes8 {
     fn if_less(self, a: Self::F64, b: Self::F64, value: Self::F64) -> Self::F64;
     /// Returns whether all are 0, of values of which none is −0.
     fn is_zero(self, values: Self::F64) -> bool;
-}
-
-impl Light8 for Portable {
-    #[inline(always)]
-    fn load_f32(self, from: &[f32; 8]) -> [f32; 8] {
-        *from
-    }
-    #[inline(always)]
-    fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
-        // Both give the same number. The compiler makes vectors of the first.
-        #[cfg(feature = "std")]
-        return each!(i => of[i].sqrt());
-        #[cfg(not(feature = "std"))]
-        return each!(i => libm::sqrt(of[i]));
-    }
-    #[inline(always)]
-    fn if_less(self, a: [f64; 8], b: [f64; 8], value: [f64; 8]) -> [f64; 8] {
-        each!(i => if a[i] < b[i] { value[i] } else { 0.0 })
-    }
-    #[inline(always)]
-    fn is_zero(self, values: [f64; 8]) -> bool {
-        let (mut bits, mut i) = (0, 0);
-        while i < 8 {
-            bits |= values[i].to_bits();
-            i += 1;
-        }
-        bits == 0
-    }
 }
 
 impl F32Lanes8 for Portable {
@@ -126,6 +94,31 @@ impl F32Lanes8 for Portable {
     fn whole(self, from: [f64; 8]) -> [i32; 8] {
         each!(i => whole_part(from[i]))
     }
+    #[inline(always)]
+    fn load_f32(self, from: &[f32; 8]) -> [f32; 8] {
+        *from
+    }
+    #[inline(always)]
+    fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
+        // Both give the same number. The compiler makes vectors of the first.
+        #[cfg(feature = "std")]
+        return each!(i => of[i].sqrt());
+        #[cfg(not(feature = "std"))]
+        return each!(i => libm::sqrt(of[i]));
+    }
+    #[inline(always)]
+    fn if_less(self, a: [f64; 8], b: [f64; 8], value: [f64; 8]) -> [f64; 8] {
+        each!(i => if a[i] < b[i] { value[i] } else { 0.0 })
+    }
+    #[inline(always)]
+    fn is_zero(self, values: [f64; 8]) -> bool {
+        let (mut bits, mut i) = (0, 0);
+        while i < 8 {
+            bits |= values[i].to_bits();
+            i += 1;
+        }
+        bits == 0
+    }
 }
 
 /// Four vectors' x, y and z, from three vectors of four numbers that hold them in their order. `$shuffle::<N>(a, b)` takes two
@@ -168,6 +161,7 @@ macro_rules! singles_of_256_bits {
             fn max_f32(a: __m256, b: __m256) -> __m256 { _mm256_max_ps(a, b) }
             fn min_f32(a: __m256, b: __m256) -> __m256 { _mm256_min_ps(a, b) }
             fn bits_of_f32(from: __m256) -> __m256i { _mm256_castps_si256(from) }
+            fn load_f32(from: &[f32; 8]) -> __m256 { _mm256_loadu_ps(from.as_ptr()) }
             $($rest)*
         }
     };

@@ -121,5 +121,7 @@ impl Singles128 for Sse2 {
         fn whole(low: __m128d, high: __m128d) -> __m128i {
             _mm_unpacklo_epi64(_mm_cvttpd_epi32(low), _mm_cvttpd_epi32(high))
         }
+        fn load_f32(from: &[f32; 4]) -> __m128 { _mm_loadu_ps(from.as_ptr()) }
+        fn sqrt(of: __m128d) -> __m128d { _mm_sqrt_pd(of) }
     }
 }

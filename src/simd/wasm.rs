@@ -117,5 +117,7 @@ impl Singles128 for Simd128 {
         fn whole(low: v128, high: v128) -> v128 {
             i64x2_shuffle::<0, 2>(i32x4_trunc_sat_f64x2_zero(low), i32x4_trunc_sat_f64x2_zero(high))
         }
+        fn load_f32(from: &[f32; 4]) -> v128 { v128_load(from.as_ptr().cast()) }
+        fn sqrt(of: v128) -> v128 { f64x2_sqrt(of) }
     }
 }

@@ -99,6 +99,8 @@ pub(crate) trait Singles128: Vector128 {
     fn widen_high(self, from: Self::S) -> Self::F;
     fn narrow(self, low: Self::F, high: Self::F) -> Self::S;
     fn whole(self, low: Self::F, high: Self::F) -> Self::I;
+    fn load_f32(self, from: &[f32; 4]) -> Self::S;
+    fn sqrt(self, of: Self::F) -> Self::F;
 }
 
 /// Four vectors for eight lanes of 64 bits, two for eight of 32.
@@ -497,5 +499,23 @@ impl<V: Singles128> F32Lanes8 for Wide128<V> {
     #[inline(always)]
     fn whole(self, [a, b, c, d]: Self::F64) -> Self::I32 {
         [self.0.whole(a, b), self.0.whole(c, d)]
+    }
+    #[inline(always)]
+    fn load_f32(self, from: &[f32; 8]) -> Self::F32 {
+        each2!(i => self.0.load_f32(&from.as_chunks::<4>().0[i]))
+    }
+    #[inline(always)]
+    fn sqrt(self, of: Self::F64) -> Self::F64 {
+        each4!(i => self.0.sqrt(of[i]))
+    }
+    #[inline(always)]
+    fn if_less(self, a: Self::F64, b: Self::F64, value: Self::F64) -> Self::F64 {
+        let v = self.0;
+        each4!(i => v.of_bits(v.and(v.is_less(a[i], b[i]), v.bits(value[i]))))
+    }
+    #[inline(always)]
+    fn is_zero(self, values: Self::F64) -> bool {
+        let (v, [a, b, c, d]) = (self.0, self.bits(values));
+        v.sign_bits(v.is_equal(v.or(v.or(a, b), v.or(c, d)), v.splat(0))) == 0b1111
     }
 }
