@@ -4,6 +4,9 @@
 /// have.
 pub const LANES: usize = 8;
 
+/// The numbers of the lanes.
+pub(crate) const NUMBERS: Lanes<i32> = [0, 1, 2, 3, 4, 5, 6, 7];
+
 /// One number for each of so many pixels or vertices that follow each other.
 pub type Lanes<T> = [T; LANES];
 

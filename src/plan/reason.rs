@@ -107,7 +107,7 @@ pub enum Reason {
         /// The number of shades of error that are accepted.
         max_error: f32,
     },
-    /// An error budget sees to it that shades follow the light, face by face.
+    /// An error budget keeps shades near the light, face by face.
     LeftToBudget,
     /// Every normal is that of its face, and the lights are far away: one shade for a face is right.
     Faceted,

@@ -3,10 +3,10 @@
 
 use super::columns::ScreenPos;
 use super::frame::Rect;
-use super::pick::{CHUNK, LANES, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, NUMBERS, Pick};
+use super::pick::{CHUNK, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, Pick};
 use super::setup::first_centre;
 use crate::fixed::HAS_F64;
-use crate::lanes::three;
+use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 
 /// The longer side of the box of a triangle whose pixels are looked at one by one.

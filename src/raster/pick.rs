@@ -1,11 +1,10 @@
 //! Triangles that are to be drawn, each in one number; and what bounds their sizes.
 
 use super::reference::shade::RESEED;
+use crate::lanes::LANES;
 
 /// Triangles that are culled at a time.
 pub(crate) const CHUNK: usize = 64;
-/// Triangles, or rows of one, that are set up at a time.
-pub(crate) const LANES: usize = 8;
 /// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
 pub(super) const MAX_COLUMNS: i32 = 64;
 /// The highest.
@@ -17,9 +16,6 @@ pub(super) const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
 pub(super) const MAX_HEIGHT: i32 = 4_096 * 256;
 /// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
 pub(super) const MAX_AREA_4X4: i32 = 1 << 14;
-
-/// Numbers of lanes.
-pub(super) const NUMBERS: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// The class of a triangle, by its size and position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -8,9 +8,9 @@
 //! lies left of the other in exact arithmetic, and rounding up keeps their order.
 
 use super::frame::Rect;
-use super::pick::{LANES, NUMBERS};
 use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 

@@ -36,9 +36,10 @@
 //! the middle between two integers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
 
 use super::columns::{Columns, Picks, Triangles};
-use super::pick::{LANES, Pick};
+use super::pick::Pick;
 use super::reference::depth::DepthPlane;
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::LANES;
 use crate::simd::Lanes8;
 #[cfg(simd_x86_64)]
 use crate::span::LargeTriangle;

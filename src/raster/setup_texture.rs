@@ -9,9 +9,10 @@
 //! its terms are without their signs.
 
 use super::columns::{Picks, Triangles};
-use super::pick::{LANES, Pick};
+use super::pick::Pick;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::LANES;
 use crate::simd::Lanes8;
 
 /// Texture coordinates, u and v, of each corner of up to eight triangles, in texels with 16 fraction bits. Lanes without a

@@ -33,7 +33,6 @@
 
 use super::columns::{Picks, Triangles};
 use super::interpolation::Interpolation;
-use super::pick::{LANES, NUMBERS};
 use super::reference::cover::SortedTriangle;
 #[cfg(feature = "alloc")]
 use super::reference::float::FloatPlane;
@@ -42,6 +41,7 @@ use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::ROUND_MAGIC;
+use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float;

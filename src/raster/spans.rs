@@ -22,7 +22,7 @@ use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
-use super::pick::{LANES, MAX_WIDTH, Pick, SizeClass};
+use super::pick::{MAX_WIDTH, Pick, SizeClass};
 use super::reference::depth::DepthPlane;
 use super::reference::shade::RESEED;
 use super::rows::{self, Linear, Shades8};
@@ -30,7 +30,7 @@ use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
-use crate::lanes::three;
+use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
@@ -138,7 +138,7 @@ fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target
 }
 
 compiled_for_each_level! {
-    /// Likewise, where they are nearer than cells.
+    /// Draws triangles, none of which is unbatched, where they are nearer than the cells.
     fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_nearer_by;
 }
 
@@ -156,7 +156,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn draw_shaded_by<S: Lanes8>(s: S, of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats {
-    // A chip's program must not hold what follows.
+    // As in `draw_triangles`.
     if !HAS_F64 {
         return DrawStats::default();
     }
@@ -174,7 +174,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
     shades: &mut P,
     list: &mut SpanList,
 ) -> DrawStats {
-    // Nobody comes here then, and a chip's program must not hold what follows.
+    // Unreachable without f64: this keeps routines of soft floats out of a chip's program.
     if !HAS_F64 {
         return DrawStats::default();
     }

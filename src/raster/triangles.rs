@@ -5,10 +5,11 @@ use super::cull::{PickList, cull, pick};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
-use super::pick::{CHUNK, LANES};
+use super::pick::CHUNK;
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::U8F8;
+use crate::lanes::LANES;
 
 /// The corners of all triangles of a batch.
 const CORNERS: usize = 3 * Batch::CAPACITY;

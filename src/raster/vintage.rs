@@ -68,7 +68,7 @@ impl Edge {
         Self { y: a.y, x, step_x: dx / rows, shade: a.shade, step_shade: (b.shade - a.shade) / rows }
     }
 
-    /// The edge at row `y` of its rows: what as many additions come to.
+    /// The edge at row `y` of its rows: the value after that many additions.
     #[inline]
     fn at(&self, y: i32) -> Self {
         // A cut quotient times no more than its divisor is no more than the dividend.

@@ -44,7 +44,7 @@ pub struct Object {
     /// The angles about x, y and z. The turn about z comes first, then y, then x: y spins the object like a turntable,
     /// x tilts the table.
     ///
-    /// The matrix is made anew from the angles for every frame, never from a product of small steps, so it stays a
+    /// The matrix is computed from the angles for every frame, never from a product of small steps, so it stays a
     /// rotation for ever. Set from the time, frame n does not depend on whether the frames before it were drawn.
     pub angles: [Angle; 3],
 }

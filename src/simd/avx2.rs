@@ -76,7 +76,7 @@ static SET_LANES: [u64; 256] = {
     }
     all
 };
-/// Likewise of four lanes of 64 bits: the numbers of their halves.
+/// Numbers of the halves of the 64-bit lanes that are set in each mask of four, then zeros: a byte each.
 static SET_PAIRS: [u64; 16] = {
     let mut all = [0; 16];
     let mut mask = 0;

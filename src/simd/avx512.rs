@@ -126,7 +126,7 @@ impl Lanes8 for Avx512 {
     #[inline(always)]
     fn compress_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
-            // SAFETY: likewise.
+            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
             unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from[i])) }
         }
     }

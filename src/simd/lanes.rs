@@ -29,7 +29,7 @@ pub(crate) trait Lanes8: Copy {
     fn neg_mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64;
     /// The smaller one. Neither is NaN, and zeros have the same sign.
     fn min(self, a: Self::F64, b: Self::F64) -> Self::F64;
-    /// The greater one, likewise.
+    /// The greater one. Neither is NaN, and zeros have the same sign.
     fn max(self, a: Self::F64, b: Self::F64) -> Self::F64;
     /// `a`, negated where the sign bit of `sign` is set.
     fn xor_sign(self, a: Self::F64, sign: Self::F64) -> Self::F64;
@@ -117,6 +117,6 @@ pub(crate) trait Lanes8: Copy {
     fn mask_from_bits(self, bits: u8) -> Self::Mask;
     /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
     fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
-    /// Likewise.
+    /// [`compress_i32`](Self::compress_i32) of 64-bit lanes.
     fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
 }

@@ -24,7 +24,7 @@ pub(crate) trait Vector128: Copy {
     fn div_f64(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a·b + c`, fused if there is such an instruction.
     fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// `c − a·b`, likewise.
+    /// `c − a·b`, fused if there is such an instruction.
     fn neg_mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     fn min_f64(self, a: Self::F, b: Self::F) -> Self::F;
     fn max_f64(self, a: Self::F, b: Self::F) -> Self::F;

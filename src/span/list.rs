@@ -11,12 +11,11 @@ use core::ops::Range;
 
 use super::Kernel;
 use super::depth::{Cell, Cells, copy_nearer, fill_nearer};
+use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable};
 
 /// Spans that a list has room for.
 const CAPACITY: usize = 128;
-/// Spans that are written at a time. Those behind the last span are written over.
-const LANES: usize = 8;
 
 type Numbers = [u32; CAPACITY + LANES];
 type Depths = [i64; CAPACITY + LANES];
@@ -296,7 +295,7 @@ impl SpanList {
         (row as usize - first_row as usize) * self.width as usize + column as usize
     }
 
-    /// The offset of the first pixel of span `k`, likewise.
+    /// The offset of the first pixel of span `k`.
     #[inline(always)]
     pub(crate) fn offset(&self, k: usize) -> u32 {
         self.at[k.min(CAPACITY)]
@@ -390,7 +389,7 @@ impl SpanList {
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
         let mut written = 0;
         for (Span { at, length, paint }, SpanDepth { cell, z, dz }) in self.tested_spans() {
-            // As above.
+            // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
                 written += fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z >> 8, dz >> 8);
@@ -410,7 +409,7 @@ impl SpanList {
     ) -> u32 {
         let mut written = 0;
         for (k, (Span { at, length, .. }, SpanDepth { cell, z, dz })) in self.tested_spans_of(range).enumerate() {
-            // As above.
+            // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
                 written += copy_nearer(row, cells, bytes.of(k), z >> 8, dz >> 8);

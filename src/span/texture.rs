@@ -15,6 +15,7 @@
 use core::fmt;
 
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
+use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, Lanes8};
 
 /// A texture's bytes, row by row, with their shape.
@@ -244,11 +245,6 @@ pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places
     }
 }
 
-/// Places of texels that are found together.
-pub(crate) const LANES: usize = 8;
-
-const NUMBERS: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7];
-
 /// Places of texels in vectors.
 #[derive(Clone, Copy)]
 struct PlaceLanes<S: Lanes8> {
@@ -321,8 +317,8 @@ impl<S: Lanes8> AffineLines<S> {
 /// ```
 ///
 /// in exact arithmetic, modulo 2³²; negative coordinates wrap as others do. Along the row every divisor is
-/// positive (what is less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶: the raster
-/// sees to it.
+/// positive (what is less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶, as the
+/// raster makes them.
 #[inline(never)]
 pub fn fill_perspective(
     row: &mut [u8],

@@ -4,11 +4,12 @@ use alloc::vec::Vec;
 
 use super::{Attributes, EffectScratch, PixelPipeline};
 use crate::fixed::U8F8;
+use crate::lanes::LANES;
 use crate::raster::columns::{Columns, EffectColumns, LitColumn, Picks, ScreenPos, Triangles};
 use crate::raster::cull::{PickList, cull, pick};
 use crate::raster::depth::Cell;
 use crate::raster::draw_stats::DrawStats;
-use crate::raster::pick::{CHUNK, LANES};
+use crate::raster::pick::CHUNK;
 use crate::raster::triangle::Raster;
 use crate::raster::vertex::Vertex;
 

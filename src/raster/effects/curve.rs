@@ -19,7 +19,7 @@ use super::Limits;
 use super::listing::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
-use crate::raster::reference::weights::Weights;
+use crate::raster::reference::weights::{Weights, in_f64};
 use crate::span::Kernel;
 
 /// Greatest shade at a point, in 8.8: 2⁸ times the brightest that is shown. So no sum is infinite.
@@ -80,7 +80,7 @@ impl CurvePlane {
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;
-        let steps = three(weights.per_column(), |step| step * share);
+        let steps = three(in_f64(weights.per_column()), |step| step * share);
         let mut curves = [Curve::default(); 3];
         for (channel, curve) in curves.iter_mut().enumerate().take(channels) {
             *curve = Curve::new(corners, channel, steps);
@@ -92,7 +92,7 @@ impl CurvePlane {
     /// The shades of a channel from pixel (`x`, `y`) on, whose centre lies in the triangle.
     #[inline]
     pub(super) fn fill(&self, (x, y): (i32, i32), channel: usize, shades: &mut [u16], kernel: Kernel) {
-        let weights = three(self.weights.at(x, y), |weight| weight * self.share);
+        let weights = three(in_f64(self.weights.at(x, y)), |weight| weight * self.share);
         let Limits { least, most } = self.limits[channel];
         let parabola = self.curves[channel].parabola(weights, self.steps);
         kernel.curve(shades, parabola, least.to_bits(), most.to_bits());

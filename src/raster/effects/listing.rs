@@ -10,11 +10,11 @@
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
-use crate::lanes::three;
+use crate::lanes::{LANES, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
 use crate::raster::interpolation::Interpolation;
-use crate::raster::pick::{LANES, Pick, SizeClass};
+use crate::raster::pick::{Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
 use crate::raster::reference::shade::{RESEED, ShadePlane};
@@ -29,7 +29,7 @@ use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, Spans8, 
 /// | bits | the first | the second |
 /// |---|---|---|
 /// | 0 to 5, 0 to 15 | the face, among those whose planes are kept | the column, from that of the planes |
-/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row, likewise |
+/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row |
 /// | 12 to 18 | the number of the span in its row | |
 /// | 19 to 31 | the row's last pixel inside the frame, from the first one of the span | |
 #[derive(Clone, Copy)]

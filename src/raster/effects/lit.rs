@@ -5,7 +5,7 @@ use super::pipeline::{Lighting, SampleSpacing};
 use super::spans::{LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
-use crate::raster::reference::weights::Weights;
+use crate::raster::reference::weights::{Weights, in_f64};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
@@ -54,7 +54,7 @@ impl LitPlane {
             values[6] = depth;
         }
         let weights = Weights::new(triangle);
-        Self { weights, values, step: Self::sum(&values, weights.per_column()) }
+        Self { weights, values, step: Self::sum(&values, in_f64(weights.per_column())) }
     }
 
     /// The sum over the corners, in their order from top to bottom, of the values with these weights.
@@ -70,7 +70,7 @@ impl LitPlane {
     /// Numerators and denominator of the values at a pixel.
     #[inline]
     fn at(&self, (x, y): (i32, i32)) -> ([f64; 6], f64) {
-        Self::sum(&self.values, self.weights.at(x, y))
+        Self::sum(&self.values, in_f64(self.weights.at(x, y)))
     }
 }
 
@@ -97,7 +97,7 @@ impl Waiting {
         Self { numerators, places: [0; 2 * LANES], count: 0 }
     }
 
-    /// Puts up to seven pixels, from `first` on, behind those that wait.
+    /// Puts up to seven pixels, from `first` on, behind the pending ones.
     #[inline]
     fn push(&mut self, numerators: &Numerators, pixels: core::ops::Range<usize>) {
         for (i, waiting) in self.numerators.iter_mut().enumerate() {

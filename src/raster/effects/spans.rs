@@ -3,10 +3,10 @@
 use core::ops::Range;
 
 use super::listing::{FaceCorners, FacePlanes8, Listed, Mark};
+use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
-use crate::raster::pick::LANES;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::shade::RESEED;
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8};
@@ -172,7 +172,7 @@ impl<'a> Spans<'a> {
         (planes.affine.fits >> lane & 1 != 0).then_some((&planes.affine, lane))
     }
 
-    /// The planes of those that are linear on the face, likewise.
+    /// The planes of the spans whose texture is linear on the face.
     #[inline(always)]
     pub(super) fn perspective(&self, i: usize) -> Option<(&'a PerspectivePlanes8, usize)> {
         self.planes(i).map(|(planes, lane)| (&planes.perspective, lane))

@@ -312,12 +312,12 @@ mod tests {
     use crate::raster::reference::cover::SortedTriangle;
     use crate::raster::reference::depth::DepthPlane;
     use crate::raster::reference::texture::exact;
-    use crate::raster::reference::weights::WholeWeights;
+    use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
 
     /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
     fn defined(triangle: &SortedTriangle, coordinates: [i32; 3], level: u32, (x, y): (i32, i32)) -> u32 {
-        let weights = WholeWeights::new(triangle);
+        let weights = Weights::new(triangle);
         let values = coordinates.map(i64::from);
         let (n, d) = (exact(weights.at(x, y), values), i128::from(triangle.area()) << level);
         let falls = exact(weights.per_column(), values) < 0;
@@ -491,7 +491,7 @@ mod tests {
         (x, y): (i32, i32),
     ) -> Result<(), TestCaseError> {
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
-        let weights = WholeWeights::new(triangle);
+        let weights = Weights::new(triangle);
         for i in 0..3 {
             let values = [0, 1, 2].map(|k| if i < 2 { i64::from(texture[k][i]) * depths[k] } else { depths[k] });
             for (weights, sum) in [(weights.at(x, y), start[i]), (weights.per_column(), step[i])] {

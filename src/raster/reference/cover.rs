@@ -23,8 +23,8 @@ impl SortedTriangle {
         Self::with_order(vertices).0
     }
 
-    /// Puts three vertices in order, and says which of them stands in each place. Without branches: which corner is the
-    /// top is anybody's guess.
+    /// Puts three vertices in order, and says which of them stands in each place. Without branches, which no
+    /// processor would predict.
     #[inline]
     pub(in crate::raster) fn with_order(vertices: &[Vertex; 3]) -> (Self, [usize; 3]) {
         let key = |v: &Vertex| (i64::from(v.y().to_bits()) << 32) + i64::from(v.x().to_bits());

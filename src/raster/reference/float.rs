@@ -37,7 +37,7 @@
 //! [`shade`](super::shade).
 
 use super::cover::{Row, SortedTriangle};
-use super::weights::Weights;
+use super::weights::{Weights, in_f64};
 use crate::lanes::three;
 
 /// The shades of a triangle in f32.
@@ -70,7 +70,7 @@ impl FloatPlane {
         let weights = Weights::new(triangle);
         let step = |products: [i128; 3]| {
             // Differences of areas: whole numbers within 2³⁰.
-            let [a, b, c] = three(weights.per_column(), |change| i128::from(change as i64));
+            let [a, b, c] = three(weights.per_column(), i128::from);
             a * products[0] + b * products[1] + c * products[2]
         };
         // In 1/256 shade; at most 2⁸⁰, which f32 has.
@@ -90,7 +90,7 @@ impl FloatPlane {
     /// A row of the triangle.
     pub(in crate::raster) fn row(&self, row: &Row) -> FloatRow {
         let start = if self.steps[1] < 0.0 { row.last } else { row.origin };
-        let [wa, wb, wc] = self.weights.at(start, row.y);
+        let [wa, wb, wc] = in_f64(self.weights.at(start, row.y));
         let [a, b, c] = &self.values;
         let at_start = |i: usize| (wa * a[i] + wb * b[i] + wc * c[i]) as f32;
         let [dn, dd] = self.steps;

@@ -15,7 +15,7 @@
 //! depth is off by 5 parts in 10⁶ at most, a shade by 0.003.
 
 use super::cover::SortedTriangle;
-use super::weights::WholeWeights;
+use super::weights::{Weights, in_f64};
 use crate::fixed::HAS_F64;
 use crate::lanes::three;
 use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
@@ -23,7 +23,7 @@ use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_qu
 /// The perspective-correct shades of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct HyperbolicPlane {
-    weights: WholeWeights,
+    weights: Weights,
     depths: [i64; 3],
     shades: [i64; 3],
 }
@@ -35,7 +35,7 @@ impl HyperbolicPlane {
     #[must_use]
     pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
-        Self { weights: WholeWeights::new(triangle), depths, shades }
+        Self { weights: Weights::new(triangle), depths, shades }
     }
 
     /// The sums, over the corners, of weight times depth times shade (with `more` added to each) and of weight times
@@ -88,7 +88,7 @@ impl HyperbolicPlane {
     /// 2. No weight is negative at either end, so what k steps change one by is at most the sum of both its values there;
     ///    the step is off by 3ε of the sum of its terms' sizes, and k of them by 3ε·(N(0) + N(last)), 6εN.
     /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
-    ///    12εD likewise.
+    ///    12εD in the same way.
     /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
     ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
     ///    multiples.
@@ -100,7 +100,7 @@ impl HyperbolicPlane {
         let depths = three(self.depths, |depth| depth as f64);
         let values = three([0, 1, 2], |i| (self.depths[i] * (self.shades[i] + 128)) as f64 * 256.0);
         let sums = |weights: [i64; 3]| {
-            let [a, b, c] = three(weights, |weight| weight as f64);
+            let [a, b, c] = in_f64(weights);
             (a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2])
         };
         let ((n, d), (dn, dd)) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));

@@ -2,7 +2,7 @@
 
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
-use super::weights::WholeWeights;
+use super::weights::{Weights, in_f64};
 use crate::fixed::{HAS_F64, nearest_whole};
 use crate::simd::Lanes8;
 use crate::span::texture::{Texels, exact_places, perspective_places};
@@ -114,11 +114,11 @@ impl AffinePlane {
 /// u(x, y) = Σ λᵢ·dᵢ·uᵢ / Σ λᵢ·dᵢ
 /// ```
 ///
-/// with λ the [weights](WholeWeights) of the corners and d their depths. No λ is negative at a covered centre, so a
+/// with λ the [weights](Weights) of the corners and d their depths. No λ is negative at a covered centre, so a
 /// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than 2⁻¹⁹.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct PerspectiveTexture {
-    weights: WholeWeights,
+    weights: Weights,
     /// Each corner's u, v and 1, times its depth; below 2⁶³.
     values: [[i64; 3]; 3],
     estimated: [[f64; 3]; 3],
@@ -131,12 +131,6 @@ pub(in crate::raster) struct PerspectiveTexture {
 pub(in crate::raster) fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
     let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
     product(wa, a) + product(wb, b) + product(wc, c)
-}
-
-/// Weights in f64, which is exact: they are at most 2⁴⁴.
-#[inline]
-fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
-    if HAS_F64 { [a as f64, b as f64, c as f64] } else { [0.0; 3] }
 }
 
 /// The sum in f64.
@@ -164,7 +158,7 @@ impl PerspectiveTexture {
         let times =
             |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
         let values = [times(u), times(v), depths];
-        let weights = WholeWeights::new(triangle);
+        let weights = Weights::new(triangle);
         let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
         if HAS_F64 {
             let per_column = in_f64(weights.per_column());

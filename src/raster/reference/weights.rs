@@ -6,19 +6,17 @@
 //! values above 0 cancels nothing, and is right to a few parts in 2⁵³ however thin the triangle.
 
 use super::cover::SortedTriangle;
-#[cfg(feature = "alloc")]
-use crate::lanes::three;
 
 /// The weights of the three corners, as whole numbers.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::raster) struct WholeWeights {
+pub(in crate::raster) struct Weights {
     /// At column 0's centre of row 0.
     origin: [i64; 3],
     per_column: [i64; 3],
     per_row: [i64; 3],
 }
 
-impl WholeWeights {
+impl Weights {
     /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
     pub(in crate::raster) fn new(triangle: &SortedTriangle) -> Self {
         let first = &triangle.vertices[0];
@@ -50,36 +48,8 @@ impl WholeWeights {
     }
 }
 
-/// The weights of the three corners in f64, exact like [`WholeWeights`].
-#[cfg(feature = "alloc")]
-#[derive(Clone, Copy, Debug)]
-pub(in crate::raster) struct Weights {
-    /// At column 0's centre of row 0.
-    origin: [f64; 3],
-    per_column: [f64; 3],
-    per_row: [f64; 3],
-}
-
-#[cfg(feature = "alloc")]
-impl Weights {
-    /// The weights in a triangle that is not degenerate; the corners are in the order of its vertices.
-    pub(in crate::raster) fn new(triangle: &SortedTriangle) -> Self {
-        let whole = WholeWeights::new(triangle);
-        let exact = |weights: [i64; 3]| three(weights, |weight| weight as f64);
-        Self { origin: exact(whole.origin), per_column: exact(whole.per_column), per_row: exact(whole.per_row) }
-    }
-
-    /// Returns the weights at the centre of pixel (`x`, `y`).
-    #[inline]
-    pub(in crate::raster) fn at(&self, x: i32, y: i32) -> [f64; 3] {
-        let (x, y) = (f64::from(x), f64::from(y));
-        let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
-        [at(0), at(1), at(2)]
-    }
-
-    /// Change of the weights from one pixel to the next; they add up to 0.
-    #[inline]
-    pub(in crate::raster) fn per_column(&self) -> [f64; 3] {
-        self.per_column
-    }
+/// Weights in f64, which is exact: they are at most 2⁴⁴.
+#[inline]
+pub(in crate::raster) fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
+    [a as f64, b as f64, c as f64]
 }

@@ -78,7 +78,7 @@ impl Lists {
         self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
     }
 
-    /// Sees to it that memory for so many faces needs no allocation. Unused memory is not touched.
+    /// Reserves memory for this number of faces. Unused memory is not touched.
     pub(crate) fn reserve(&mut self, faces: usize) {
         self.list.reserve((faces * Scratch::LIST_EACH).saturating_sub(self.list.len()));
         self.pairs.reserve(faces.saturating_sub(self.pairs.len()));

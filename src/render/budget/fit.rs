@@ -21,7 +21,7 @@ use crate::simd::at_best_level;
 use crate::span::Kernel;
 
 /// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
-/// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a grid that is lit in vain is dearer the finer it is.)
+/// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a failed attempt costs more on a finer grid.)
 const PIXELS_A_POINT: f32 = 4.0;
 
 /// Pixels from which on a face is tried. (Instructions of a frame within 1 shade, from 16 on, 32 and 48: `rgb` 1.06, 1.02 and

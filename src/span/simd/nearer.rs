@@ -25,7 +25,7 @@ pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &
     unsafe { fill(pixels, cells, spans.tested_spans(), |_, _| Own::Linear) }
 }
 
-/// The bytes of some spans of a list, likewise.
+/// Copies the bytes of some spans of a list where they are nearer. Returns the number of pixels written.
 pub(crate) fn copy_spans(
     _: Avx2,
     pixels: &mut [u8],
@@ -37,7 +37,8 @@ pub(crate) fn copy_spans(
     unsafe { fill(pixels, cells, spans.tested_spans_of(range), |number, _| Own::Bytes(bytes.of(number))) }
 }
 
-/// Every span of a list, of shades in 16.16: for each its first one, and the step. Likewise.
+/// Fills every span of a list where it is nearer, with shades in 16.16: `shades` gives the first one and the step. Returns the
+/// number of pixels written.
 pub(crate) fn fill_spans_16_16(
     _: Avx2,
     pixels: &mut [u8],
@@ -325,7 +326,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
     stayed
 }
 
-/// One span of up to four pixels, likewise.
+/// Fills one span of up to four pixels where it is nearer.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own<'_>) -> __m128i {
