@@ -96,7 +96,7 @@ impl<'a> Faces<'a> {
         // Of the side that is seen.
         let seen = |face: Pick| {
             let FacePoint { normal, centre } = self.face_points[face.index()];
-            (if face.side() == 0 { normal } else { -normal }, centre)
+            (normal * [1.0, -1.0][face.side()], centre)
         };
         let shades = if self.full {
             let mut points = [[0.0; LANES]; 6];

@@ -11,7 +11,7 @@ use super::faces::{Face, Faces};
 use super::geometry::Geometry;
 use super::stats::Shares;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, three};
+use crate::lanes::{LANES, each, three};
 use crate::light::Blend;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;
@@ -414,10 +414,12 @@ impl Faces<'_> {
         let picks = &picks.as_slice()[flat.len()..];
         stats.lit += picks.len() as u64;
         for eight in picks.chunks(LANES) {
-            let mut faces = [Pick(eight[0]); LANES];
-            for (face, &pick) in faces.iter_mut().zip(eight) {
-                *face = Pick(pick);
-            }
+            // Without a face the first one's.
+            let faces = match eight.first_chunk::<LANES>() {
+                Some(eight) => each!(lane => eight[lane]),
+                None => each!(lane => if lane < eight.len() { eight[lane] } else { eight[0] }),
+            };
+            let faces = faces.map(Pick);
             let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
             let first = surface(&faces[0]);
             if !self.channels && (self.paints.len() == 1 || faces.iter().all(|face| surface(face) == first)) {
