@@ -361,10 +361,8 @@ impl Shades8 for Shaded8<'_> {
         match self.kind {
             Kind::Fixed16 => {
                 let shades = |k: usize, face: u32| (self.starts.of(k)[0] as u32, self.listed.step_16_16(face as usize));
-                match target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, shades) {
-                    Some(nearer) => list.clear(nearer),
-                    None => self.draw_by(s, &Fixed16, list, target),
-                }
+                let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, shades);
+                list.clear(nearer);
             }
             Kind::Hyperbolic => self.draw_by(s, &Hyperbolic, list, target),
             #[cfg(feature = "alloc")]
@@ -391,23 +389,6 @@ type Bytes = [u8; SpanBytes::LENGTH];
 trait Stage {
     /// The bytes of a span, and anything behind them in blocks of eight. Returns false where it cannot decide on all of them.
     fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
-}
-
-struct Fixed16;
-
-impl Stage for Fixed16 {
-    #[inline(always)]
-    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let step = s.splat_i32(all.step_16_16(span.face).cast_signed());
-        // The lower half.
-        let mut sums = s.add_i32(s.splat_i32(span.starts[0] as i32), s.mul_i32(step, s.load_i32(&NUMBERS)));
-        let next = s.shl_i32(step, 3);
-        for block in blocks(bytes, span.length) {
-            *block = s.low_bytes(s.shr_i32(sums, 16));
-            sums = s.add_i32(sums, next);
-        }
-        true
-    }
 }
 
 /// Blocks of eight that hold so many bytes.

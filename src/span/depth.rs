@@ -81,18 +81,44 @@ impl Cell for u16 {
 /// Returns the number of pixels written. Pixels beyond the shorter of the two slices are left alone.
 #[inline]
 pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u16, z: i64, dz: i64) -> u32 {
-    let (mut ax, mut z, mut written) = (shade, z, 0);
+    let mut ax = shade;
+    fill_by(row, depth, z, dz, || {
+        let byte = (ax >> 8) as u8;
+        ax = ax.wrapping_add(step);
+        byte
+    })
+}
+
+/// [`fill_nearer`] of shades in 16.16.
+#[inline]
+pub(crate) fn fill_nearer_16_16<D: Cell>(
+    row: &mut [u8],
+    depth: &mut [D],
+    [mut shade, step]: [u32; 2],
+    z: i64,
+    dz: i64,
+) -> u32 {
+    fill_by(row, depth, z, dz, || {
+        let byte = (shade >> 16) as u8;
+        shade = shade.wrapping_add(step);
+        byte
+    })
+}
+
+/// Fills `row` with what `next` gives for each pixel, where it is nearer.
+#[inline(always)]
+fn fill_by<D: Cell>(row: &mut [u8], depth: &mut [D], mut z: i64, dz: i64, mut next: impl FnMut() -> u8) -> u32 {
     let n = row.len().min(depth.len());
-    let (row, depth, mut i) = (&mut row[..n], &mut depth[..n], 0);
+    let (row, depth, mut i, mut written) = (&mut row[..n], &mut depth[..n], 0, 0);
     while i < n {
+        let byte = next();
         // Depths are u32: what lies above bit 56 is not there within a triangle.
         let d = D::of_depth((z >> 24) as u32);
         if d > depth[i] {
             depth[i] = d;
-            row[i] = (ax >> 8) as u8;
+            row[i] = byte;
             written += 1;
         }
-        ax = ax.wrapping_add(step);
         z = z.wrapping_add(dz);
         i += 1;
     }

@@ -387,15 +387,10 @@ impl SpanList {
     /// Fills each where it is nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
-        let mut written = 0;
-        for (Span { at, length, paint }, SpanDepth { cell, z, dz }) in self.tested_spans() {
-            // No overflow: all are below 2³¹.
-            let (at, cell, length) = (at as usize, cell as usize, length as usize);
-            if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-                written += fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z >> 8, dz >> 8);
-            }
-        }
-        written
+        self.each_tested(0..self.count(), pixels, cells, |_, paint, row, cells, [z, dz]| {
+            // Its halves.
+            fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z, dz)
+        })
     }
 
     /// Copies the bytes of some where they are nearer. Returns the number of pixels written.
@@ -407,12 +402,25 @@ impl SpanList {
         cells: &mut [D],
         bytes: &SpanBytes,
     ) -> u32 {
+        self.each_tested(range, pixels, cells, |k, _, row, cells, [z, dz]| copy_nearer(row, cells, bytes.of(k), z, dz))
+    }
+
+    /// Hands the pixels and cells of some to a loop that tests depths: with the span's number among these, its paint, and its
+    /// first depth and the step. Returns the sum of what it returns.
+    #[inline(always)]
+    pub(super) fn each_tested<D: Cell>(
+        &self,
+        range: Range<usize>,
+        pixels: &mut [u8],
+        cells: &mut [D],
+        mut fill: impl FnMut(usize, u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
+    ) -> u32 {
         let mut written = 0;
-        for (k, (Span { at, length, .. }, SpanDepth { cell, z, dz })) in self.tested_spans_of(range).enumerate() {
+        for (k, (Span { at, length, paint }, SpanDepth { cell, z, dz })) in self.tested_spans_of(range).enumerate() {
             // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-                written += copy_nearer(row, cells, bytes.of(k), z >> 8, dz >> 8);
+                written += fill(k, paint, row, cells, [z >> 8, dz >> 8]);
             }
         }
         written

@@ -321,9 +321,8 @@ impl Kernel {
         }
     }
 
-    /// Fills every span, in order, with shades in 16.16 where they are nearer: `shades` gives the first one and the step of a
-    /// span, by its number and its paint. Returns the number of pixels written; `None`, with nothing done, where this kernel
-    /// has no loop for it.
+    /// Fills every span, in order, with shades in 16.16, where there are cells those that are nearer: `shades` gives the first
+    /// one and the step of a span, by its number and its paint. Returns the number of pixels that were nearer.
     #[inline(always)]
     pub(crate) fn fill_spans_16_16(
         self,
@@ -331,13 +330,25 @@ impl Kernel {
         cells: &mut Option<Cells<'_>>,
         spans: &list::SpanList,
         shades: impl Fn(usize, u32) -> (u32, u32),
-    ) -> Option<u32> {
+    ) -> u32 {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
-            return Some(simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades));
+            return simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades);
         }
-        let _ = (pixels, cells, spans, shades);
-        None
+        match cells {
+            None => {
+                for (k, list::Span { at, length, paint }) in spans.spans().enumerate() {
+                    // No overflow: both are below 2³¹.
+                    if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
+                        let (start, step) = shades(k, paint);
+                        fixed16::fill_16_16(row, start, step);
+                    }
+                }
+                0
+            }
+            Some(Cells::U16(cells)) => nearer_16_16(pixels, cells, spans, shades),
+            Some(Cells::U32(cells)) => nearer_16_16(pixels, cells, spans, shades),
+        }
     }
 
     /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as
@@ -414,6 +425,19 @@ impl Kernel {
     pub(crate) fn avx512(self) -> Option<Avx512> {
         self.level.avx512()
     }
+}
+
+/// Fills every span of a list with shades in 16.16 where they are nearer. Returns the number of pixels written.
+fn nearer_16_16<D: depth::Cell>(
+    pixels: &mut [u8],
+    cells: &mut [D],
+    spans: &list::SpanList,
+    shades: impl Fn(usize, u32) -> (u32, u32),
+) -> u32 {
+    spans.each_tested(0..spans.count(), pixels, cells, |k, paint, row, cells, [z, dz]| {
+        let (start, step) = shades(k, paint);
+        depth::fill_nearer_16_16(row, cells, [start, step], z, dz)
+    })
 }
 
 /// The name, and for `simd` the level in brackets.
