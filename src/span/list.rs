@@ -342,6 +342,7 @@ impl SpanList {
     }
 
     /// The spans, in order, with their depths.
+    #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
         self.tested_spans_of(0..self.count())
