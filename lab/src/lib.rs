@@ -5,6 +5,7 @@
 //! | [`truth`] | what a picture should be: the scene in f64, slow and plain |
 //! | [`cost`] | accuracy against time: the study, its statistics and its report |
 //! | [`explain`] | why a pixel has its byte; a row's intensity and slope |
+//! | [`museum`] | methods of the sources that the engine has left behind |
 //! | [`show`] | hard cases as pictures: the right way beside the fault |
 //! | [`record`] | a frame's triangles in a file |
 //! | [`replay`] | a recorded frame through every kernel and hidden-surface method, and by the exact oracle |
@@ -13,6 +14,7 @@ extern crate alloc;
 
 pub mod cost;
 pub mod explain;
+pub mod museum;
 pub mod record;
 pub mod replay;
 pub mod show;

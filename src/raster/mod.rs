@@ -25,7 +25,6 @@
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
 //! | `triangles` | the same by vertices: [`Raster::triangles`] |
-//! | [`polygon`] | convex polygons by a table of rows: [`Raster::polygon`] |
 //! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
 //!
 //! ```
@@ -56,8 +55,6 @@ pub mod frame;
 pub mod interpolation;
 mod paint;
 pub(crate) mod pick;
-#[doc(hidden)]
-pub mod polygon;
 #[doc(hidden)]
 pub mod reference;
 mod rows;

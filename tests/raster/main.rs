@@ -13,7 +13,6 @@ mod hidden_surfaces;
 mod machine;
 mod patterns;
 #[cfg(feature = "alloc")]
-mod polygons;
 mod shared_edges;
 mod triangles;
 mod vertex_rounding;

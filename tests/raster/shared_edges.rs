@@ -1,8 +1,10 @@
-//! R5: triangles that share edges draw each pixel inside exactly once and none outside.
+//! R5: triangles that share edges draw each pixel inside exactly once and none outside; and their shades agree along the
+//! edges (N9).
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
 use mode13h::raster::reference::cover::SortedTriangle;
+use mode13h::raster::reference::shade::ShadePlane;
 use mode13h::raster::{Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};
@@ -184,4 +186,49 @@ fn r5_shared_edges() {
 #[ignore = "the long run: 10,000,000 triangles"]
 fn r5_long_shared_edges() {
     shared_edges(Tried::new("r5_long_shared_edges", 10_000_000), 10_000_000);
+}
+
+/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not:
+/// along the common edge the planes of both faces are within the rounding of a shade.
+#[test]
+fn n9_slip_5_two_faces_agree_along_their_edge() {
+    let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);
+    let mut random = Random::named("n9");
+    let mut centres = 0;
+    while tried.more() {
+        // An edge through pixel centres: from one to another, and those on the way.
+        let (parts, dx, dy) = (random.within(1, 12), random.within(-12, 12), random.within(-12, 12));
+        let (x, y) = (random.within(0, 200), random.within(0, 100));
+        let shade = |random: &mut Random| random.within(0, 0xFF00);
+        let ends =
+            [0, parts].map(|k| vertex((x + k * dx) * 256 + 128, (y + k * dy) * 256 + 128, shade(&mut random), 1));
+        let sides = [1, -1].map(|side| {
+            // On either side of the edge, anywhere.
+            let (along, off) = (random.within(-20_000, 20_000), side * random.log_uniform(14) as i64);
+            let third = vertex(
+                x * 256 + along * dx / 12 - off * dy,
+                y * 256 + along * dy / 12 + off * dx,
+                shade(&mut random),
+                1,
+            );
+            [ends[0], ends[1], third]
+        });
+        let [Some(one), Some(two)] = sides.map(|vertices| {
+            let ordered = SortedTriangle::new(&vertices);
+            (ordered.doubled_area != 0).then(|| ShadePlane::new(&ordered))
+        }) else {
+            continue;
+        };
+        for k in 0..=parts {
+            let (x, y) = ((x + k * dx) as i32, (y + k * dy) as i32);
+            // Exactly, the two are equal; each start is rounded by less than 1/256 shade.
+            let shades = ends.map(|v| i64::from(v.shade().to_bits()));
+            let exact = (shades[0] * (parts - k) + shades[1] * k) as f64 / parts as f64 + 128.0;
+            for start in [one.start(x, y), two.start(x, y)] {
+                assert!((f64::from(start) - exact).abs() < 1.0, "{start} for {exact} at ({x}, {y}) of {sides:?}");
+            }
+            centres += 1;
+        }
+    }
+    assert!(centres > 10_000, "{centres}");
 }

@@ -2,6 +2,7 @@
 
 use super::face::{Face, Segment};
 use super::panel::Panel;
+use crate::museum::polygon::{self, TableRow};
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
@@ -38,6 +39,25 @@ pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triang
                 triangles.iter().for_each(|(vertices, interpolation)| {
                     raster.triangle(vertices, *interpolation);
                 });
+            }
+        }
+        bytes
+    });
+    let mut panel = Panel::new((width, height));
+    panel.write_where_equal(&a, &b);
+    panel
+}
+
+/// Draws convex polygons by the Hungarian tutorial's table of rows, which is in the museum.
+pub(super) fn draw_by_table((width, height): (usize, usize), polygons: &[&[Vertex]]) -> Panel {
+    let [a, b] = EMPTY.map(|empty| {
+        let mut bytes = vec![empty; width * height];
+        if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
+            let mut table = vec![TableRow::default(); height];
+            for vertices in polygons {
+                // Convex, all of them, and the table has a row for each of the frame's.
+                let clip = frame.bounds();
+                let _ = polygon::draw(&mut frame, clip, vertices, Interpolation::default(), &mut table);
             }
         }
         bytes

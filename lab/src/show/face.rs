@@ -37,7 +37,7 @@ impl Corner {
     }
 
     /// The vertex that the raster takes. A corner that the raster would refuse becomes the origin; no case has one.
-    fn vertex(self) -> Vertex {
+    pub(super) fn vertex(self) -> Vertex {
         let place = I24F8::round_from_f64(self.x).zip(I24F8::round_from_f64(self.y));
         let shade = U8F8::from_bits((self.shade * 256.0 + 0.5) as u16);
         let depth = (self.depth * 1_073_741_824.0 + 0.5) as u32;

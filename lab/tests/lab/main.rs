@@ -7,6 +7,7 @@ mod budget_net;
 mod explain;
 mod fuzz_corpus;
 mod light;
+mod polygons;
 mod record;
 mod report;
 mod show;

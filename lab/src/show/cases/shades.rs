@@ -68,9 +68,8 @@ pub(super) fn n8() -> Comparison {
     let turned = quad.map(|c| Corner { x: BOX as f64 - c.y, y: c.x, ..c }.moved(BOX as f64, 0.0));
     let split = |[a, b, c, d]: [Corner; 4]| [gouraud([a, b, c]), gouraud([a, c, d])];
     let faces: Vec<Face> = [quad, turned].into_iter().flat_map(split).collect();
-    let mut fault = Panel::new(size);
-    shade::quad_as_a_quad(&mut fault, &quad);
-    shade::quad_as_a_quad(&mut fault, &turned);
+    let [quad_vertices, turned_vertices] = [quad, turned].map(|q| q.map(|corner| corner.vertex()));
+    let mut fault = engine::draw_by_table(size, &[&quad_vertices, &turned_vertices]);
     let mut right = engine::draw_faces(size, &faces, false);
     // The half on the left, and beside it the same turned.
     let beside = |panel: &Panel| {

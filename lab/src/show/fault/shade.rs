@@ -72,13 +72,3 @@ pub(in crate::show) fn carried_on_beyond_the_edges(panel: &mut Panel, corners: &
         }
     }
 }
-
-/// A quad shaded as a quad: linear along the two edges that a row crosses, then linear along the row.
-pub(in crate::show) fn quad_as_a_quad(panel: &mut Panel, corners: &[Corner; 4]) {
-    for y in 0..panel.height() as i32 {
-        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, y) else { continue };
-        for x in (ax - 0.5).ceil() as i32..(bx - 0.5).ceil() as i32 {
-            panel.write(x, y, wrapped(a + (centre(x, y).0 - ax) * (b - a) / (bx - ax)));
-        }
-    }
-}

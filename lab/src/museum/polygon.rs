@@ -23,20 +23,17 @@
 //! be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
 //! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
 //! the shades of its edge's ends; start and step along the row are rounded back toward where shades
-//! come from, as in [`shade`](super::reference::shade), so every sum lies between the two crossings' shades.
+//! come from, as in [`shade`](mode13h::raster::reference::shade), so every sum lies between the two crossings' shades.
 
-use core::fmt;
+use std::error::Error;
+use std::fmt;
+use std::ops::Range;
 
-use super::depth::Cell;
-use super::draw_stats::DrawStats;
-use super::frame::Rect;
-use super::interpolation::Interpolation;
-use super::reference::cover::point;
-use super::reference::quotient::Divisor;
-use super::reference::shade::RESEED;
-use super::triangle::Raster;
-use super::vertex::Vertex;
-use crate::fixed::{I24F8, U8F8};
+use mode13h::fixed::{I24F8, U8F8};
+use mode13h::raster::reference::quotient::Divisor;
+use mode13h::raster::reference::shade::RESEED;
+use mode13h::raster::{DrawStats, Frame, Interpolation, Rect, Vertex};
+use mode13h::span::Kernel;
 
 /// Crossings of a convex polygon's two edges with a row's centre.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -79,9 +76,18 @@ impl fmt::Display for PolygonError {
     }
 }
 
-crate::errors::debug_as_display!(PolygonError);
+impl fmt::Debug for PolygonError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
 
-impl core::error::Error for PolygonError {}
+impl Error for PolygonError {}
+
+/// A vertex in 1/256 pixel.
+fn point(vertex: &Vertex) -> (i32, i32) {
+    (vertex.x().to_bits(), vertex.y().to_bits())
+}
 
 /// Winding of a convex polygon on the screen; `None` if it has no area.
 ///
@@ -160,13 +166,7 @@ impl Walk {
 
 /// Fills in the rows of `clip` that the polygon crosses, edge by edge, and returns them. `table[0]` is
 /// the row `first_row`.
-fn fill_table(
-    vertices: &[Vertex],
-    winding: Winding,
-    clip: Rect,
-    table: &mut [TableRow],
-    first_row: u32,
-) -> core::ops::Range<u32> {
+fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [TableRow], first_row: u32) -> Range<u32> {
     // Rows of a frame are below 4,096.
     let (clip_first, clip_end) = (clip.y0 as i32, clip.y1 as i32);
     let (mut first, mut end) = (i32::MAX, 0);
@@ -205,88 +205,87 @@ fn fill_table(
     first as u32..end as u32
 }
 
-impl<D: Cell> Raster<'_, D> {
-    /// Draws a convex polygon by the table of rows. Which vertex is the first and the winding make no
-    /// difference; one without area, or with fewer than three vertices, draws nothing.
-    ///
-    /// `table` has a row for each that the frame holds (200 in mode 13h), and keeps those of this
-    /// polygon, from its first row inside the clip rectangle to its last; what it held makes no
-    /// difference. There is no depth in it: a depth buffer that the raster has is neither looked at
-    /// nor changed.
-    ///
-    /// ```
-    /// use mode13h::fixed::{I24F8, U8F8};
-    /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, polygon::TableRow};
-    ///
-    /// let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
-    /// let quad = [at(0, 0, 10)?, at(4, 0, 90)?, at(4, 2, 90)?, at(0, 2, 10)?];
-    /// let mut bytes = [0; 4 * 2];
-    /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);
-    /// raster.polygon(&quad, Interpolation::Gouraud, &mut [TableRow::default(); 2])?;
-    /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (after rounding to 1/256 pixel one may no longer be), or a table
-    /// with too few rows. Nothing is drawn then.
-    #[doc(hidden)]
-    pub fn polygon(
-        &mut self,
-        vertices: &[Vertex],
-        interpolation: Interpolation,
-        table: &mut [TableRow],
-    ) -> Result<DrawStats, PolygonError> {
-        let reseed = match interpolation {
-            Interpolation::Flat(_) | Interpolation::Gouraud => i32::MAX,
-            Interpolation::GouraudReseeded => RESEED,
-            other => return Err(PolygonError::Interpolation(other)),
-        };
-        let held = self.frame.rows();
-        let (given, needed) = (table.len(), held.len());
-        if given < needed {
-            return Err(PolygonError::Table { given, needed });
-        }
-        let mut drawn = DrawStats::default();
-        let Some(winding) = winding(vertices)? else { return Ok(drawn) };
-        for y in fill_table(vertices, winding, self.clip, table, held.start) {
-            let Some(edges) = table.get((y - held.start) as usize) else { break };
-            // A frame has at most 4,096 columns.
-            let width = self.frame.width() as i32;
-            let origin = edges.left_x.first_centre().max(0);
-            let (x0, x1) =
-                (origin.max(self.clip.x0 as i32), edges.right_x.first_centre().min(width).min(self.clip.x1 as i32));
-            let Some(pixels) = self.frame.row_mut(y) else { break };
-            if x0 >= x1 {
-                continue;
-            }
-            drawn.covered += (x1 - x0) as u32;
-            drawn.pixels += (x1 - x0) as u32;
-            if let Interpolation::Flat(index) = interpolation {
-                drawn.spans += 1;
-                if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
-                    pixels.fill(index);
-                }
-                continue;
-            }
-            let shade = RowShade::new(edges);
-            // The start at or left of the first pixel, as a triangle has them.
-            let mut seed = origin + (x0 - origin) / reseed * reseed;
-            let mut x = x0;
-            while x < x1 {
-                let end = x1.min(seed.saturating_add(reseed));
-                // Fewer than 4,096 pixels; the product wraps as the sum does.
-                let start = shade.start(seed).wrapping_add(shade.step.wrapping_mul((x - seed) as u16));
-                if let Some(pixels) = pixels.get_mut(x as usize..end as usize) {
-                    self.kernel.fill(pixels, start, shade.step);
-                }
-                drawn.spans += 1;
-                seed = end;
-                x = end;
-            }
-        }
-        Ok(drawn)
+/// Draws a convex polygon by the table of rows, inside a rectangle of the frame. Which vertex is the first and the winding make
+/// no difference; one without area, or with fewer than three vertices, draws nothing.
+///
+/// `table` has a row for each that the frame holds (200 in mode 13h), and keeps those of this
+/// polygon, from its first row inside the clip rectangle to its last; what it held makes no
+/// difference. There is no depth in it.
+///
+/// ```
+/// use mode13h::fixed::{I24F8, U8F8};
+/// use mode13h::raster::{Frame, Interpolation, Vertex};
+/// use mode13h_lab::museum::polygon::{TableRow, draw};
+///
+/// let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
+/// let quad = [at(0, 0, 10)?, at(4, 0, 90)?, at(4, 2, 90)?, at(0, 2, 10)?];
+/// let mut bytes = [0; 4 * 2];
+/// let mut frame = Frame::new(&mut bytes, 4, 2, 4)?;
+/// let clip = frame.bounds();
+/// draw(&mut frame, clip, &quad, Interpolation::Gouraud, &mut [TableRow::default(); 2])?;
+/// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (after rounding to 1/256 pixel one may no
+/// longer be), or a table with too few rows. Nothing is drawn then.
+pub fn draw(
+    frame: &mut Frame<'_>,
+    clip: Rect,
+    vertices: &[Vertex],
+    interpolation: Interpolation,
+    table: &mut [TableRow],
+) -> Result<DrawStats, PolygonError> {
+    let reseed = match interpolation {
+        Interpolation::Flat(_) | Interpolation::Gouraud => i32::MAX,
+        Interpolation::GouraudReseeded => RESEED,
+        other => return Err(PolygonError::Interpolation(other)),
+    };
+    let held = frame.rows();
+    let (given, needed) = (table.len(), held.len());
+    if given < needed {
+        return Err(PolygonError::Table { given, needed });
     }
+    let (clip, kernel) = (clip.intersection(frame.bounds()), Kernel::default());
+    let mut drawn = DrawStats::default();
+    let Some(winding) = winding(vertices)? else { return Ok(drawn) };
+    for y in fill_table(vertices, winding, clip, table, held.start) {
+        let Some(edges) = table.get((y - held.start) as usize) else { break };
+        // A frame has at most 4,096 columns.
+        let width = frame.width() as i32;
+        let origin = edges.left_x.first_centre().max(0);
+        let (x0, x1) = (origin.max(clip.x0 as i32), edges.right_x.first_centre().min(width).min(clip.x1 as i32));
+        let Some(pixels) = frame.row_mut(y) else { break };
+        if x0 >= x1 {
+            continue;
+        }
+        drawn.covered += (x1 - x0) as u32;
+        drawn.pixels += (x1 - x0) as u32;
+        if let Interpolation::Flat(index) = interpolation {
+            drawn.spans += 1;
+            if let Some(pixels) = pixels.get_mut(x0 as usize..x1 as usize) {
+                pixels.fill(index);
+            }
+            continue;
+        }
+        let shade = RowShade::new(edges);
+        // The start at or left of the first pixel, as a triangle has them.
+        let mut seed = origin + (x0 - origin) / reseed * reseed;
+        let mut x = x0;
+        while x < x1 {
+            let end = x1.min(seed.saturating_add(reseed));
+            // Fewer than 4,096 pixels; the product wraps as the sum does.
+            let start = shade.start(seed).wrapping_add(shade.step.wrapping_mul((x - seed) as u16));
+            if let Some(pixels) = pixels.get_mut(x as usize..end as usize) {
+                kernel.fill(pixels, start, shade.step);
+            }
+            drawn.spans += 1;
+            seed = end;
+            x = end;
+        }
+    }
+    Ok(drawn)
 }
 
 /// The shades between the two crossings of a row that has a pixel.

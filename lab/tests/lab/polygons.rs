@@ -1,14 +1,12 @@
 //! Convex polygons by the table of rows, against an oracle that says the same in i128; and why faces
-//! are split into triangles instead (N8), whose shades agree along their edges (N9).
+//! are split into triangles instead (N8).
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
-use mode13h::raster::polygon::{PolygonError, TableRow};
-use mode13h::raster::reference::cover::SortedTriangle;
-use mode13h::raster::reference::shade::ShadePlane;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};
+use mode13h_lab::museum::polygon::{self, PolygonError, TableRow};
 
 const WIDTH: u32 = 150;
 const HEIGHT: u32 = 30;
@@ -37,8 +35,8 @@ impl Sheet {
         };
         let mut table = vec![rubbish; self.rows_each as usize];
         let mut drawn = DrawStats::default();
-        for band in Frame::new(&mut bytes, WIDTH, HEIGHT, pitch).expect("legal").bands(self.rows_each) {
-            drawn += Raster::new(band).with_clip(self.clip).polygon(vertices, interpolation, &mut table)?;
+        for mut band in Frame::new(&mut bytes, WIDTH, HEIGHT, pitch).expect("legal").bands(self.rows_each) {
+            drawn += polygon::draw(&mut band, self.clip, vertices, interpolation, &mut table)?;
         }
         assert!(bytes.chunks(pitch).all(|row| row[WIDTH as usize..] == [self.empty; 3]), "bytes between the rows stay");
         Ok((bytes.chunks(pitch).flat_map(|row| &row[..WIDTH as usize]).copied().collect(), drawn))
@@ -235,27 +233,29 @@ fn r5_polygons_that_share_edges() {
         let outline = convex(&mut random);
         let mut whole = vec![outline.clone()];
         let mut parts = Vec::new();
-        while let Some(polygon) = whole.pop() {
-            let n = polygon.len();
+        while let Some(outline) = whole.pop() {
+            let n = outline.len();
             if n < 4 || random.within(0, 3) == 0 {
-                parts.push(polygon);
+                parts.push(outline);
                 continue;
             }
             let a = random.within(0, n as i64 - 3) as usize;
             let b = random.within(a as i64 + 2, n as i64 - 1) as usize;
-            let rest = polygon[..=a].iter().chain(&polygon[b..]).copied().collect();
-            whole.extend([polygon[a..=b].to_vec(), rest]);
+            let rest = outline[..=a].iter().chain(&outline[b..]).copied().collect();
+            whole.extend([outline[a..=b].to_vec(), rest]);
         }
         let mut counts = vec![0_u32; (WIDTH * HEIGHT) as usize];
         for part in &parts {
             let vertices = shaded(&mut random, part);
             let mut bytes = vec![0; counts.len()];
-            let mut raster = Raster::new(Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal"));
+            let mut frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
             match vertices[..] {
-                [a, b, c] if random.within(0, 1) == 0 => drop(raster.triangle(&[a, b, c], Interpolation::Flat(1))),
+                [a, b, c] if random.within(0, 1) == 0 => {
+                    Raster::new(frame).triangle(&[a, b, c], Interpolation::Flat(1));
+                }
                 _ => {
-                    let mut table = [TableRow::default(); HEIGHT as usize];
-                    raster.polygon(&vertices, Interpolation::Flat(1), &mut table).expect("convex");
+                    let (clip, mut table) = (frame.bounds(), [TableRow::default(); HEIGHT as usize]);
+                    polygon::draw(&mut frame, clip, &vertices, Interpolation::Flat(1), &mut table).expect("convex");
                 }
             }
             counts.iter_mut().zip(bytes).for_each(|(count, byte)| *count += u32::from(byte));
@@ -319,11 +319,12 @@ fn a_short_table_is_refused() {
     let mut bytes = [0; 20 * 20];
     let mut frame = Frame::new(&mut bytes, 20, 20, 20).expect("legal");
     let mut table = [TableRow::default(); 19];
-    let refused = Raster::new(frame.reborrow()).polygon(&vertices, Interpolation::Flat(1), &mut table);
+    let clip = frame.bounds();
+    let refused = polygon::draw(&mut frame, clip, &vertices, Interpolation::Flat(1), &mut table);
     assert_eq!(refused, Err(PolygonError::Table { given: 19, needed: 20 }));
     // For a band its own rows are enough.
-    for band in frame.bands(7) {
-        Raster::new(band).polygon(&vertices, Interpolation::Flat(1), &mut table[..7]).expect("seven rows at most");
+    for mut band in frame.bands(7) {
+        polygon::draw(&mut band, clip, &vertices, Interpolation::Flat(1), &mut table[..7]).expect("seven rows at most");
     }
     assert_eq!(bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>(), 100);
 }
@@ -341,22 +342,23 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     const SIDE: usize = 64;
     let mut tried = Tried::new("n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split", 200);
     let mut random = Random::named("n8");
-    let draw = |paint: &dyn Fn(&mut Raster<'_>)| -> Vec<Option<u8>> {
+    let draw = |paint: &dyn Fn(Frame<'_>)| -> Vec<Option<u8>> {
         let on = |empty| {
             let mut bytes = vec![empty; SIDE * SIDE];
-            paint(&mut Raster::new(Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE).expect("legal")));
+            paint(Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE).expect("legal"));
             bytes
         };
         on(0).into_iter().zip(on(1)).map(|(a, b)| (a == b).then_some(a)).collect()
     };
     let as_table = |vertices: &[Vertex]| {
-        draw(&|raster| {
-            let mut table = [TableRow::default(); SIDE];
-            raster.polygon(vertices, Interpolation::default(), &mut table).expect("convex");
+        draw(&|mut frame| {
+            let (clip, mut table) = (frame.bounds(), [TableRow::default(); SIDE]);
+            polygon::draw(&mut frame, clip, vertices, Interpolation::default(), &mut table).expect("convex");
         })
     };
     let as_triangles = |v: &[Vertex]| {
-        draw(&|raster| {
+        draw(&|frame| {
+            let mut raster = Raster::new(frame);
             raster.triangle(&[v[0], v[1], v[2]], Interpolation::default());
             raster.triangle(&[v[0], v[2], v[3]], Interpolation::default());
         })
@@ -397,49 +399,4 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     }
     assert!(greatest > 100, "as a table the quad's shades depend on the turn, by {greatest} shades");
     println!("n8: as a table a quad's shade changes with the turn by up to {greatest} shades");
-}
-
-/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not:
-/// along the common edge the planes of both faces are within the rounding of a shade.
-#[test]
-fn n9_slip_5_two_faces_agree_along_their_edge() {
-    let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);
-    let mut random = Random::named("n9");
-    let mut centres = 0;
-    while tried.more() {
-        // An edge through pixel centres: from one to another, and those on the way.
-        let (parts, dx, dy) = (random.within(1, 12), random.within(-12, 12), random.within(-12, 12));
-        let (x, y) = (random.within(0, 200), random.within(0, 100));
-        let shade = |random: &mut Random| random.within(0, 0xFF00);
-        let ends =
-            [0, parts].map(|k| vertex((x + k * dx) * 256 + 128, (y + k * dy) * 256 + 128, shade(&mut random), 1));
-        let sides = [1, -1].map(|side| {
-            // On either side of the edge, anywhere.
-            let (along, off) = (random.within(-20_000, 20_000), side * random.log_uniform(14) as i64);
-            let third = vertex(
-                x * 256 + along * dx / 12 - off * dy,
-                y * 256 + along * dy / 12 + off * dx,
-                shade(&mut random),
-                1,
-            );
-            [ends[0], ends[1], third]
-        });
-        let [Some(one), Some(two)] = sides.map(|vertices| {
-            let ordered = SortedTriangle::new(&vertices);
-            (ordered.doubled_area != 0).then(|| ShadePlane::new(&ordered))
-        }) else {
-            continue;
-        };
-        for k in 0..=parts {
-            let (x, y) = ((x + k * dx) as i32, (y + k * dy) as i32);
-            // Exactly, the two are equal; each start is rounded by less than 1/256 shade.
-            let shades = ends.map(|v| i64::from(v.shade().to_bits()));
-            let exact = (shades[0] * (parts - k) + shades[1] * k) as f64 / parts as f64 + 128.0;
-            for start in [one.start(x, y), two.start(x, y)] {
-                assert!((f64::from(start) - exact).abs() < 1.0, "{start} for {exact} at ({x}, {y}) of {sides:?}");
-            }
-            centres += 1;
-        }
-    }
-    assert!(centres > 10_000, "{centres}");
 }
