@@ -4,9 +4,9 @@
 
 use std::error::Error;
 
-use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
-use embedded_graphics::{Drawable, geometry::Point, text::Text};
 use mode13h::Angle;
+use mode13h::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
+use mode13h::embedded_graphics::{Drawable, geometry::Point, text::Text};
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
@@ -15,30 +15,24 @@ use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Object, ObjectId, Scene};
 use mode13h::window::{self, Flow, Key};
 
-fn add(scene: &mut Scene, mut object: Object, position: Vec3, scale: f32) -> ObjectId {
-    (object.position, object.scale) = (position, scale);
-    scene.add(object)
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = Scene::new();
     scene.camera = Camera::framing(Vec3::ZERO, 4.0);
     scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-    let ship = add(&mut scene, Object::new(shapes::cone(16, 4)), Vec3::ZERO, 0.5);
+    let ship = scene.add(Object::new(shapes::cone(16, 4)).scaled(0.5));
     let angles = (0..8).map(|i| f32::from(i as u8) * 0.785);
     let places = angles.map(|a| Vec3::new(3.2 * a.cos(), 3.2 * a.sin(), 0.0));
     let mut rocks: Vec<ObjectId> =
-        places.map(|at| add(&mut scene, Object::new(shapes::sphere(8, 6)), at, 0.4)).collect();
+        places.map(|at| scene.add(Object::new(shapes::sphere(8, 6)).at(at).scaled(0.4))).collect();
     let mut shots: Vec<(ObjectId, Vec3)> = Vec::new();
-    let (mut renderer, mut last) = (Renderer::new(), 0.0);
-    window::run("mode13h game", |vga, input, seconds| -> Result<Flow, Box<dyn Error>> {
-        let step = (seconds - last).min(0.1);
-        last = seconds;
+    let mut renderer = Renderer::new();
+    window::run("mode13h game", |vga, input, _| -> Result<Flow, Box<dyn Error>> {
+        let step = input.elapsed.min(0.1);
         let turns = f64::from(input.held(Key::Left)) - f64::from(input.held(Key::Right));
         scene[ship].rotate_z(Angle::from_degrees(180.0) * step * turns);
         if input.pressed(Key::Space) {
             let towards = scene[ship].rotation() * Vec3::Y;
-            shots.push((add(&mut scene, Object::new(shapes::cube()), Vec3::ZERO, 0.1), towards * 6.0));
+            shots.push((scene.add(Object::new(shapes::cube()).scaled(0.1)), towards * 6.0));
         }
         shots.retain(|&(shot, speed)| {
             scene[shot].position += speed * step as f32;

@@ -72,6 +72,8 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "embedded-graphics")]
+pub use embedded_graphics;
 #[cfg(feature = "alloc")]
 pub use glam;
 

@@ -182,7 +182,6 @@ impl Rgb {
     /// Most small displays take this form. Each channel is rounded down.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn to_rgb565(self) -> u16 {
         ((self.r as u16 >> 3) << 11) | ((self.g as u16 >> 2) << 5) | (self.b as u16 >> 3)
     }

@@ -28,7 +28,6 @@ impl Rect {
 
     /// The part that both rectangles hold.
     #[must_use]
-    #[doc(hidden)]
     pub fn intersection(self, other: Self) -> Self {
         Self {
             x0: self.x0.max(other.x0),
@@ -51,7 +50,6 @@ impl Rect {
 
     /// Returns whether it holds no pixel.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
@@ -134,7 +132,6 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// The most columns or rows.
-    #[doc(hidden)]
     pub const MAX_SIDE: u32 = 4096;
 
     /// A whole frame of `width × height` pixels whose rows lie `pitch` bytes apart.

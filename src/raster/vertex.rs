@@ -52,6 +52,12 @@ crate::errors::debug_as_display!(VertexError);
 
 impl core::error::Error for VertexError {}
 
+/// The nearest 1/256, halves upward; what is too large is cut off at the ends of i32, and what is no number counts as 0.
+fn nearest(x: f32) -> i32 {
+    let most = if x < 0.0 { i32::MIN } else { i32::MAX };
+    if x.is_nan() { 0 } else { I24F8::round_from_f32(x).map_or(most, I24F8::to_bits) }
+}
+
 impl Vertex {
     /// The guard band: |x| and |y| at most 2²⁰ units of 1/256 pixel, 4,096 pixels.
     ///
@@ -74,6 +80,35 @@ impl Vertex {
             return Err(VertexError::ShadeAbove255 { shade });
         }
         Ok(Self { x: h, y: v, shade: shade.to_bits(), depth })
+    }
+
+    /// A vertex at (`x`, `y`) in pixels, x to the right and y down, with a shade of 0 to 255; its depth is 0. Pixel centres
+    /// lie at halves. Each number is rounded to the nearest 1/256, and one beyond the guard band or the shades is cut off
+    /// there; what is not a number counts as 0.
+    ///
+    /// ```
+    /// use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
+    ///
+    /// let mut bytes = [0; 4 * 2];
+    /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);
+    /// let [a, b, c] = [Vertex::at(0.0, 0.0, 10.0), Vertex::at(8.0, 0.0, 170.0), Vertex::at(0.0, 8.0, 10.0)];
+    /// raster.triangle(&[a, b, c], Interpolation::Gouraud);
+    /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
+    /// # Ok::<(), mode13h::raster::FrameError>(())
+    /// ```
+    #[must_use]
+    pub fn at(x: f32, y: f32, shade: f32) -> Self {
+        // 255.0 in 1/256.
+        let most = i32::from(U8F8::MAX_VERTEX.to_bits());
+        let [x, y] = [x, y].map(|c| nearest(c).clamp(-Self::GUARD_BAND, Self::GUARD_BAND));
+        Self { x, y, shade: nearest(shade).clamp(0, most) as u16, depth: 0 }
+    }
+
+    /// The vertex at another depth; greater is nearer.
+    #[must_use]
+    #[inline]
+    pub const fn with_depth(self, depth: u32) -> Self {
+        Self { depth, ..self }
     }
 
     /// A vertex that has been one before, or is legal by the way it was made.
@@ -118,5 +153,30 @@ impl Vertex {
     #[inline]
     pub const fn depth(&self) -> u32 {
         self.depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vertex_for_people_is_rounded_and_cut_off() {
+        let bits = |vertex: Vertex| (vertex.x().to_bits(), vertex.y().to_bits(), vertex.shade().to_bits());
+        for (x, y, shade, expected) in [
+            (0.5, -1.25, 128.0, (128, -320, 0x8000)),
+            // Halves upward.
+            (1.0 / 512.0, -1.0 / 512.0, 0.0, (1, 0, 0)),
+            (4_096.0, -4_097.0, 256.0, (1 << 20, -(1 << 20), 0xFF00)),
+            (f32::INFINITY, f32::NEG_INFINITY, -1.0, (1 << 20, -(1 << 20), 0)),
+            (f32::NAN, 1e30, f32::NAN, (0, 1 << 20, 0)),
+            (-1e30, f32::MIN_POSITIVE, 1e30, (-(1 << 20), 0, 0xFF00)),
+        ] {
+            let vertex = Vertex::at(x, y, shade);
+            assert_eq!(bits(vertex), expected, "{x}, {y}, {shade}");
+            // It is one that `new` accepts.
+            assert_eq!(Vertex::new(vertex.x(), vertex.y(), vertex.shade(), 0), Ok(vertex));
+            assert_eq!(vertex.with_depth(7).depth(), 7);
+        }
     }
 }

@@ -60,7 +60,6 @@ pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
 pub use crate::settings::{Accuracy, Settings, VertexPath};
 use crate::span::Kernel;
 use crate::vga::Vga;
-#[doc(hidden)]
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use error::RenderError;

@@ -80,9 +80,39 @@ impl Object {
         self
     }
 
+    /// Puts the object at a position of the scene, or of its parent's coordinates.
+    ///
+    /// ```
+    /// use mode13h::glam::Vec3;
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::{Object, Scene};
+    ///
+    /// let mut scene = Scene::new();
+    /// scene.add(Object::new(shapes::cube()).named("crate").at(Vec3::new(0.0, 1.0, -4.0)).scaled(0.5));
+    /// assert_eq!(scene.objects()[0].position.z, -4.0);
+    /// ```
+    #[must_use]
+    pub fn at(mut self, position: impl Into<Vec3>) -> Self {
+        self.position = position.into();
+        self
+    }
+
+    /// Gives the object a size, in units of its mesh's.
+    #[must_use]
+    pub fn scaled(mut self, scale: f32) -> Self {
+        self.scale = scale;
+        self
+    }
+
+    /// Turns the object by angles about x, y and z, as in [`angles`](Self::angles).
+    #[must_use]
+    pub fn turned(mut self, angles: [Angle; 3]) -> Self {
+        self.angles = angles;
+        self
+    }
+
     /// Makes the object turn about the middle of its mesh, which then lies at `position`.
     #[must_use]
-    #[doc(hidden)]
     pub fn centred(mut self) -> Self {
         self.pivot = self.mesh.bounds().centre;
         self
@@ -149,6 +179,36 @@ impl Object {
     /// Turns the object further about the z axis.
     pub fn rotate_z(&mut self, angle: Angle) {
         self.angles[2] += angle;
+    }
+
+    /// Sets the angles from a rotation, as a quaternion or a matrix gives it (`Mat3::from_quat`): afterwards
+    /// [`rotation`](Self::rotation) is that matrix, within 2 · 10⁻⁶ of each number. The up axis comes before it, as it does
+    /// before the angles.
+    ///
+    /// The columns are taken to be of unit length and at right angles, x to y to z as a right hand has them; any other matrix
+    /// gives some rotation. Numbers that are not finite are an error when the object is drawn.
+    ///
+    /// ```
+    /// use mode13h::glam::{Mat3, Quat, Vec3};
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::Object;
+    ///
+    /// let mut object = Object::new(shapes::teapot());
+    /// let turn = Mat3::from_quat(Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 2.0));
+    /// object.set_rotation(turn);
+    /// assert!(object.rotation().abs_diff_eq(turn, 2e-6));
+    /// ```
+    pub fn set_rotation(&mut self, rotation: Mat3) {
+        let at = |row: usize, column: usize| f64::from(rotation.col(column)[row]);
+        // The first row of x·y·z is (cy·cz, −cy·sz, sy).
+        let cy = libm::hypot(at(0, 0), at(0, 1));
+        let y = libm::atan2(at(0, 2), cy);
+        // Where y is a right angle, turns about x and about z are the same: all of it is one about x.
+        let z = if cy > 1e-6 { libm::atan2(-at(0, 1), at(0, 0)) } else { 0.0 };
+        // What turns (sz, cz, 0) to (0, cx, sx): beside a right angle x makes up for what z is off by.
+        let (sz, cz) = libm::sincos(z);
+        let x = libm::atan2(at(2, 0) * sz + at(2, 1) * cz, at(1, 0) * sz + at(1, 1) * cz);
+        self.angles = [x, y, z].map(Angle::from_radians);
     }
 
     /// The matrix that turns the mesh's directions into the scene's: its up axis, then its angles.
@@ -269,4 +329,45 @@ pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
 /// The product of two matrices by rows, each sum in the order of its terms.
 pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{EulerRot, Quat};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::mesh::shapes;
+
+    fn is_set(turn: Mat3) -> bool {
+        let mut object = Object::new(shapes::cube());
+        object.set_rotation(turn);
+        object.rotation().abs_diff_eq(turn, 2e-6)
+    }
+
+    proptest! {
+        /// Any rotation comes back, also beside where y is a right angle.
+        #[test]
+        fn a_rotation_that_is_set_is_the_objects(
+            (x, y, z) in (-4.0_f32..4.0, -4.0_f32..4.0, -4.0_f32..4.0),
+            beside in prop::option::of((any::<bool>(), 1e-9_f32..1e-2)),
+        ) {
+            let y = match beside {
+                Some((up, by)) => if up { core::f32::consts::FRAC_PI_2 - by } else { by - core::f32::consts::FRAC_PI_2 },
+                None => y,
+            };
+            let turn = Mat3::from_quat(Quat::from_euler(EulerRot::XYZ, x, y, z).normalize());
+            prop_assert!(is_set(turn), "{turn}");
+        }
+    }
+
+    #[test]
+    fn turns_by_right_angles_are_set() {
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.6, 0.8, 0.0)] {
+            for quarters in 0..4_u8 {
+                let turn = Mat3::from_axis_angle(axis, f32::from(quarters) * core::f32::consts::FRAC_PI_2);
+                assert!(is_set(turn), "{axis}, {quarters}");
+            }
+        }
+    }
 }

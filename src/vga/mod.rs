@@ -54,7 +54,6 @@ impl Vga {
     /// Rows.
     pub const HEIGHT: usize = 200;
     /// Bytes from a pixel to the one below it.
-    #[doc(hidden)]
     pub const PITCH: usize = 320;
     /// Bytes of memory that are shown: 64,000.
     #[doc(hidden)]

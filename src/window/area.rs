@@ -7,7 +7,6 @@ pub(super) const HEIGHT: usize = 200;
 
 /// A rectangle of the window's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[doc(hidden)]
 pub struct Area {
     /// Columns of the window to the left of it.
     pub left: usize,

@@ -9,7 +9,6 @@ use crate::palette::Rgb;
 /// With the feature `embedded-graphics` it is a `DrawTarget` of `Rgb888`: text, lines and shapes at the window's own
 /// resolution. Parts beyond the window are left out.
 #[derive(Debug)]
-#[doc(hidden)]
 pub struct Canvas<'a> {
     pixels: &'a mut [u32],
     width: usize,

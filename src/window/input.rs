@@ -31,6 +31,9 @@ pub struct Input {
     /// The keys of `pressed` that went down while Shift was down.
     shifted: Vec<Key>,
     held: Vec<Key>,
+    released: Vec<Key>,
+    /// The seconds since the last frame: what a game moves by.
+    pub elapsed: f64,
     /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
     /// repeats, as the desktop is set up.
     pub typed: String,
@@ -53,7 +56,6 @@ impl Input {
     }
 
     /// Returns whether the key went down since the last frame while Shift was down, however short both were.
-    #[doc(hidden)]
     pub fn pressed_with_shift(&self, key: Key) -> bool {
         self.shifted.contains(&key)
     }
@@ -63,9 +65,14 @@ impl Input {
         self.held.contains(&key)
     }
 
+    /// Returns whether the key was let go since the last frame. One that is held while the window is left counts as let go.
+    pub fn released(&self, key: Key) -> bool {
+        self.released.contains(&key)
+    }
+
     /// Returns whether the user did anything, or holds anything, after `before`.
     pub(super) fn differs(&self, before: &Input) -> bool {
-        let Input { pressed, shifted: _, held, typed, mouse, buttons, drag, wheel } = self;
+        let Input { pressed, shifted: _, held, released: _, elapsed: _, typed, mouse, buttons, drag, wheel } = self;
         !(pressed.is_empty() && held.is_empty() && typed.is_empty())
             || (*mouse, *buttons) != (before.mouse, before.buttons)
             || (*drag, *wheel) != ((0.0, 0.0), 0.0)
@@ -80,11 +87,12 @@ struct Queue {
     typed: String,
 }
 
-/// Keys that went down, in order, and those of them that did while Shift was down.
+/// Keys that went down, in order, those of them that did while Shift was down, and keys that were let go.
 #[derive(Default)]
 struct Pressed {
     pressed: Vec<Key>,
     shifted: Vec<Key>,
+    released: Vec<Key>,
 }
 
 /// Collects what happens in a window.
@@ -111,11 +119,11 @@ impl Events {
     /// Collects the input since the last call.
     pub(super) fn collect(&mut self, window: &Window, place: Area) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
-        let Pressed { pressed, shifted } = self.follow(&keys);
+        let Pressed { pressed, shifted, mut released } = self.follow(&keys);
         // A window that is left hears nothing of keys that are let go meanwhile.
         let was_active = mem::replace(&mut self.active, window.is_active());
         if was_active && !self.active {
-            self.held.clear();
+            released.append(&mut self.held);
         }
 
         let to_frame = |(x, y)| place.to_frame(x, y);
@@ -129,7 +137,9 @@ impl Events {
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
-        Input { pressed, shifted, held: self.held.clone(), typed, mouse, buttons, drag, wheel }
+        // The window says how long the frame took.
+        let (held, elapsed) = (self.held.clone(), 0.0);
+        Input { pressed, shifted, held, released, elapsed, typed, mouse, buttons, drag, wheel }
     }
 
     /// Applies key events in their order and gives the keys that went down. A key that repeats while it is held does
@@ -144,8 +154,9 @@ impl Events {
                 }
                 self.held.push(key);
                 keys.pressed.push(key);
-            } else if !down {
+            } else if !down && held {
                 self.held.retain(|&other| other != key);
+                keys.released.push(key);
             }
         }
         keys
@@ -168,8 +179,11 @@ mod tests {
     #[test]
     fn a_key_that_is_down_and_up_between_two_frames_was_pressed() {
         let mut events = Events::default();
-        assert_eq!(events.follow(&[(Key::S, true), (Key::S, false)]).pressed, [Key::S]);
+        let keys = events.follow(&[(Key::S, true), (Key::S, false)]);
+        assert_eq!((&keys.pressed[..], &keys.released[..]), (&[Key::S][..], &[Key::S][..]));
         assert!(events.held.is_empty());
+        // One that was not down is not let go.
+        assert_eq!(events.follow(&[(Key::S, false)]).released, []);
     }
 
     #[test]

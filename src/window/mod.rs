@@ -129,7 +129,6 @@ pub fn run<R: FrameResult>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, 
 }
 
 /// An open window. Most programs need only [`run`].
-#[doc(hidden)]
 pub struct Window {
     window: minifb::Window,
     events: Events,
@@ -140,6 +139,8 @@ pub struct Window {
     opened: Instant,
     /// The time that the current frame is drawn for.
     now: Instant,
+    /// The time that the frame before it was drawn for.
+    before: Instant,
     /// The time when the last frame was due, or when it came if it was late.
     begun: Instant,
     /// The time when the picture was last sent to the display.
@@ -163,7 +164,18 @@ impl Window {
         window.set_input_callback(Box::new(events.clone()));
         let now = Instant::now();
         let (input, picture) = (Input::default(), Picture::default());
-        Ok(Window { window, events, input, has_input: false, picture, opened: now, now, begun: now, sent: now })
+        Ok(Window {
+            window,
+            events,
+            input,
+            has_input: false,
+            picture,
+            opened: now,
+            now,
+            before: now,
+            begun: now,
+            sent: now,
+        })
     }
 
     /// Changes the title.
@@ -188,6 +200,7 @@ impl Window {
     ///
     /// [`WindowError`] if the display went away.
     pub fn show(&mut self, vga: &Vga) -> Result<Flow, WindowError> {
+        self.before = self.now;
         self.wait(FRAME);
         let (width, height) = self.size();
         self.picture.stretch(vga, width, height);
@@ -200,8 +213,8 @@ impl Window {
     /// # Errors
     ///
     /// [`WindowError`] if the display went away.
-    #[doc(hidden)]
     pub fn show_over(&mut self, vga: &Vga, over: impl FnOnce(&mut Canvas<'_>)) -> Result<Flow, WindowError> {
+        self.before = self.now;
         self.wait(FRAME);
         let (width, height) = self.size();
         self.picture.stretch(vga, width, height);
@@ -252,7 +265,8 @@ impl Window {
 
     fn collect(&mut self) -> Flow {
         self.now = Instant::now();
-        let input = self.events.collect(&self.window, self.picture.place());
+        let mut input = self.events.collect(&self.window, self.picture.place());
+        input.elapsed = self.now.duration_since(self.before).as_secs_f64();
         self.has_input = input.differs(&self.input);
         self.input = input;
         if self.window.is_open() { Flow::Continue } else { Flow::Close }

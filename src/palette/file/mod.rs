@@ -202,7 +202,6 @@ pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
 ///
 /// # Errors
 /// Those of [`Format::read`]. The name is not part of the message: the caller has it.
-#[doc(hidden)]
 pub fn parse_named(name: &str, bytes: &[u8]) -> Result<Palette, PaletteError> {
     match Format::of_file_name(name) {
         Some(format) if format.name != "jasc" || !vga::recognizes(bytes) => format.read(bytes),
