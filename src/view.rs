@@ -102,12 +102,46 @@ impl View {
 }
 
 impl View {
+    /// Where a point of the world lies on the screen, in pixels, and how far in front of the eye; `None` if it is nearer than
+    /// the near distance.
+    pub(crate) fn on_screen(&self, world: Vec3) -> Option<[f64; 3]> {
+        let world = widen(world);
+        let from_eye = [0, 1, 2].map(|i| world[i] - self.eye[i]);
+        let [x, y, distance] = self.rows.map(|row| dot(row, from_eye));
+        let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
+        // NaN fails.
+        (distance >= f64::from(self.near)).then(|| [cx + x / distance, cy + y / distance, distance])
+    }
+
     /// A direction of the world as the eye sees it (right, up, towards the eye), unit; `None` for the
     /// zero vector.
     pub(crate) fn direction_to_eye(&self, world: Vec3) -> Option<Vec3> {
         let world = unit(widen(world))?;
         let [x, y, z] = self.axes.map(|axis| dot(axis, world) as f32);
         Some(Vec3::new(x, y, z))
+    }
+}
+
+impl Camera {
+    /// Where a point of the scene lies on the screen: x and y in pixels from the upper left corner, and the distance in front
+    /// of the eye, along the view; for labels, crosshairs and flares. The point may lie beside the screen.
+    /// `None` if it is nearer than the near distance, behind the eye, or not finite, or if the camera is no camera.
+    ///
+    /// ```
+    /// use mode13h::glam::Vec3;
+    /// use mode13h::render::Screen;
+    /// use mode13h::scene::Camera;
+    ///
+    /// let camera = Camera::framing(Vec3::ZERO, 2.0);
+    /// let [x, y, distance] = camera.project(Vec3::ZERO, Screen::MODE_13H).expect("it looks at the point");
+    /// assert_eq!([x, y], [160.0, 100.0]);
+    /// assert!((distance - camera.eye.z).abs() < 1e-5);
+    /// assert_eq!(camera.project(camera.eye, Screen::MODE_13H), None);
+    /// ```
+    #[must_use]
+    pub fn project(&self, point: impl Into<Vec3>, screen: Screen) -> Option<[f32; 3]> {
+        let on_screen = View::new(self, screen).ok()?.on_screen(point.into())?;
+        Some(on_screen.map(|c| c as f32)).filter(|on_screen| on_screen.iter().all(|c| c.is_finite()))
     }
 }
 

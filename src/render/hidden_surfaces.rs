@@ -150,8 +150,8 @@ impl Painter<'_, '_> {
 }
 
 impl Renderer {
-    pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, mut frame: Frame<'_>) {
-        frame.clear(scene.background);
+    /// Draws the frame that is prepared, over what `frame` holds.
+    pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, frame: Frame<'_>) {
         let Self { kernel, cache, scratch, .. } = self;
         let Scratch { depths, effects, pick, integer, faces, transparent, far_to_near, triangles, lists, counts } =
             scratch;

@@ -331,7 +331,9 @@ impl Renderer {
             _ => {}
         }
         self.redrawn = true;
-        self.fill(scene, &mut stats, Frame::from(&mut *vga));
+        let mut frame = Frame::from(&mut *vga);
+        frame.clear(scene.background);
+        self.fill(scene, &mut stats, frame);
         stats.allocated = self.bytes().saturating_sub(before) as u64;
         self.last = Some((vga.stamp(), stats));
         Ok(stats)
@@ -347,11 +349,51 @@ impl Renderer {
         frame: Frame<'_>,
         pixel_aspect: (u32, u32),
     ) -> Result<Stats, RenderError> {
+        self.draw_into(scene, frame, pixel_aspect, true)
+    }
+
+    /// Draws `scene` over what the frame holds, a sky or stars: like [`draw_frame`](Self::draw_frame), but nothing is
+    /// cleared. Glass and fog mix with the entries that are there, as if they were those of the background.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::raster::Frame;
+    /// use mode13h::render::Renderer;
+    /// use mode13h::scene::Scene;
+    ///
+    /// let mut bytes = [7; 64 * 48];
+    /// let frame = Frame::new(&mut bytes, 64, 48, 64)?;
+    /// Renderer::new().draw_over(&Scene::showing(shapes::cube()), frame, (1, 1))?;
+    /// assert!(bytes[0] == 7 && bytes[24 * 64 + 32] != 7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw). The frame is then left as it was.
+    pub fn draw_over(
+        &mut self,
+        scene: &Scene,
+        frame: Frame<'_>,
+        pixel_aspect: (u32, u32),
+    ) -> Result<Stats, RenderError> {
+        self.draw_into(scene, frame, pixel_aspect, false)
+    }
+
+    fn draw_into(
+        &mut self,
+        scene: &Scene,
+        mut frame: Frame<'_>,
+        pixel_aspect: (u32, u32),
+        clears: bool,
+    ) -> Result<Stats, RenderError> {
         let screen = Screen { width: frame.width(), height: frame.height(), pixel_aspect };
         let rows = frame.rows();
         let before = self.bytes();
         let (mut stats, _) = self.prepare(scene, screen, None, rows.end - rows.start == frame.height())?;
         (self.last, self.redrawn) = (None, true);
+        if clears {
+            frame.clear(scene.background);
+        }
         self.fill(scene, &mut stats, frame);
         stats.allocated = self.bytes().saturating_sub(before) as u64;
         Ok(stats)

@@ -193,7 +193,7 @@ impl Object {
     /// use mode13h::mesh::shapes;
     /// use mode13h::scene::Object;
     ///
-    /// let mut object = Object::new(shapes::teapot());
+    /// let mut object = Object::new(shapes::cube());
     /// let turn = Mat3::from_quat(Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 2.0));
     /// object.set_rotation(turn);
     /// assert!(object.rotation().abs_diff_eq(turn, 2e-6));

@@ -20,6 +20,7 @@ mod integer_frames;
 mod integer_path;
 #[cfg(feature = "alloc")]
 mod objects;
+mod on_screen;
 #[cfg(feature = "alloc")]
 mod plan;
 #[cfg(feature = "alloc")]

@@ -1,0 +1,91 @@
+//! What games ask of a picture: where a point is in it, and what was there before.
+
+use mode13h::glam::Vec3;
+use mode13h::mesh::shapes;
+use mode13h::raster::Frame;
+use mode13h::render::{HiddenSurfaces, Renderer, Screen};
+use mode13h::scene::{Camera, Object, Scene};
+use mode13h_conformance::Random;
+
+const SCREEN: Screen = Screen { width: 400, height: 300, pixel_aspect: (1, 1) };
+const SIZE: usize = 400 * 300;
+
+fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurfaces>) {
+    let mut renderer = Renderer::new();
+    renderer.settings.hidden_surfaces = way;
+    let frame = Frame::new(bytes, SCREEN.width, SCREEN.height, 400).expect("legal");
+    let drawn = match clears {
+        true => renderer.draw_frame(scene, frame, SCREEN.pixel_aspect),
+        false => renderer.draw_over(scene, frame, SCREEN.pixel_aspect),
+    };
+    drawn.expect("drawn");
+}
+
+/// A small sphere is drawn about the point that its middle projects to.
+#[test]
+fn a_point_is_where_it_is_drawn() {
+    let mut random = Random::named("on screen");
+    let mut number = |from: i64, to: i64| random.within(from, to) as f32 / 100.0;
+    let (mut seen, mut hidden) = (0, 0);
+    for _ in 0..300 {
+        let mut point = || Vec3::new(number(-300, 300), number(-300, 300), number(-300, 300));
+        let at = point();
+        let mut scene = Scene::new();
+        scene.add(Object::new(shapes::sphere(12, 8)).at(at).scaled(0.05));
+        scene.camera = Camera { eye: point() * 2.0, target: point(), ..Camera::default() };
+        // What is the same over black and over white.
+        let [dark, bright] = [0, 255].map(|fill| {
+            let mut bytes = vec![fill; SIZE];
+            draw(&scene, &mut bytes, false, None);
+            bytes
+        });
+        let drawn = (0..SIZE).filter(|&at| dark[at] == bright[at]);
+        let pixels: Vec<(f32, f32)> = drawn.map(|at| ((at % 400) as f32, (at / 400) as f32)).collect();
+        let Some([x, y, distance]) = scene.camera.project(at, SCREEN) else {
+            // Its near half may still be there.
+            hidden += 1;
+            continue;
+        };
+        let straight = (at - scene.camera.eye).dot((scene.camera.target - scene.camera.eye).normalize());
+        assert!((distance - straight).abs() <= 1e-4 * distance.abs(), "{distance} for {straight}");
+        if !(20.0..380.0).contains(&x) || !(20.0..280.0).contains(&y) || distance < 2.0 {
+            continue;
+        }
+        // At most 10 pixels across, whose middles lie within the ball's outline.
+        let count = pixels.len() as f32;
+        let mean = pixels.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
+        assert!(count > 3.0, "nothing at ({x}, {y})");
+        assert!((mean.0 + 0.5 - x).abs() < 1.0 && (mean.1 + 0.5 - y).abs() < 1.0, "{mean:?} for ({x}, {y})");
+        seen += 1;
+    }
+    assert!(seen > 60 && hidden > 5, "{seen} seen, {hidden} hidden");
+}
+
+/// Pixels that a scene draws are the same over anything; all others stay.
+#[test]
+fn drawing_over_changes_what_is_drawn_and_no_more() {
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    scene.background = 1;
+    for way in
+        [None, Some(HiddenSurfaces::PainterOrder), Some(HiddenSurfaces::ScanLine), Some(HiddenSurfaces::BackFaces)]
+    {
+        let on = |fill: u8| {
+            let mut bytes = vec![fill; SIZE];
+            draw(&scene, &mut bytes, false, way);
+            bytes
+        };
+        let (dark, bright) = (on(0), on(255));
+        let mut cleared = vec![9; SIZE];
+        draw(&scene, &mut cleared, true, way);
+        let mut drawn = 0;
+        for (at, (&a, &b)) in dark.iter().zip(&bright).enumerate() {
+            if (a, b) == (0, 255) {
+                assert_eq!(cleared[at], scene.background, "{way:?}");
+            } else {
+                assert_eq!((a, b), (cleared[at], cleared[at]), "{way:?}");
+                drawn += 1;
+            }
+        }
+        assert!(drawn > 5_000, "{way:?}: {drawn}");
+    }
+}
