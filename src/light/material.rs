@@ -144,7 +144,6 @@ impl Material {
     /// the surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have.
     /// A texture has its colours itself.
     #[must_use]
-    #[doc(hidden)]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
         let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
         let color = if self.texture.is_some() { self.color } else { or_else(self.color, surface.diffuse) };

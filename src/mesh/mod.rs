@@ -79,7 +79,6 @@ impl PartialEq for Lines {
 impl Mesh {
     /// The max number of vertices, and of triangles, of a mesh: 2²⁸, which leaves the renderer four bits beside a face's
     /// index.
-    #[doc(hidden)]
     pub const MAX_COUNT: usize = 1 << 28;
 
     /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex. A
@@ -282,7 +281,6 @@ impl Mesh {
     /// other. The test is exact: if rounding gave a face the slightest dent, the result is `false`, which costs time,
     /// never correctness.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_convex(&self) -> bool {
         self.convex
     }

@@ -166,7 +166,6 @@ impl Palette {
 
     /// The colours that the card shows for these: each through 6 bits and back. The ramps stay.
     #[must_use]
-    #[doc(hidden)]
     pub const fn on_dac(&self) -> Self {
         let mut colors = self.colors;
         let mut i = 0;

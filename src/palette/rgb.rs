@@ -190,7 +190,6 @@ impl Rgb {
     /// thousandths. Exact; for putting colours in order.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn brightness(self) -> u32 {
         299 * self.r as u32 + 587 * self.g as u32 + 114 * self.b as u32
     }

@@ -112,7 +112,6 @@ impl ObjectPlan {
     /// Returns whether an effect is on.
     #[inline]
     #[must_use]
-    #[doc(hidden)]
     pub fn is_on(&self, effect: Effect) -> bool {
         !effect.is_left_out() && self[effect].on
     }
@@ -244,7 +243,6 @@ impl Plan {
 
     /// Every decision in words: object by object, in the order of [`Effect::ALL`].
     #[must_use]
-    #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<Row> {
         self.rows_with(scene, |_| Findings::default())
     }
@@ -275,7 +273,6 @@ impl Plan {
 /// One decision in words.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-#[doc(hidden)]
 pub struct Row {
     /// The object's place in the scene.
     pub place: usize,

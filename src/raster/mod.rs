@@ -5,27 +5,27 @@
 //! (x + ½, y + ½), lies inside the triangle or on a top or left edge. Two triangles that share an
 //! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
 //! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
-//! clamping pixels: [`reference::edge`] walks the edges with quotient and remainder,
-//! [`reference::shade`] says why no sum can leave the range. One [`Interpolation`] has neither:
-//! that of the sources, [`vintage`].
+//! clamping pixels: `reference::edge` walks the edges with quotient and remainder,
+//! `reference::shade` says why no sum can leave the range. One [`Interpolation`] has neither:
+//! that of the sources, `vintage`.
 //!
 //! The stages, in the order in which a triangle passes them:
 //!
 //! | file | what |
 //! |---|---|
 //! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
-//! | [`clip`] | what clipping before the projection leaves of a triangle, in triangles |
+//! | `clip` | what clipping before the projection leaves of a triangle, in triangles |
 //! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
-//! | [`reference`](mod@reference) | one triangle in integers, the definition: which pixels, which byte, which depth |
+//! | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
 //! | [`interpolation`] | the shadings there are |
-//! | [`vintage`] | both as the sources print them |
+//! | `vintage` | both as the sources print them |
 //! | [`depth`] | depth buffers |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 //! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
 //! | `triangles` | the same by vertices: [`Raster::triangles`] |
-//! | [`scan_line`] | all of it for a frame of triangles, each pixel once: [`Raster::scan_line`] |
+//! | `scan_line` | all of it for a frame of triangles, each pixel once |
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};

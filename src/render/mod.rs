@@ -295,7 +295,6 @@ impl Renderer {
     ///
     /// # Errors
     /// Those of [`draw`](Self::draw), except for numbers that 16.16 can't hold, which show only when it is drawn.
-    #[doc(hidden)]
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);

@@ -337,7 +337,6 @@ impl Camera {
     /// assert!(scene.camera.eye.z < 0.9 * sphere.eye.z);
     /// ```
     #[must_use]
-    #[doc(hidden)]
     pub fn framing_turn(object: &Object) -> Self {
         Self::framing_object(object, Turning::Upright)
     }

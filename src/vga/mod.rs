@@ -15,7 +15,6 @@ pub mod timing;
 
 use core::ops::RangeBounds;
 
-#[doc(hidden)]
 pub use dac::Dac;
 pub use timing::Beam;
 
@@ -125,7 +124,6 @@ impl Vga {
     /// atomic instructions). The value means nothing else, and differs from run to run.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn stamp(&self) -> u64 {
         self.stamp.value()
     }
@@ -173,7 +171,6 @@ impl Vga {
 
     /// The DAC's registers.
     #[must_use]
-    #[doc(hidden)]
     pub const fn dac(&self) -> &Dac {
         &self.dac
     }

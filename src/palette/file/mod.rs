@@ -126,21 +126,18 @@ pub static FORMATS: [Format; 6] = [
 impl Format {
     /// The format of a name, as in [`FORMATS`].
     #[must_use]
-    #[doc(hidden)]
     pub fn by_name(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
     }
 
     /// The format of an extension, without its dot, in either case.
     #[must_use]
-    #[doc(hidden)]
     pub fn by_extension(extension: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension)))
     }
 
     /// The format of a file's name, by its extension, for writing such a file.
     #[must_use]
-    #[doc(hidden)]
     pub fn of_file_name(name: &str) -> Option<&'static Self> {
         let (_, extension) = name.rsplit_once('.')?;
         Self::by_extension(extension)
@@ -151,7 +148,6 @@ impl Format {
     /// An 8-bit `.act` of 768 bytes looks like a raw VGA file, and is read alike unless it has no
     /// value over 63.
     #[must_use]
-    #[doc(hidden)]
     pub fn of_bytes(bytes: &[u8]) -> Option<&'static Self> {
         FORMATS.iter().find(|format| (format.recognizes)(bytes))
     }
@@ -160,7 +156,6 @@ impl Format {
     ///
     /// # Errors
     /// A `PaletteError` with the line or the offset.
-    #[doc(hidden)]
     pub fn read(&self, bytes: &[u8]) -> Result<Palette, PaletteError> {
         if bytes.is_empty() {
             return Err(PaletteError::at_offset(0, PaletteErrorKind::Empty));
