@@ -1,11 +1,12 @@
 //! Errors of scenes that cannot be drawn.
 
+use alloc::string::String;
 use core::fmt;
 
 use crate::scene::Scene;
 
 /// Error of a scene that could not be drawn.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The camera.
@@ -14,6 +15,8 @@ pub enum RenderError {
     Object {
         /// Its place, from 0.
         index: usize,
+        /// Its name, which may be empty.
+        name: String,
         /// The fault.
         what: &'static str,
     },
@@ -38,7 +41,8 @@ impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Camera(what) => write!(f, "camera: {what}"),
-            Self::Object { index, what } => write!(f, "object {index}: {what}"),
+            Self::Object { index, name, what } if name.is_empty() => write!(f, "object {index}: {what}"),
+            Self::Object { index, name, what } => write!(f, "object {index}, {name:?}: {what}"),
             Self::Light { index, what } => write!(f, "light {index}: {what}"),
             Self::Ambient => f.write_str("the ambient light must be finite"),
             Self::Fog(what) => write!(f, "fog: {what}"),
@@ -52,6 +56,16 @@ crate::errors::debug_as_display!(RenderError);
 
 impl core::error::Error for RenderError {}
 
+impl RenderError {
+    /// The fault of an object of the scene.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn of_object(scene: &Scene, index: usize, what: &'static str) -> Self {
+        let name = scene.objects().get(index).map_or_else(String::new, |object| object.name.clone());
+        Self::Object { index, name, what }
+    }
+}
+
 /// Checks a scene for faults.
 pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
     if !scene.ambient.is_finite() {
@@ -61,8 +75,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
         light.check().map_err(|what| RenderError::Light { index, what })?;
     }
     for (index, object) in scene.objects().iter().enumerate() {
-        object.check().map_err(|what| RenderError::Object { index, what })?;
-        scene.check_parents(index).map_err(|what| RenderError::Object { index, what })?;
+        let fault = |what| RenderError::of_object(scene, index, what);
+        object.check().map_err(fault)?;
+        scene.check_parents(index).map_err(fault)?;
     }
     if let Some(fog) = &scene.fog {
         fog.check().map_err(RenderError::Fog)?;
@@ -71,4 +86,25 @@ pub(super) fn check(scene: &Scene) -> Result<(), RenderError> {
         animation.check().map_err(RenderError::PaletteAnimation)?;
     }
     scene.settings.check().map_err(RenderError::Settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+
+    use super::*;
+    use crate::mesh::shapes;
+    use crate::scene::Object;
+
+    #[test]
+    fn an_object_is_named_if_it_has_a_name() {
+        let mut scene = Scene::new();
+        scene.add(Object::new(shapes::cube()));
+        scene.add(Object::new(shapes::cube()).named("the \"ship\"").scaled(-1.0));
+        let error = check(&scene).expect_err("a negative scale").to_string();
+        assert_eq!(error, "object 1, \"the \\\"ship\\\"\": its scale must not be negative");
+        scene.objects_mut()[1].name.clear();
+        let error = check(&scene).expect_err("a negative scale").to_string();
+        assert_eq!(error, "object 1: its scale must not be negative");
+    }
 }

@@ -211,12 +211,12 @@ impl IntegerPath {
         self.paints.clear();
         for (index, object) in scene.objects().iter().enumerate() {
             if object.parent.is_some_and(|parent| scene.get(parent).is_some()) {
-                return Err(RenderError::Object { index, what: "it has a parent, which 16.16 does not know" });
+                return Err(RenderError::of_object(scene, index, "it has a parent, which 16.16 does not know"));
             }
             let first = self.paints.len();
             for material in &object.materials {
                 let what = "a number of its materials, times the ambient light, is beyond ±32,767: too much for 16.16";
-                self.paints.push(paint(material, scene).ok_or(RenderError::Object { index, what })?);
+                self.paints.push(paint(material, scene).ok_or_else(|| RenderError::of_object(scene, index, what))?);
             }
             let scaled = f64::from(object.scale);
             let scale_exponent = if scaled > 0.0 { libm::ilogb(scaled) } else { 0 };
@@ -232,7 +232,7 @@ impl IntegerPath {
                 scale: fixed(libm::ldexp(scaled, -scale_exponent)).unwrap_or_default(),
             };
             let mesh = fixed_mesh(&self.meshes, prepared, object);
-            let of_object = |error: IntegerError| RenderError::Object { index, what: error.what() };
+            let of_object = |error: IntegerError| RenderError::of_object(scene, index, error.what());
             view.check(&self.objects[index].placement, &mesh).map_err(of_object)?;
         }
         self.view = Some(view);

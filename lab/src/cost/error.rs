@@ -7,7 +7,7 @@ use crate::truth::TruthError;
 use mode13h::render::RenderError;
 
 /// Error of a study.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum CostError {
     /// The scene cannot be drawn.

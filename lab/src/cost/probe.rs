@@ -159,7 +159,7 @@ impl Probe {
 }
 
 /// Error of a probe.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ProbeError {
     /// The scene cannot be drawn.

@@ -53,7 +53,7 @@ pub use trace::Fate;
 pub use walk::{Registers, Step, Walk};
 
 /// Error of explaining a pixel or a row.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ExplainError {
     /// The pixel lies outside of the frame.

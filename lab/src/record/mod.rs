@@ -126,7 +126,7 @@ impl Record {
         for effect in effects {
             if let Some(index) = renderer.plan().objects().iter().position(|plan| plan.is_on(effect)) {
                 let what = "a record holds no textures, fog, channels, dither, transparency or light at every pixel";
-                return Err(RenderError::Object { index, what });
+                return Err(RenderError::of_object(scene, index, what));
             }
         }
         record.background = scene.background;

@@ -5,13 +5,15 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use mode13h::Angle;
-use mode13h::glam::Vec3;
+use mode13h::glam::{EulerRot, Mat3, Vec3};
 use mode13h::light::{Blend, Cone, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Screen, Settings, Shading, VertexPath};
+use mode13h::render::{
+    Accuracy, HiddenSurfaces, Mapping, RenderError, Renderer, Screen, Settings, Shading, Stats, VertexPath,
+};
 use mode13h::scene::{DitherPattern, Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
@@ -288,6 +290,10 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Object::rotate_x", |w, r| one_object(w, r).rotate_x(Angle::from_radians(r.unit()))),
     seen("Object::rotate_y", |w, r| one_object(w, r).rotate_y(Angle::from_radians(r.unit()))),
     seen("Object::rotate_z", |w, r| one_object(w, r).rotate_z(Angle::from_radians(r.unit()))),
+    seen("Object::set_rotation", |w, r| {
+        let [x, y, z] = angles(r).map(|angle| angle as f32);
+        one_object(w, r).set_rotation(Mat3::from_euler(EulerRot::XYZ, x, y, z));
+    }),
     seen("Object.angles", |w, r| one_object(w, r).angles = angles(r).map(Angle::from_radians)),
     // Material
     unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
@@ -439,19 +445,8 @@ pub(super) const CHANGES: &[Change] = &[
         let scene = start(r);
         w.kept.draw(&scene, &mut w.machines[0]).map(drop).unwrap_or_default();
     }),
-    unseen("Renderer::draw_frame", |w, r| {
-        let screen = (r.within(1, 90) as u32, r.within(1, 60) as u32);
-        let first = r.within(0, i64::from(screen.1) - 1) as u32;
-        let rows = r.one_of(&[0, first])..screen.1;
-        let mut fresh = w.fresh();
-        let [kept, fresh] = [&mut w.kept, &mut fresh].map(|renderer| {
-            let mut bytes = vec![7; (screen.0 * screen.1) as usize];
-            let frame = Frame::band(&mut bytes, screen.0, screen.1, screen.0 as usize, rows.clone()).expect("a band");
-            let drawn = renderer.draw_frame(&w.scene, frame, (1, 1)).map(drop);
-            (drawn, bytes)
-        });
-        assert!(kept == fresh, "a frame of {screen:?}, rows {rows:?}");
-    }),
+    unseen("Renderer::draw_frame", |w, r| a_frame(w, r, Renderer::draw_frame)),
+    unseen("Renderer::draw_over", |w, r| a_frame(w, r, Renderer::draw_over)),
     unseen("Renderer::for_each_triangle", |w, _| {
         let mut fresh = w.fresh();
         let [kept, fresh] = [&mut w.kept, &mut fresh].map(|renderer| {
@@ -732,6 +727,23 @@ fn forced(random: &mut Random) -> (Effect, Option<bool>) {
 fn one_of_few<'a, T>(list: &'a [T], random: &mut Random) -> Option<&'a T> {
     let last = list.len().checked_sub(1)?;
     list.get(random.within(0, last as i64) as usize)
+}
+
+type DrawFrame = fn(&mut Renderer, &Scene, Frame<'_>, (u32, u32)) -> Result<Stats, RenderError>;
+
+/// A frame of another size or a band of one, by the renderer that is kept and by a new one: the same bytes.
+fn a_frame(w: &mut World, r: &mut Random, draw: DrawFrame) {
+    let screen = (r.within(1, 90) as u32, r.within(1, 60) as u32);
+    let first = r.within(0, i64::from(screen.1) - 1) as u32;
+    let rows = r.one_of(&[0, first])..screen.1;
+    let mut fresh = w.fresh();
+    let [kept, fresh] = [&mut w.kept, &mut fresh].map(|renderer| {
+        let mut bytes = vec![7; (screen.0 * screen.1) as usize];
+        let frame = Frame::band(&mut bytes, screen.0, screen.1, screen.0 as usize, rows.clone()).expect("a band");
+        let drawn = draw(renderer, &w.scene, frame, (1, 1)).map(drop);
+        (drawn, bytes)
+    });
+    assert!(kept == fresh, "a frame of {screen:?}, rows {rows:?}");
 }
 
 fn one_object<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Object {
