@@ -53,6 +53,7 @@ crate::errors::debug_as_display!(VertexError);
 impl core::error::Error for VertexError {}
 
 /// The nearest 1/256, halves upward; what is too large is cut off at the ends of i32, and what is no number counts as 0.
+#[inline]
 fn nearest(x: f32) -> i32 {
     let most = if x < 0.0 { i32::MIN } else { i32::MAX };
     if x.is_nan() { 0 } else { I24F8::round_from_f32(x).map_or(most, I24F8::to_bits) }
@@ -96,7 +97,9 @@ impl Vertex {
     /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
     /// # Ok::<(), mode13h::raster::FrameError>(())
     /// ```
+    // Compiled where it is called, so that programs for a chip without floating point hold no float.
     #[must_use]
+    #[inline]
     pub fn at(x: f32, y: f32, shade: f32) -> Self {
         // 255.0 in 1/256.
         let most = i32::from(U8F8::MAX_VERTEX.to_bits());
