@@ -16,10 +16,11 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use mode13h::mesh::{obj, shapes};
+use mode13h::mesh::shapes;
 use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_assets::obj;
 use mode13h_conformance::Random;
 
 /// What loads.

@@ -12,8 +12,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use mode13h::render::{Renderer, Shading};
-use mode13h::scene::{Scene, shipped};
+use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_assets::shipped;
 
 const SCENES: &str = "torus,teapot,flash,fog";
 const MOMENTS: usize = 8;

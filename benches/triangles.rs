@@ -76,9 +76,8 @@ fn triangles(criterion: &mut Criterion) {
             workloads.push((format!("{name}/{shading}"), of_mesh(mesh(), shading)));
         }
     }
-    #[cfg(feature = "obj")]
     if let Ok(path) = std::env::var("MODE13H_MODEL") {
-        let mesh = mode13h::mesh::obj::load(&path).expect("MODE13H_MODEL names a model").mesh;
+        let mesh = mode13h_assets::obj::load(&path).expect("MODE13H_MODEL names a model").mesh;
         workloads.push((format!("{path}/{}", Shading::default()), of_mesh(mesh, Shading::default())));
     }
     if let Some(paths) = std::env::var_os("MODE13H_TRI") {

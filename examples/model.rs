@@ -2,6 +2,7 @@
 //!
 //!     cargo run --release --features window --example model -- tests/data/house.obj
 
+use mode13h_assets::SceneExt;
 use std::error::Error;
 
 use mode13h::render::Renderer;

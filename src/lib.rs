@@ -15,14 +15,12 @@
 //! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, compiled in | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
-//! | [`mesh`] | vertices, faces, normals; shapes; OBJ models | `alloc` |
+//! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
 //! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
-//! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round | `alloc` |
-//! | [`export`] | indexed PNG, RGB pictures, GIF films; files that are never half-written | `std` |
-//! | `model` | a model file as a scene: mesh, textures, light, palette, framing | `obj`, `png` |
+//! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
 //! | [`window`] | a whole game's frame: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
@@ -61,8 +59,8 @@
 //! # Features
 //!
 //! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
-//! `unsafe` code), `png` and `obj`. `window`, `gif`, `scene-files` and `embedded-graphics` (text and shapes on a frame)
-//! are added by name. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster` and `integer` remain, which need
+//! `unsafe` code), and `png`. `window` and `embedded-graphics` (text and shapes on a frame)
+//! are added by name. Files are read by the crate `mode13h-assets`. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster` and `integer` remain, which need
 //! neither `std` nor an allocator; `alloc` adds the engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -98,8 +96,6 @@ pub use angle::Angle;
 pub use names::UnknownName;
 
 #[cfg(feature = "alloc")]
-pub mod auto_palette;
-#[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod hooks;
 #[cfg(feature = "alloc")]
@@ -125,8 +121,6 @@ mod view;
 
 #[cfg(feature = "std")]
 pub mod export;
-#[cfg(all(feature = "obj", feature = "png"))]
-pub mod model;
 #[cfg(feature = "window")]
 pub mod window;
 

@@ -19,7 +19,7 @@ enum Unknown {
 
 impl UnknownName {
     /// No such name of `what`.
-    pub(crate) const fn of(what: &'static str, names: &'static [&'static str]) -> Self {
+    pub const fn of(what: &'static str, names: &'static [&'static str]) -> Self {
         Self(Unknown::Of(what, names))
     }
 

@@ -4,11 +4,11 @@ use std::fmt;
 use std::process::ExitCode;
 
 use mode13h::export::{ExportError, PictureError};
-use mode13h::mesh::obj::{ObjError, ObjErrorKind};
 use mode13h::render::RenderError;
-use mode13h::scene::file::{SceneError, SceneErrorKind};
-use mode13h::texture::LoadErrorKind;
 use mode13h::window::WindowError;
+use mode13h_assets::obj::{ObjError, ObjErrorKind};
+use mode13h_assets::scene_file::{SceneError, SceneErrorKind};
+use mode13h_assets::texture::LoadErrorKind;
 use mode13h_lab::cost::CostError;
 use mode13h_lab::explain::ExplainError;
 

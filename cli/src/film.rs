@@ -5,11 +5,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use mode13h::export::{
-    self, ApngFile, ApngFrame, FilmColors, FrameRate, GifFile, GifFrame, Picture, PictureError, Scale,
-};
+use mode13h::export::{Picture, PictureError, Scale};
 use mode13h::palette::Palette;
 use mode13h::vga::Vga;
+use mode13h_assets::animation::{self, ApngFile, ApngFrame, FilmColors, FrameRate, GifFile, GifFrame};
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 
@@ -174,9 +173,9 @@ impl Film {
             let picture = frame.picture();
             let mut bytes = Vec::new();
             if before.is_none() {
-                bytes.extend(export::y4m_header(&picture, self.scale, self.rate.fraction())?.into_bytes());
+                bytes.extend(animation::y4m_header(&picture, self.scale, self.rate.fraction())?.into_bytes());
             }
-            bytes.extend(export::y4m_frame(&picture, self.scale)?);
+            bytes.extend(animation::y4m_frame(&picture, self.scale)?);
             Ok(bytes)
         };
         let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
@@ -230,8 +229,8 @@ impl Film {
     }
 
     /// Figures of a GIF.
-    fn figures(&self, film: &export::Film) -> Figures {
-        let export::Film { width, height, frames, images, delays, bytes, .. } = film;
+    fn figures(&self, film: &animation::Film) -> Figures {
+        let animation::Film { width, height, frames, images, delays, bytes, .. } = film;
         let json = json!({
             "width": width, "height": height, "frames": frames, "seconds": film.seconds(), "indexed": true,
             "bytes": bytes, "images": images, "images_by_centiseconds": delays,

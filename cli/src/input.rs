@@ -1,5 +1,6 @@
 //! Input: from the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
+use mode13h_assets::{SceneExt, palette_file, scene_file};
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::fs::File;
@@ -11,12 +12,13 @@ use std::time::{Duration, Instant};
 
 use flate2::bufread::MultiGzDecoder;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::mesh::{Mesh, Weight, obj, shapes};
-use mode13h::model;
-use mode13h::palette::{Palette, builtin, file};
-use mode13h::scene::shipped::Shipped;
-use mode13h::scene::{self, Scene, Shared, UpAxis};
+use mode13h::mesh::{Mesh, Weight, shapes};
+use mode13h::palette::{Palette, builtin};
+use mode13h::scene::{Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
+use mode13h_assets::model;
+use mode13h_assets::obj;
+use mode13h_assets::shipped::Shipped;
 
 use crate::failure::{Failure, on_one_line};
 use crate::turntable::{Colors, Turntable};
@@ -160,13 +162,13 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
     } else if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
         shipped.load()
     } else if has_extension(Path::new(words), "toml") {
-        scene::file::load(words)
+        scene_file::load(words)
     } else {
         let known = || typo::no_input(&words.to_string_lossy());
         return model_or(words, options, "models are .obj files, scenes .toml", &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene::file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
+    let scene_file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);
@@ -298,7 +300,7 @@ fn palette_names() -> Vec<&'static str> {
 /// The extensions of palette files.
 pub(crate) fn palette_extensions() -> String {
     let mut extensions: Vec<String> = Vec::new();
-    for extension in file::FORMATS.iter().flat_map(|format| format.extensions) {
+    for extension in palette_file::FORMATS.iter().flat_map(|format| format.extensions) {
         let extension = format!(".{extension}");
         if !extensions.contains(&extension) {
             extensions.push(extension);
@@ -341,7 +343,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         _ => Failure::file(format!("{shown}: {error}")),
     })?;
     read_files::add(path);
-    let palette = file::parse_named(&words.to_string_lossy(), &bytes);
+    let palette = palette_file::parse_named(&words.to_string_lossy(), &bytes);
     let palette = palette.map_err(|error| Failure::words(format!("{shown}: {error}")))?;
     Ok((name_of(words), palette))
 }

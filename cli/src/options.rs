@@ -9,11 +9,11 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::mesh::obj;
 use mode13h::palette::{Rgb, builtin};
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, VertexPath};
 use mode13h::scene::{DitherPattern, Scene, UpAxis};
 use mode13h::span::Kernel;
+use mode13h_assets::obj;
 
 use crate::failure::Failure;
 use crate::input::{self, Input};

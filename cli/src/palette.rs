@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 use mode13h::Angle;
 use mode13h::export::{self, Picture, PixelShape, Png, Scale};
-use mode13h::mesh::obj;
-use mode13h::palette::auto::Entries;
 use mode13h::palette::builtin::Builtin;
-use mode13h::palette::file::Format;
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::UpAxis;
+use mode13h_assets::auto_palette::Entries;
+use mode13h_assets::obj;
+use mode13h_assets::palette_file::Format;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};

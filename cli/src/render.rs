@@ -6,10 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::export::{FrameRate, Scale};
+use mode13h::export::Scale;
 use mode13h::render::{Accuracy, Renderer, Screen, Stats};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_assets::animation::FrameRate;
 use mode13h_lab::cost::{calibrate, time_frame};
 use mode13h_lab::record::{self, Record, RecordErrorKind};
 use rayon::ThreadPoolBuilder;

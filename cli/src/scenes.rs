@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use mode13h::export;
 use mode13h::mesh::shapes;
-use mode13h::scene::shipped::{self, Shipped};
+use mode13h_assets::shipped::{self, Shipped};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;

@@ -134,9 +134,9 @@ mod tests {
     use crate::turntable::Pose;
     use mode13h::mesh::shapes;
     use mode13h::palette::builtin;
-    use mode13h::scene::shipped;
     use mode13h::texture::Texture;
     use mode13h::vga::Vga;
+    use mode13h_assets::shipped;
 
     fn all_scenes() -> Vec<(&'static str, Scene)> {
         let shipped = shipped::ALL.iter().map(|shipped| (shipped.name, shipped.load().expect("it is shipped").scene));

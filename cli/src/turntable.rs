@@ -1,15 +1,15 @@
 //! Turntable: a model in a scene made for it, or a scene of its own.
 
 use mode13h::Angle;
-use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::mesh::Mesh;
-use mode13h::model::{studio, with_textures};
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
 use mode13h::scene::{Camera, DitherPattern, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
+use mode13h_assets::auto_palette::{self, AutomaticPalette};
+use mode13h_assets::model::{studio, with_textures};
 
 /// Colours of the frame's bytes.
 #[derive(Clone, PartialEq, Debug)]
@@ -348,7 +348,7 @@ fn about(axis: Vec3, angle: f64, v: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mode13h::scene::shipped;
+    use mode13h_assets::shipped;
     use std::f64::consts::TAU;
 
     fn near(a: Vec3, b: Vec3) -> bool {

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use mode13h::mesh::shapes;
-use mode13h::scene::shipped;
+use mode13h_assets::shipped;
 
 /// The names of the commands.
 pub(crate) const COMMANDS: [&str; 11] =

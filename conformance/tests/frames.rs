@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use mode13h::render::Renderer;
-use mode13h::scene::shipped as files;
 use mode13h::span::Kernel;
+use mode13h_assets::shipped as files;
 use mode13h_conformance::frames::{self, Frame, shipped};
 
 /// Every frame that is not as expected, by its name, with its first wrong pixel where the kernels differ.

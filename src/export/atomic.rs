@@ -18,7 +18,9 @@ pub struct ExportError {
 }
 
 impl ExportError {
-    pub(super) fn new(path: &Path, kind: ExportErrorKind) -> ExportError {
+    /// The error of a file.
+    #[must_use]
+    pub fn new(path: &Path, kind: ExportErrorKind) -> ExportError {
         ExportError { path: path.to_path_buf(), kind }
     }
 }
@@ -40,10 +42,10 @@ pub enum ExportErrorKind {
     /// The disk, or the user's share of it, is full.
     DiskFull,
     /// The picture itself cannot be written.
-    #[cfg(any(feature = "png", feature = "gif"))]
+    #[cfg(feature = "png")]
     Picture(super::PictureError),
     /// A film without a frame.
-    #[cfg(any(feature = "gif", feature = "png"))]
+    #[cfg(feature = "png")]
     NoFrames,
     /// A film of more or fewer frames than were promised.
     #[cfg(feature = "png")]
@@ -74,7 +76,7 @@ impl ExportErrorKind {
 
     /// Makes an error of writing into an open file. That something does not exist then says nothing about the
     /// directory.
-    pub(super) fn from_writing(error: io::Error) -> ExportErrorKind {
+    pub fn from_writing(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
             _ => ExportErrorKind::Io(error),
@@ -96,13 +98,13 @@ impl fmt::Display for ExportError {
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
             ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
-            #[cfg(any(feature = "png", feature = "gif"))]
+            #[cfg(feature = "png")]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
             #[cfg(feature = "png")]
             ExportErrorKind::FrameCount { promised, given } => {
                 write!(f, "a film of {promised} frames was given {given}")
             }
-            #[cfg(any(feature = "gif", feature = "png"))]
+            #[cfg(feature = "png")]
             ExportErrorKind::NoFrames => f.write_str("a film without a frame"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }
@@ -114,7 +116,7 @@ crate::errors::debug_as_display!(ExportError);
 impl Error for ExportError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
-            #[cfg(any(feature = "png", feature = "gif"))]
+            #[cfg(feature = "png")]
             ExportErrorKind::Picture(error) => Some(error),
             ExportErrorKind::Io(error) => Some(error),
             _ => None,
@@ -168,7 +170,7 @@ pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
 
 /// A file in the making, as [`write_atomically`] has it. It gets its name once it is committed, and is removed if it is
 /// dropped before.
-pub(super) struct AtomicFile {
+pub struct AtomicFile {
     /// The path as the caller named it, for errors.
     path: PathBuf,
     /// The path that the file is renamed to.
@@ -181,7 +183,11 @@ pub(super) struct AtomicFile {
 }
 
 impl AtomicFile {
-    pub(super) fn create(path: &Path) -> Result<AtomicFile, ExportError> {
+    /// Begins a file, under another name in the same folder.
+    ///
+    /// # Errors
+    /// No such folder, no right to write there, a name that is a folder's.
+    pub fn create(path: &Path) -> Result<AtomicFile, ExportError> {
         let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(path, error));
         let begun = |target: &Path, file, temporary, permissions| AtomicFile {
             path: path.to_path_buf(),
@@ -217,7 +223,10 @@ impl AtomicFile {
     }
 
     /// Flushes the file to the disk and gives it its name.
-    pub(super) fn commit(self) -> Result<(), ExportError> {
+    ///
+    /// # Errors
+    /// A full disk, or a name that cannot be given.
+    pub fn commit(self) -> Result<(), ExportError> {
         let AtomicFile { path, target, out, temporary, permissions } = self;
         let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(&path, error));
         let fail_to_write = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_writing(error));

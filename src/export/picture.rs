@@ -28,11 +28,11 @@ impl Default for PixelShape {
 
 impl PixelShape {
     /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
-    pub(crate) const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
+    pub const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
 }
 
 /// The frames per second that a film may show.
-pub(super) const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
+pub const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
 
 /// A picture of palette indices, as it is exported.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Checks that the sizes agree with each other and with the number of bytes.
-    pub(super) fn check(&self) -> Result<(), PictureError> {
+    pub fn check(&self) -> Result<(), PictureError> {
         let limit = 1..=MAX_SIDE as usize;
         let shape = self.shape;
         if !limit.contains(&self.width) || !limit.contains(&self.height) || shape.width == 0 || shape.height == 0 {
@@ -72,9 +72,11 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Row `y`, `width` bytes. The picture has been checked, and `y` is below its height.
-    pub(super) fn row(&self, y: usize) -> &'a [u8] {
-        &self.pixels[y * self.pitch..][..self.width]
+    /// Row `y`, `width` bytes; none beyond the picture.
+    #[must_use]
+    pub fn row(&self, y: usize) -> &'a [u8] {
+        let row = y.checked_mul(self.pitch).and_then(|first| self.pixels.get(first..));
+        row.and_then(|row| row.get(..self.width)).unwrap_or_default()
     }
 }
 
@@ -107,7 +109,7 @@ pub enum PictureError {
     },
     /// The words are no [`Scale`](super::Scale).
     Scale,
-    /// The rate is no [`FrameRate`](super::FrameRate).
+    /// The rate is none of [`FRAME_RATES`].
     FrameRate {
         /// The rate that was given.
         frames_per_second: f64,

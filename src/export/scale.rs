@@ -1,7 +1,6 @@
 //! Enlarging for programs that show square pixels only.
 
 use std::fmt;
-#[cfg(any(feature = "gif", feature = "png"))]
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -77,12 +76,12 @@ impl fmt::Display for Scale {
 }
 
 /// A picture and the size that it is exported at, with the source of each pixel of the result.
-pub(super) struct Scaled<'a> {
+pub struct Scaled<'a> {
     picture: Picture<'a>,
     /// The width of the result, in pixels.
-    pub(super) width: u32,
+    pub width: u32,
     /// The height of the result, in pixels.
-    pub(super) height: u32,
+    pub height: u32,
     /// The frame's column of each column of the result.
     columns: Vec<usize>,
     /// The frame's row of each row of the result.
@@ -90,7 +89,11 @@ pub(super) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    pub(super) fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, PictureError> {
+    /// Enlarges a picture.
+    ///
+    /// # Errors
+    /// A picture that is not sound; a side of more than [`MAX_SIDE`] pixels.
+    pub fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, PictureError> {
         picture.check()?;
         let (width, height) = scale.size(picture.width, picture.height);
         let too_large = PictureError::Size { width, height };
@@ -106,35 +109,39 @@ impl<'a> Scaled<'a> {
     }
 
     /// The palette indices of each row of the result, from the top.
-    pub(super) fn rows(&self) -> impl Iterator<Item = Vec<u8>> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = Vec<u8>> + '_ {
         self.rows.iter().map(|&y| {
             let row = self.picture.row(y);
             self.columns.iter().map(|&x| row[x]).collect()
         })
     }
 
-    /// The palette indices of a part of the result, row by row. The part lies within the result.
-    #[cfg(any(feature = "gif", feature = "png"))]
-    pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, PictureError> {
+    /// The palette indices of a part of the result, row by row.
+    ///
+    /// # Errors
+    /// A part that does not lie within the result; no memory.
+    pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, PictureError> {
+        let (Some(columns), Some(rows)) = (self.columns.get(columns), self.rows.get(rows)) else {
+            return Err(PictureError::Size { width: self.width as usize, height: self.height as usize });
+        };
         let bytes = columns.len() * rows.len();
         let mut part = Vec::new();
         part.try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
-        for &y in &self.rows[rows] {
+        for &y in rows {
             let row = self.picture.row(y);
-            part.extend(self.columns[columns.clone()].iter().map(|&x| row[x]));
+            part.extend(columns.iter().map(|&x| row[x]));
         }
         Ok(part)
     }
 
     /// The picture itself, and the columns and rows of it that the columns and rows of the result show.
-    #[cfg(any(feature = "gif", feature = "png"))]
-    pub(super) fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
+    pub fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
         (&self.picture, &self.columns, &self.rows)
     }
 
     /// Pixels per unit of length, across and down, in lowest terms, for `pHYs`. The picture keeps its shape whatever
     /// its size: 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
-    pub(super) fn density(&self) -> (u32, u32) {
+    pub fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
         let y = u64::from(self.height) * u64::from(across) * self.picture.width as u64;

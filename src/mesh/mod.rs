@@ -1,7 +1,7 @@
 //! Triangle meshes: vertices with normals, triangles, surfaces; and facts of the whole.
 //!
-//! A [`Mesh`] comes from one of the [`shapes`], from an OBJ file (`obj`, with the feature of that name) or from the
-//! caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]). Once made it is sound: every position and normal is
+//! A [`Mesh`] comes from one of the [`shapes`], from the caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]), or
+//! from what a model's file gives ([`Mesh::from_parts`]). Once made it is sound: every position and normal is
 //! finite, every index in range, there is at least one triangle. Anything else is refused with a [`MeshError`].
 //!
 //! Triangles are counter-clockwise seen from outside, in a right-handed system; y is up.
@@ -10,13 +10,10 @@ mod bounds;
 mod error;
 mod facts;
 pub mod normals;
-#[cfg(feature = "obj")]
-pub mod obj;
-
 mod orientation;
+mod parts;
 mod sets;
 pub mod shapes;
-#[cfg(feature = "obj")]
 mod shells;
 mod split;
 mod stretch;
@@ -34,6 +31,7 @@ use glam::{Vec2, Vec3};
 pub use bounds::Bounds;
 pub use error::MeshError;
 pub use normals::Weight;
+pub use parts::{Parts, Repairs};
 pub use surface::Surface;
 
 /// A triangle mesh.
@@ -236,6 +234,11 @@ impl Mesh {
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// The surfaces, whose number stays.
+    pub fn surfaces_mut(&mut self) -> &mut [Surface] {
+        &mut self.surfaces
     }
 
     /// The line of a triangle's face in the model's file, counted from 1; `None` if the mesh was not read from one.

@@ -132,7 +132,6 @@ impl<'a> Together<'a> {
     /// stays.
     ///
     /// [scattered]: Self::is_scattered
-    #[cfg(feature = "obj")]
     pub(super) fn unless_scattered(self, edges: topology::Edges) -> Self {
         Self { edges: Some(edges), ..self }
     }

@@ -10,7 +10,6 @@ pub(super) struct Sets {
 
 impl Sets {
     /// The numbers below `count`.
-    #[cfg(feature = "obj")]
     pub(super) fn new(count: u32) -> Self {
         Self { parents: (0..count).collect() }
     }

@@ -170,7 +170,6 @@ impl Edges {
 
     /// The faces at each edge: for each whether it runs downward, from the edge's higher point to the lower one, and
     /// the corner that it comes from, counted through all triangles.
-    #[cfg(feature = "obj")]
     pub(super) fn faces_by_edge(&self) -> impl Iterator<Item = impl Iterator<Item = (bool, usize)> + Clone> {
         self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
     }

@@ -4,7 +4,6 @@
 //! the other. Leaves are made so, each side with a normal and a surface of its own. Scans have such triangles by
 //! mistake.
 
-#[cfg(feature = "obj")]
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -42,7 +41,6 @@ impl Mesh {
 /// A **sheet** is no mistake. Its pairs are joined at edges where no other face is, and have a free rim, an edge of one
 /// pair alone, as a leaf or a fin has; or they touch nothing else, as a body whose faces are all there both ways. Two
 /// sides of different surfaces are no mistake either. Leaving out pairs changes no winding number.
-#[cfg(feature = "obj")]
 pub(super) fn mistaken(
     edges: &Edges,
     triangles: &[[u32; 3]],

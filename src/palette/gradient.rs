@@ -43,8 +43,8 @@ pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Stop]) {
     }
 }
 
-/// The colour of entry `i` of `entries`, which are at most 1,025 (the products of [`between`]).
-pub(super) const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
+/// The colour of entry `i` of `entries`, which are at most 1,025 (the products of `between`).
+pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
     if keys.is_empty() {
         return None;
     }

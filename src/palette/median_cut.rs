@@ -7,7 +7,7 @@
 //! quantization", Graphics Gems II, 1991).
 //!
 //! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, choose by chance or do not tell the gain of
-//! the next colour, which [`auto`](super::auto) needs.
+//! the next colour, which palettes made for a scene need.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -17,7 +17,7 @@ use super::Rgb;
 
 /// The boxes after some cuts.
 #[derive(Clone, Debug)]
-pub(crate) struct MedianCut {
+pub struct MedianCut {
     /// Colours with their weights, box by box.
     colors: Vec<(Rgb, u32)>,
     boxes: Vec<ColorBox>,
@@ -49,11 +49,12 @@ struct Moments {
 }
 
 impl MedianCut {
-    /// Makes one box around colours with their weights; colours without weight are left out. At most 2²⁴ of them, so
-    /// that no sum passes 2⁶⁴.
-    pub(crate) fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
+    /// Makes one box around colours with their weights. Colours without weight are left out, and those beyond 2²⁴, so that
+    /// no sum passes 2⁶⁴.
+    #[must_use]
+    pub fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
         colors.retain(|&(_, weight)| weight > 0);
-        debug_assert!(colors.len() <= 1 << 24, "a texture has 65,536 at most");
+        colors.truncate(1 << 24);
         let whole = 0..colors.len();
         let boxes = if colors.is_empty() { Vec::new() } else { vec![ColorBox::new(&colors, whole)] };
         Self { colors, boxes }
@@ -67,12 +68,12 @@ impl MedianCut {
 
     /// The decrease of the sum of weight × squared distance to the mean by the next cut. `None` if every colour has a
     /// box of its own.
-    pub(crate) fn gain(&self) -> Option<f64> {
+    pub fn gain(&self) -> Option<f64> {
         self.best().map(|(_, cut)| cut.gain)
     }
 
     /// Makes the next cut. Returns whether there was one.
-    pub(crate) fn cut(&mut self) -> bool {
+    pub fn cut(&mut self) -> bool {
         let Some((i, cut)) = self.best() else { return false };
         let range = self.boxes[i].range.clone();
         let part = &mut self.colors[range.clone()];
@@ -84,17 +85,17 @@ impl MedianCut {
     }
 
     /// Cuts until there are `boxes` of them, or as many as there are different colours.
-    pub(crate) fn cut_to(&mut self, boxes: usize) {
+    pub fn cut_to(&mut self, boxes: usize) {
         while self.boxes.len() < boxes && self.cut() {}
     }
 
     /// Counts the boxes.
-    pub(crate) fn len(&self) -> usize {
+    pub fn boxes(&self) -> usize {
         self.boxes.len()
     }
 
     /// The mean colour of each box, each channel to the nearest; the colour itself for a box of one colour.
-    pub(crate) fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
+    pub fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
         self.boxes.iter().map(|b| b.moments.mean())
     }
 }
@@ -238,6 +239,6 @@ mod tests {
     fn nothing_has_no_colours() {
         let mut cut = MedianCut::new(vec![(Rgb::WHITE, 0)]);
         cut.cut_to(4);
-        assert_eq!((cut.len(), cut.means().count()), (0, 0));
+        assert_eq!((cut.boxes(), cut.means().count()), (0, 0));
     }
 }

@@ -11,20 +11,14 @@
 //! | [`builtin`] | the palettes that are compiled in, by name |
 //! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
 //! | [`Lut64K`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
-//! | [`auto`] | a palette made for the materials of a model (`alloc`) |
-//! | [`mod@file`] | JASC, GIMP, Adobe, Lospec and raw VGA files |
 //!
 //! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so a file is written as it was
 //! read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
 //! [`Palette::on_dac`] shows the result.
 
-#[cfg(feature = "alloc")]
-#[doc(hidden)]
-pub mod auto;
 mod bios;
 pub mod builtin;
 pub mod cube;
-pub mod file;
 #[doc(hidden)]
 pub mod gradient;
 #[cfg(feature = "alloc")]
@@ -32,7 +26,7 @@ mod inverse_colormap;
 #[cfg(feature = "alloc")]
 mod lut64k;
 #[cfg(feature = "alloc")]
-pub(crate) mod median_cut;
+mod median_cut;
 #[cfg(feature = "alloc")]
 mod nearest_colors;
 mod ramp;
@@ -45,6 +39,8 @@ pub use bios::BIOS;
 pub use inverse_colormap::InverseColormap;
 #[cfg(feature = "alloc")]
 pub use lut64k::Lut64K;
+#[cfg(feature = "alloc")]
+pub use median_cut::MedianCut;
 #[cfg(feature = "alloc")]
 pub use nearest_colors::NearestColors;
 pub use ramp::Ramp;

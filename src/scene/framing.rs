@@ -34,11 +34,7 @@ type Row = [f64; 3];
 
 /// The way in which an object turns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(
-    not(any(feature = "scene-files", test)),
-    expect(dead_code, reason = "only scene files have what does not turn, or turns in any way")
-)]
-pub(super) enum Turning {
+pub enum Turning {
     /// It does not turn.
     Still,
     /// It turns about its own upward axis, which may be tilted.
@@ -48,7 +44,7 @@ pub(super) enum Turning {
 }
 
 /// The space that an object covers as it moves.
-pub(super) struct Swept {
+pub struct Swept {
     path: Places,
     shape: Shape,
 }
@@ -72,7 +68,7 @@ enum Shape {
 
 impl Swept {
     /// The space that `object` covers, turning so, and going along `path` if there is one.
-    pub(super) fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
+    pub fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
             Turning::Still => Shape::Points(points(object, object.angles)),
             Turning::Upright => {
@@ -128,20 +124,21 @@ impl Swept {
 }
 
 /// The side and the angle from which everything is looked at.
-pub(super) struct Viewpoint {
+pub struct Viewpoint {
     /// The direction towards the eye, of any length but zero.
-    pub(super) direction: Vec3,
-    pub(super) up: Vec3,
+    pub direction: Vec3,
+    /// Up in the picture.
+    pub up: Vec3,
     /// The angle from the picture's upper to its lower edge.
-    pub(super) field_of_view: Angle,
+    pub field_of_view: Angle,
     /// The middle of the picture, if it is given.
-    pub(super) target: Option<Vec3>,
+    pub target: Option<Vec3>,
 }
 
 impl Viewpoint {
-    /// Returns the nearest camera that has everything within [`FILL`] of its picture; `None` if there is nothing, or if
+    /// Returns the nearest camera that has everything within nine tenths of its picture; `None` if there is nothing, or if
     /// it reaches farther than f32.
-    pub(super) fn camera(&self, everything: &[Swept]) -> Option<Camera> {
+    pub fn camera(&self, everything: &[Swept]) -> Option<Camera> {
         let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
         let axes @ [right, up, towards] = axes(towards.map(|c| -c), widen(self.up))?;
         let half = FILL * libm::tan(self.field_of_view.to_radians() / 2.0);
@@ -302,8 +299,7 @@ fn narrow(v: Row) -> Vec3 {
 ///
 /// The object turns within a cylinder of radius r and height h. Seen from far away and tilted by θ, that is 2r wide and
 /// 2r·sin θ + h·cos θ high, which is √(4r² + h²)·sin(θ + atan(h / 2r)).
-#[cfg_attr(not(all(feature = "obj", feature = "png")), expect(dead_code, reason = "only model files are tilted so"))]
-pub(crate) fn tilt(object: &Object, least: Angle) -> Angle {
+pub fn tilt(object: &Object, least: Angle) -> Angle {
     let (mut square, mut low, mut high) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
     for [x, y, z] in points(object, [Angle::default(); 3]) {
         square = square.max(x * x + z * z);

@@ -11,19 +11,13 @@
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: everything from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
-//! | `file` | scenes as TOML files (feature `scene-files`) |
-//! | `shipped` | those that are compiled in (feature `scene-files`) |
 
 mod animation;
 mod camera;
-#[cfg(feature = "scene-files")]
-pub mod file;
 mod fog;
-pub(crate) mod framing;
+pub mod framing;
 mod motion;
 pub(crate) mod object;
-#[cfg(feature = "scene-files")]
-pub mod shipped;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -35,7 +29,7 @@ use crate::angle::Angle;
 use crate::light::Light;
 pub use crate::mapping::Mapping;
 use crate::palette::{Palette, Rgb, builtin};
-pub use crate::settings::{HiddenSurfaces, Settings};
+pub use crate::settings::{Accuracy, HiddenSurfaces, Settings};
 pub use crate::shading::Shading;
 pub use crate::shared::Shared;
 pub use crate::span::dither::DitherPattern;
@@ -78,7 +72,7 @@ pub struct Scene {
     pub fog: Option<Fog>,
     /// How it is to be drawn, where the renderer's own settings are silent.
     pub settings: Settings,
-    /// The palette is to be made from the scene's materials: see [`auto_palette`](crate::auto_palette).
+    /// The palette is to be made from the scene's materials, by whoever draws it: `mode13h_assets::auto_palette`.
     pub auto_palette: bool,
     /// The motions; [`set_time`](Self::set_time) puts objects, lights and camera in their places.
     pub motions: Vec<Motion>,
@@ -100,7 +94,7 @@ pub struct Scene {
 
 impl Scene {
     /// The tilt of the upper end of a [shown](Self::showing) object towards the eye.
-    pub(crate) const TILT: Angle = Angle::from_radians(0.35);
+    pub const TILT: Angle = Angle::from_radians(0.35);
 
     /// Makes an empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four
     /// seconds.
@@ -150,7 +144,8 @@ impl Scene {
 
     /// Makes a scene that [shows](Self::showing) an object at other angles about x and y at first. `angles` is given the object
     /// in its place.
-    pub(crate) fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
+    #[must_use]
+    pub fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
         let mut object = object.centred();
         object.position = Vec3::ZERO;
         let [tilt, turn] = angles(&object);

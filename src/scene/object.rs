@@ -50,6 +50,14 @@ pub struct Object {
 }
 
 impl Object {
+    /// Returns whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
+    #[must_use]
+    pub fn has_colors(&self) -> bool {
+        let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
+        self.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))
+            || self.materials.iter().any(|material| material.texture.is_some())
+    }
+
     /// Makes an object of the mesh at the origin, not turned, in materials made from its surfaces: the first in the
     /// palette's first ramp, the second in its second, and so on round.
     #[must_use]

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::Texture;
-use crate::palette::median_cut::MedianCut;
+use crate::palette::MedianCut;
 use crate::palette::{NearestColors, Rgb};
 use crate::span::texture::Levels;
 
@@ -81,7 +81,7 @@ impl Mipmap {
 
     /// The colours of all levels with their weights: each level's together half as much as the one before's. `texture`
     /// is the one that it was made from.
-    pub(crate) fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
+    pub fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
         // In 256ths of a texel of level 0.
         let mut weights = texture.histogram().map(|count| count << 8);
         let mut rest = &self.texels[..];

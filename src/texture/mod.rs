@@ -12,8 +12,6 @@
 //! palette and the texture's colours, so a texture knows nothing of any palette.
 
 mod builtin;
-#[cfg(feature = "png")]
-mod load;
 mod mipmap;
 mod resample;
 
@@ -22,10 +20,8 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::ops::Index;
 
-use crate::palette::median_cut::MedianCut;
+use crate::palette::MedianCut;
 use crate::palette::{NearestColors, Rgb};
-#[cfg(feature = "png")]
-pub use load::{Decoded, LoadError, LoadErrorKind, decode, decode_all, load, load_decoded};
 pub use mipmap::Mipmap;
 
 /// The errors of texels, or pixels, that are no texture.
@@ -115,7 +111,7 @@ impl Texture {
     pub const MAX_SIDE: u32 = 256;
 
     /// The max number of pixels in a row, and of rows, of a picture that becomes a texture.
-    pub(crate) const MAX_PICTURE_SIDE: u32 = 4096;
+    pub const MAX_PICTURE_SIDE: u32 = 4096;
 
     /// Makes a texture of texels, row after row from v = 0 up, and their colours.
     ///

@@ -19,7 +19,6 @@ pub use canvas::Canvas;
 pub use input::{Buttons, Input};
 pub use minifb::Key;
 
-use crate::errors::clause;
 use crate::vga::Vga;
 use fit::Picture;
 use input::Events;
@@ -297,12 +296,17 @@ impl WindowError {
     }
 }
 
+/// The first line of what another library says, without a stop at its end.
+fn first_line(said: &str) -> &str {
+    said.lines().next().unwrap_or_default().trim_end_matches('.')
+}
+
 impl fmt::Display for WindowError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         use minifb::Error::{MenuExists, UpdateFailed, WindowCreate};
         match &self.reason {
-            WindowCreate(why) | UpdateFailed(why) | MenuExists(why) => write!(f, "no display: {}", clause(why)),
-            reason => write!(f, "no display: {}", clause(&reason.to_string())),
+            WindowCreate(why) | UpdateFailed(why) | MenuExists(why) => write!(f, "no display: {}", first_line(why)),
+            reason => write!(f, "no display: {}", first_line(&reason.to_string())),
         }
     }
 }

@@ -16,8 +16,9 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Choice, Decision, Effect};
 use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
-use mode13h::scene::{DitherPattern, Motion, Object, Scene, shipped};
+use mode13h::scene::{DitherPattern, Motion, Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_assets::shipped;
 
 /// Frames of a turn.
 const FRAMES: u32 = 6;

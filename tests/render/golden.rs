@@ -34,17 +34,16 @@ fn golden_frames() {
     assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
 }
 
-#[cfg(feature = "scene-files")]
 #[test]
 fn golden_frames_of_every_scene() {
-    use mode13h::scene::shipped;
+    use mode13h_assets::shipped;
 
     let mut tried = Tried::new("golden_frames_of_every_scene", 3 * shipped::ALL.len() as u64);
     let mut wrong = Vec::new();
     for shipped in &shipped::ALL {
         let mut scene = shipped.load().expect("a scene that loads").scene;
         if scene.auto_palette {
-            mode13h::auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
+            mode13h_assets::auto_palette::of_scene(&scene).expect("a legal scene").apply(&mut scene);
         }
         for third in 0..3_u8 {
             scene.set_time(scene.duration * f64::from(third) / 3.0);
@@ -56,13 +55,12 @@ fn golden_frames_of_every_scene() {
 
 /// Grass, bricks and glazed tiles, each in its own colours, from three sides; and once in the nearest entries of the
 /// cube, and in ramps that know nothing of them.
-#[cfg(all(feature = "obj", feature = "png"))]
 #[test]
 fn golden_frames_of_a_house() {
-    use mode13h::auto_palette;
     use mode13h::light::Light;
-    use mode13h::mesh::obj;
     use mode13h::scene::{Camera, Motion, Object, Shared};
+    use mode13h_assets::auto_palette;
+    use mode13h_assets::obj;
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
     let loaded = obj::load(crate::support::workspace::root().join("tests/data/house.obj")).expect("a model");
@@ -70,7 +68,7 @@ fn golden_frames_of_a_house() {
     let surfaces = object.mesh().surfaces().to_vec();
     for (material, surface) in object.materials.iter_mut().zip(surfaces) {
         if let Some(path) = &surface.texture {
-            let map = Shared::new(mode13h::texture::load(path).expect("a picture"));
+            let map = Shared::new(mode13h_assets::texture::load(path).expect("a picture"));
             *material = material.clone().with_map(&surface, &map);
         }
     }

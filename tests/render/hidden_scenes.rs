@@ -224,17 +224,15 @@ fn ways_are_typed_by_name() {
 }
 
 /// `MODE13H_MODEL=model.obj cargo test --release --test hidden_scenes a_model`: a full turn at 1°.
-#[cfg(feature = "obj")]
 #[test]
 fn a_model_of_your_own() {
     let Ok(path) = std::env::var("MODE13H_MODEL") else {
         println!("MODE13H_MODEL names no model: none tried");
         return;
     };
-    #[cfg(feature = "obj")]
     {
         let mut tried = Tried::new("hidden_a_model_of_your_own", 360);
-        let mut scene = crate::support::scenes::framed(mode13h::mesh::obj::load(&path).expect("a model").mesh);
+        let mut scene = crate::support::scenes::framed(mode13h_assets::obj::load(&path).expect("a model").mesh);
         for degrees in 0..360 {
             scene.objects_mut()[0].angles = [0.2, f64::from(degrees).to_radians(), 0.0].map(Angle::from_radians);
             assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");

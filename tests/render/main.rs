@@ -3,7 +3,6 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-#[cfg(feature = "scene-files")]
 mod allocation;
 #[cfg(feature = "alloc")]
 mod clipping;

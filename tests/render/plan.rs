@@ -417,7 +417,7 @@ fn a_shininess_below_0_is_refused() {
 #[test]
 fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
     // The shipped scenes are files.
-    let stated = if cfg!(feature = "scene-files") { 40 } else { 24 };
+    let stated = 40;
     let mut tried = Tried::new("light_at_every_pixel_changes_no_more_than_the_plan_says", stated);
     let mut bounds = Vec::new();
     for (name, scene) in scenes::all() {

@@ -1,15 +1,16 @@
 //! What errors and panics of the library say.
 
+use mode13h_assets::SceneExt;
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::palette::file;
 use mode13h::render::{Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::palette_file;
 
 use crate::support::workspace;
 
@@ -20,7 +21,7 @@ fn errors_print_what_they_display() {
     scene.camera.eye = scene.camera.target;
     let errors: [Box<dyn Error>; 5] = [
         Box::new(Mesh::new(Vec::new(), vec![[0, 1, 2]]).unwrap_err()),
-        Box::new(file::parse_named("a.gpl", b"nothing").unwrap_err()),
+        Box::new(palette_file::parse_named("a.gpl", b"nothing").unwrap_err()),
         Box::new(Renderer::new().draw(&scene, &mut Vga::new()).unwrap_err()),
         Box::new(Texture::from_rgb(0, 1, &[]).unwrap_err()),
         Box::new("round".parse::<Shading>().unwrap_err()),
@@ -28,7 +29,6 @@ fn errors_print_what_they_display() {
     for error in errors {
         assert_eq!(format!("{error:?}"), error.to_string());
     }
-    #[cfg(all(feature = "obj", feature = "png"))]
     {
         let error = Scene::from_model("none.obj").unwrap_err();
         assert!(format!("{error:?}").starts_with("none.obj: "), "{error:?}");
@@ -39,7 +39,7 @@ fn errors_print_what_they_display() {
 /// Every error of the library does, by the one macro.
 #[test]
 fn every_error_prints_what_it_displays() {
-    let mut folders = vec![workspace::root().join("src")];
+    let mut folders = ["src", "assets/src"].map(|folder| workspace::root().join(folder)).to_vec();
     let mut errors = 0;
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).expect("a folder") {

@@ -10,11 +10,10 @@ use std::rc::Rc;
 
 use crate::support::film::{Image, decode};
 use crate::support::tried::Tried;
-use mode13h::export::{
-    ExportErrorKind, Film, FrameRate, GifError, GifFile, GifFrame, GifWriter, Picture, PictureError, PixelShape, Scale,
-};
+use mode13h::export::{ExportErrorKind, Picture, PictureError, PixelShape, Scale};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
+use mode13h_assets::animation::{Film, FrameRate, GifError, GifFile, GifFrame, GifWriter};
 use mode13h_conformance::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;

@@ -7,15 +7,14 @@ mod support;
 mod errors;
 #[cfg(feature = "png")]
 mod export;
-#[cfg(feature = "gif")]
 mod gif;
 #[cfg(feature = "alloc")]
 mod mesh_normals;
 #[cfg(feature = "alloc")]
+mod mesh_parts;
+#[cfg(feature = "alloc")]
 mod mesh_shapes;
-#[cfg(all(feature = "obj", feature = "png"))]
 mod models;
-#[cfg(feature = "obj")]
 mod obj_files;
 #[cfg(feature = "alloc")]
 mod palette_auto;
@@ -24,11 +23,8 @@ mod palette_files;
 mod palette_scenes;
 #[cfg(feature = "alloc")]
 mod palette_tables;
-#[cfg(feature = "scene-files")]
 mod scene_files;
-#[cfg(all(feature = "scene-files", feature = "png"))]
 mod shipped_scenes;
-#[cfg(all(feature = "obj", feature = "png"))]
 mod studio;
 #[cfg(feature = "alloc")]
 mod texture;

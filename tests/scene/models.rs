@@ -1,5 +1,6 @@
 //! Model files as scenes: by one call, and nothing is left out without a word.
 
+use mode13h_assets::SceneExt;
 use std::fs;
 
 use mode13h::scene::Scene;
@@ -63,7 +64,6 @@ fn what_a_model_lacks_is_said_beside_the_scene() {
 }
 
 /// Files of other kinds shine through, too.
-#[cfg(feature = "images")]
 #[test]
 fn transparency_of_other_kinds_is_said_beside_the_scene() {
     use image::ImageFormat::{Gif, Tga, WebP};

@@ -12,9 +12,9 @@ use crate::support::workspace;
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
-use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
+use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
 use proptest::prelude::*;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {

@@ -2,16 +2,16 @@
 
 use crate::support::tried::Tried;
 use mode13h::Angle;
-use mode13h::auto_palette::{self, Seen, seen};
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
-use mode13h::palette::auto::{Automatic, Entries, Use, share};
 use mode13h::palette::{NearestColors, Palette, Ramp, Rgb, builtin};
 use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Motion, Object, ObjectId, Scene, UpAxis};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::auto_palette::{self, Seen, seen};
+use mode13h_assets::auto_palette::{Automatic, Entries, Use, share};
 use mode13h_conformance::Random;
 
 fn random_color(random: &mut Random) -> Rgb {
@@ -518,16 +518,15 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
     }
 }
 
-#[cfg(all(feature = "obj", feature = "png"))]
 #[test]
 fn the_house_has_two_ramps_and_bricks() {
     let folder = crate::support::workspace::root().join("tests/data");
-    let house = mode13h::mesh::obj::load(folder.join("house.obj")).expect("a model");
+    let house = mode13h_assets::obj::load(folder.join("house.obj")).expect("a model");
     assert!(house.warnings.is_empty(), "{:?}", house.warnings);
     let surfaces = house.mesh.surfaces().to_vec();
     let names: Vec<&str> = surfaces.iter().map(|surface| &*surface.name).collect();
     assert_eq!(names, ["grass", "bricks", "tiles"]);
-    let bricks = mode13h::texture::load(surfaces[1].texture.as_ref().expect("a texture")).expect("a picture");
+    let bricks = mode13h_assets::texture::load(surfaces[1].texture.as_ref().expect("a texture")).expect("a picture");
     let mut object = Object::new(house.mesh);
     let bricks = mode13h::scene::Shared::new(bricks);
     object.materials[1] = object.materials[1].clone().with_map(&surfaces[1], &bricks);

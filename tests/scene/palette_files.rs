@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 use crate::support::property::property;
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
-use mode13h::palette::file::{self, FORMATS, Format, PaletteError, PaletteErrorKind, Place};
 use mode13h::palette::gradient::{Stop, fill};
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_dac6};
+use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, PaletteErrorKind, Place};
 use proptest::prelude::*;
 
 fn format(name: &str) -> &'static Format {
@@ -315,7 +315,7 @@ fn the_files_in_palettes_are_the_builtins() {
         }
         let stored = std::fs::read(&path).unwrap_or_default();
         assert!(stored == bytes, "{file_name} differs from the palette that is compiled in");
-        assert_eq!(file::parse_named(&file_name, &stored).as_ref(), Ok(builtin.palette));
+        assert_eq!(palette_file::parse_named(&file_name, &stored).as_ref(), Ok(builtin.palette));
         files.remove(&file_name);
     }
     assert!(files.is_empty(), "files of no built-in palette: {files:?}");
@@ -345,10 +345,10 @@ fn assert_round_trip(palette: &Palette) {
         let bytes = format.write(palette, "a name");
         assert_eq!(format.read(&bytes), Ok(expected_back(format, palette)), "{}", format.name);
         let file_name = format!("some.thing.{}", format.extensions[0].to_uppercase());
-        assert_eq!(file::parse_named(&file_name, &bytes), format.read(&bytes), "{file_name}");
+        assert_eq!(palette_file::parse_named(&file_name, &bytes), format.read(&bytes), "{file_name}");
         if format.name != "act" {
             assert_eq!(Format::of_bytes(&bytes).map(|found| found.name), Some(format.name));
-            assert_eq!(file::parse(&bytes), format.read(&bytes));
+            assert_eq!(palette_file::parse(&bytes), format.read(&bytes));
         }
     }
 }
@@ -408,7 +408,7 @@ fn extensions_lead_to_formats() {
 #[test]
 fn a_name_decides_where_bytes_cannot() {
     let dark: Vec<u8> = (0..768).map(|i| (i % 64) as u8).collect();
-    let second = |name| file::parse_named(name, &dark).unwrap()[1];
+    let second = |name| palette_file::parse_named(name, &dark).unwrap()[1];
     assert_eq!(second("a.act"), Rgb::new(3, 4, 5));
     for name in ["a.vga", "a.raw", "a.col", "a.lmp", "a.pal", "a", "a.bin"] {
         assert_eq!(second(name), Rgb::from_dac([3, 4, 5]), "{name}");
@@ -419,16 +419,16 @@ fn a_name_decides_where_bytes_cannot() {
 fn an_act_of_772_bytes_has_as_many_colours_as_it_says() {
     let mut bytes = vec![200; 768];
     bytes.extend([0, 2, 0, 1]);
-    let palette = file::parse_named("a.act", &bytes).unwrap();
+    let palette = palette_file::parse_named("a.act", &bytes).unwrap();
     assert_eq!(palette, palette_of(|i| if i < 2 { Rgb::new(200, 200, 200) } else { Rgb::BLACK }));
-    assert_eq!(file::parse(&bytes), Ok(palette));
+    assert_eq!(palette_file::parse(&bytes), Ok(palette));
 }
 
 #[test]
 fn a_gimp_name_of_two_lines_becomes_one() {
     let bytes = format("gimp").write(&BIOS, "two\nlines, ünïcode");
     assert!(bytes.starts_with("GIMP Palette\nName: two lines, ünïcode\nColumns: 16\n#\n  0   0   0\t0\n".as_bytes()));
-    assert_eq!(file::parse(&bytes), Ok(BIOS));
+    assert_eq!(palette_file::parse(&bytes), Ok(BIOS));
 }
 
 // P5
@@ -459,7 +459,7 @@ fn p5_text_is_read_whatever_ends_its_lines() {
         ];
         for text in endings {
             assert_eq!(format(name).read(text.as_bytes()), Ok(expected.clone()), "{text:?}");
-            assert_eq!(file::parse(text.as_bytes()), Ok(expected.clone()), "{text:?}");
+            assert_eq!(palette_file::parse(text.as_bytes()), Ok(expected.clone()), "{text:?}");
             tried.add(1);
         }
     }
@@ -550,7 +550,9 @@ fn p5_an_empty_file_is_called_empty() {
         assert_eq!((error.kind, error.place), (PaletteErrorKind::Empty, Place::Offset(0)));
         tried.add(1);
     }
-    for error in [file::parse(b""), file::parse_named("a.gpl", b""), file::parse_named("a", b"")] {
+    for error in
+        [palette_file::parse(b""), palette_file::parse_named("a.gpl", b""), palette_file::parse_named("a", b"")]
+    {
         assert_eq!(error.unwrap_err().to_string(), "offset 0: the file is empty");
         tried.add(1);
     }
@@ -561,12 +563,12 @@ fn p5_what_looks_like_nothing_is_said_to() {
     let mut tried = Tried::new("p5_what_looks_like_nothing_is_said_to", 5 + 1);
     let utf16 = "\u{FEFF}JASC-PAL\n".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
     for bytes in [&b"hello\n"[..], &[0; 700], &[0xFF; 769], &utf16, b"\n"] {
-        let error = file::parse(bytes).unwrap_err();
+        let error = palette_file::parse(bytes).unwrap_err();
         assert_eq!(error.to_string(), "offset 0: neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette");
         tried.add(1);
     }
     // With a name, the message is the format's own.
-    let error: PaletteError = file::parse_named("a.pal", &utf16).unwrap_err();
+    let error: PaletteError = palette_file::parse_named("a.pal", &utf16).unwrap_err();
     assert_eq!(error.to_string(), "line 1: expected \"JASC-PAL\", found \"??J?A?S?C?-?P?A?L?\"");
     tried.add(1);
 }
@@ -618,8 +620,10 @@ fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
     let tried = Tried::new("p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file", 256);
     property(tried, any_file(), |bytes| {
         let mut results: Vec<_> = FORMATS.iter().map(|format| format.read(&bytes)).collect();
-        results.push(file::parse(&bytes));
-        results.extend(["a.pal", "a.gpl", "a.hex", "a.act", "a.vga", "a"].map(|name| file::parse_named(name, &bytes)));
+        results.push(palette_file::parse(&bytes));
+        results.extend(
+            ["a.pal", "a.gpl", "a.hex", "a.act", "a.vga", "a"].map(|name| palette_file::parse_named(name, &bytes)),
+        );
         for error in results.into_iter().filter_map(Result::err) {
             match error.place {
                 Place::Offset(offset) => prop_assert!(offset <= bytes.len()),

@@ -5,17 +5,17 @@
 
 use crate::support::tried::Tried;
 use mode13h::Angle;
-use mode13h::auto_palette::{self, AutomaticPalette};
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Surface, shapes};
-use mode13h::palette::auto::Entries;
 use mode13h::palette::cube::CUBE;
 use mode13h::palette::{Palette, Ramp, Rgb};
 use mode13h::render::Renderer;
 use mode13h::scene::{DitherPattern, Fog, Object, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::auto_palette::Entries;
+use mode13h_assets::auto_palette::{self, AutomaticPalette};
 use mode13h_conformance::Random;
 
 /// Towards the sun.

@@ -1,5 +1,6 @@
 //! Scene files: what they say is what is in the scene, and what is wrong in them is said with its line, column and key.
 
+use mode13h_assets::SceneExt;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufRead, Cursor};
@@ -11,10 +12,10 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
 use mode13h::render::Accuracy;
-use mode13h::scene::file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 use mode13h::scene::{
     DitherPattern, HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis,
 };
+use mode13h_assets::scene_file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 
@@ -423,10 +424,10 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("long.toml");
     fs::write(&path, &longest).expect("written");
-    assert!(file::load(&path).is_ok());
+    assert!(scene_file::load(&path).is_ok());
     tried.add(1);
     fs::write(&path, longest + "#").expect("written");
-    assert!(matches!(*file::load(&path).expect_err("too long").kind, SceneErrorKind::TooLong));
+    assert!(matches!(*scene_file::load(&path).expect_err("too long").kind, SceneErrorKind::TooLong));
     tried.add(1);
 }
 
@@ -435,7 +436,7 @@ fn f3_files_that_are_missing_or_no_files() {
     let mut tried = Tried::new("f3_files_that_are_missing_or_no_files", 7);
     let directory = tempfile::tempdir().expect("a directory");
     let folder = directory.path();
-    let said = |path: &FilePath| file::load(path).expect_err("no scene").to_string();
+    let said = |path: &FilePath| scene_file::load(path).expect_err("no scene").to_string();
     let none = folder.join("none.toml");
     assert!(said(&none).starts_with(&format!("{}: No such file", none.display())), "{}", said(&none));
     tried.add(1);
@@ -446,7 +447,7 @@ fn f3_files_that_are_missing_or_no_files() {
     let path = folder.join("scene.toml");
     fs::write(folder.join("triangle.obj"), TRIANGLE).expect("written");
     fs::write(&path, "[[objects]]\nmodel = 'triangle.obj'").expect("written");
-    assert_eq!(file::load(&path).expect("a scene").scene.objects()[0].mesh().triangles().len(), 2);
+    assert_eq!(scene_file::load(&path).expect("a scene").scene.objects()[0].mesh().triangles().len(), 2);
     tried.add(1);
     fs::create_dir(folder.join("directory.obj")).expect("made");
     for (text, says) in [
@@ -765,7 +766,7 @@ fn check(result: &Result<Loaded, SceneError>, at: usize) {
 /// README.md of the scenes, from here on: its table of a part of a scene names every key that the part has.
 #[test]
 fn every_key_is_documented() {
-    let readme = include_str!("../../scenes/README.md");
+    let readme = include_str!("../../assets/scenes/README.md");
     let mut tried = 0;
     for (section, text) in [
         ("A scene", "x = 1"),
@@ -794,7 +795,7 @@ fn every_key_is_documented() {
 /// What the documents show as a line of a scene, in a sentence or in a block, is one.
 #[test]
 fn keys_in_documents_are_keys_of_scenes() {
-    let scenes = include_str!("../../scenes/README.md");
+    let scenes = include_str!("../../assets/scenes/README.md");
     // Its tables are those of the parser (see above).
     let known: Vec<&str> = scenes.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
     let mut tried = 0;
@@ -826,8 +827,10 @@ fn keys_in_documents_are_keys_of_scenes() {
 /// The shadings that the document lists are those that there are.
 #[test]
 fn every_shading_is_documented() {
-    let row =
-        include_str!("../../scenes/README.md").lines().find(|line| line.starts_with("| `shading` |")).expect("a row");
+    let row = include_str!("../../assets/scenes/README.md")
+        .lines()
+        .find(|line| line.starts_with("| `shading` |"))
+        .expect("a row");
     let named = row.split('|').nth(2).expect("the values");
     let all = mode13h::render::Shading::ALL.map(|shading| format!("`\"{shading}\"`"));
     assert_eq!(named.trim(), all.join(", "));
@@ -850,7 +853,7 @@ fn a_texture_is_a_png_beside_the_scene() {
     let path = directory.path().join("scene.toml");
     let text = "objects = [{ shape = 'wall', material.texture = 'flag.png' }, { model = 'it.obj' }]";
     fs::write(&path, text).expect("written");
-    let Loaded { scene, warnings, .. } = file::load(&path).expect("a scene");
+    let Loaded { scene, warnings, .. } = scene_file::load(&path).expect("a scene");
     assert_eq!(warnings, [""; 0]);
     for object in scene.objects() {
         let texture = object.materials[0].texture.as_ref().expect("a texture");

@@ -5,15 +5,15 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::support::tried::Tried;
-use mode13h::auto_palette;
 use mode13h::export;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
 use mode13h::render::{HiddenSurfaces, Mapping, Renderer, Shading};
 use mode13h::scene::Scene;
-use mode13h::scene::file::Loaded;
-use mode13h::scene::shipped::{self, Shipped};
 use mode13h::vga::Vga;
+use mode13h_assets::auto_palette;
+use mode13h_assets::scene_file::Loaded;
+use mode13h_assets::shipped::{self, Shipped};
 
 fn scene(name: &str) -> Scene {
     load(&name.parse().unwrap_or_else(|error| panic!("{name}: {error}")))
@@ -64,7 +64,7 @@ fn draw_at(scene: &mut Scene, seconds: f64) -> Shown {
 
 #[test]
 fn every_scene_loads_and_says_what_it_shows() {
-    let folder = crate::support::workspace::root().join("scenes");
+    let folder = crate::support::workspace::root().join("assets/scenes");
     let mut files: Vec<String> = fs::read_dir(&folder)
         .expect("a folder")
         .map(|entry| entry.expect("an entry").file_name().into_string().expect("text"))
@@ -212,7 +212,7 @@ fn painters_order_and_affine_mapping_show_their_faults() {
 }
 
 fn kept(shipped: &Shipped) -> PathBuf {
-    crate::support::workspace::root().join(format!("scenes/pictures/{}.png", shipped.name))
+    crate::support::workspace::root().join(format!("assets/scenes/pictures/{}.png", shipped.name))
 }
 
 fn read(path: &Path) -> Shown {

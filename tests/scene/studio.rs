@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use crate::support::tried::Tried;
 use glam::{Vec2, Vec3};
 use mode13h::Angle;
-use mode13h::auto_palette;
 use mode13h::mesh::{Mesh, Surface, shapes};
-use mode13h::model::{studio, with_textures};
 use mode13h::palette::Rgb;
 use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::auto_palette;
+use mode13h_assets::model::{studio, with_textures};
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 200;

@@ -10,8 +10,9 @@ use mode13h::palette::{Lut64K, Palette, Rgb};
 use mode13h::render::{Mapping, Renderer};
 use mode13h::scene::Shared;
 use mode13h::span::texture::{Levels, TexelsError};
-use mode13h::texture::{LoadErrorKind, Mipmap, Texture, TextureError};
+use mode13h::texture::{Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
+use mode13h_assets::texture::LoadErrorKind;
 use mode13h_conformance::Random;
 
 fn random_color(random: &mut Random) -> Rgb {
@@ -376,7 +377,7 @@ mod files {
     use std::fs;
     use std::path::Path;
 
-    use mode13h::texture::load;
+    use mode13h_assets::texture::load;
     use png::{BitDepth, ColorType};
 
     use super::*;
@@ -480,7 +481,6 @@ mod files {
 }
 
 /// The same picture in every kind of file is the same texture; JPEG is near to it. None is told by a name.
-#[cfg(feature = "images")]
 #[test]
 fn every_kind_of_picture_is_read() {
     use std::io::Cursor;
@@ -494,7 +494,7 @@ fn every_kind_of_picture_is_read() {
     let decoded = |format| {
         let mut bytes = Cursor::new(Vec::new());
         picture.write_to(&mut bytes, format).expect("written");
-        mode13h::texture::decode(Cursor::new(bytes.into_inner())).expect("read")
+        mode13h_assets::texture::decode(Cursor::new(bytes.into_inner())).expect("read")
     };
     let right = decoded(Png);
     for format in [Tga, Bmp, Gif, WebP] {
@@ -507,13 +507,12 @@ fn every_kind_of_picture_is_read() {
     let share = off.iter().filter(|off| **off > 3 * 12 * 12).count() as f64 / off.len() as f64;
     assert!(share < 0.1, "{share} of the texels are off");
     for broken in [&b"GIF89a"[..], b"\xFF\xD8\xFF\xE0", b"RIFF....WEBP", b"BM", b"nothing", b"", &[0; 18]] {
-        let error = mode13h::texture::decode(Cursor::new(broken)).expect_err("no picture").to_string();
+        let error = mode13h_assets::texture::decode(Cursor::new(broken)).expect_err("no picture").to_string();
         assert!(!error.contains(char::is_control), "{broken:?}: {error:?}");
     }
 }
 
 /// No picture is decoded to find that it is too large.
-#[cfg(feature = "images")]
 #[test]
 fn a_picture_too_large_is_refused_by_its_head() {
     use std::io::Cursor;
@@ -529,14 +528,13 @@ fn a_picture_too_large_is_refused_by_its_head() {
     for (name, bytes, size) in
         [("TGA", tga.to_vec(), [65_535, 65_535]), ("BMP", bmp, [5000, 3]), ("GIF", gif, [5000, 3])]
     {
-        let error = mode13h::texture::decode(Cursor::new(bytes)).expect_err(name);
+        let error = mode13h_assets::texture::decode(Cursor::new(bytes)).expect_err(name);
         let expected = TextureError::Size { width: size[0], height: size[1] };
         assert!(matches!(error, LoadErrorKind::Texture(error) if error == expected), "{name}: {error}");
     }
 }
 
 /// What is wrong with a picture is one sentence, whatever its decoder says.
-#[cfg(feature = "images")]
 #[test]
 fn what_is_wrong_with_a_picture_is_one_sentence() {
     use std::io::Cursor;
@@ -559,7 +557,7 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
                 let most = if i % 3 == 1 { 64.min(whole.len()) } else { whole.len() };
                 bytes[random.within(0, most as i64 - 1) as usize] = random.next_u64() as u8;
             }
-            if let Err(error) = mode13h::texture::decode(Cursor::new(bytes)) {
+            if let Err(error) = mode13h_assets::texture::decode(Cursor::new(bytes)) {
                 let said = error.to_string();
                 let is_sentence = !said.ends_with(['.', ':', ';', ',', '!', ' '])
                     && !["  ", "\n", ". ", "; ", " {", "::", ": :"].iter().any(|wrong| said.contains(wrong));

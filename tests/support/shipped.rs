@@ -1,7 +1,8 @@
 //! The scenes that are compiled in.
 
-use mode13h::auto_palette;
-use mode13h::scene::{Scene, shipped};
+use mode13h::scene::Scene;
+use mode13h_assets::auto_palette;
+use mode13h_assets::shipped;
 
 /// Every shipped scene under its name, with its palette, at two fifths of its time.
 pub fn scenes() -> impl Iterator<Item = (String, Scene)> {

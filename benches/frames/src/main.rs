@@ -17,9 +17,10 @@ use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
 use mode13h::render::{Accuracy, RenderError, Renderer, Shading};
-use mode13h::scene::{Motion, Object, Scene, shipped};
+use mode13h::scene::{Motion, Object, Scene};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_assets::shipped;
 use mode13h_conformance::hash::{START, fnv_1a};
 
 /// Kept apart, so that a profiler can tell it from the rest: what is made once is made here.

@@ -6,10 +6,11 @@ use std::path::Path;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::{Vec2, Vec3};
-use mode13h::mesh::{Mesh, obj, shapes};
+use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Scene};
+use mode13h_assets::obj;
 
 use crate::candidate::{Corner, Triangle};
 use crate::refine::refined;

@@ -114,9 +114,9 @@ mod tests {
     use std::sync::Arc;
 
     use clap::Parser;
-    use mode13h::scene::shipped;
     use mode13h::span::Kernel;
     use mode13h::window::Input;
+    use mode13h_assets::shipped;
 
     use super::*;
     use crate::demo::loader::{self, Inputs};

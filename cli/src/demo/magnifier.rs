@@ -462,7 +462,7 @@ mod tests {
     #[test]
     fn most_of_the_picture_is_left() {
         let scene = "crate"
-            .parse::<mode13h::scene::shipped::Shipped>()
+            .parse::<mode13h_assets::shipped::Shipped>()
             .expect("a shipped scene")
             .load()
             .expect("a scene")

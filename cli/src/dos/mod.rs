@@ -231,8 +231,8 @@ fn hash_of(film: &[u8]) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use mode13h::scene::shipped;
     use mode13h::vga::Vga;
+    use mode13h_assets::shipped;
 
     use super::*;
 

@@ -10,12 +10,13 @@ use std::process::{Command, Output, Stdio};
 
 use crate::support::film::{Decoded, decode};
 use crate::support::tried::Tried;
-use mode13h::palette::{Rgb, builtin, file};
+use mode13h::palette::{Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::render::Renderer;
-use mode13h::scene::shipped;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_assets::palette_file;
+use mode13h_assets::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -1079,14 +1080,14 @@ fn palettes_are_converted_from_each_format_to_each() {
     let directory = directory();
     // Its colours are the DAC's own, so that no format rounds them.
     let colors = *builtin::by_name("bios").expect("a built-in").palette.colors();
-    let extensions: Vec<&str> = file::FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
+    let extensions: Vec<&str> = palette_file::FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
     for from in &extensions {
         let first = format!("first.{from}");
         succeed(&directory, &["palette", "bios", "-o", &first]);
         for to in &extensions {
             let second = format!("second.{to}");
             succeed(&directory, &["palette", &first, "-o", &second]);
-            let palette = file::parse_named(&second, &read(&directory, &second)).expect("a palette");
+            let palette = palette_file::parse_named(&second, &read(&directory, &second)).expect("a palette");
             assert!(palette.colors() == &colors, "{from} to {to}");
         }
     }
@@ -1119,7 +1120,7 @@ fn palettes_are_made_for_models() {
     succeed(&directory, &["palette", "--from", &house, "--up", "z", "-o", "lying.gpl"]);
     succeed(&directory, &["palette", "--from", "torus", "-o", "chart.png"]);
     let [upright, lying] = ["house.gpl", "lying.gpl"].map(|name| {
-        let palette = file::parse_named(name, &read(&directory, name)).expect("a palette");
+        let palette = palette_file::parse_named(name, &read(&directory, name)).expect("a palette");
         assert_eq!((palette[0], palette[255]), (Rgb::BLACK, Rgb::WHITE));
         palette
     });
@@ -1180,7 +1181,7 @@ fn a_model_with_colours_is_shown_in_them() {
     // It is the palette that `palette --from` writes, whatever moment is drawn.
     succeed(&directory, &["palette", "--from", &house, "-o", "house.gpl"]);
     succeed(&directory, &["render", &house, "-o", "later.png", "--at", "1.5"]);
-    let written = file::parse_named("house.gpl", &read(&directory, "house.gpl")).expect("a palette");
+    let written = palette_file::parse_named("house.gpl", &read(&directory, "house.gpl")).expect("a palette");
     for name in ["auto.png", "later.png"] {
         assert_eq!(indexed(&read(&directory, name)).0, written.colors(), "{name}");
     }

@@ -9,8 +9,8 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::support::tried::Tried;
-use mode13h::mesh::obj::{self, Loaded, ObjError};
-use mode13h::palette::file::FORMATS;
+use mode13h_assets::obj::{self, Loaded, ObjError};
+use mode13h_assets::palette_file::FORMATS;
 use tempfile::TempDir;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {
@@ -682,7 +682,7 @@ fn p5_broken_palettes_change_nothing() {
             let is_text = matches!(format.name, "jasc" | "gimp" | "hex");
             // A GIMP or Lospec file may have any number of colours, and a number in it may lose its end; in the name
             // of a colour stands what may.
-            let read = mode13h::palette::file::parse_named(&name, &bytes);
+            let read = mode13h_assets::palette_file::parse_named(&name, &bytes);
             assert!(read.is_err() || text_only || is_text, "{name}");
             if read.is_ok() {
                 continue;

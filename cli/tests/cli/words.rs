@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use crate::support::tried::{Tried, is_here};
 use crate::verify::{verified, verified_as_json};
-use mode13h::scene::shipped;
+use mode13h_assets::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -159,7 +159,7 @@ fn a_time_chooses_an_error_and_says_so() {
 
 #[test]
 fn whatever_draws_has_the_words_of_a_scene_file() {
-    let keys: Vec<&str> = include_str!("../../../scenes/README.md")
+    let keys: Vec<&str> = include_str!("../../../assets/scenes/README.md")
         .split("\n### render\n")
         .nth(1)
         .expect("the table of [render]")

@@ -1,12 +1,11 @@
 //! The scenes that are compiled into the engine, as values: chips without files draw them, too.
 //!
-//! A test compares each with its file in `scenes/`. Cameras that a file leaves to be framed stand here as what came of it.
+//! A test compares each with its file in `assets/scenes/`. Cameras that a file leaves to be framed stand here as what came of it.
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use mode13h::Angle;
-use mode13h::auto_palette;
 use mode13h::glam::{Vec2, Vec3, vec3};
 use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
@@ -16,6 +15,7 @@ use mode13h::scene::{
     Camera, DitherPattern, Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared,
 };
 use mode13h::texture::Texture;
+use mode13h_assets::auto_palette;
 
 /// A scene by its name.
 type Named = (&'static str, fn() -> Scene);

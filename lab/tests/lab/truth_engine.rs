@@ -50,7 +50,7 @@ fn all() -> Vec<(String, Scene)> {
 fn load() -> Vec<(String, Scene)> {
     let mut all = scenes::all();
     all.push(("parents".to_string(), scenes::parents()));
-    for shipped in &mode13h::scene::shipped::ALL {
+    for shipped in &mode13h_assets::shipped::ALL {
         for part in [0.05, 0.73] {
             let mut scene = shipped.load().expect("a scene that loads").scene;
             scene.set_time(part * scene.duration);
@@ -681,7 +681,7 @@ impl Written {
     }
 
     /// In any order, so that of two faces at one depth either may come first.
-    fn load(mut self, random: &mut Random) -> mode13h::mesh::obj::Loaded {
+    fn load(mut self, random: &mut Random) -> mode13h_assets::obj::Loaded {
         for i in (1..self.faces.len()).rev() {
             self.faces.swap(i, random.within(0, i as i64) as usize);
         }
@@ -689,7 +689,7 @@ impl Written {
         self.positions.iter().for_each(|p| text += &format!("v {} {} {}\n", p.x, p.y, p.z));
         self.faces.iter().for_each(|[a, b, c]| text += &format!("f {a} {b} {c}\n"));
         let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
-        mode13h::mesh::obj::parse(text.as_bytes(), "scan.obj", none).expect("a model")
+        mode13h_assets::obj::parse(text.as_bytes(), "scan.obj", none).expect("a model")
     }
 }
 

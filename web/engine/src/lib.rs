@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::panic;
 use std::sync::Arc;
 
-use mode13h::scene::shipped;
+use mode13h_assets::shipped;
 use mode13h_lab::cost::error_levels;
 use serde_json::{Value, json};
 

@@ -6,12 +6,14 @@ use std::io::{self, BufRead, Cursor};
 use std::path::Path;
 use std::sync::Arc;
 
-use mode13h::export::{FrameRate, GifWriter, Picture, Png, Scale};
+use mode13h::export::{Picture, Png, Scale};
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::Scene;
-use mode13h::scene::file::SceneError;
 use mode13h::vga::Vga;
+use mode13h_assets::SceneExt;
+use mode13h_assets::animation::{FrameRate, GifWriter};
+use mode13h_assets::scene_file::SceneError;
 use mode13h_lab::cost::{Probe, error_levels};
 use mode13h_lab::truth::{ErrorMap, Face, Standard, TruePixel, Truth, TruthFrame};
 use serde_json::{Value, json};

@@ -7,8 +7,8 @@ use std::process::Command;
 use mode13h::plan::{Effect, FaceShading};
 use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::scene::DitherPattern;
-use mode13h::scene::shipped;
 use mode13h::span::Kernel;
+use mode13h_assets::shipped;
 
 use crate::support::tried::Tried;
 
@@ -18,7 +18,7 @@ const DOCUMENTS: [(&str, &str); 6] = [
     ("docs/program.md", PROGRAM),
     ("docs/budget.md", include_str!("../../../../docs/budget.md")),
     ("docs/measurements.md", include_str!("../../../../docs/measurements.md")),
-    ("scenes/README.md", SCENES),
+    ("assets/scenes/README.md", SCENES),
     ("CHANGELOG.md", include_str!("../../../../CHANGELOG.md")),
 ];
 
@@ -39,7 +39,7 @@ const MORE_DOCUMENTS: [(&str, &str); 11] = [
 
 /// It has the table of shadings and the keys of the window.
 const PROGRAM: &str = include_str!("../../../../docs/program.md");
-const SCENES: &str = include_str!("../../../../scenes/README.md");
+const SCENES: &str = include_str!("../../../../assets/scenes/README.md");
 
 /// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
 const OTHERS: [&str; 10] = [
@@ -157,7 +157,7 @@ fn documents_give_options_values_that_they_take() {
     }
 }
 
-/// The cell of a row of `scenes/README.md` that says what a key takes.
+/// The cell of a row of `assets/scenes/README.md` that says what a key takes.
 fn values_of(key: &str) -> Vec<&'static str> {
     let row = SCENES.lines().find(|line| line.starts_with(&format!("| `{key}` |"))).expect(key);
     let cell = row.split('|').nth(2).expect("a value");
@@ -190,7 +190,7 @@ fn documents_name_what_there_is() {
     known.extend(DitherPattern::ALL.map(DitherPattern::name));
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
-    known.extend(["mode13h-conformance", "mode13h-lab", "mode13h-cli"]);
+    known.extend(["mode13h-assets", "mode13h-conformance", "mode13h-lab", "mode13h-cli"]);
     // The error lists those that this machine lacks, too.
     known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-neon", "simd-wasm", "simd-avx2", "simd-avx512"]);
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
@@ -288,8 +288,20 @@ fn documents_name_files_that_are_there() {
             }
             tried.add(1);
         }
-        let folders =
-            [".ci/", "tests/", "src/", "asm/", "examples/", "benches/", "fuzz/", "palettes/", "docs/", "lab/", "cli/"];
+        let folders = [
+            "assets/",
+            ".ci/",
+            "tests/",
+            "src/",
+            "asm/",
+            "examples/",
+            "benches/",
+            "fuzz/",
+            "palettes/",
+            "docs/",
+            "lab/",
+            "cli/",
+        ];
         for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
             // A line and a column may stand behind it.
             let path = path.find(".rs:").map_or(path, |end| &path[..end + 3]);
@@ -298,8 +310,9 @@ fn documents_name_files_that_are_there() {
                 tried.add(1);
             } else if path.ends_with(".rs") && path.contains('/') && !path.contains('*') {
                 // In the engine's sources, or in those of the laboratory.
-                let is_there =
-                    ["src", "lab/src", "cli/src"].iter().any(|sources| root.join(sources).join(path).exists());
+                let is_there = ["src", "assets/src", "lab/src", "cli/src"]
+                    .iter()
+                    .any(|sources| root.join(sources).join(path).exists());
                 assert!(is_there || folder.join(path).exists(), "{document}: there is no {path}");
                 tried.add(1);
             }

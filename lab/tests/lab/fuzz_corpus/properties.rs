@@ -1,24 +1,27 @@
 //! What holds of every parser, whatever it is given. One function a parser, for the fuzzer
 //! (`fuzz/fuzz_targets`) and for the corpora (`tests/fuzz_corpus.rs`) alike; each panics where it does not hold.
 
+use mode13h_assets::SceneExt;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 use std::str::FromStr;
 
-use mode13h::export::{FrameRate, GifWriter, MAX_SIDE, Picture, PixelShape, Scale};
+use mode13h::export::{MAX_SIDE, Picture, PixelShape, Scale};
 use mode13h::glam::{Vec2, Vec3};
-use mode13h::mesh::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::palette::file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::render::{Renderer, Shading};
 use mode13h::scene::Scene;
-use mode13h::scene::file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h::span::Kernel;
-use mode13h::texture::{self, Texture};
+use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::animation::{FrameRate, GifWriter};
+use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
+use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
+use mode13h_assets::scene_file::{MAX_TRIANGLES, SceneErrorKind};
+use mode13h_assets::texture;
 use mode13h_lab::record::{Record, RecordErrorKind};
 use mode13h_lab::replay;
 
@@ -239,10 +242,10 @@ fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
         results.push(Format::by_name(name).expect("a format").read(bytes));
     }
     for name in names {
-        results.push(file::parse_named(name, bytes));
+        results.push(palette_file::parse_named(name, bytes));
     }
-    results.push(file::parse_named("a", bytes));
-    results.push(file::parse(bytes));
+    results.push(palette_file::parse_named("a", bytes));
+    results.push(palette_file::parse(bytes));
     assert_eq!(results[results.len() - 1], results[results.len() - 2], "an extension that is missing says nothing");
     for (i, result) in results.iter().enumerate() {
         match result {
@@ -270,11 +273,11 @@ fn check_palette(palette: &Palette) {
             "vga" | "act-772" if matches!(recognized, Some("jasc" | "gimp" | "hex")) => {}
             name => {
                 assert_eq!(recognized, Some(name));
-                assert_eq!(file::parse(&written).expect("recognised"), expected, "{name}");
+                assert_eq!(palette_file::parse(&written).expect("recognised"), expected, "{name}");
             }
         }
         let name = format!("a.{}", format.extensions[0]);
-        assert_eq!(file::parse_named(&name, &written).expect("read by name"), expected, "{}", format.name);
+        assert_eq!(palette_file::parse_named(&name, &written).expect("read by name"), expected, "{}", format.name);
     }
 }
 

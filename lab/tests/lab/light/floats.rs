@@ -162,6 +162,14 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Mesh.texcoords", "tests/scene/mesh_normals.rs"),
     ("Scene.duration", "the length of a film, not a number of a frame: tests/scene/scene_files.rs"),
     ("Scene.picture", "a moment, which motions make nothing of if it is none"),
+    ("Parts.crease", "what is no number leaves all faces flat"),
+    ("Parts.normals", "those that are not finite count as missing"),
+    ("Parts.positions", "Mesh::from_parts refuses it"),
+    ("Parts.texcoords", "Mesh::from_parts refuses it"),
+    ("Viewpoint.direction", "the camera that comes of it"),
+    ("Viewpoint.field_of_view", "the camera that comes of it"),
+    ("Viewpoint.target", "the camera that comes of it"),
+    ("Viewpoint.up", "the camera that comes of it"),
     ("Scene.time", "in what it has moved"),
 ];
 

@@ -1,0 +1,54 @@
+//! Chunks of PNG files.
+
+use std::io::{self, Write};
+
+/// A chunk: its length, its name, what it holds, and their check.
+pub(super) fn chunk(name: [u8; 4], parts: &[&[u8]]) -> Vec<u8> {
+    let body: Vec<u8> = [&name[..]].iter().chain(parts).flat_map(|part| part.iter().copied()).collect();
+    let mut chunk = Vec::with_capacity(body.len() + 8);
+    // The name is not counted. What a chunk holds here is far below 2³¹ bytes: a picture has at most 2²⁸ pixels, and is
+    // written in many chunks.
+    chunk.extend((body.len() as u32 - 4).to_be_bytes());
+    chunk.extend(&body);
+    chunk.extend(crc32(&body).to_be_bytes());
+    chunk
+}
+
+/// Writes a chunk. Returns how many bytes it has.
+pub(super) fn write_chunk(out: &mut impl Write, name: [u8; 4], parts: &[&[u8]]) -> io::Result<u64> {
+    let chunk = chunk(name, parts);
+    out.write_all(&chunk)?;
+    Ok(chunk.len() as u64)
+}
+
+/// The chunks of a file that is sound, after the signature: name and contents.
+pub(super) fn chunks(file: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
+    let mut rest = file.get(8..).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (&length, behind) = rest.split_first_chunk::<4>()?;
+        let (&name, behind) = behind.split_first_chunk::<4>()?;
+        let (contents, behind) = behind.split_at_checked(u32::from_be_bytes(length) as usize)?;
+        rest = behind.get(4..)?;
+        Some((name, contents))
+    })
+}
+
+/// The cyclic redundancy check of PNG chunks (PNG specification, annex D).
+fn crc32(bytes: &[u8]) -> u32 {
+    const TABLE: [u32; 256] = {
+        let mut table = [0; 256];
+        let mut byte = 0;
+        while byte < 256 {
+            let mut crc = byte as u32;
+            let mut bit = 0;
+            while bit < 8 {
+                crc = (crc >> 1) ^ (0xEDB8_8320 * (crc & 1));
+                bit += 1;
+            }
+            table[byte] = crc;
+            byte += 1;
+        }
+        table
+    };
+    !bytes.iter().fold(u32::MAX, |crc, &byte| (crc >> 8) ^ TABLE[usize::from(crc as u8 ^ byte)])
+}

@@ -1,0 +1,276 @@
+//! A palette for a scene: each of its materials is measured over a round, and the entries are made from that.
+//!
+//! | file | what |
+//! |---|---|
+//! | `seen` | area and brightness of every material, from pictures in which shades are intensities, or numbers |
+//! | `mixed` | colours that lie on no ramp, from pictures in true colour |
+
+mod mixed;
+mod seen;
+mod share;
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use mixed::OwnColors;
+use mode13h::light::{Material, RampChoice};
+use mode13h::mesh::Surface;
+use mode13h::palette::{Palette, Rgb};
+use mode13h::plan::Effect;
+use mode13h::render::{RenderError, Renderer, Screen};
+use mode13h::scene::{Object, Scene, Shared};
+use mode13h::texture::{Mipmap, Texture};
+pub use seen::{Seen, seen};
+use seen::{full_light, moments};
+pub use share::{Automatic, Entries, Use, share, share_beside};
+
+/// A palette for a scene, and the scene's materials in it.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub struct AutomaticPalette {
+    /// The colours.
+    pub palette: Palette,
+    /// The entries of each material, object by object.
+    pub entries: Vec<Vec<Entries>>,
+    materials: Vec<Vec<Material>>,
+}
+
+impl AutomaticPalette {
+    /// Gives `scene` the palette, and its objects their materials in it. The scene is the one that the palette was made
+    /// for, or one with the same objects. Objects with other numbers of materials stay as they are. The scene's
+    /// preference for such a palette is cleared.
+    pub fn apply(&self, scene: &mut Scene) {
+        scene.auto_palette = false;
+        if let Some(color) = scene.background_color {
+            scene.background = self.palette.nearest(color);
+        }
+        scene.palette = Some(self.palette.clone());
+        for (object, materials) in scene.objects_mut().iter_mut().zip(&self.materials) {
+            if object.materials.len() == materials.len() {
+                object.materials.clone_from(materials);
+            }
+        }
+    }
+}
+
+/// A palette for a scene, by [`share_beside`], and its materials in it.
+///
+/// Area and brightness are measured from what is seen over a round. A material that has no colour of its own and no
+/// image, and names a coloured ramp of the scene's palette, keeps the colours of that ramp. Any other material's colour
+/// is its [own](Material::own_colors), in the light that it gives back in full light, ambient and diffuse together; its
+/// highlight adds to that. On its ramp that colour stands at the intensity `full_light` of [`Entries::Ramp`]. So its
+/// ambient and diffuse shares are divided up to that, in the proportion that they have, and the rest is the
+/// highlight's. The material then needs no channels any more, because its colour is in the ramp, and a `ramp` that it
+/// named is replaced. A material with an image keeps its shares. The image's colours, tinted by the material's, are the
+/// base of entries at the brightnesses seen. If its plan calls for mipmaps, their colours count too, those of each
+/// level half as much as those of the level before.
+///
+/// Colours that are mixed on the screen lie on no ramp: those in fog and behind bodies that shine through, and all
+/// colours under a coloured light. They are measured in true colour, and share the block of the textures. Under
+/// coloured light there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the
+/// nearest of the measured colours.
+///
+/// ```
+/// use mode13h::mesh::shapes;
+/// use mode13h_assets::auto_palette::Entries;
+/// use mode13h_assets::auto_palette;
+/// use mode13h::scene::Scene;
+///
+/// let mut scene = Scene::showing(shapes::torus(48, 24));
+/// scene.objects_mut()[0].materials[0].color = [0.9, 0.5, 0.2];
+/// let made = auto_palette::of_scene(&scene)?;
+/// let Entries::Ramp { ramp, full_light: 1.0, .. } = made.entries[0][0] else { unreachable!("it is matt") };
+/// made.apply(&mut scene);
+/// assert_eq!(scene.palette, Some(made.palette));
+/// assert_eq!(scene.objects()[0].materials[0].ramp, mode13h::light::RampChoice::Entries(ramp));
+/// # Ok::<(), mode13h::render::RenderError>(())
+/// ```
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
+    let in_channels = mixed::has_colored_light(scene);
+    let mut tints = Tints::default();
+    let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
+    let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
+    for (object, (bodies, has_levels)) in scene.objects().iter().zip(bodies.iter().zip(have_mipmaps(scene)?)) {
+        for (material, body) in object.materials.iter().zip(bodies) {
+            texels.push(match &body.image {
+                _ if in_channels => Some(Vec::new()),
+                Some(image) if has_levels && material.texture.is_some() => Some(Mipmap::new(image).weights(image)),
+                Some(image) => Some(image.colors().iter().copied().zip(image.histogram()).collect()),
+                None => None,
+            });
+        }
+    }
+    let seen = seen(scene)?;
+    let mut uses: Vec<Use<'_>> = Vec::new();
+    for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
+        // The shades of an image, or of a ramp that is taken over, are not divided anew.
+        let part = if body.image.is_some() || body.along.is_some() { body.full } else { 1.0 };
+        uses.push(Use {
+            color: body.color,
+            highlight: body.highlight,
+            area: seen.area,
+            darkest: seen.darkest * part,
+            brightest: seen.brightest * part,
+            texels: texels.as_deref(),
+            along: body.along.as_deref(),
+        });
+    }
+    let own: Vec<OwnColors> = bodies.iter().flatten().map(|body| body.own).collect();
+    let Automatic { palette, entries } =
+        share_beside(&uses, &mixed::colors(scene, &own, in_channels || scene.fog.is_some())?);
+
+    let mut entries = entries.into_iter();
+    let mut automatic = AutomaticPalette { palette, entries: Vec::new(), materials: Vec::new() };
+    for (object, bodies) in scene.objects().iter().zip(&bodies) {
+        // One for each body.
+        let own: Vec<Entries> = entries.by_ref().take(bodies.len()).collect();
+        let materials = object.materials.iter().zip(bodies).zip(&own);
+        automatic.materials.push(materials.map(|((m, body), own)| body.material(m, *own, in_channels)).collect());
+        automatic.entries.push(own);
+    }
+    Ok(automatic)
+}
+
+/// The colours that a scene without a chosen background shows over a round, as the card has them, whatever the palette:
+/// each with its area in parts of all covered pixels.
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+#[cfg(feature = "std")]
+pub(crate) fn colors_seen(scene: &Scene) -> Result<Vec<(Rgb, f32)>, RenderError> {
+    let plain = Surface::default();
+    let own = scene.objects().iter().flat_map(|object| {
+        let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
+        object.materials.iter().zip(surfaces).map(|(material, surface)| material.own_colors(surface))
+    });
+    mixed::colors(scene, &own.collect::<Vec<_>>(), true)
+}
+
+/// Returns for each object whether its plan calls for mipmaps at any moment.
+fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
+    let mut any = vec![false; scene.objects().len()];
+    if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
+        let (mut moved, mut renderer) = (scene.clone(), Renderer::new());
+        for seconds in moments(scene) {
+            moved.set_time(seconds);
+            let plan = renderer.make_plan(&moved, Screen::MODE_13H)?;
+            any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.objects()[object].is_on(Effect::Mipmaps));
+        }
+    }
+    Ok(any)
+}
+
+/// The target colours of one material of an object.
+struct Body {
+    /// The share of full light that it gives back, of 1: ambient and diffuse together.
+    full: f32,
+    /// Its colours on three channels.
+    own: OwnColors,
+    /// The colours of a ramp that is taken over.
+    along: Option<Vec<Rgb>>,
+    color: Rgb,
+    highlight: Option<Rgb>,
+    /// Its texture or environment map, in its colour.
+    image: Option<Shared<Texture>>,
+}
+
+/// A body for each material.
+fn bodies(object: &Object, scene: &Scene, tints: &mut Tints) -> Vec<Body> {
+    let plain = Surface::default();
+    let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
+    object
+        .materials
+        .iter()
+        .zip(surfaces)
+        .map(|(material, surface)| Body::new(material, surface, scene, tints))
+        .collect()
+}
+
+impl Body {
+    fn new(material: &Material, surface: &Surface, scene: &Scene, tints: &mut Tints) -> Self {
+        let full = full_light(material, scene.ambient);
+        let image = material.texture.as_ref().or(material.environment.as_ref());
+        let mut own = material.own_colors(surface);
+        let is_plain = own == ([1.0; 3], [1.0; 3]) && image.is_none();
+        let along = scene.palette.as_ref().filter(|_| is_plain).and_then(|palette| colors_of_ramp(material, palette));
+        if let Some(along) = &along {
+            own = own_colors_on(along, material, full);
+        }
+        let color = Rgb::from_intensities(own.0.map(|channel| channel * full));
+        let is_shiny = material.specular > 0.0 && material.is_specular();
+        let light = Rgb::from_intensities(own.1.map(|channel| channel * material.specular));
+        Self {
+            full,
+            own,
+            along,
+            color,
+            highlight: (is_shiny && light != Rgb::BLACK).then(|| color.saturating_add(light)),
+            image: image.map(|image| tints.tinted(image, Rgb::from_intensities(own.0))),
+        }
+    }
+
+    fn material(&self, material: &Material, entries: Entries, in_channels: bool) -> Material {
+        let (color, highlight) = self.own;
+        if in_channels {
+            return Material { ramp: RampChoice::Nearest, color, highlight, ..material.clone() };
+        }
+        let plain = Material { color: [1.0; 3], highlight: [1.0; 3], ..material.clone() };
+        match (entries, &self.image) {
+            (Entries::Ramp { ramp, .. }, None) if self.along.is_some() => {
+                Material { ramp: RampChoice::Entries(ramp), ..plain }
+            }
+            (Entries::Ramp { ramp, full_light }, None) => Material {
+                ramp: RampChoice::Entries(ramp),
+                ambient: material.ambient / self.full * full_light,
+                diffuse: material.diffuse / self.full * full_light,
+                specular: if self.highlight.is_some() { 1.0 - full_light } else { 0.0 },
+                ..plain
+            },
+            (_, Some(image)) if material.texture.is_some() => Material { texture: Some(Shared::clone(image)), ..plain },
+            (_, image) => Material { environment: image.clone(), ..plain },
+        }
+    }
+}
+
+/// The colours of the ramp that a material names in a palette; `None` if they are greys, or the palette has no ramps.
+fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
+    let ramp = material.ramp.in_palette(Some(palette));
+    let is_named = matches!(material.ramp, RampChoice::Entries(_)) || palette.ramps() > 0;
+    let colors: Vec<Rgb> = ramp.range().map(|entry| palette[entry]).collect();
+    let has_color = colors.iter().any(|color| color.r != color.g || color.g != color.b);
+    (is_named && material.ramp != RampChoice::Nearest && has_color && colors.len() > 1).then_some(colors)
+}
+
+/// The two colours that stand for a ramp where light is mixed: that in full light, and what the highlight adds to it.
+fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
+    let shown = |intensity: f32| {
+        // From the first to the last.
+        <[f32; 3]>::from(along[libm::roundf(intensity.clamp(0.0, 1.0) * (along.len() - 1) as f32) as usize])
+    };
+    let (color, brightest) = (shown(full), shown(full + material.specular));
+    let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;
+    let highlight = if material.is_specular() { core::array::from_fn(added) } else { [1.0; 3] };
+    (color.map(|channel| channel / full), highlight)
+}
+
+/// Images in the colours of their materials, each once.
+#[derive(Default)]
+struct Tints(Vec<(Shared<Texture>, Rgb, Shared<Texture>)>);
+
+impl Tints {
+    fn tinted(&mut self, image: &Shared<Texture>, tint: Rgb) -> Shared<Texture> {
+        if tint == Rgb::WHITE {
+            return Shared::clone(image);
+        }
+        let known = self.0.iter().find(|(of, by, _)| Shared::ptr_eq(of, image) && *by == tint);
+        if let Some((_, _, tinted)) = known {
+            return Shared::clone(tinted);
+        }
+        let tinted = Shared::new(image.modulated(tint));
+        self.0.push((Shared::clone(image), tint, Shared::clone(&tinted)));
+        tinted
+    }
+}

@@ -1,0 +1,213 @@
+//! Area and brightness of each material of a scene, as they are seen.
+//!
+//! Each moment is drawn once with shades that are intensities, and once with the materials' numbers in place of shades,
+//! one byte of the number after the other: so visibility is the renderer's own. Adding up projected areas would be
+//! cheaper, but would count hidden areas too. Behind bodies that shine through, materials are seen as well: the scene
+//! is drawn again without those bodies.
+
+use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use mode13h::light::{Blend, Material, RampChoice};
+use mode13h::palette::Ramp;
+use mode13h::render::{RenderError, Renderer};
+use mode13h::scene::{Scene, Settings};
+use mode13h::vga::Vga;
+
+/// Pictures over one round.
+const POSES: u32 = 16;
+
+/// The pixels that show a material, over one round of the scene.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Seen {
+    /// The share of its pixels among all that are covered, 0 to 1.
+    pub area: f32,
+    /// The least intensity of ambient and diffuse light that it shows there, 0 to 1, full light being 1; 0 if it is
+    /// never in sight.
+    pub darkest: f32,
+    /// The greatest such intensity.
+    pub brightest: f32,
+}
+
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a round of the scene, or in one if
+/// nothing in it moves.
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
+    let materials = || scene.objects().iter().flat_map(|object| &object.materials);
+    let mut tallies = vec![Tally::default(); materials().count()];
+    let shines: Vec<bool> = materials().map(|material| material.blend != Blend::Opaque).collect();
+    let mut front = Layer::new(scene, false);
+    let mut behind = shines.contains(&true).then(|| Layer::new(scene, true));
+    for seconds in moments(scene) {
+        front.add(seconds, &mut tallies, |number| behind.is_none() || shines[number])?;
+        if let Some(behind) = &mut behind {
+            behind.add(seconds, &mut tallies, |number| !shines[number])?;
+        }
+    }
+    let all: u32 = tallies.iter().map(|tally| tally.pixels).sum();
+    let mut each = tallies.iter().map(|tally| tally.of(all));
+    Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
+}
+
+/// The moments of a round that are drawn, in seconds.
+pub(super) fn moments(scene: &Scene) -> impl Iterator<Item = f64> {
+    let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
+    let duration = scene.duration;
+    (0..poses).map(move |pose| from + duration * f64::from(pose) / f64::from(POSES))
+}
+
+/// A scene as it is measured, and the renderer that draws it.
+pub(super) struct Picture {
+    scene: Scene,
+    renderer: Renderer,
+    vga: Box<Vga>,
+}
+
+impl Picture {
+    /// A picture of `scene` on one channel, without effects on its pixels. `change` changes the materials; it is given
+    /// their numbers from 0.
+    pub(super) fn new(scene: &Scene, mut change: impl FnMut(usize, &mut Material)) -> Self {
+        let mut scene = scene.clone();
+        scene.palette = None;
+        scene.palette_animation = None;
+        scene.fog = None;
+        scene.background = 0;
+        scene.background_color = None;
+        scene.settings = Settings { dither: None, ..scene.settings };
+        let materials = scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials);
+        for (number, material) in materials.enumerate() {
+            (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);
+            material.ramp = RampChoice::Entries(Ramp::WHOLE);
+            change(number, material);
+        }
+        Self { scene, renderer: Renderer::new(), vga: Box::new(Vga::new()) }
+    }
+
+    pub(super) fn scene_mut(&mut self) -> &mut Scene {
+        &mut self.scene
+    }
+
+    /// Draws the scene at a time, in seconds, and returns its pixels.
+    pub(super) fn at(&mut self, seconds: f64) -> Result<&[u8], RenderError> {
+        self.scene.set_time(seconds);
+        self.renderer.draw(&self.scene, &mut self.vga)?;
+        Ok(self.vga.pixels())
+    }
+}
+
+/// Intensities and material numbers, with the bodies that shine through drawn as opaque, or left out.
+struct Layer {
+    intensities: Picture,
+    numbers: Numbers,
+}
+
+impl Layer {
+    fn new(scene: &Scene, through: bool) -> Self {
+        let ambient = scene.ambient;
+        let mut intensities = Picture::new(scene, |_, material| {
+            let full = full_light(material, ambient);
+            (material.ambient, material.diffuse) = (material.ambient / full, material.diffuse / full);
+            material.specular = 0.0;
+            become_plain(material, through);
+        });
+        for light in intensities.scene_mut().lights_mut() {
+            *light = light.with_intensity(light.brightness()).with_color([1.0; 3]);
+        }
+        Self { intensities, numbers: Numbers::new(scene, through) }
+    }
+
+    /// Counts the pixels of the materials that `counts`.
+    fn add(&mut self, seconds: f64, tallies: &mut [Tally], counts: impl Fn(usize) -> bool) -> Result<(), RenderError> {
+        let intensities = self.intensities.at(seconds)?;
+        for (number, &intensity) in self.numbers.at(seconds)?.iter().zip(intensities) {
+            if let Some(number) = number.filter(|number| counts(*number)) {
+                tallies[number].add(intensity);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Without images; hiding what is behind it, or, if it shines through and that is asked for, not there.
+fn become_plain(material: &mut Material, through: bool) {
+    (material.texture, material.environment) = (None, None);
+    let is_left_out = through && material.blend != Blend::Opaque;
+    material.blend = if is_left_out { Blend::Mix(0) } else { Blend::Opaque };
+}
+
+/// The number of the material that every pixel shows.
+pub(super) struct Numbers {
+    /// One picture for each byte of the number. Numbers are counted from 1 in there, as the background is 0.
+    bytes: Vec<Picture>,
+    found: Vec<Option<usize>>,
+}
+
+impl Numbers {
+    pub(super) fn new(scene: &Scene, through: bool) -> Self {
+        let count: usize = scene.objects().iter().map(|object| object.materials.len()).sum();
+        let places = (0..usize::BITS).step_by(8).take_while(|&place| count >> place > 0);
+        let picture = |place: u32| {
+            let mut picture = Picture::new(scene, |number, material| {
+                // The lowest byte of what is left. On a ramp of one entry every shade is that entry.
+                let byte = ((number + 1) >> place) as u8;
+                material.ramp = RampChoice::Entries(Ramp::single(byte));
+                become_plain(material, through);
+            });
+            // In the dark, by the cheapest shading.
+            let scene = picture.scene_mut();
+            scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.0));
+            scene.settings = Settings { hidden_surfaces: scene.settings.hidden_surfaces, ..Settings::default() };
+            picture
+        };
+        Self { bytes: places.map(picture).collect(), found: vec![None; Vga::SHOWN] }
+    }
+
+    /// For each pixel the number of its material, from 0, all objects' one after the other.
+    pub(super) fn at(&mut self, seconds: f64) -> Result<&[Option<usize>], RenderError> {
+        let mut numbers = vec![0; Vga::SHOWN];
+        for (place, picture) in (0..).step_by(8).zip(&mut self.bytes) {
+            for (number, &byte) in numbers.iter_mut().zip(picture.at(seconds)?) {
+                *number |= usize::from(byte) << place;
+            }
+        }
+        for (found, number) in self.found.iter_mut().zip(numbers) {
+            *found = number.checked_sub(1);
+        }
+        Ok(&self.found)
+    }
+}
+
+/// The pixels of a material so far.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    pixels: u32,
+    darkest: u8,
+    brightest: u8,
+}
+
+impl Tally {
+    fn add(&mut self, intensity: u8) {
+        self.darkest = if self.pixels == 0 { intensity } else { self.darkest.min(intensity) };
+        self.brightest = self.brightest.max(intensity);
+        self.pixels += 1;
+    }
+
+    /// Among `all` pixels, which are at most 32 pictures full: 2,048,000.
+    fn of(self, all: u32) -> Seen {
+        Seen {
+            area: self.pixels as f32 / all.max(1) as f32,
+            darkest: f32::from(self.darkest) / 255.0,
+            brightest: f32::from(self.brightest) / 255.0,
+        }
+    }
+}
+
+/// The share of full light that a material gives back, ambient and diffuse together. It is at most 1, as no more is
+/// shown, and 1 for a material that gives nothing back.
+pub(super) fn full_light(material: &Material, ambient: f32) -> f32 {
+    let full = material.ambient * ambient + material.diffuse;
+    if full > 0.0 { full.min(1.0) } else { 1.0 }
+}

@@ -1,0 +1,45 @@
+//! Files for the engine [`mode13h`]: what a game loads, and what a program writes.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`scene_file`] | scenes in TOML: camera, shapes, models, materials, lights, fog, motion |
+//! | [`shipped`] | the scenes that are compiled in |
+//! | [`obj`] | meshes from OBJ files with MTL |
+//! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
+//! | [`texture`] | textures from pictures: PNG, and by the feature `images` JPEG, TGA, BMP, GIF and WebP |
+//! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
+//! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round |
+//! | [`animation`] | animated GIF and PNG, and Y4M for other programs |
+//!
+//! [`SceneExt`] adds what reads a file to [`Scene`](mode13h::scene::Scene).
+//!
+//! Without the default feature `std` there is [`auto_palette`], which needs an allocator alone.
+#![cfg_attr(not(feature = "std"), no_std)]
+#![forbid(unsafe_code)]
+
+extern crate alloc;
+
+#[cfg(feature = "std")]
+pub mod animation;
+pub mod auto_palette;
+#[cfg(feature = "std")]
+mod errors;
+#[cfg(feature = "std")]
+pub mod model;
+#[cfg(feature = "std")]
+pub mod obj;
+#[cfg(feature = "std")]
+pub mod palette_file;
+#[cfg(feature = "std")]
+mod scene_ext;
+#[cfg(feature = "std")]
+pub mod scene_file;
+#[cfg(feature = "std")]
+pub mod shipped;
+#[cfg(feature = "std")]
+pub mod texture;
+#[cfg(feature = "std")]
+mod wide;
+
+#[cfg(feature = "std")]
+pub use scene_ext::SceneExt;

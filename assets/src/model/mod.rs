@@ -1,0 +1,107 @@
+//! A model file as a scene: mesh, textures, palette and framing by one call.
+
+mod studio;
+
+use core::error::Error;
+use core::fmt;
+use std::collections::HashMap;
+use std::path::Path;
+
+use crate::obj::{self, ObjError};
+use crate::texture;
+use mode13h::mesh::Mesh;
+use mode13h::render::RenderError;
+use mode13h::scene::{Object, Shared};
+use mode13h::texture::Texture;
+
+pub use studio::studio;
+
+/// An error of a model file that gave no scene.
+#[non_exhaustive]
+pub enum ModelError {
+    /// The file cannot be read, or holds no model.
+    Obj(ObjError),
+    /// The model cannot be drawn.
+    Scene(RenderError),
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Obj(error) => error.fmt(f),
+            Self::Scene(error) => error.fmt(f),
+        }
+    }
+}
+
+crate::errors::debug_as_display!(ModelError);
+
+impl Error for ModelError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Obj(error) => Some(error),
+            Self::Scene(error) => Some(error),
+        }
+    }
+}
+
+/// A model as it was read.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Model {
+    /// The mesh with its materials and textures, under the file's name.
+    pub object: Object,
+    /// The parts that were left out or mended, one line each; a texture that cannot be read is left out.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an OBJ file, its MTL files and its textures.
+///
+/// # Errors
+///
+/// [`ObjError`] with the file and the line.
+pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, ObjError> {
+    let path = path.as_ref();
+    let loaded = obj::load_with(path, options, |_, _| {})?;
+    let (textures, of_textures) = textures(&loaded.mesh);
+    let mut warnings = loaded.warnings;
+    warnings.extend(of_textures);
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let object = with_textures(Object::new(loaded.mesh).named(name.to_string()), &textures);
+    Ok(Model { object, warnings })
+}
+
+/// Reads the texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture
+/// coordinates. Returns warnings, one line each: of files that cannot be read, and of what is left out of others. A file
+/// that several surfaces name is read once.
+#[must_use]
+pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<String>) {
+    let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
+    let mut warnings = Vec::new();
+    let textures = mesh.surfaces().iter().map(|surface| {
+        let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
+        let texture = read.entry(path).or_insert_with(|| match texture::load_decoded(path.as_ref()) {
+            Ok(decoded) => {
+                warnings.extend(decoded.warning(path.as_ref()));
+                Some(Shared::new(decoded.texture))
+            }
+            Err(error) => {
+                warnings.push(std::format!("{error}; drawn without it"));
+                None
+            }
+        });
+        texture.clone()
+    });
+    (textures.collect(), warnings)
+}
+
+/// Gives an object's surfaces these textures, one for each surface.
+#[must_use]
+pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -> Object {
+    for (i, texture) in textures.iter().enumerate() {
+        if let (Some(texture), Some(surface)) = (texture, object.mesh().surfaces().get(i)) {
+            object.materials[i] = object.materials[i].clone().with_map(surface, texture);
+        }
+    }
+    object
+}

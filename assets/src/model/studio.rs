@@ -1,0 +1,120 @@
+//! A studio: upright, light and background for a model that brings none.
+//!
+//! **Light.** A key light from the upper right and a fill a quarter as strong from the left, at right angles to it. They
+//! and the ambient light add up to 1 at most, so that nothing is overexposed: the face that catches most shows its own
+//! colour, and one that catches nothing two fifths of it.
+//!
+//! **Colour.** That of a surface with an image is the image. Exporters write some grey Kd beside it, often 0.8 or 0.64,
+//! which dims nothing in the program that the model was made in. So these surfaces are exposed together, until the one
+//! with the greatest Kd shows its image as it is.
+//!
+//! **Background.** Black where the model stands out from it, else the darkest grey from which it does, or a blue.
+//!
+//! **Upright.** A closed mesh looks everywhere, so its faces' area vectors add up to nothing; those of a sheet add up to
+//! what it shows from its front. A sheet that looks along z is terrain or a floor with z up: with y up it would stand on
+//! edge. One that looks along x is turned to show its front at first, where it would be seen edge on.
+
+use core::ops::Range;
+
+use crate::auto_palette;
+use crate::wide::{cross, dot, sub, widen};
+use mode13h::Angle;
+use mode13h::light::Light;
+use mode13h::mesh::Mesh;
+use mode13h::palette::Rgb;
+use mode13h::render::RenderError;
+use mode13h::scene::{Object, Scene, UpAxis, framing};
+
+/// The share of its colour that a surface shows where neither light falls.
+const AMBIENT: f32 = 0.4;
+/// Towards the key light.
+const KEY: [f32; 3] = [0.4, 0.6, 1.0];
+/// Towards the fill, at right angles to the key.
+const FILL: [f32; 3] = [-1.0, 0.0, 0.4];
+/// The fill's intensity to the key's.
+const FILL_SHARE: f32 = 0.25;
+/// A colour nearer to the background than this, in 255ths in the RGB cube, does not stand out from it.
+const CONTRAST: f32 = 80.0;
+/// A blue that stands out from every grey.
+const BLUE: Rgb = Rgb::from_dac([6, 12, 34]);
+/// The first of the card's 64 greys that is bright enough to glare.
+const GLARING: u8 = 43;
+
+/// Makes a scene that [shows](Scene::showing) a model in the studio.
+///
+/// With `None` the model says which of its axes points up: y, unless it is a sheet that looks along z.
+///
+/// # Errors
+/// Those of [`Renderer::draw`](mode13h::render::Renderer::draw).
+pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderError> {
+    let facing = facing(object.mesh());
+    object.up_axis = up.unwrap_or(if facing[2] == 0.0 { UpAxis::Y } else { UpAxis::Z });
+    let turn = Angle::from_degrees(-90.0 * facing[0]);
+    expose(&mut object);
+    let has_colors = object.has_colors();
+    let mut scene = Scene::showing_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
+    scene.clear_lights();
+    // Two lights at right angles add up to the length of (key, fill) where both fall fullest.
+    let key = 1.0 / libm::sqrtf(1.0 + FILL_SHARE * FILL_SHARE);
+    scene.add_light(Light::sun(KEY).with_intensity(key));
+    scene.add_light(Light::sun(FILL).with_intensity(key * FILL_SHARE));
+    let color = background(&auto_palette::colors_seen(&scene)?, has_colors);
+    scene.background_color = Some(color);
+    scene.background = scene.palette.as_ref().map_or(0, |palette| palette.nearest(color));
+    Ok(scene)
+}
+
+/// Divides what each material gives back between ambient and diffuse light, and exposes those with images.
+fn expose(object: &mut Object) {
+    let images = object.materials.iter().filter(|material| material.texture.is_some());
+    let brightest = images.map(|material| material.ambient + material.diffuse).fold(0.0, f32::max);
+    for material in &mut object.materials {
+        let mut full = material.ambient + material.diffuse;
+        if material.texture.is_some() {
+            full = if brightest > 0.0 { full / brightest } else { 1.0 };
+        }
+        (material.ambient, material.diffuse) = (AMBIENT * full, (1.0 - AMBIENT) * full);
+    }
+}
+
+/// The background that the colours in sight come least close to; of equals the first. Greys come from dark to light,
+/// [`BLUE`] before those that glare.
+fn background(seen: &[(Rgb, f32)], has_colors: bool) -> Rgb {
+    let closeness = |background: Rgb| -> f32 {
+        let missing = |color: Rgb| (CONTRAST - libm::sqrtf(color.distance_squared(background) as f32)).max(0.0);
+        seen.iter().map(|&(color, area)| area * missing(color) * missing(color)).sum()
+    };
+    let greys = |levels: Range<u8>| levels.map(|level| Rgb::from_dac([level; 3]));
+    let tried = greys(0..GLARING).chain(has_colors.then_some(BLUE)).chain(greys(GLARING..64));
+    let best = (Rgb::BLACK, f32::INFINITY);
+    tried.map(|color| (color, closeness(color))).fold(best, |best, next| if next.1 < best.1 { next } else { best }).0
+}
+
+/// The direction of the axis that a sheet looks along: 1 or -1 on it, and 0 on the others. 0 on all for what looks everywhere.
+fn facing(mesh: &Mesh) -> [f64; 3] {
+    let (mut sum, mut all) = ([0.0; 3], 0.0);
+    for corners in mesh.triangles() {
+        let [a, b, c] = corners.map(|i| widen(mesh.positions()[i as usize]));
+        let area = cross(sub(b, a), sub(c, a));
+        all += libm::sqrt(dot(area, area));
+        sum.iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
+    }
+    sum.map(|sum: f64| if sum.abs() > all / 2.0 { sum.signum() } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_blue_stands_out_from_every_grey() {
+        let distance = |level| BLUE.distance_squared(Rgb::new(level, level, level)) as f32;
+        assert!((0..=255).all(|level| distance(level) >= CONTRAST * CONTRAST));
+    }
+
+    #[test]
+    fn both_lights_together_are_full_light_at_most() {
+        let [key, fill] = [KEY, FILL].map(mode13h::glam::Vec3::from_array);
+        assert!(key.dot(fill).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,159 @@
+//! From the lists of an OBJ file to a mesh: faces split, triples made vertices, normals filled in.
+
+use std::collections::HashMap;
+
+use super::ObjErrorKind;
+use super::polygon::Splitter;
+use super::statement::{Corner, Model};
+use mode13h::Angle;
+use mode13h::mesh::normals::face_normal;
+use mode13h::mesh::{Mesh, Parts, Repairs, Surface};
+
+/// Makes the mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
+///
+/// # Errors
+/// The error, with the line if one is at fault.
+pub(super) fn mesh(
+    model: Model,
+    surfaces: Vec<Surface>,
+    crease: Option<Angle>,
+) -> Result<(Mesh, Repairs), (Option<u64>, ObjErrorKind)> {
+    let Split { triangles, triangle_surfaces, lines, groups, surfaces } = split(&model, surfaces)?;
+    let Model { positions, texcoords, normals, corners, .. } = model;
+    let (triples, triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
+    drop(corners);
+
+    let place = |triple: &Corner| positions[triple.position as usize];
+    let has_area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| place(&triples[vertex as usize]));
+        face_normal(a, b, c).is_some()
+    };
+    if !triangles.iter().any(has_area) {
+        return Err((None, ObjErrorKind::NoArea));
+    }
+    // `Corner::NONE` is out of range.
+    let pair = |triple: &Corner| texcoords.get(triple.texcoord as usize).copied();
+    let has_texcoords = triples.iter().any(|triple| pair(triple).is_some());
+    let parts = Parts {
+        positions: triples.iter().map(place).collect(),
+        normals: match normals.is_empty() {
+            true => Vec::new(),
+            false => triples.iter().map(|triple| normals.get(triple.normal as usize).copied()).collect(),
+        },
+        texcoords: match has_texcoords {
+            true => triples.iter().map(|triple| pair(triple).unwrap_or_default()).collect(),
+            false => Vec::new(),
+        },
+        triangles,
+        surfaces,
+        triangle_surfaces,
+        lines,
+        groups,
+        crease,
+    };
+    drop((positions, texcoords, normals, triples));
+    Mesh::from_parts(parts).map_err(|error| (None, ObjErrorKind::Mesh(error)))
+}
+
+/// The triangles that the faces of a file are split into.
+struct Split {
+    /// The triangles: three corners each, by their numbers in the file.
+    triangles: Vec<[u32; 3]>,
+    triangle_surfaces: Vec<u16>,
+    /// The line of each triangle's face.
+    lines: Vec<u32>,
+    /// The smoothing group of each triangle; empty if the file has none.
+    groups: Vec<u32>,
+    /// The surfaces that are used.
+    surfaces: Vec<Surface>,
+}
+
+fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, ObjErrorKind)> {
+    let count = model.corners.len() - 2 * model.sizes.len();
+    let mut triangles = Vec::with_capacity(count);
+    let mut triangle_surfaces = Vec::with_capacity(count);
+    let mut lines = Vec::with_capacity(count);
+    let mut groups = Vec::with_capacity(if model.smoothing.is_empty() { 0 } else { count });
+    let mut changes = model.smoothing.iter().copied().peekable();
+    let mut group = Parts::NO_GROUP;
+    let mut surfaces: Vec<Option<Surface>> = surfaces.into_iter().map(Some).collect();
+    let mut numbers: Vec<Option<u16>> = surfaces.iter().map(|_| None).collect();
+    let mut used = Vec::new();
+    let mut splitter = Splitter::new();
+    let mut places = Vec::new();
+    let mut first = 0;
+    for (i, &(from, name)) in model.runs.iter().enumerate() {
+        let to = model.runs.get(i + 1).map_or(model.sizes.len(), |next| next.0);
+        if from == to {
+            continue;
+        }
+        let surface = match numbers[name] {
+            Some(number) => number,
+            None => {
+                let too_many = ObjErrorKind::TooLarge("more than 65,536 materials");
+                let number = u16::try_from(used.len()).map_err(|_| (None, too_many))?;
+                used.extend(surfaces[name].take());
+                *numbers[name].insert(number)
+            }
+        };
+        for (place, &size) in (from..to).zip(&model.sizes[from..to]) {
+            // Fewer than 2³² corners, see `statement`.
+            let start = first as u32;
+            let face = &model.corners[first..first + size as usize];
+            if size == 3 {
+                triangles.push([start, start + 1, start + 2]);
+            } else {
+                places.clear();
+                places.extend(face.iter().map(|corner| model.positions[corner.position as usize]));
+                let line = u64::from(model.lines[place]);
+                let pieces = splitter.split(&places).map_err(|kind| (Some(line), kind))?;
+                triangles.extend(pieces.iter().map(|piece| piece.map(|corner| start + corner)));
+            }
+            triangle_surfaces.resize(triangles.len(), surface);
+            lines.resize(triangles.len(), model.lines[place]);
+            if !model.smoothing.is_empty() {
+                while let Some((_, next)) = changes.next_if(|change| change.0 <= place) {
+                    group = next;
+                }
+                groups.resize(triangles.len(), group);
+            }
+            first += size as usize;
+        }
+    }
+    Ok(Split { triangles, triangle_surfaces, lines, groups, surfaces: used })
+}
+
+/// The different triples, in the order in which the triangles first use them, and the triangles with
+/// their numbers.
+fn vertices(
+    corners: &[Corner],
+    mut triangles: Vec<[u32; 3]>,
+    positions: usize,
+) -> Result<(Vec<Corner>, Vec<[u32; 3]>), ObjErrorKind> {
+    let mut triples: Vec<Corner> = Vec::new();
+    // Most positions have one triple, which is found without a hash.
+    let mut first = vec![u32::MAX; positions];
+    let mut others: HashMap<Corner, u32> = HashMap::new();
+    for index in triangles.as_flattened_mut() {
+        let triple = corners[*index as usize];
+        // Checked below to fit.
+        let new = triples.len() as u32;
+        let slot = &mut first[triple.position as usize];
+        let vertex = if *slot == u32::MAX {
+            *slot = new;
+            new
+        } else if triples[*slot as usize] == triple {
+            *slot
+        } else {
+            *others.entry(triple).or_insert(new)
+        };
+        if vertex == new {
+            if triples.len() == Mesh::MAX_COUNT {
+                return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 vertices"));
+            }
+            triples.push(triple);
+        }
+        *index = vertex;
+    }
+    Ok((triples, triangles))
+}

@@ -1,0 +1,251 @@
+//! MTL files, and the materials of them that a model uses.
+
+use core::iter;
+use std::collections::HashMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::line::{Lines, keyword, name, number, words};
+use super::statement::Model;
+use super::warnings::{LeftOut, Warnings};
+use super::{ObjError, ObjErrorKind};
+use mode13h::mesh::Surface;
+
+/// The surfaces for `model.names`, in their order.
+pub(super) fn surfaces(
+    model: &Model,
+    path: &Path,
+    library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Surface>, ObjError> {
+    let mut known = HashMap::new();
+    let mut all_read = true;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = Files { folder, library, read: HashMap::new() };
+    for (line, text) in &model.libraries {
+        // One name that may hold blanks, or several names; a folder as Windows writes it.
+        let slashed = text.replace('\\', "/");
+        let mut found = files
+            .find(iter::once(text.as_str()))
+            .or_else(|error| if slashed == *text { Err(error) } else { files.find(iter::once(slashed.as_str())) });
+        if found.is_err() && text.split_whitespace().nth(1).is_some() {
+            found = files.find(text.split_whitespace()).or(found);
+        }
+        match found {
+            Ok(paths) => {
+                for path in paths {
+                    if let Some(bytes) = files.read.get_mut(&path).and_then(Option::take) {
+                        read(&bytes, &path, &mut known, warnings)?;
+                    }
+                }
+            }
+            Err(error) => {
+                all_read = false;
+                let path = path.display();
+                warnings.push(|| {
+                    format!("{path}:{line}: cannot read {text} ({error}); materials are white and matt") //
+                });
+            }
+        }
+    }
+    let mut surfaces = Vec::new();
+    for (name, line) in model.names.iter().zip(&model.name_lines) {
+        surfaces.push(known.get(name).cloned().unwrap_or_else(|| {
+            // If a file is missing, that has been said.
+            if all_read && !name.is_empty() {
+                let path = path.display();
+                warnings.push(|| format!("{path}:{line}: there is no material {name}; it is white and matt"));
+            }
+            Surface { name: name.clone(), ..Surface::default() }
+        }));
+    }
+    warn_of_no_exponent(&surfaces, path, warnings);
+    Ok(surfaces)
+}
+
+/// Warns, once for the model, of surfaces that have a `Ks` and no `Ns` above 0: they are drawn without a highlight.
+fn warn_of_no_exponent(surfaces: &[Surface], path: &Path, warnings: &mut Warnings) {
+    let has_none = |surface: &&Surface| surface.specular != [0.0; 3] && surface.shininess <= 0.0;
+    let mut without = surfaces.iter().filter(has_none);
+    let Some(first) = without.next() else { return };
+    let others = match without.count() {
+        0 => String::new(),
+        1 => " and one other".into(),
+        more => format!(" and {more} others"),
+    };
+    let (path, name) = (path.display(), &first.name);
+    warnings.push(|| format!("{path}: material {name}{others}: Ks without an Ns above 0 gives no highlight"));
+}
+
+/// The MTL files that a model names. Each is read once, however often it is named.
+struct Files<'a, L> {
+    folder: &'a Path,
+    library: L,
+    /// The bytes of each file; `None` when its materials have been taken.
+    read: HashMap<PathBuf, Option<Vec<u8>>>,
+}
+
+impl<L: FnMut(&Path) -> io::Result<Vec<u8>>> Files<'_, L> {
+    /// The paths of these files, which all can be read.
+    fn find<'n>(&mut self, names: impl Iterator<Item = &'n str>) -> io::Result<Vec<PathBuf>> {
+        names
+            .map(|name| {
+                let path = self.folder.join(name);
+                if !self.read.contains_key(&path) {
+                    let bytes = (self.library)(&path)?;
+                    self.read.insert(path.clone(), Some(bytes));
+                }
+                Ok(path)
+            })
+            .collect()
+    }
+}
+
+/// Reads the materials of one file; of two with the same name the later one holds.
+fn read(
+    bytes: &[u8],
+    path: &Path,
+    known: &mut HashMap<String, Surface>,
+    warnings: &mut Warnings,
+) -> Result<(), ObjError> {
+    let mut lines = Lines::new(bytes);
+    let mut current: Option<Surface> = None;
+    let (mut has_d, mut left_out) = (false, LeftOut::default());
+    while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
+        let (word, rest) = keyword(text);
+        if word == b"newmtl" {
+            let new = Surface { name: name(rest), ..Surface::default() };
+            has_d = false;
+            known.extend(current.replace(new).map(|done| (done.name.clone(), done)));
+            continue;
+        }
+        let Some(surface) = &mut current else { continue };
+        let result = match word {
+            b"Kd" => color(rest).map(|color| set(&mut surface.diffuse, color, path, line, warnings)),
+            b"Ks" => color(rest).map(|color| set(&mut surface.specular, color, path, line, warnings)),
+            b"Ns" => match number(&mut words(rest)) {
+                Ok(Some(exponent)) => {
+                    surface.shininess = exponent.max(0.0);
+                    Ok(())
+                }
+                Ok(None) => Err(ObjErrorKind::Missing("an exponent (1)")),
+                Err(kind) => Err(kind),
+            },
+            b"map_Kd" => {
+                surface.texture = texture(rest).map(|file| sibling_path(path, &file));
+                if places_otherwise(rest) {
+                    left_out.add("options of map_Kd (-s, -o, -clamp)", line);
+                }
+                Ok(())
+            }
+            // Of both, `d` counts: some programs mean the opposite by `Tr`, and write both.
+            b"Tr" if has_d => Ok(()),
+            b"d" | b"Tr" => opacity(rest).map(|share| {
+                has_d |= word == b"d";
+                surface.opacity = if word == b"d" { share } else { 1.0 - share };
+                if surface.opacity == 0.0 {
+                    left_out.add("a material that cannot be seen is drawn; its d or Tr is", line);
+                    surface.opacity = 1.0;
+                }
+            }),
+            b"map_d" => {
+                left_out.add("map_d", line);
+                Ok(())
+            }
+            _ => Ok(()),
+        };
+        result.map_err(|kind| ObjError::of_line(path, line, kind))?;
+    }
+    known.extend(current.map(|done| (done.name.clone(), done)));
+    left_out.warn(path, warnings);
+    Ok(())
+}
+
+/// `d` or `Tr`, which may stand behind `-halo`.
+fn opacity(rest: &[u8]) -> Result<f32, ObjErrorKind> {
+    let mut words = words(rest).filter(|word| *word != b"-halo");
+    Ok(number(&mut words)?.ok_or(ObjErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
+}
+
+/// Red, green and blue; one number stands for all three. `None` for a spectral file or CIE XYZ, which
+/// nothing writes.
+fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ObjErrorKind> {
+    const WHAT: &str = "a colour (1 or 3)";
+    let mut words = words(rest).peekable();
+    if words.next_if(|word| matches!(*word, b"spectral" | b"xyz")).is_some() {
+        return Ok(None);
+    }
+    let red = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    let Some(green) = number(&mut words)? else { return Ok(Some([red; 3])) };
+    let blue = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    Ok(Some([red, green, blue]))
+}
+
+fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64, warnings: &mut Warnings) {
+    match color {
+        Some(color) => *component = color,
+        None => {
+            warnings
+                .push(|| format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
+        }
+    }
+}
+
+/// The file name after the options of a texture statement; `None` if there is none.
+fn texture(rest: &[u8]) -> Option<String> {
+    let mut rest = rest.trim_ascii();
+    while rest.starts_with(b"-") {
+        let (option, mut after) = keyword(rest);
+        // -o, -s and -t have one to three numbers, -mm two, all others one word.
+        let most = match option {
+            b"-o" | b"-s" | b"-t" => 3,
+            b"-mm" => 2,
+            _ => 1,
+        };
+        for i in 0..most {
+            let (value, next) = keyword(after);
+            let is_number = str::from_utf8(value).is_ok_and(|value| value.parse::<f32>().is_ok());
+            if i > 0 && !is_number {
+                break;
+            }
+            after = next;
+        }
+        rest = after.trim_ascii();
+    }
+    (!rest.is_empty()).then(|| name(rest))
+}
+
+/// Returns whether the options of a texture statement move, stretch or clamp the texture.
+fn places_otherwise(rest: &[u8]) -> bool {
+    let mut neutral = 0.0;
+    let mut option: &[u8] = b"";
+    words(rest).any(|word| {
+        if word.starts_with(b"-") && number(&mut [word].into_iter()).is_err() {
+            (option, neutral) = (word, if word == b"-s" { 1.0 } else { 0.0 });
+            return false;
+        }
+        let value = number(&mut [word].into_iter());
+        match option {
+            b"-s" | b"-o" => match value {
+                Ok(value) => value != Some(neutral),
+                // The name of the file.
+                Err(_) => {
+                    option = b"";
+                    false
+                }
+            },
+            b"-clamp" => word == b"on",
+            _ => false,
+        }
+    })
+}
+
+/// A path as an MTL file gives it, from its own folder.
+fn sibling_path(path: &Path, file: &str) -> String {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let as_written = folder.join(file);
+    // Windows' separators are a part of a name elsewhere; hardly ever one that was meant.
+    let joined =
+        if file.contains('\\') && !as_written.exists() { folder.join(file.replace('\\', "/")) } else { as_written };
+    joined.to_string_lossy().into_owned()
+}

@@ -1,0 +1,57 @@
+//! Warnings of a model, as many as anyone would read.
+
+use std::path::Path;
+
+/// Warnings, of which the first [`MAX`](Self::MAX) are kept and the others counted: a file may give cause for one in
+/// every line, and each holds a path as long as the file likes.
+#[derive(Default)]
+pub(super) struct Warnings {
+    kept: Vec<String>,
+    more: usize,
+}
+
+impl Warnings {
+    const MAX: usize = 100;
+
+    pub(super) fn push(&mut self, warning: impl FnOnce() -> String) {
+        if self.kept.len() < Self::MAX {
+            self.kept.push(warning());
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// One line each; the last may say how many more there are.
+    pub(super) fn into_lines(mut self) -> Vec<String> {
+        match self.more {
+            0 => {}
+            1 => self.kept.push("one more warning like these".into()),
+            more => self.kept.push(format!("{more} more warnings like these")),
+        }
+        self.kept
+    }
+}
+
+/// Statements that are not read, each of which makes one warning, however often it stands in a file.
+#[derive(Default)]
+pub(super) struct LeftOut {
+    /// What, the first line of it, and the number of times.
+    of: Vec<(&'static str, u64, u64)>,
+}
+
+impl LeftOut {
+    pub(super) fn add(&mut self, what: &'static str, line: u64) {
+        match self.of.iter_mut().find(|(known, ..)| *known == what) {
+            Some((.., count)) => *count += 1,
+            None => self.of.push((what, line, 1)),
+        }
+    }
+
+    pub(super) fn warn(self, path: &Path, warnings: &mut Warnings) {
+        let path = path.display();
+        for (what, line, count) in self.of {
+            let times = if count == 1 { String::new() } else { format!(", {count} times") };
+            warnings.push(|| format!("{path}:{line}: {what} left out{times}"));
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Adobe `.act`: 256 times red, green, blue in 8 bits. A longer form has 4 bytes behind it: the number of colours that
+//! count, and the transparent one (FFFFh for none), each 16 bits, high byte first.
+//!
+//! Source: Adobe Photoshop File Formats Specification, "Color Table". The colours that do not count
+//! are read as black; the transparent one is a colour like any other here.
+
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
+use mode13h::palette::{Palette, Rgb};
+
+const LENGTH: usize = 768;
+const LENGTH_WITH_COUNT: usize = 772;
+
+pub(super) fn recognizes_772(bytes: &[u8]) -> bool {
+    bytes.len() == LENGTH_WITH_COUNT
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
+    let (table, count) = match bytes.split_at_checked(LENGTH) {
+        Some((table, [])) => (table, 256),
+        Some((table, &[high, low, _, _])) => (table, count_of(u16::from_be_bytes([high, low]))?),
+        _ => {
+            let kind = PaletteErrorKind::Length { expected: "768 or 772", found: bytes.len() };
+            let offset = bytes.len().min(LENGTH_WITH_COUNT);
+            return Err(PaletteError::at_offset(offset, kind));
+        }
+    };
+    let mut colors = [Rgb::BLACK; 256];
+    for (color, &[r, g, b]) in colors.iter_mut().zip(table.as_chunks::<3>().0).take(count) {
+        *color = Rgb::new(r, g, b);
+    }
+    Ok(Palette::from_colors(colors))
+}
+
+fn count_of(count: u16) -> Result<usize, PaletteError> {
+    if (1..=256).contains(&count) {
+        return Ok(usize::from(count));
+    }
+    // In decimal, as it would stand in a text: five digits at most.
+    let digits = [10_000, 1_000, 100, 10, 1].map(|unit| b'0' + (count / unit % 10) as u8);
+    let first = digits.iter().position(|&digit| digit != b'0').unwrap_or(digits.len() - 1);
+    let found = Excerpt::of(&digits[first..]);
+    Err(PaletteError::at_offset(LENGTH, PaletteErrorKind::Count { found }))
+}
+
+pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {
+    for color in palette.colors() {
+        out.extend_from_slice(&[color.r, color.g, color.b]);
+    }
+}
+
+pub(super) fn write_772(palette: &Palette, name: &str, out: &mut Vec<u8>) {
+    write(palette, name, out);
+    // 256 colours, none transparent.
+    out.extend_from_slice(&[1, 0, 0xFF, 0xFF]);
+}

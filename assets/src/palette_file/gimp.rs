@@ -1,0 +1,52 @@
+//! GIMP `.gpl`: `GIMP Palette`, headers, comments, and a colour a line, with a name behind it.
+//!
+//! Source: `app/core/gimppalette-load.c` of GIMP, by the files that it accepts. Unlike GIMP, which leaves a line it
+//! cannot read out with a warning, a broken line is an error.
+
+use super::colors::Colors;
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
+use super::text::{Lines, expect, first_line_is, three_numbers};
+use mode13h::palette::Palette;
+
+const MAGIC: &str = "GIMP Palette";
+
+/// The lines that may stand before the first colour; the last is Aseprite's.
+const HEADERS: [&[u8]; 3] = [b"Name:", b"Columns:", b"Channels:"];
+
+pub(super) fn recognizes(bytes: &[u8]) -> bool {
+    first_line_is(bytes, MAGIC)
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
+    let mut lines = Lines::new(bytes);
+    expect(&mut lines, MAGIC)?;
+    let mut colors = Colors::new();
+    let mut end = lines.next_number();
+    for (number, line) in lines {
+        let is_header = colors.count() == 0 && HEADERS.iter().any(|header| line.starts_with(header));
+        end = number + 1;
+        if line.is_empty() || line.starts_with(b"#") || is_header {
+            continue;
+        }
+        let Some((color, _words_of_the_name)) = three_numbers(line) else {
+            return Err(PaletteError::at_line(number, PaletteErrorKind::NotThreeNumbers { found: Excerpt::of(line) }));
+        };
+        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+    }
+    if colors.count() == 0 {
+        return Err(PaletteError::at_line(end, PaletteErrorKind::TooFewColors { found: 0, expected: 1 }));
+    }
+    Ok(colors.into_palette())
+}
+
+pub(super) fn write(palette: &Palette, name: &str, out: &mut Vec<u8>) {
+    out.extend_from_slice(format!("{MAGIC}\nName: ").as_bytes());
+    for c in name.chars() {
+        let c = if c.is_control() { ' ' } else { c };
+        out.extend_from_slice(c.encode_utf8(&mut [0; 4]).as_bytes());
+    }
+    out.extend_from_slice(b"\nColumns: 16\n#\n");
+    for (index, color) in palette.colors().iter().enumerate() {
+        out.extend_from_slice(format!("{:3} {:3} {:3}\t{index}\n", color.r, color.g, color.b).as_bytes());
+    }
+}

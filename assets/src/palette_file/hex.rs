@@ -1,0 +1,48 @@
+//! Lospec `.hex`: a colour a line, `rrggbb`. A `#` before it is accepted.
+
+use super::colors::Colors;
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
+use super::text::Lines;
+use mode13h::palette::{Palette, Rgb};
+
+/// Text whose first line is a colour. A raw palette has control characters as a rule; one without
+/// would have to begin with six digits and an end of line to be mistaken.
+pub(super) fn recognizes(bytes: &[u8]) -> bool {
+    let is_text = |byte: &u8| !byte.is_ascii_control() || byte.is_ascii_whitespace();
+    bytes.iter().all(is_text)
+        && Lines::new(bytes).find(|(_, line)| !line.is_empty()).is_some_and(|(_, line)| six_digits(line).is_some())
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
+    let mut colors = Colors::new();
+    let mut end = 1;
+    for (number, line) in Lines::new(bytes) {
+        end = number + 1;
+        if line.is_empty() {
+            continue;
+        }
+        let Some(color) = six_digits(line) else {
+            return Err(PaletteError::at_line(number, PaletteErrorKind::NotSixHexDigits { found: Excerpt::of(line) }));
+        };
+        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+    }
+    if colors.count() == 0 {
+        return Err(PaletteError::at_line(end, PaletteErrorKind::TooFewColors { found: 0, expected: 1 }));
+    }
+    Ok(colors.into_palette())
+}
+
+fn six_digits(line: &[u8]) -> Option<Rgb> {
+    let digits = line.strip_prefix(b"#").unwrap_or(line);
+    if digits.len() != 6 {
+        return None;
+    }
+    let value = digits.iter().try_fold(0, |value, &digit| Some(value << 4 | char::from(digit).to_digit(16)?))?;
+    Some(Rgb::from(value))
+}
+
+pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {
+    for color in palette.colors() {
+        out.extend_from_slice(format!("{:06x}\n", u32::from(*color)).as_bytes());
+    }
+}

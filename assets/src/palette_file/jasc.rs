@@ -1,0 +1,55 @@
+//! JASC `.pal`, Paint Shop Pro's: `JASC-PAL`, `0100`, the number of colours, then a colour a line.
+
+use super::colors::Colors;
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
+use super::text::{Lines, decimal, expect, first_line_is, three_numbers};
+use mode13h::palette::Palette;
+
+const MAGIC: &str = "JASC-PAL";
+const VERSION: &str = "0100";
+
+pub(super) fn recognizes(bytes: &[u8]) -> bool {
+    first_line_is(bytes, MAGIC)
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
+    let mut lines = Lines::new(bytes);
+    expect(&mut lines, MAGIC)?;
+    expect(&mut lines, VERSION)?;
+
+    let count_line = lines.next_number();
+    let text = lines.next().map_or(&[][..], |(_, line)| line);
+    let announced = match decimal(text, 256) {
+        Some(count) if count > 0 => count as usize,
+        _ => return Err(PaletteError::at_line(count_line, PaletteErrorKind::Count { found: Excerpt::of(text) })),
+    };
+
+    let mut colors = Colors::new();
+    let mut end = lines.next_number();
+    for (number, line) in lines {
+        if line.is_empty() {
+            continue;
+        }
+        end = number + 1;
+        if colors.count() == announced {
+            return Err(PaletteError::at_line(number, PaletteErrorKind::MoreThanAnnounced { announced }));
+        }
+        let Some((color, 0)) = three_numbers(line) else {
+            return Err(PaletteError::at_line(number, PaletteErrorKind::NotThreeNumbers { found: Excerpt::of(line) }));
+        };
+        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+    }
+    if colors.count() < announced {
+        let kind = PaletteErrorKind::TooFewColors { found: colors.count(), expected: announced };
+        return Err(PaletteError::at_line(end, kind));
+    }
+    Ok(colors.into_palette())
+}
+
+pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {
+    // Its home is Windows: lines end in CR LF.
+    out.extend_from_slice(format!("{MAGIC}\r\n{VERSION}\r\n256\r\n").as_bytes());
+    for color in palette.colors() {
+        out.extend_from_slice(format!("{} {} {}\r\n", color.r, color.g, color.b).as_bytes());
+    }
+}

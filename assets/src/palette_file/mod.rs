@@ -1,0 +1,191 @@
+//! Palette files, read and written. [`FORMATS`] is the one list of them.
+//!
+//! | format | extension | what |
+//! |---|---|---|
+//! | `jasc` | `.pal` | Paint Shop Pro: text, `JASC-PAL`, `0100`, the number of colours, then one a line |
+//! | `gimp` | `.gpl` | GIMP, Inkscape, Krita, Aseprite: text, `GIMP Palette`, then one a line with a name |
+//! | `hex` | `.hex` | Lospec: text, `rrggbb`, one a line |
+//! | `act` | `.act` | Adobe: 768 bytes, red, green, blue, 8 bits |
+//! | `act-772` | `.act` | the same with 4 bytes more: how many colours count, and the transparent one |
+//! | `vga` | `.vga` | 768 bytes, red, green, blue, as the DAC takes them: 6 bits |
+//!
+//! Also read as `vga` are `.raw`, `.col` (Autodesk Animator), `.lmp` (Quake) and a `.pal` of 768
+//! bytes that does not begin as JASC does. A raw file in which some value is over 63 has 8 bits.
+//!
+//! Text may end its lines with LF, CR LF or CR, and may begin with a UTF-8 byte order mark; empty lines among the
+//! colours are skipped. Fewer than 256 colours are fine if the format can say so; the other entries are black. More are
+//! an error. A palette has no ramps in a file: [`Palette::from_colors`] finds them.
+//!
+//! ```
+//! use mode13h_assets::palette_file;
+//! let palette = palette_file::parse_named("two.hex", b"000000\r\nff8000\r\n")?;
+//! assert_eq!(palette[1], 0xFF8000.into());
+//!
+//! let error = palette_file::parse(b"JASC-PAL\n0100\n2\n0 0 0\nred 0 0\n").unwrap_err();
+//! assert_eq!(error.to_string(), "line 5: expected three numbers 0 to 255, found \"red 0 0\"");
+//! # Ok::<(), palette_file::PaletteError>(())
+//! ```
+
+mod adobe;
+mod colors;
+mod error;
+mod gimp;
+mod hex;
+mod jasc;
+mod text;
+mod vga;
+
+pub use error::Excerpt;
+pub use error::{PaletteError, PaletteErrorKind, Place};
+
+use mode13h::palette::Palette;
+
+/// A file format: one row of [`FORMATS`].
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Format {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// The programs that use it, for people.
+    pub description: &'static str,
+    /// The extensions, in lower case without a dot; the first is the usual one.
+    pub extensions: &'static [&'static str],
+    /// Returns whether bytes look like a file of this format.
+    recognizes: fn(&[u8]) -> bool,
+    read: fn(&[u8]) -> Result<Palette, PaletteError>,
+    write: fn(&Palette, &str, &mut Vec<u8>),
+}
+
+/// All formats, the surer ones first. Bytes belong to the first that recognizes them, an extension to the first that
+/// lists it.
+pub static FORMATS: [Format; 6] = [
+    Format {
+        name: "jasc",
+        description: "JASC (Paint Shop Pro)",
+        extensions: &["pal"],
+        recognizes: jasc::recognizes,
+        read: jasc::read,
+        write: jasc::write,
+    },
+    Format {
+        name: "gimp",
+        description: "GIMP",
+        extensions: &["gpl"],
+        recognizes: gimp::recognizes,
+        read: gimp::read,
+        write: gimp::write,
+    },
+    Format {
+        name: "hex",
+        description: "Lospec",
+        extensions: &["hex"],
+        recognizes: hex::recognizes,
+        read: hex::read,
+        write: hex::write,
+    },
+    Format {
+        name: "vga",
+        description: "raw VGA",
+        extensions: &["vga", "raw", "col", "lmp"],
+        recognizes: vga::recognizes,
+        read: vga::read,
+        write: vga::write,
+    },
+    Format {
+        name: "act",
+        description: "Adobe color table",
+        extensions: &["act"],
+        // Its bytes are those of a raw VGA file: only a name can tell.
+        recognizes: |_| false,
+        read: adobe::read,
+        write: adobe::write,
+    },
+    Format {
+        name: "act-772",
+        description: "Adobe color table with its number of colours",
+        extensions: &["act"],
+        recognizes: adobe::recognizes_772,
+        read: adobe::read,
+        write: adobe::write_772,
+    },
+];
+
+impl Format {
+    /// The format of a name, as in [`FORMATS`].
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|format| format.name == name)
+    }
+
+    /// The format of an extension, without its dot, in either case.
+    #[must_use]
+    pub fn by_extension(extension: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|format| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension)))
+    }
+
+    /// The format of a file's name, by its extension, for writing such a file.
+    #[must_use]
+    pub fn of_file_name(name: &str) -> Option<&'static Self> {
+        let (_, extension) = name.rsplit_once('.')?;
+        Self::by_extension(extension)
+    }
+
+    /// The format that bytes look like.
+    ///
+    /// An 8-bit `.act` of 768 bytes looks like a raw VGA file, and is read alike unless it has no
+    /// value over 63.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Option<&'static Self> {
+        FORMATS.iter().find(|format| (format.recognizes)(bytes))
+    }
+
+    /// Reads a file of this format.
+    ///
+    /// # Errors
+    /// A `PaletteError` with the line or the offset.
+    pub fn read(&self, bytes: &[u8]) -> Result<Palette, PaletteError> {
+        if bytes.is_empty() {
+            return Err(PaletteError::at_offset(0, PaletteErrorKind::Empty));
+        }
+        (self.read)(bytes)
+    }
+
+    /// Writes a file of this format, all 256 entries of it. Reading it gives the colours back unchanged, except for a
+    /// `vga` file of colours below 64 that the DAC does not have: see there.
+    ///
+    /// `name` is the palette's name, which `gimp` files keep; control characters become blanks.
+    ///
+    /// A `vga` file is written in 6 bits if that keeps every colour. If not, and some value is over
+    /// 63, it is written in 8 bits. If no value is over 63, 8 bits would be taken for 6 when it is
+    /// read; such a palette is rounded down to 6 bits, as the card would.
+    #[must_use]
+    pub fn write(&self, palette: &Palette, name: &str) -> Vec<u8> {
+        let mut out = Vec::new();
+        (self.write)(palette, name, &mut out);
+        out
+    }
+}
+
+/// Reads a palette file whose name is not known, by its contents ([`Format::of_bytes`]).
+///
+/// # Errors
+/// [`PaletteErrorKind::UnknownFormat`] if it looks like none of [`FORMATS`], otherwise those of [`Format::read`].
+pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
+    match Format::of_bytes(bytes) {
+        Some(format) => format.read(bytes),
+        None if bytes.is_empty() => Err(PaletteError::at_offset(0, PaletteErrorKind::Empty)),
+        None => Err(PaletteError::at_offset(0, PaletteErrorKind::UnknownFormat)),
+    }
+}
+
+/// Reads a palette file by its name's extension. Without a known extension [`parse`] decides. It also decides for
+/// `.pal`, which JASC and the raw files share, if the bytes look like a raw file.
+///
+/// # Errors
+/// Those of [`Format::read`]. The name is not part of the message: the caller has it.
+pub fn parse_named(name: &str, bytes: &[u8]) -> Result<Palette, PaletteError> {
+    match Format::of_file_name(name) {
+        Some(format) if format.name != "jasc" || !vga::recognizes(bytes) => format.read(bytes),
+        _ => parse(bytes),
+    }
+}

@@ -1,0 +1,258 @@
+//! From the layout of a file to a scene.
+
+use std::path::Path as FilePath;
+
+use mode13h::glam::Vec3;
+use toml::Spanned;
+
+use super::camera::camera;
+use super::error::Fault;
+use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, SceneLayout};
+use super::named::{Named, Open};
+use super::object::Objects;
+use super::value::{Background, FileName, HalfAngle, List, OneOrThree, Vector};
+use super::{SceneErrorKind, motion};
+use mode13h::Angle;
+use mode13h::light::{Cone, Light};
+use mode13h::scene::Accuracy;
+use mode13h::scene::framing::{Swept, Turning};
+use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Settings};
+
+/// Makes one scene.
+pub(super) struct Builder<'a> {
+    named: Named<'a>,
+    scene: Scene,
+    /// The space that the objects cover as they move, if the camera has no place of its own.
+    swept: Vec<Swept>,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(path: &'a FilePath, open: &'a mut Open<'a>) -> Self {
+        Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
+    }
+
+    /// Makes the scene, with warnings.
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
+        if layout.objects.is_empty() {
+            return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
+        }
+        self.scene.name = layout.name.clone().unwrap_or_default();
+        if let Some(duration) = layout.duration {
+            self.scene.duration = duration.0;
+        }
+        if let Some(picture) = layout.picture {
+            self.scene.picture = picture.0;
+        }
+        if let Some(ambient) = layout.ambient {
+            self.scene.ambient = ambient.0;
+        }
+        if let Some(render) = &layout.render {
+            self.scene.settings = settings(render);
+        }
+        if let Some(name) = &layout.palette {
+            self.palette(name)?;
+        }
+        if let Some(animation) = &layout.animation {
+            self.scene.palette_animation = Some(self.animation(animation)?);
+        }
+        self.background_and_fog(layout.background, layout.fog.as_ref())?;
+        self.objects(layout)?;
+        for light in &layout.lights {
+            self.light(light)?;
+        }
+        self.camera(layout)?;
+        self.scene.set_time(0.0);
+        Ok((self.scene, self.named.warnings))
+    }
+
+    fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
+        if name.get_ref().0 == "auto" {
+            self.scene.auto_palette = true;
+        } else {
+            self.scene.palette = Some(self.named.palette(name)?);
+        }
+        Ok(())
+    }
+
+    fn animation(&mut self, layout: &Spanned<AnimationLayout>) -> Result<PaletteAnimation, Fault> {
+        let AnimationLayout { fade, cycle, rounds } = layout.get_ref();
+        let period = self.scene.duration / rounds.map_or(1.0, |rounds| rounds.0);
+        match (fade, cycle) {
+            (Some(name), None) => Ok(PaletteAnimation::Fade { to: self.named.palette(name)?, period }),
+            (None, Some(cycle)) => {
+                let List([first, last]) = cycle.get_ref();
+                let (first, last) = (first.index(), last.index());
+                if first > last {
+                    return Err(Fault::value(cycle.span(), "the first entry lies behind the last"));
+                }
+                Ok(PaletteAnimation::Cycle { range: first..=last, period })
+            }
+            _ => Err(Fault::value(layout.span(), "an animation is either a `fade` or a `cycle`")),
+        }
+    }
+
+    /// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour: so
+    /// either is the other's, unless both are given.
+    fn background_and_fog(
+        &mut self,
+        background: Option<Background>,
+        fog: Option<&Spanned<FogLayout>>,
+    ) -> Result<(), Fault> {
+        let palette = self.scene.palette.clone().unwrap_or_default();
+        let fog_color = fog.and_then(|fog| fog.get_ref().color);
+        match (background, fog_color) {
+            (Some(Background::Entry(entry)), _) => self.scene.background = entry,
+            (Some(Background::Color(color)), _) | (None, Some(color)) => {
+                self.scene.background = palette.nearest(color.rgb());
+                self.scene.background_color = Some(color.rgb());
+            }
+            (None, None) => {}
+        }
+        let Some(fog) = fog else { return Ok(()) };
+        let FogLayout { start, end, .. } = fog.get_ref();
+        let color = match (fog_color, self.scene.background_color) {
+            (Some(color), _) => color.rgb(),
+            (None, Some(color)) => color,
+            (None, None) => palette[self.scene.background],
+        };
+        let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
+        if fog.end <= fog.start {
+            return Err(Fault::value(end.span(), "the fog ends no farther than it starts"));
+        }
+        self.scene.fog = Some(fog);
+        Ok(())
+    }
+
+    fn objects(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        let is_framed = layout.camera.as_ref().is_none_or(|camera| camera.get_ref().eye.is_none());
+        let mut objects = Objects::default();
+        for layout in &layout.objects {
+            let own = layout.get_ref();
+            let path = own.path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
+            let turns = match own.spin {
+                Some(OneOrThree::One(about_y)) => [0.0, about_y.0, 0.0],
+                Some(OneOrThree::Three(turns)) => turns.map(|turns| turns.0),
+                None => [0.0; 3],
+            };
+            let turning = match turns {
+                [0.0, 0.0, 0.0] => Turning::Still,
+                [0.0, _, 0.0] => Turning::Upright,
+                _ => Turning::Free,
+            };
+            for object in objects.object(layout, &mut self.named)? {
+                if is_framed {
+                    self.swept.push(Swept::new(&object, turning, path.as_ref()));
+                }
+                let start = object.angles;
+                let id = self.scene.add(object);
+                if turns != [0.0; 3] {
+                    // A round takes the duration.
+                    let turns = turns.map(|turns| turns / self.scene.duration);
+                    self.scene.motions.push(Motion::Spin { object: id, start, turns });
+                }
+                if let Some(path) = path {
+                    self.scene.motions.push(Motion::Path { what: Moving::Object(id), path });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn light(&mut self, layout: &Spanned<LightLayout>) -> Result<(), Fault> {
+        let LightLayout { sun, lamp, range, direction, outer, inner, intensity, color, path } = layout.get_ref();
+        let path = path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
+        if let (Some(_), Some(span)) = (sun, direction.as_ref().map(Spanned::span)) {
+            return Err(Fault::value(span, "only a lamp has a cone"));
+        }
+        let light = match (sun, lamp, range) {
+            (Some(direction), None, None) => {
+                let towards = direction.get_ref().vec3();
+                if towards == Vec3::ZERO {
+                    return Err(Fault::value(direction.span(), "a direction must not be zero"));
+                }
+                Light::sun(towards)
+            }
+            (Some(_), None, Some(range)) => {
+                return Err(Fault::value(range.span(), "only a lamp has a range"));
+            }
+            (None, Some(position), Some(range)) => {
+                let (position, range) = (position.get_ref().vec3(), range.get_ref().0);
+                match cone(direction.as_ref(), outer.as_ref(), inner.as_ref())? {
+                    Some(cone) => Light::spot(position, range, cone),
+                    None => Light::lamp(position, range),
+                }
+            }
+            (None, Some(_), None) => {
+                return Err(Fault::value(layout.span(), "a lamp needs a `range`: how far it reaches"));
+            }
+            _ => return Err(Fault::value(layout.span(), "a light is either a `sun` or a `lamp`")),
+        };
+        let light = light.with_intensity(intensity.map_or(1.0, |intensity| intensity.0));
+        let light = self.scene.add_light(light.with_color(color.map_or([1.0; 3], |color| color.0)));
+        if let Some(path) = path {
+            let what = Moving::Light(light);
+            self.scene.motions.push(Motion::Path { what, path });
+        }
+        Ok(())
+    }
+
+    fn camera(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
+        self.scene.camera = camera(layout.camera.as_ref(), &self.swept)?;
+        let Some(own) = &layout.camera else { return Ok(()) };
+        for (path, what) in [(&own.get_ref().eye_path, Moving::Eye), (&own.get_ref().target_path, Moving::Target)] {
+            if let Some(path) = path {
+                let path = motion::path(path, self.scene.duration)?;
+                self.scene.motions.push(Motion::Path { what, path });
+            }
+        }
+        self.scene.set_time(0.0);
+        if self.scene.camera.eye == self.scene.camera.target {
+            return Err(Fault::value(own.span(), "the camera looks at the point where it is"));
+        }
+        Ok(())
+    }
+}
+
+/// The cone of a spot light: a direction with an outer angle.
+fn cone(
+    direction: Option<&Spanned<Vector>>,
+    outer: Option<&Spanned<HalfAngle>>,
+    inner: Option<&Spanned<HalfAngle>>,
+) -> Result<Option<Cone>, Fault> {
+    let (direction, outer) = match (direction, outer) {
+        (Some(direction), Some(outer)) => (direction, outer),
+        (Some(direction), None) => return Err(Fault::value(direction.span(), "a cone needs an `outer` angle")),
+        (None, _) => match outer.or(inner) {
+            Some(angle) => return Err(Fault::value(angle.span(), "a cone needs a `direction`")),
+            None => return Ok(None),
+        },
+    };
+    if direction.get_ref().vec3() == Vec3::ZERO {
+        return Err(Fault::value(direction.span(), "a direction must not be zero"));
+    }
+    if outer.get_ref().0 == 0.0 {
+        return Err(Fault::value(outer.span(), "a cone's outer angle must be above 0"));
+    }
+    let degrees = inner.map_or(0.0, |angle| angle.get_ref().0);
+    if let Some(inner) = inner.filter(|_| degrees > outer.get_ref().0) {
+        return Err(Fault::value(inner.span(), "a cone's inner angle must be at most its outer one"));
+    }
+    let [inner, outer] = [degrees, outer.get_ref().0].map(|degrees| Angle::from_degrees(degrees.into()));
+    Ok(Some(Cone { direction: direction.get_ref().vec3(), inner, outer }))
+}
+
+/// How a scene is to be drawn. An error or a time counts before a shading.
+fn settings(layout: &RenderLayout) -> Settings {
+    let max_time = layout.max_time.map(|milliseconds| milliseconds.0);
+    let shading = layout.shading.as_ref().filter(|_| max_time.is_none()).map(|name| Accuracy::Shading(name.0));
+    Settings {
+        accuracy: layout.max_error.map(|shades| Accuracy::WithinError(shades.0)).or(shading),
+        max_time,
+        hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
+        mapping: layout.mapping.as_ref().map(|name| name.0),
+        mipmaps: layout.mipmaps,
+        tessellation: layout.tessellation.map(|shades| shades.0),
+        dither: layout.dither.as_ref().and_then(|dither| dither.0),
+        vertex_path: None,
+    }
+}

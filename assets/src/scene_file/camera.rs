@@ -1,0 +1,40 @@
+//! The camera: placed, or so that everything is in the picture.
+
+use mode13h::glam::Vec3;
+use toml::Spanned;
+
+use super::error::Fault;
+use super::layout::CameraLayout;
+use mode13h::Angle;
+use mode13h::scene::Camera;
+use mode13h::scene::framing::{Swept, Viewpoint};
+
+/// Makes the camera of a layout; `everything` is the space that the scene's objects cover as they move.
+pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept]) -> Result<Camera, Fault> {
+    let span = layout.map_or(0..0, Spanned::span);
+    let own = layout.map(Spanned::get_ref);
+    let degrees = own.and_then(|own| own.field_of_view.as_ref());
+    let field_of_view =
+        degrees.map_or(Camera::FIELD_OF_VIEW, |degrees| Angle::from_radians(f64::from(degrees.0.to_radians())));
+    let up = own.and_then(|own| own.up.as_ref()).map_or(Vec3::Y, |up| up.vec3());
+    let target = own.and_then(|own| own.target.as_ref()).map(|target| target.vec3());
+    let eye = own.and_then(|own| own.eye.as_ref());
+    let from = own.and_then(|own| own.from.as_ref());
+    let mut camera = match (eye, from) {
+        (Some(_), Some(from)) => {
+            return Err(Fault::value(from.span(), "beside an `eye`, which says where the camera is"));
+        }
+        (Some(eye), None) => {
+            let (eye, target) = (eye.vec3(), target.unwrap_or(Vec3::ZERO));
+            Camera { eye, target, up, field_of_view, near: Camera::near_for(eye.distance(target)) }
+        }
+        (None, from) => {
+            let direction = from.map_or(Vec3::Z, |from| from.get_ref().vec3());
+            let too_far = "the objects reach too far to be framed; give the camera an `eye`";
+            let from = Viewpoint { direction, up, field_of_view, target };
+            from.camera(everything).ok_or_else(|| Fault::value(span, too_far))?
+        }
+    };
+    camera.near = own.and_then(|own| own.near.as_ref()).map_or(camera.near, |near| near.0);
+    Ok(camera)
+}

@@ -1,0 +1,304 @@
+//! The layout of a scene file: its tables and keys, as serde reads them. `assets/scenes/README.md` says what each means, in
+//! which unit, and which default it has; a test holds the two lists equal.
+
+use core::fmt;
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
+use toml::Spanned;
+
+use super::shape::Shape;
+use super::value::{
+    Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, HalfAngle, List, Name, NotNegative,
+    Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
+};
+use mode13h::light::Blend;
+use mode13h::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
+
+/// The whole file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct SceneLayout {
+    pub(super) name: Option<String>,
+    pub(super) duration: Option<Seconds>,
+    pub(super) ambient: Option<NotNegative>,
+    pub(super) background: Option<Background>,
+    pub(super) palette: Option<Spanned<FileName>>,
+    pub(super) animation: Option<Spanned<AnimationLayout>>,
+    pub(super) fog: Option<Spanned<FogLayout>>,
+    pub(super) camera: Option<Spanned<CameraLayout>>,
+    pub(super) render: Option<RenderLayout>,
+    pub(super) picture: Option<Finite>,
+    #[serde(default)]
+    pub(super) objects: Vec<Spanned<ObjectLayout>>,
+    #[serde(default)]
+    pub(super) lights: Vec<Spanned<LightLayout>>,
+}
+
+/// `[camera]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct CameraLayout {
+    pub(super) eye: Option<Vector>,
+    pub(super) target: Option<Vector>,
+    pub(super) from: Option<Spanned<Vector>>,
+    pub(super) up: Option<Vector>,
+    pub(super) field_of_view: Option<FieldOfView>,
+    pub(super) near: Option<Positive>,
+    pub(super) eye_path: Option<Spanned<PathLayout>>,
+    pub(super) target_path: Option<Spanned<PathLayout>>,
+}
+
+/// `[[objects]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct ObjectLayout {
+    pub(super) name: Option<String>,
+    pub(super) shape: Option<Name<Shape>>,
+    pub(super) subdivisions: Option<Spanned<Subdivisions>>,
+    pub(super) model: Option<Spanned<FileName>>,
+    pub(super) crease: Option<Spanned<Crease>>,
+    pub(super) position: Option<Vector>,
+    pub(super) positions: Option<Spanned<Vec<Vector>>>,
+    pub(super) scale: Option<Spanned<OneOrThree<Positive>>>,
+    pub(super) repeat: Option<Spanned<List<Positive, 2>>>,
+    pub(super) angles: Option<List<Finite, 3>>,
+    pub(super) up_axis: Option<Name<Up>>,
+    pub(super) pivot: Option<Vector>,
+    pub(super) spin: Option<OneOrThree<Finite>>,
+    pub(super) path: Option<Spanned<PathLayout>>,
+    pub(super) material: Option<MaterialLayout>,
+    pub(super) materials: Option<BTreeMap<Spanned<String>, MaterialLayout>>,
+}
+
+/// `material`, and the tables in `materials`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct MaterialLayout {
+    pub(super) ambient: Option<Share>,
+    pub(super) diffuse: Option<Share>,
+    pub(super) specular: Option<Share>,
+    pub(super) shininess: Option<Shininess>,
+    pub(super) ramp: Option<Spanned<RampLayout>>,
+    pub(super) color: Option<Color>,
+    pub(super) texture: Option<Spanned<FileName>>,
+    pub(super) environment: Option<Spanned<FileName>>,
+    pub(super) blend: Option<BlendLayout>,
+}
+
+/// `[[lights]]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct LightLayout {
+    pub(super) sun: Option<Spanned<Vector>>,
+    pub(super) lamp: Option<Spanned<Vector>>,
+    pub(super) range: Option<Spanned<Positive>>,
+    pub(super) direction: Option<Spanned<Vector>>,
+    pub(super) outer: Option<Spanned<HalfAngle>>,
+    pub(super) inner: Option<Spanned<HalfAngle>>,
+    pub(super) intensity: Option<Plain>,
+    pub(super) color: Option<Color>,
+    pub(super) path: Option<Spanned<PathLayout>>,
+}
+
+/// `path`, `eye-path`, `target-path`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct PathLayout {
+    pub(super) line: Option<List<Vector, 2>>,
+    pub(super) back: Option<Spanned<bool>>,
+    pub(super) circle: Option<Spanned<CircleLayout>>,
+    pub(super) rounds: Option<Rounds>,
+}
+
+/// `circle` of a path
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct CircleLayout {
+    pub(super) centre: Option<Vector>,
+    pub(super) radius: Option<Positive>,
+    pub(super) axis: Option<Name<Axis>>,
+    pub(super) start: Option<Finite>,
+    pub(super) from: Option<Vector>,
+    pub(super) towards: Option<Vector>,
+}
+
+/// `fog`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct FogLayout {
+    pub(super) color: Option<Color>,
+    pub(super) start: Option<NotNegative>,
+    pub(super) end: Spanned<Positive>,
+}
+
+/// `animation`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct AnimationLayout {
+    pub(super) fade: Option<Spanned<FileName>>,
+    pub(super) cycle: Option<Spanned<List<Entry, 2>>>,
+    pub(super) rounds: Option<Times>,
+}
+
+/// `[render]`
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct RenderLayout {
+    pub(super) shading: Option<Name<Shading>>,
+    pub(super) hidden_surfaces: Option<Name<HiddenSurfaces>>,
+    pub(super) mapping: Option<Name<Mapping>>,
+    pub(super) mipmaps: Option<bool>,
+    pub(super) tessellation: Option<Positive>,
+    pub(super) dither: Option<OffOr<DitherPattern>>,
+    pub(super) max_error: Option<Positive>,
+    pub(super) max_time: Option<Positive>,
+}
+
+/// `subdivisions`: a whole number, or several in a list.
+pub(super) struct Subdivisions(pub(super) Vec<i64>);
+
+impl<'de> Deserialize<'de> for Subdivisions {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = Subdivisions;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number, or two in a list")
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<Subdivisions, E> {
+                Ok(Subdivisions([number].into()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Subdivisions, A::Error> {
+                let mut numbers = Vec::new();
+                while let Some(number) = list.next_element()? {
+                    numbers.push(number);
+                }
+                Ok(Subdivisions(numbers))
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// `ramp`: a number, or entries of the palette.
+pub(super) enum RampLayout {
+    Number(u8),
+    Entries(EntriesLayout),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", expecting = "a table")]
+pub(super) struct EntriesLayout {
+    pub(super) first: Entry,
+    pub(super) entries: Entries,
+}
+
+impl<'de> Deserialize<'de> for RampLayout {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = RampLayout;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the number of a ramp, 0 to 255, or { first = 0, entries = 256 }")
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<RampLayout, E> {
+                u8::try_from(number).map(RampLayout::Number).map_err(|_| not_in_range(number, &self))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RampLayout, A::Error> {
+                EntriesLayout::deserialize(MapAccessDeserializer::new(map)).map(RampLayout::Entries)
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// `blend`: the name of a way, or a body's opacity.
+pub(super) struct BlendLayout(pub(super) Blend);
+
+impl<'de> Deserialize<'de> for BlendLayout {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl Visitor<'_> for Either {
+            type Value = BlendLayout;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"opaque\", \"add\", or how opaque it is, a number from 0 to 1")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<BlendLayout, E> {
+                match name {
+                    "opaque" => Ok(BlendLayout(Blend::Opaque)),
+                    "add" => Ok(BlendLayout(Blend::Add)),
+                    _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
+                }
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<BlendLayout, E> {
+                match number {
+                    0 | 1 => self.visit_f64(number as f64),
+                    _ => Err(not_in_range(number, &self)),
+                }
+            }
+
+            fn visit_f64<E: Error>(self, number: f64) -> Result<BlendLayout, E> {
+                match Share::of(number) {
+                    // 0 to 255.5; the cast truncates after the half.
+                    Some(Share(share)) => Ok(BlendLayout(Blend::Mix((share * 255.0 + 0.5) as u8))),
+                    None => Err(not_in_range(number, &self)),
+                }
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// The axis of a circle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+impl core::str::FromStr for Axis {
+    type Err = &'static str;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        match name {
+            "x" => Ok(Self::X),
+            "y" => Ok(Self::Y),
+            "z" => Ok(Self::Z),
+            _ => Err("unknown axis; there are x, y, z"),
+        }
+    }
+}
+
+/// The axis of a mesh that points up.
+pub(super) struct Up(pub(super) UpAxis);
+
+impl core::str::FromStr for Up {
+    type Err = &'static str;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        match name {
+            "y" => Ok(Self(UpAxis::Y)),
+            "z" => Ok(Self(UpAxis::Z)),
+            _ => Err("unknown axis; there are y, z"),
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Limits of a scene file.
+
+/// The max number of bytes of a scene file: 1 MiB.
+pub const LONGEST: usize = 1 << 20;
+
+/// The max number of triangles of all shapes of a scene: one for every pixel of mode 13h, and some. Models may have
+/// more.
+pub const MAX_TRIANGLES: u64 = 1 << 16;

@@ -1,0 +1,54 @@
+//! Materials: a file's changes to a default material.
+
+use super::error::Fault;
+use super::layout::{MaterialLayout, RampLayout};
+use super::named::Named;
+use mode13h::light::{Material, RampChoice};
+use mode13h::palette::Ramp;
+
+/// The shininess without a word in the file: neither broad nor a point.
+const SHININESS: f32 = 20.0;
+
+/// Changes `material` by the keys of the layout. `has_texcoords`: whether a texture can lie on the mesh.
+pub(super) fn apply(
+    layout: &MaterialLayout,
+    material: &mut Material,
+    has_texcoords: bool,
+    named: &mut Named<'_>,
+) -> Result<(), Fault> {
+    let set = |number: &mut f32, given: Option<f32>| *number = given.unwrap_or(*number);
+    set(&mut material.ambient, layout.ambient.map(|share| share.0));
+    set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
+    set(&mut material.specular, layout.specular.map(|share| share.0));
+    // A highlight that is asked for here has an exponent.
+    let given = layout.specular.is_some() && material.shininess == 0.0;
+    set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0).or(given.then_some(SHININESS)));
+    if let Some(color) = layout.color {
+        material.color = color.0;
+    }
+    if let Some(ramp) = &layout.ramp {
+        material.ramp = match ramp.get_ref() {
+            RampLayout::Number(number) => RampChoice::Number(u16::from(*number)),
+            RampLayout::Entries(entries) => {
+                let (first, entries) = (entries.first.index(), entries.entries.count());
+                let ramp = Ramp::new(first, entries).ok_or_else(|| {
+                    Fault::value(ramp.span(), format_args!("{entries} entries from {first} on run beyond entry 255"))
+                })?;
+                RampChoice::Entries(ramp)
+            }
+        };
+    }
+    if let Some(name) = &layout.texture {
+        if !has_texcoords {
+            return Err(Fault::value(name.span(), "the object has no texture coordinates"));
+        }
+        material.texture = Some(named.texture(name)?);
+    }
+    if let Some(name) = &layout.environment {
+        material.environment = Some(named.texture(name)?);
+    }
+    if let Some(blend) = &layout.blend {
+        material.blend = blend.0;
+    }
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! The files that a scene names: models, palettes, textures; each read once.
+
+use std::collections::BTreeMap;
+use std::io::{self, BufRead, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+
+use super::error::Fault;
+use super::value::FileName;
+use super::{LONGEST, SceneErrorKind};
+use crate::obj;
+use crate::palette_file;
+use crate::texture::{self, LoadError, LoadErrorKind};
+use mode13h::Angle;
+use mode13h::mesh::Mesh;
+use mode13h::palette::{Palette, builtin};
+use mode13h::scene::Shared;
+use mode13h::texture::Texture;
+
+/// The caller's function that opens a file.
+pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
+
+/// A model's mesh, and the point of its file that lies at 0 in it.
+type Placed = (Shared<Mesh>, [f64; 3]);
+
+/// The files that a scene names, found from its folder.
+pub(super) struct Named<'a> {
+    folder: &'a Path,
+    open: &'a mut Open<'a>,
+    /// The models and their origins, by the file and the bits of the requested crease angle.
+    models: BTreeMap<(PathBuf, Option<u64>), Placed>,
+    textures: BTreeMap<PathBuf, Shared<Texture>>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// The max length of a palette file. A longer one is read to here, and refused for its contents then.
+const LONGEST_PALETTE: u64 = LONGEST as u64;
+
+/// The max length of a texture file: a picture of 4,096 × 4,096 in true colour that cannot be packed.
+const LONGEST_TEXTURE: u64 = 64 << 20;
+
+impl<'a> Named<'a> {
+    pub(super) fn new(scene: &'a Path, open: &'a mut Open<'a>) -> Self {
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
+    }
+
+    /// Loads a model, with a crease angle if one is requested. Returns it and the point of its file that is 0 in it.
+    pub(super) fn model(
+        &mut self,
+        name: &Spanned<FileName>,
+        crease: Option<Angle>,
+    ) -> Result<(Shared<Mesh>, [f64; 3]), Fault> {
+        let path = self.folder.join(&name.get_ref().0);
+        let key = (path.clone(), crease.map(|crease| crease.to_radians().to_bits()));
+        if let Some(known) = self.models.get(&key) {
+            return Ok(known.clone());
+        }
+        if !has_extension(&path, "obj") {
+            return Err(Fault::value(name.span(), "no model that can be read: models are .obj files"));
+        }
+        let file = self.opened(&path, name)?;
+        let open = &mut *self.open;
+        let library = |path: &Path| {
+            let mut bytes = Vec::new();
+            open(path)?.read_to_end(&mut bytes)?;
+            Ok(bytes)
+        };
+        let loaded = obj::parse_with(file, &path, library, &obj::Options { crease })
+            .map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
+        self.warnings.extend(loaded.warnings);
+        let model = (Shared::new(loaded.mesh), loaded.origin);
+        self.models.insert(key, model.clone());
+        Ok(model)
+    }
+
+    /// A palette that is built in, or a file.
+    pub(super) fn palette(&mut self, name: &Spanned<FileName>) -> Result<Palette, Fault> {
+        if let Some(builtin) = builtin::by_name(&name.get_ref().0) {
+            return Ok(builtin.palette.clone());
+        }
+        let path = self.folder.join(&name.get_ref().0);
+        let bytes = self.bytes(&path, name, LONGEST_PALETTE)?;
+        palette_file::parse_named(&name.get_ref().0, &bytes)
+            .map_err(|error| Fault::of(name.span(), SceneErrorKind::Palette { path, error }))
+    }
+
+    /// A texture that is built in, or the picture in a file.
+    pub(super) fn texture(&mut self, name: &Spanned<FileName>) -> Result<Shared<Texture>, Fault> {
+        let path = self.folder.join(&name.get_ref().0);
+        if let Some(known) = self.textures.get(&path) {
+            return Ok(known.clone());
+        }
+        let texture = match name.get_ref().0.parse() {
+            Ok(builtin) => builtin,
+            Err(_) => {
+                let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
+                let decoded = texture::decode_all(Cursor::new(bytes)).map_err(|kind| {
+                    Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }))
+                })?;
+                self.warnings.extend(decoded.warning(&path));
+                decoded.texture
+            }
+        };
+        let texture = Shared::new(texture);
+        self.textures.insert(path, texture.clone());
+        Ok(texture)
+    }
+
+    /// Loads a texture that a model's material names, from where the program runs or from the model's folder, as the
+    /// MTL file has been read. A missing or broken one is a warning.
+    pub(super) fn texture_of_model(&mut self, path: &str, material: &str) -> Option<Shared<Texture>> {
+        let path = PathBuf::from(path);
+        if let Some(known) = self.textures.get(&path) {
+            return Some(known.clone());
+        }
+        let mut bytes = Vec::new();
+        let read = (self.open)(&path).and_then(|file| file.take(LONGEST_TEXTURE).read_to_end(&mut bytes));
+        let decoded = read.map_err(LoadErrorKind::Read).and_then(|_| texture::decode_all(Cursor::new(bytes)));
+        match decoded {
+            Ok(decoded) => {
+                self.warnings.extend(decoded.warning(&path));
+                let texture = Shared::new(decoded.texture);
+                self.textures.insert(path, texture.clone());
+                Some(texture)
+            }
+            Err(what) => {
+                let path = path.display();
+                self.warnings.push(std::format!("{path}: {what}; material {material} is drawn without it"));
+                None
+            }
+        }
+    }
+
+    fn bytes(&mut self, path: &Path, name: &Spanned<FileName>, most: u64) -> Result<Vec<u8>, Fault> {
+        let file = self.opened(path, name)?;
+        let mut bytes = Vec::new();
+        match file.take(most).read_to_end(&mut bytes) {
+            Ok(_) => Ok(bytes),
+            Err(error) => Err(not_read(path, name, error)),
+        }
+    }
+
+    fn opened(&mut self, path: &Path, name: &Spanned<FileName>) -> Result<Box<dyn BufRead>, Fault> {
+        (self.open)(path).map_err(|error| not_read(path, name, error))
+    }
+}
+
+fn not_read(path: &Path, name: &Spanned<FileName>, error: io::Error) -> Fault {
+    Fault::of(name.span(), SceneErrorKind::File { path: path.to_owned(), error })
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}

@@ -1,0 +1,60 @@
+//! Lines, columns and keys for bytes of a text.
+
+use core::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A place in a text.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Place {
+    /// The line, counted from 1.
+    pub line: usize,
+    /// The column in characters, counted from 1.
+    pub column: usize,
+}
+
+impl Place {
+    /// The place of a byte; the end of the text if there is no such byte.
+    pub(super) fn of(text: &str, byte: usize) -> Self {
+        let mut byte = byte.min(text.len());
+        while !text.is_char_boundary(byte) {
+            byte -= 1;
+        }
+        let before = &text[..byte];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self { line: before.matches('\n').count() + 1, column: before[line_start..].chars().count() + 1 }
+    }
+}
+
+/// The key that these bytes are a part of, or its value, with those it lies in: `objects[0].material.ramp`. `None` if
+/// the text is not TOML, or has no key there.
+pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
+    in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
+}
+
+/// The max number of characters that are shown of a key. Every known key is shorter.
+const LONGEST_KEY: usize = 60;
+
+// A table and a list have the bytes of the header that opened them, and so may several, one in the other: the
+// innermost is meant. The parser limits how deep they lie.
+
+fn in_table(table: &DeTable<'_>, span: &Range<usize>, path: &str) -> Option<String> {
+    table.iter().find_map(|(key, value)| {
+        let dot = if path.is_empty() { "" } else { "." };
+        let key_name: String = key.get_ref().chars().take(LONGEST_KEY).collect();
+        let path = format!("{path}{dot}{key_name}");
+        in_value(value, span, &path).or_else(|| (key.span() == *span).then_some(path))
+    })
+}
+
+fn in_value(value: &Spanned<DeValue<'_>>, span: &Range<usize>, path: &str) -> Option<String> {
+    let inside = match value.get_ref() {
+        DeValue::Table(table) => in_table(table, span, path),
+        DeValue::Array(list) => {
+            list.iter().enumerate().find_map(|(i, value)| in_value(value, span, &format!("{path}[{i}]")))
+        }
+        _ => None,
+    };
+    inside.or_else(|| (value.span() == *span).then(|| path.to_string()))
+}

@@ -1,0 +1,348 @@
+//! Numbers, vectors, colours and names, each with its range. Values that no scene can have are refused at their place.
+
+use core::fmt;
+use core::marker::PhantomData;
+use core::str::FromStr;
+
+use mode13h::glam::Vec3;
+use serde::de::{Deserialize, Deserializer, Error, Expected, SeqAccess, Unexpected, Visitor};
+
+use super::renamed;
+use mode13h::palette::Rgb;
+
+/// A kind of number.
+pub(super) trait Number: Sized {
+    /// The expected values, in words that follow "expected".
+    const WHAT: &'static str;
+
+    /// Makes one of a number; `None` if it is out of range.
+    fn of(number: f64) -> Option<Self>;
+}
+
+struct NumberVisitor<N>(PhantomData<N>);
+
+impl<N: Number> Visitor<'_> for NumberVisitor<N> {
+    type Value = N;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(N::WHAT)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<N, E> {
+        // Beyond 2⁵³ to the nearest.
+        N::of(number as f64).ok_or_else(|| not_in_range(number, &self))
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<N, E> {
+        N::of(number).ok_or_else(|| not_in_range(number, &self))
+    }
+}
+
+/// Makes the error of a number out of range; great ones are written with an exponent.
+pub(super) fn not_in_range<E: Error>(number: impl fmt::Debug, expected: &dyn Expected) -> E {
+    E::invalid_value(Unexpected::Other(&format!("{number:?}")), expected)
+}
+
+/// A type that holds one kind of number, read from what is written `$Type` in a scene.
+macro_rules! numbers {
+    ($( $(#[$doc:meta])* $Name:ident($Type:ty): $what:literal, |$x:ident| $legal:expr; )*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub(super) struct $Name(pub(super) $Type);
+
+        impl Number for $Name {
+            const WHAT: &'static str = $what;
+
+            fn of(number: f64) -> Option<Self> {
+                // To the nearest; beyond the range of f32 infinite, which no kind of number is.
+                let $x = number as $Type;
+                ($x.is_finite() && $legal).then_some(Self($x))
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $Name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_any(NumberVisitor(PhantomData))
+            }
+        }
+    )*};
+}
+
+numbers! {
+    /// A coordinate, an intensity.
+    Plain(f32): "a finite number", |_x| true;
+    /// An angle in degrees, turns, a moment in seconds.
+    Finite(f64): "a finite number", |_x| true;
+    /// A share.
+    Share(f32): "a number from 0 to 1", |x| (0.0..=1.0).contains(&x);
+    /// A length.
+    Positive(f32): "a number above 0", |x| x > 0.0;
+    /// A size.
+    NotNegative(f32): "a number of at least 0", |x| x >= 0.0;
+    /// An exponent.
+    Shininess(f32): "a number from 0 to 1000", |x| (0.0..=1000.0).contains(&x);
+    /// Rounds in a scene's duration.
+    Rounds(f64): "a number other than 0, from -1000 to 1000", |x| x != 0.0 && x.abs() <= 1000.0;
+    /// Rounds in a scene's duration, for a motion without a way back.
+    Times(f64): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
+    /// A time.
+    Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
+    /// An angle between the picture's upper and lower edge, in degrees.
+    FieldOfView(f32): "a number of degrees from 1 to 179", |x| (1.0..=179.0).contains(&x);
+    /// The angle between the axis of a cone and its edge, in degrees.
+    HalfAngle(f32): "a number of degrees from 0 to 90", |x| (0.0..=90.0).contains(&x);
+    /// An angle between two faces, in degrees.
+    Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
+    /// An entry of the palette.
+    Entry(f32): "a palette entry, a whole number from 0 to 255", |x| (0.0..=255.0).contains(&x) && x == libm::truncf(x);
+    /// A number of palette entries.
+    Entries(f32): "a number of palette entries, from 1 to 256", |x| (1.0..=256.0).contains(&x) && x == libm::truncf(x);
+}
+
+impl Entry {
+    pub(super) fn index(self) -> u8 {
+        // A whole number from 0 to 255.
+        self.0 as u8
+    }
+}
+
+impl Entries {
+    pub(super) fn count(self) -> u16 {
+        // A whole number from 1 to 256.
+        self.0 as u16
+    }
+}
+
+/// A list of exactly `N`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct List<T, const N: usize>(pub(super) [T; N]);
+
+/// The visitor of a list, which refuses anything else.
+struct ListVisitor<T, const N: usize>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
+    type Value = List<T, N>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a list of {N}")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        let mut found = std::vec::Vec::with_capacity(N);
+        while let Some(entry) = list.next_element()? {
+            found.push(entry);
+        }
+        let length = found.len();
+        found.try_into().map(List).map_err(|_| A::Error::invalid_length(length, &self))
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for List<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ListVisitor(PhantomData))
+    }
+}
+
+/// Three coordinates.
+pub(super) type Vector = List<Plain, 3>;
+
+impl Vector {
+    pub(super) fn vec3(&self) -> Vec3 {
+        Vec3::from_array(self.0.map(|c| c.0))
+    }
+}
+
+/// Either a number or three of them.
+pub(super) enum OneOrThree<N> {
+    One(N),
+    Three([N; 3]),
+}
+
+impl<'de, N: Number + Deserialize<'de>> Deserialize<'de> for OneOrThree<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Both<N>(PhantomData<N>);
+
+        impl<'de, N: Number + Deserialize<'de>> Visitor<'de> for Both<N> {
+            type Value = OneOrThree<N>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{}, or three in a list", N::WHAT)
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
+                NumberVisitor(PhantomData).visit_i64(number).map(OneOrThree::One)
+            }
+
+            fn visit_f64<E: Error>(self, number: f64) -> Result<Self::Value, E> {
+                NumberVisitor(PhantomData).visit_f64(number).map(OneOrThree::One)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+                ListVisitor(PhantomData).visit_seq(list).map(|List(three)| OneOrThree::Three(three))
+            }
+        }
+
+        deserializer.deserialize_any(Both(PhantomData))
+    }
+}
+
+/// Red, green and blue, 0 to 1 each: a list of them, or "#rrggbb" with 255 for 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Color(pub(super) [f32; 3]);
+
+impl Color {
+    /// The colour to the nearest of 255ths.
+    pub(super) fn rgb(self) -> Rgb {
+        // 0 to 255.5; the cast truncates after the half.
+        let [r, g, b] = self.0.map(|share| (share * 255.0 + 0.5) as u8);
+        Rgb::new(r, g, b)
+    }
+}
+
+struct ColorVisitor;
+
+impl<'de> Visitor<'de> for ColorVisitor {
+    type Value = Color;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a color: \"#rrggbb\", or red, green and blue from 0 to 1 in a list")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
+        let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+        // from_str_radix takes a sign.
+        let digits = digits.filter(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()));
+        match digits.map(|digits| u32::from_str_radix(digits, 16)) {
+            Some(Ok(number)) => {
+                let Rgb { r, g, b } = Rgb::from(number);
+                Ok(Color([r, g, b].map(|byte| f32::from(byte) / 255.0)))
+            }
+            _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
+        }
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Color, A::Error> {
+        let List(shares) = ListVisitor::<Share, 3>(PhantomData).visit_seq(list)?;
+        Ok(Color(shares.map(|share| share.0)))
+    }
+}
+
+impl<'de> Deserialize<'de> for Color {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ColorVisitor)
+    }
+}
+
+/// The value that the frame is cleared to.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Background {
+    Entry(u8),
+    Color(Color),
+}
+
+impl<'de> Deserialize<'de> for Background {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = Background;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(
+                    "a palette entry from 0 to 255, or a color: \"#rrggbb\", or red, green and blue from 0 to 1",
+                )
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<Background, E> {
+                NumberVisitor(PhantomData).visit_i64(number).map(|entry: Entry| Background::Entry(entry.index()))
+            }
+
+            fn visit_str<E: Error>(self, text: &str) -> Result<Background, E> {
+                ColorVisitor.visit_str(text).map(Background::Color)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Background, A::Error> {
+                ColorVisitor.visit_seq(list).map(Background::Color)
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// One of several names.
+pub(super) struct Name<T>(pub(super) T);
+
+struct NameVisitor<T>(PhantomData<T>);
+
+impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for NameVisitor<T> {
+    type Value = Name<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a name in quotes")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
+        name.parse().map(Name).map_err(|error| match renamed::value(name) {
+            Some(new) if new.parse::<T>().is_ok() => E::custom(format_args!("\"{name}\" is now called \"{new}\"")),
+            _ => E::custom(format_args!("\"{name}\": {error}")),
+        })
+    }
+}
+
+impl<'de, T: FromStr<Err: fmt::Display>> Deserialize<'de> for Name<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NameVisitor(PhantomData))
+    }
+}
+
+/// `false`, `true` for the default, or one of several names.
+pub(super) struct OffOr<T>(pub(super) Option<T>);
+
+impl<'de, T: FromStr<Err: fmt::Display> + Default> Deserialize<'de> for OffOr<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either<T>(PhantomData<T>);
+
+        impl<T: FromStr<Err: fmt::Display> + Default> Visitor<'_> for Either<T> {
+            type Value = OffOr<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("true, false, or a name in quotes")
+            }
+
+            fn visit_bool<E: Error>(self, on: bool) -> Result<OffOr<T>, E> {
+                Ok(OffOr(on.then(T::default)))
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<OffOr<T>, E> {
+                NameVisitor(PhantomData).visit_str(name).map(|Name(value)| OffOr(Some(value)))
+            }
+        }
+
+        deserializer.deserialize_any(Either(PhantomData))
+    }
+}
+
+/// The name of a file, or of something that is built in.
+pub(super) struct FileName(pub(super) String);
+
+impl<'de> Deserialize<'de> for FileName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Text;
+
+        impl Visitor<'_> for Text {
+            type Value = FileName;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a name of 1 to 1000 characters")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<FileName, E> {
+                let legal = (1..=1000).contains(&name.chars().count()) && !name.contains(char::is_control);
+                if legal { Ok(FileName(name.into())) } else { Err(E::invalid_value(Unexpected::Str(name), &self)) }
+            }
+        }
+
+        deserializer.deserialize_any(Text)
+    }
+}

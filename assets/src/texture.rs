@@ -1,0 +1,260 @@
+//! Textures from picture files.
+
+use core::fmt;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Seek};
+use std::path::{Path, PathBuf};
+
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
+
+use crate::errors::clause;
+use mode13h::palette::Rgb;
+use mode13h::texture::{Texture, TextureError};
+
+/// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
+const MAX_BYTES: usize = 4_096 * 4_096 * 8;
+
+/// An error of a file that gave no texture.
+#[non_exhaustive]
+pub struct LoadError {
+    /// The file.
+    pub path: PathBuf,
+    /// The kind of the error.
+    pub kind: LoadErrorKind,
+}
+
+/// The kinds of errors of a texture's file.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum LoadErrorKind {
+    /// The file cannot be read.
+    Read(io::Error),
+    /// The path is that of a directory, a device or the like.
+    NotAFile,
+    /// The file is no picture of a kind that is read, or a broken one.
+    Picture(String),
+    /// The picture is too large.
+    Texture(TextureError),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path.display(), self.kind)
+    }
+}
+
+impl fmt::Display for LoadErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "{error}"),
+            Self::NotAFile => f.write_str("not a file"),
+            Self::Picture(reason) => write!(f, "no picture that can be read: {reason}"),
+            Self::Texture(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+crate::errors::debug_as_display!(LoadError);
+
+impl core::error::Error for LoadError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match &self.kind {
+            LoadErrorKind::Read(error) => Some(error),
+            LoadErrorKind::Texture(error) => Some(error),
+            LoadErrorKind::NotAFile | LoadErrorKind::Picture(_) => None,
+        }
+    }
+}
+
+/// A texture as it was read.
+pub struct Decoded {
+    /// The texture.
+    pub texture: Texture,
+    /// Some pixel of the picture is not opaque; the texture is.
+    pub was_transparent: bool,
+}
+
+impl Decoded {
+    /// A line that says what was left out of this file, if anything was.
+    #[must_use]
+    pub fn warning(&self, path: &Path) -> Option<String> {
+        self.was_transparent.then(|| std::format!("{}: transparency left out", path.display()))
+    }
+}
+
+/// Reads a PNG, with the feature `images` also a JPEG, TGA, BMP, GIF or WebP, and makes a texture of it as
+/// [`Texture::from_rgb`] does. The kind is told by the contents, not by the name. Grey becomes RGB, 16 bits become 8, and
+/// transparency is left out. An indexed PNG whose sides are powers of two up to 256 keeps its indices and colours.
+///
+/// # Errors
+/// A file that cannot be read, that is no such picture or a broken one, or with a side above 4,096.
+pub fn load(path: impl AsRef<Path>) -> Result<Texture, LoadError> {
+    load_decoded(path.as_ref()).map(|decoded| decoded.texture)
+}
+
+/// Reads a picture as [`load`] does, and says what was left out.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_decoded(path: &Path) -> Result<Decoded, LoadError> {
+    read(path).map_err(|kind| LoadError { path: path.to_owned(), kind })
+}
+
+fn read(path: &Path) -> Result<Decoded, LoadErrorKind> {
+    let file = File::open(path).map_err(LoadErrorKind::Read)?;
+    // A model may name a device that never ends.
+    if !file.metadata().map_err(LoadErrorKind::Read)?.is_file() {
+        return Err(LoadErrorKind::NotAFile);
+    }
+    decode_all(BufReader::new(file))
+}
+
+/// Reads a picture that is in memory or comes from elsewhere, and makes a texture of it like [`load`].
+///
+/// # Errors
+/// Those of [`load`].
+pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
+    decode_all(file).map(|decoded| decoded.texture)
+}
+
+/// Reads a picture as [`decode`] does, and says what was left out.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn decode_all(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+    let head = file.fill_buf().map_err(LoadErrorKind::Read)?;
+    if head.starts_with(PNG) {
+        return decode_png(file);
+    }
+    #[cfg(feature = "images")]
+    return others::decode(file);
+    #[cfg(not(feature = "images"))]
+    Err(LoadErrorKind::Picture("not a PNG; other kinds need the feature `images`".into()))
+}
+
+/// Kinds that the crate `image` reads.
+#[cfg(feature = "images")]
+mod others {
+    use std::io::{BufRead, Seek};
+
+    use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+
+    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Texture, check_size, clause};
+
+    pub(super) fn decode(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+        let is_tga = file.fill_buf().is_ok_and(is_tga);
+        let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
+        if reader.format().is_none() && is_tga {
+            reader.set_format(ImageFormat::Tga);
+        }
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(MAX_BYTES as u64);
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(reason)?;
+        let (width, height) = decoder.dimensions();
+        // Before room is made for its pixels.
+        check_size(width, height)?;
+        let picture = DynamicImage::from_decoder(decoder).map_err(reason)?.into_rgba8();
+        let was_transparent = picture.pixels().any(|pixel| pixel[3] < 255);
+        let pixels: Vec<Rgb> = picture.pixels().map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect();
+        let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
+        Ok(Decoded { texture, was_transparent })
+    }
+
+    fn reason(error: ImageError) -> LoadErrorKind {
+        match error {
+            ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
+                LoadErrorKind::Read(error)
+            }
+            error => {
+                // What it says in front of its reason is that there is one.
+                let reason = core::error::Error::source(&error).map(ToString::to_string);
+                LoadErrorKind::Picture(clause(&reason.unwrap_or_else(|| error.to_string())))
+            }
+        }
+    }
+
+    /// Returns whether these may be the first bytes of a TGA, which has no signature: kind of colour map, kind of picture
+    /// and bits of a pixel are among those that there are.
+    fn is_tga(head: &[u8]) -> bool {
+        matches!(head, [_, 0 | 1, 1..=3 | 9..=11, ..] if matches!(head.get(16), Some(8 | 15 | 16 | 24 | 32)))
+    }
+}
+
+fn check_size(width: u32, height: u32) -> Result<(), LoadErrorKind> {
+    match width.max(height) > Texture::MAX_PICTURE_SIDE {
+        true => Err(LoadErrorKind::Texture(TextureError::Size { width, height })),
+        false => Ok(()),
+    }
+}
+
+fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+    // A row of the widest picture is 32 KiB; a chunk beside the pixels may hold no more than they do.
+    let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });
+    let head = decoder.read_header_info().map_err(reason)?;
+    let (width, height) = (head.width, head.height);
+    check_size(width, height)?;
+    let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
+    let keeps_indices = head.color_type == ColorType::Indexed && is_side(width) && is_side(height);
+    decoder.set_transformations(match keeps_indices {
+        true => Transformations::IDENTITY,
+        false => Transformations::EXPAND,
+    });
+    let mut reader = decoder.read_info().map_err(reason)?;
+    let (color, depth) = reader.output_color_type();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
+    reader.next_frame(&mut bytes).map_err(reason)?;
+    if keeps_indices {
+        return indexed(reader.info(), &bytes);
+    }
+    // Eight bits of each sample, the nearest to sixteen.
+    let sample = |sample: &[u8]| match *sample {
+        [high, low] => ((u32::from(high) * 256 + u32::from(low) + 128) / 257) as u8,
+        _ => sample[0],
+    };
+    let each = if depth == BitDepth::Sixteen { 2 } else { 1 };
+    let mut was_transparent = false;
+    let pixels: Vec<Rgb> = bytes
+        .chunks_exact(color.samples() * each)
+        .map(|pixel| {
+            let of = |i: usize| sample(&pixel[i * each..][..each]);
+            match color {
+                ColorType::GrayscaleAlpha => was_transparent |= of(1) < 255,
+                ColorType::Rgba => was_transparent |= of(3) < 255,
+                _ => {}
+            }
+            match color {
+                ColorType::Grayscale | ColorType::GrayscaleAlpha => Rgb::new(of(0), of(0), of(0)),
+                _ => Rgb::new(of(0), of(1), of(2)),
+            }
+        })
+        .collect();
+    let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
+    Ok(Decoded { texture, was_transparent })
+}
+
+/// The texture of a picture's indices, of 1, 2, 4 or 8 bits each, its rows from the top down.
+fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
+    let (width, bits) = (info.width as usize, usize::from(info.bit_depth as u8));
+    let row_bytes = (width * bits).div_ceil(8);
+    let texels: Vec<u8> = rows
+        .chunks_exact(row_bytes)
+        .rev()
+        .flat_map(|row| (0..width).map(move |x| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xFF >> (8 - bits))))
+        .collect();
+    let mut colors = [Rgb::BLACK; 256];
+    let entries = info.palette.as_deref().unwrap_or_default().as_chunks::<3>().0;
+    colors.iter_mut().zip(entries).for_each(|(color, &[red, green, blue])| *color = Rgb::new(red, green, blue));
+    let opacities = info.trns.as_deref().unwrap_or_default();
+    let was_transparent = texels.iter().any(|&texel| opacities.get(usize::from(texel)).is_some_and(|&o| o < 255));
+    let texture = Texture::new(info.width, info.height, texels, colors).map_err(LoadErrorKind::Texture)?;
+    Ok(Decoded { texture, was_transparent })
+}
+
+fn reason(error: DecodingError) -> LoadErrorKind {
+    match error {
+        DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => LoadErrorKind::Read(error),
+        error => LoadErrorKind::Picture(clause(&error.to_string())),
+    }
+}

@@ -1,0 +1,233 @@
+//! Meshes from what a model's file gives: corners that may lack a normal, smoothing groups, and faults of scans.
+
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use glam::{Vec2, Vec3};
+
+use super::normals::Together;
+use super::shells::{self, InsideOut};
+use super::topology::Edges;
+use super::{Lines, Mesh, MeshError, Surface, Weight, check, normals, topology, twins};
+use crate::angle::Angle;
+
+/// The crease angle of models without one.
+const CREASE: Angle = Angle::from_degrees(40.0);
+
+/// What a model's file gives, for [`Mesh::from_parts`]. A list that is empty is left out.
+///
+/// ```
+/// use mode13h::glam::Vec3;
+/// use mode13h::mesh::{Mesh, Parts};
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let (mesh, repairs) = Mesh::from_parts(Parts { positions, triangles: vec![[0, 1, 2]], ..Parts::default() })?;
+/// assert_eq!((mesh.normals()[0], repairs.turned), (Vec3::Z, 0));
+/// # Ok::<(), mode13h::mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// The position of each vertex.
+    pub positions: Vec<Vec3>,
+    /// A normal for each vertex, of any length. Where it is `None`, or zero, the faces that meet there give it.
+    pub normals: Vec<Option<Vec3>>,
+    /// A pair of texture coordinates for each vertex: u to the right, v up.
+    pub texcoords: Vec<Vec2>,
+    /// Three vertices each, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The surfaces.
+    pub surfaces: Vec<Surface>,
+    /// The index of each triangle's surface.
+    pub triangle_surfaces: Vec<u16>,
+    /// The line of each triangle's face in the file, counted from 1.
+    pub lines: Vec<u32>,
+    /// The smoothing group of each triangle, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Normals are averaged
+    /// within a group.
+    pub groups: Vec<u32>,
+    /// The angle from which on two faces have an edge between them, in place of the groups. With `None` the groups hold,
+    /// and without groups 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    pub crease: Option<Angle>,
+}
+
+impl Parts {
+    /// The group of a triangle that is flat.
+    pub const FLAT: u32 = Together::FLAT;
+    /// The group of a triangle that is in none.
+    pub const NO_GROUP: u32 = Together::NO_GROUP;
+}
+
+/// Counts of faces that were wrong in a closed mesh, and were mended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub struct Repairs {
+    /// The number of pairs of faces back to back that were left out.
+    pub pairs: usize,
+    /// The number of bodies that were turned, being inside out.
+    pub turned: usize,
+}
+
+impl Mesh {
+    /// Makes a mesh of what a model's file gives, and mends two faults of scans if it is closed: pairs of triangles
+    /// back to back, of the same three points, are left out where other faces go on at their edges, and bodies that are
+    /// inside out are turned, unless they are cavities in others. Vertices that nothing uses then are dropped.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`]; a list that is not empty and has not one entry for each vertex or triangle; a pair of
+    /// texture coordinates that is not finite; a surface that does not exist.
+    pub fn from_parts(parts: Parts) -> Result<(Self, Repairs), MeshError> {
+        let Parts {
+            positions: mut places,
+            normals,
+            mut texcoords,
+            mut triangles,
+            surfaces,
+            mut triangle_surfaces,
+            mut lines,
+            mut groups,
+            crease,
+        } = parts;
+        check(&places, &triangles)?;
+        let of_vertices = [("normals", normals.len()), ("texture coordinates", texcoords.len())];
+        let of_triangles =
+            [("triangle surfaces", triangle_surfaces.len()), ("lines", lines.len()), ("groups", groups.len())];
+        for (lists, needed) in [(&of_vertices[..], places.len()), (&of_triangles, triangles.len())] {
+            if let Some(&(what, given)) = lists.iter().find(|(_, given)| ![0, needed].contains(given)) {
+                return Err(MeshError::Count { what, given, needed });
+            }
+        }
+        if let Some(vertex) = texcoords.iter().position(|pair| !pair.is_finite()) {
+            return Err(MeshError::TexcoordNotFinite { vertex });
+        }
+        let surfaces = if surfaces.is_empty() { vec![Surface::default()] } else { surfaces };
+        triangle_surfaces.resize(triangles.len(), 0);
+        if let Some(triangle) = triangle_surfaces.iter().position(|&surface| usize::from(surface) >= surfaces.len()) {
+            return Err(MeshError::SurfaceOutOfRange { triangle });
+        }
+        let mut known: Vec<Option<Vec3>> = normals.into_iter().map(|normal| normal.and_then(normals::unit)).collect();
+        known.resize(places.len(), None);
+        let complete = known.iter().all(Option::is_some);
+
+        let mut points = topology::weld(&places);
+        let mut edges = Edges::new(&triangles, &points);
+        let mut repairs = Repairs::default();
+        if edges.balance() {
+            let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
+            // A mesh of nothing else stays as it is.
+            if !pairs.is_empty() && 2 * pairs.len() < triangles.len() {
+                repairs.pairs = pairs.len();
+                let mut keep = vec![true; triangles.len()];
+                pairs.as_flattened().iter().for_each(|&triangle| keep[triangle as usize] = false);
+                retain(&mut triangles, &keep);
+                retain(&mut triangle_surfaces, &keep);
+                retain(&mut lines, &keep);
+                retain(&mut groups, &keep);
+                let keep = drop_unused(&mut triangles, places.len());
+                retain(&mut texcoords, &keep);
+                retain(&mut known, &keep);
+                retain(&mut places, &keep);
+                points = topology::weld(&places);
+                edges = Edges::new(&triangles, &points);
+            }
+            if let Some(inside_out) = shells::inside_out(&places, &triangles, &edges) {
+                repairs.turned = inside_out.count();
+                let copies = turn(&inside_out, &mut triangles, &places, &mut known);
+                copy(&mut places, &copies);
+                copy(&mut points, &copies);
+                copy(&mut texcoords, &copies);
+                edges = Edges::new(&triangles, &points);
+            }
+        }
+
+        let given = known.iter().map(|normal| normal.unwrap_or(Vec3::Z)).collect();
+        let mut mesh = Self::assemble_welded(places, given, triangles, &points, &edges);
+        mesh.texcoords = (!texcoords.is_empty()).then_some(texcoords);
+        mesh.surfaces = surfaces;
+        mesh.triangle_surfaces = triangle_surfaces;
+        mesh.lines = Lines(lines);
+        if !complete {
+            let together = match crease {
+                Some(crease) => Together::new(crease, &[]),
+                None => Together::new(CREASE, &groups).unless_scattered(edges),
+            };
+            mesh.average(&points, Weight::Angle, Some(together), known);
+        }
+        Ok((mesh.with_facts(), repairs))
+    }
+}
+
+/// Adds copies of entries to a list with one for each vertex, or none at all.
+fn copy<T: Copy>(list: &mut Vec<T>, copies: &[u32]) {
+    if !list.is_empty() {
+        list.extend(copies.iter().map(|&vertex| list[vertex as usize]).collect::<Vec<_>>());
+    }
+}
+
+/// Removes the entries that are not to be kept from a list with one for each, or none at all.
+fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    list.retain(|_| keep.next().is_none_or(|&keep| keep));
+}
+
+/// Renumbers the vertices of triangles without those that no triangle uses. Returns for each vertex whether one uses it.
+fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
+    let mut used = vec![false; vertices];
+    triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
+    let mut before = 0;
+    let number = |&used| {
+        before += u32::from(used);
+        before.saturating_sub(1)
+    };
+    let numbers: Vec<u32> = used.iter().map(number).collect();
+    triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
+    used
+}
+
+/// Turns faces round that are inside out, and with them their given normals, if more of these then look inward than
+/// outward in a body. Returns the vertices that need a copy, for such a face beside one that keeps its normal; the
+/// copies come at the end.
+fn turn(
+    inside_out: &InsideOut,
+    triangles: &mut [[u32; 3]],
+    places: &[Vec3],
+    known: &mut Vec<Option<Vec3>>,
+) -> Vec<u32> {
+    let mut agrees = vec![0.0; inside_out.shells()];
+    let mut is_shared = vec![false; known.len()];
+    for (number, triangle) in triangles.iter_mut().enumerate() {
+        let Some(shell) = inside_out.shell(number) else { continue };
+        triangle.swap(1, 2);
+        let [a, b, c] = triangle.map(|vertex| places[vertex as usize]);
+        let face = normals::face_normal(a, b, c).unwrap_or(Vec3::ZERO);
+        let given = triangle.iter().filter_map(|&vertex| known[vertex as usize]);
+        agrees[shell] += given.map(|normal| f64::from(normal.dot(face))).sum::<f64>();
+    }
+    let turns = |number: usize| inside_out.shell(number).is_some_and(|shell| agrees[shell] < 0.0);
+    for (number, triangle) in triangles.iter().enumerate() {
+        if !turns(number) {
+            triangle.iter().for_each(|&vertex| is_shared[vertex as usize] = true);
+        }
+    }
+    // For each vertex of a turned face, the vertex that has the turned normal.
+    let mut turned: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut copies = Vec::new();
+    for (number, triangle) in triangles.iter_mut().enumerate() {
+        if !turns(number) {
+            continue;
+        }
+        for vertex in triangle {
+            let Some(normal) = known[*vertex as usize] else { continue };
+            *vertex = *turned.entry(*vertex).or_insert_with_key(|&vertex| {
+                if !is_shared[vertex as usize] {
+                    known[vertex as usize] = Some(-normal);
+                    return vertex;
+                }
+                copies.push(vertex);
+                known.push(Some(-normal));
+                // At most three for each triangle.
+                known.len() as u32 - 1
+            });
+        }
+    }
+    copies
+}
