@@ -2,12 +2,12 @@
 //!
 //!     cargo run --release --features window --example model -- tests/data/house.obj
 
-use mode13h_assets::SceneExt;
 use std::error::Error;
 
 use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::window::{self, Flow, Key};
+use mode13h_assets::SceneExt;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("which model? (a path to an .obj file)")?;

@@ -5,10 +5,11 @@ use std::io;
 use std::path::Path;
 use std::str::FromStr;
 
-use crate::SceneExt;
-use crate::scene_file::{Loaded, SceneError};
 use mode13h::UnknownName;
 use mode13h::scene::Scene;
+
+use crate::SceneExt;
+use crate::scene_file::{Loaded, SceneError};
 
 /// A scene that is compiled in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -5,11 +5,11 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 
+use mode13h::palette::Rgb;
+use mode13h::texture::{Texture, TextureError};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
 use crate::errors::clause;
-use mode13h::palette::Rgb;
-use mode13h::texture::{Texture, TextureError};
 
 /// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;

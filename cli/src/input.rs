@@ -1,6 +1,5 @@
 //! Input: from the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
-use mode13h_assets::{SceneExt, palette_file, scene_file};
 use std::ffi::OsStr;
 use std::fmt::Display;
 use std::fs::File;
@@ -18,7 +17,9 @@ use mode13h::scene::{Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 use mode13h_assets::model;
 use mode13h_assets::obj;
+use mode13h_assets::palette_file::{self, LoadErrorKind};
 use mode13h_assets::shipped::Shipped;
+use mode13h_assets::{SceneExt, scene_file};
 
 use crate::failure::{Failure, on_one_line};
 use crate::turntable::{Colors, Turntable};
@@ -327,8 +328,8 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
     }
     let path = Path::new(words);
     let shown = path.display();
-    let bytes = read_at_most(path, LONGEST_PALETTE).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => {
+    let palette = palette_file::load(path).map_err(|error| match &error.kind {
+        LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::NotFound => {
             let names = palette_names();
             let near = words.to_str().and_then(|word| typo::nearest(word, names.iter().copied().chain([AUTO])));
             let known = near.map_or_else(
@@ -339,21 +340,12 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
             // A word without an extension is a name that there is not.
             if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
         }
-        io::ErrorKind::IsADirectory => Failure::file(format!("{shown}: is a directory, not a palette")),
-        _ => Failure::file(format!("{shown}: {error}")),
+        LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::IsADirectory => {
+            Failure::file(format!("{shown}: is a directory, not a palette"))
+        }
+        LoadErrorKind::Palette(_) => Failure::words(error.to_string()),
+        _ => Failure::file(error.to_string()),
     })?;
     read_files::add(path);
-    let palette = palette_file::parse_named(&words.to_string_lossy(), &bytes);
-    let palette = palette.map_err(|error| Failure::words(format!("{shown}: {error}")))?;
     Ok((name_of(words), palette))
-}
-
-/// No palette file is longer, not even one with a paragraph for each colour. What is longer is read to here, and
-/// refused as what it then is.
-const LONGEST_PALETTE: u64 = 1 << 20;
-
-fn read_at_most(path: &Path, bytes: u64) -> io::Result<Vec<u8>> {
-    let mut contents = Vec::new();
-    File::open(path)?.take(bytes).read_to_end(&mut contents)?;
-    Ok(contents)
 }

@@ -8,7 +8,6 @@
 //!
 //! Bytes that a frame says it allocated are those that the allocator kept of it, but for the plan.
 
-use crate::support::tried::Tried;
 use allocation_counter::measure;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -19,6 +18,8 @@ use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Shading, Stat
 use mode13h::scene::{DitherPattern, Motion, Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_assets::shipped;
+
+use crate::support::tried::Tried;
 
 /// Frames of a turn.
 const FRAMES: u32 = 6;

@@ -1,6 +1,5 @@
 //! What errors and panics of the library say.
 
-use mode13h_assets::SceneExt;
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,6 +9,7 @@ use mode13h::render::{Renderer, Shading};
 use mode13h::scene::{Object, Scene};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::SceneExt;
 use mode13h_assets::palette_file;
 
 use crate::support::workspace;

@@ -8,8 +8,6 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::rc::Rc;
 
-use crate::support::film::{Image, decode};
-use crate::support::tried::Tried;
 use mode13h::export::{ExportErrorKind, Picture, PictureError, PixelShape, Scale};
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
@@ -17,6 +15,9 @@ use mode13h_assets::animation::{Film, FrameRate, GifError, GifFile, GifFrame, Gi
 use mode13h_conformance::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;
+
+use crate::support::film::{Image, decode};
+use crate::support::tried::Tried;
 
 // The oracle
 

@@ -1,9 +1,9 @@
 //! Model files as scenes: by one call, and nothing is left out without a word.
 
-use mode13h_assets::SceneExt;
 use std::fs;
 
 use mode13h::scene::Scene;
+use mode13h_assets::SceneExt;
 
 /// A model of one square, whose material names this texture.
 fn with_texture(name: &str, bytes: &[u8]) -> (tempfile::TempDir, Scene, Vec<String>) {

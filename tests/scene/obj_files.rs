@@ -6,9 +6,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::support::property::property;
-use crate::support::tried::Tried;
-use crate::support::workspace;
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
@@ -16,6 +13,10 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
 use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
 use proptest::prelude::*;
+
+use crate::support::property::property;
+use crate::support::tried::Tried;
+use crate::support::workspace;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())

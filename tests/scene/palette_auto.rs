@@ -1,6 +1,5 @@
 //! Palettes made for what is to be seen: how entries are shared out, and what is seen of a model.
 
-use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, RampChoice};
@@ -13,6 +12,8 @@ use mode13h::vga::Vga;
 use mode13h_assets::auto_palette::{self, Seen, seen};
 use mode13h_assets::auto_palette::{Automatic, Entries, Use, share};
 use mode13h_conformance::Random;
+
+use crate::support::tried::Tried;
 
 fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)

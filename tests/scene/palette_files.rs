@@ -2,14 +2,16 @@
 #![cfg(feature = "alloc")] // The writers.
 
 use std::collections::BTreeSet;
+use std::io;
 
-use crate::support::property::property;
-use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::palette::gradient::{Stop, fill};
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_dac6};
-use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, PaletteErrorKind, Place};
+use mode13h_assets::palette_file::{self, FORMATS, Format, LoadErrorKind, PaletteError, PaletteErrorKind, Place};
 use proptest::prelude::*;
+
+use crate::support::property::property;
+use crate::support::tried::Tried;
 
 fn format(name: &str) -> &'static Format {
     Format::by_name(name).unwrap()
@@ -636,4 +638,29 @@ fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
         }
         Ok(())
     });
+}
+
+#[test]
+fn a_file_is_loaded_by_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("two.hex"), "000000\nff8000\n").expect("written");
+    assert_eq!(palette_file::load(path("two.hex")).expect("a palette")[1], Rgb::new(0xFF, 0x80, 0));
+
+    std::fs::write(path("broken.gpl"), "nothing").expect("written");
+    let error = palette_file::load(path("broken.gpl")).expect_err("broken");
+    assert!(matches!(error.kind, LoadErrorKind::Palette(_)), "{error}");
+    assert!(error.to_string().starts_with(&format!("{}: line 1", path("broken.gpl").display())), "{error}");
+
+    let error = palette_file::load(path("none.gpl")).expect_err("no file");
+    assert!(matches!(&error.kind, LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::NotFound), "{error}");
+    assert!(palette_file::load(folder.path()).is_err());
+}
+
+/// A device that never ends is read as far as a palette file may be long.
+#[cfg(unix)]
+#[test]
+fn a_file_without_an_end_is_an_error() {
+    let error = palette_file::load("/dev/zero").expect_err("no palette");
+    assert!(matches!(error.kind, LoadErrorKind::Palette(_)), "{error}");
 }

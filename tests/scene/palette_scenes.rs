@@ -3,7 +3,6 @@
 //! The scenes are of walls that face the eye more or less, each with one normal, under one sun: so each has one colour,
 //! which is worked out here by the formulas alone.
 
-use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material, RampChoice};
@@ -17,6 +16,8 @@ use mode13h::vga::Vga;
 use mode13h_assets::auto_palette::Entries;
 use mode13h_assets::auto_palette::{self, AutomaticPalette};
 use mode13h_conformance::Random;
+
+use crate::support::tried::Tried;
 
 /// Towards the sun.
 const SUN: [f32; 3] = [0.3, 0.5, 0.9];

@@ -1,12 +1,10 @@
 //! Scene files: what they say is what is in the scene, and what is wrong in them is said with its line, column and key.
 
-use mode13h_assets::SceneExt;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufRead, Cursor};
 use std::path::Path as FilePath;
 
-use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
@@ -15,7 +13,10 @@ use mode13h::render::Accuracy;
 use mode13h::scene::{
     DitherPattern, HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis,
 };
+use mode13h_assets::SceneExt;
 use mode13h_assets::scene_file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
+
+use crate::support::tried::Tried;
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 

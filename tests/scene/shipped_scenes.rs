@@ -4,7 +4,6 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use crate::support::tried::Tried;
 use mode13h::export;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
@@ -14,6 +13,8 @@ use mode13h::vga::Vga;
 use mode13h_assets::auto_palette;
 use mode13h_assets::scene_file::Loaded;
 use mode13h_assets::shipped::{self, Shipped};
+
+use crate::support::tried::Tried;
 
 fn scene(name: &str) -> Scene {
     load(&name.parse().unwrap_or_else(|error| panic!("{name}: {error}")))

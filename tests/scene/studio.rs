@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::tried::Tried;
 use glam::{Vec2, Vec3};
 use mode13h::Angle;
 use mode13h::mesh::{Mesh, Surface, shapes};
@@ -13,6 +12,8 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_assets::auto_palette;
 use mode13h_assets::model::{studio, with_textures};
+
+use crate::support::tried::Tried;
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 200;

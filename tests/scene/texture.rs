@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec2;
 use mode13h::mesh::shapes;
@@ -14,6 +13,8 @@ use mode13h::texture::{Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
 use mode13h_assets::texture::LoadErrorKind;
 use mode13h_conformance::Random;
+
+use crate::support::tried::Tried;
 
 fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)

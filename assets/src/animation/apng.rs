@@ -7,16 +7,16 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use mode13h::export::AtomicFile;
+use mode13h::export::Scaled;
+use mode13h::export::{ExportError, ExportErrorKind, Picture, PictureError, Scale};
+use mode13h::palette::Rgb;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::FrameRate;
 use super::chunk::{chunks, write_chunk};
 use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
-use mode13h::export::AtomicFile;
-use mode13h::export::Scaled;
-use mode13h::export::{ExportError, ExportErrorKind, Picture, PictureError, Scale};
-use mode13h::palette::Rgb;
 
 /// The colours of a film.
 #[derive(Clone, Debug, PartialEq, Eq)]

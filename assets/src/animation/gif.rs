@@ -14,12 +14,12 @@ use std::fmt;
 use std::io::{self, Write};
 
 use gif::{Encoder, EncodingError, Frame, Repeat};
+use mode13h::export::{Picture, PictureError, Scale};
+use mode13h::palette::Rgb;
 
 use super::FrameRate;
 use super::color_table::ColorTable;
 use super::gif_frame::{GifFrame, Image};
-use mode13h::export::{Picture, PictureError, Scale};
-use mode13h::palette::Rgb;
 
 /// A film that goes round for ever, as a GIF, written to `W` while its frames are given.
 ///

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Film, FrameRate, GifError, GifFrame, GifWriter};
 use mode13h::export::AtomicFile;
 use mode13h::export::{ExportError, ExportErrorKind, Picture, Scale};
+
+use super::{Film, FrameRate, GifError, GifFrame, GifWriter};
 
 /// A film that goes round for ever, written to a file frame by frame as [`GifWriter`] does.
 ///

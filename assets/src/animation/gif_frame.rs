@@ -1,12 +1,12 @@
 //! A frame of a film, made ready to be written: cropped to what it changes, enlarged and compressed.
 
 use gif::Frame;
-
-use super::color_table::ColorTable;
-use super::difference::{Area, changed, kept};
 use mode13h::export::Scaled;
 use mode13h::export::{Picture, PictureError, PixelShape, Scale};
 use mode13h::palette::Rgb;
+
+use super::color_table::ColorTable;
+use super::difference::{Area, changed, kept};
 
 /// A frame of a [film](super::GifWriter) and its compressed image. It depends only on the frame and the one before it,
 /// so several can be made at a time, on any threads, and then be [added](super::GifWriter::add_frame) in their order.

@@ -7,13 +7,14 @@
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-use super::seen::{Numbers, Picture, moments};
 use mode13h::light::Blend;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
 use mode13h::scene::{Fog, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+
+use super::seen::{Numbers, Picture, moments};
 
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);

@@ -16,14 +16,15 @@
 
 use core::ops::Range;
 
-use crate::auto_palette;
-use crate::wide::{cross, dot, sub, widen};
 use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::palette::Rgb;
 use mode13h::render::RenderError;
 use mode13h::scene::{Object, Scene, UpAxis, framing};
+
+use crate::auto_palette;
+use crate::wide::{cross, dot, sub, widen};
 
 /// The share of its colour that a surface shows where neither light falls.
 const AMBIENT: f32 = 0.4;

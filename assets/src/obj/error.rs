@@ -1,8 +1,9 @@
 //! The errors of a model that is refused, with their place in the file.
 
-use mode13h::mesh::MeshError;
 use std::path::{Path, PathBuf};
 use std::{error, fmt, io};
+
+use mode13h::mesh::MeshError;
 
 /// An error of a model that is refused. Displayed as `path:line: what`, on one line.
 #[non_exhaustive]

@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::ObjErrorKind;
-use super::polygon::Splitter;
-use super::statement::{Corner, Model};
 use mode13h::Angle;
 use mode13h::mesh::normals::face_normal;
 use mode13h::mesh::{Mesh, Parts, Repairs, Surface};
+
+use super::ObjErrorKind;
+use super::polygon::Splitter;
+use super::statement::{Corner, Model};
 
 /// Makes the mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
 ///

@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use mode13h::mesh::Surface;
+
 use super::line::{Lines, keyword, name, number, words};
 use super::statement::Model;
 use super::warnings::{LeftOut, Warnings};
 use super::{ObjError, ObjErrorKind};
-use mode13h::mesh::Surface;
 
 /// The surfaces for `model.names`, in their order.
 pub(super) fn surfaces(

@@ -4,10 +4,10 @@ use std::io::BufRead;
 use std::path::Path;
 
 use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::Mesh;
 
 use super::line::{Lines, keyword, name, number, numbers, shown, wide_numbers, words};
 use super::{ObjError, ObjErrorKind};
-use mode13h::mesh::Mesh;
 
 /// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

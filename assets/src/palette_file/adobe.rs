@@ -4,8 +4,9 @@
 //! Source: Adobe Photoshop File Formats Specification, "Color Table". The colours that do not count
 //! are read as black; the transparent one is a colour like any other here.
 
-use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use mode13h::palette::{Palette, Rgb};
+
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 
 const LENGTH: usize = 768;
 const LENGTH_WITH_COUNT: usize = 772;

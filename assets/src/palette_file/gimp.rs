@@ -3,10 +3,11 @@
 //! Source: `app/core/gimppalette-load.c` of GIMP, by the files that it accepts. Unlike GIMP, which leaves a line it
 //! cannot read out with a warning, a broken line is an error.
 
+use mode13h::palette::Palette;
+
 use super::colors::Colors;
 use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use super::text::{Lines, expect, first_line_is, three_numbers};
-use mode13h::palette::Palette;
 
 const MAGIC: &str = "GIMP Palette";
 

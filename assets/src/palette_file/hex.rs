@@ -1,9 +1,10 @@
 //! Lospec `.hex`: a colour a line, `rrggbb`. A `#` before it is accepted.
 
+use mode13h::palette::{Palette, Rgb};
+
 use super::colors::Colors;
 use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use super::text::Lines;
-use mode13h::palette::{Palette, Rgb};
 
 /// Text whose first line is a colour. A raw palette has control characters as a rule; one without
 /// would have to begin with six digits and an end of line to be mistaken.

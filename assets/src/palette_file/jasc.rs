@@ -1,9 +1,10 @@
 //! JASC `.pal`, Paint Shop Pro's: `JASC-PAL`, `0100`, the number of colours, then a colour a line.
 
+use mode13h::palette::Palette;
+
 use super::colors::Colors;
 use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use super::text::{Lines, decimal, expect, first_line_is, three_numbers};
-use mode13h::palette::Palette;
 
 const MAGIC: &str = "JASC-PAL";
 const VERSION: &str = "0100";

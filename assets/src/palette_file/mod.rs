@@ -32,11 +32,13 @@ mod error;
 mod gimp;
 mod hex;
 mod jasc;
+mod load;
 mod text;
 mod vga;
 
 pub use error::Excerpt;
 pub use error::{PaletteError, PaletteErrorKind, Place};
+pub use load::{LoadError, LoadErrorKind, load};
 
 use mode13h::palette::Palette;
 

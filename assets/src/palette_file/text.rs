@@ -1,8 +1,9 @@
 //! Lines and numbers of text files, on bytes: palette files come in any encoding, and only their
 //! ASCII matters.
 
-use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use mode13h::palette::Rgb;
+
+use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 

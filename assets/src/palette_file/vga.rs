@@ -1,7 +1,8 @@
 //! Raw VGA: 256 times red, green, blue, as one `rep outsb` to port 3C9h takes them.
 
-use super::error::{PaletteError, PaletteErrorKind};
 use mode13h::palette::{Palette, Rgb};
+
+use super::error::{PaletteError, PaletteErrorKind};
 
 const LENGTH: usize = 768;
 

@@ -2,7 +2,12 @@
 
 use std::path::Path as FilePath;
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
+use mode13h::light::{Cone, Light};
+use mode13h::scene::Accuracy;
+use mode13h::scene::framing::{Swept, Turning};
+use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Settings};
 use toml::Spanned;
 
 use super::camera::camera;
@@ -12,11 +17,6 @@ use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, HalfAngle, List, OneOrThree, Vector};
 use super::{SceneErrorKind, motion};
-use mode13h::Angle;
-use mode13h::light::{Cone, Light};
-use mode13h::scene::Accuracy;
-use mode13h::scene::framing::{Swept, Turning};
-use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Settings};
 
 /// Makes one scene.
 pub(super) struct Builder<'a> {

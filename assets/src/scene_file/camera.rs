@@ -1,13 +1,13 @@
 //! The camera: placed, or so that everything is in the picture.
 
+use mode13h::Angle;
 use mode13h::glam::Vec3;
+use mode13h::scene::Camera;
+use mode13h::scene::framing::{Swept, Viewpoint};
 use toml::Spanned;
 
 use super::error::Fault;
 use super::layout::CameraLayout;
-use mode13h::Angle;
-use mode13h::scene::Camera;
-use mode13h::scene::framing::{Swept, Viewpoint};
 
 /// Makes the camera of a layout; `everything` is the space that the scene's objects cover as they move.
 pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept]) -> Result<Camera, Fault> {

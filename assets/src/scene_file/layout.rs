@@ -4,6 +4,8 @@
 use core::fmt;
 use std::collections::BTreeMap;
 
+use mode13h::light::Blend;
+use mode13h::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
@@ -14,8 +16,6 @@ use super::value::{
     Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, HalfAngle, List, Name, NotNegative,
     Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
 };
-use mode13h::light::Blend;
-use mode13h::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
 
 /// The whole file.
 #[derive(Deserialize)]

@@ -1,10 +1,11 @@
 //! Materials: a file's changes to a default material.
 
+use mode13h::light::{Material, RampChoice};
+use mode13h::palette::Ramp;
+
 use super::error::Fault;
 use super::layout::{MaterialLayout, RampLayout};
 use super::named::Named;
-use mode13h::light::{Material, RampChoice};
-use mode13h::palette::Ramp;
 
 /// The shininess without a word in the file: neither broad nor a point.
 const SHININESS: f32 = 20.0;

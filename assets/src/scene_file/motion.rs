@@ -3,12 +3,12 @@
 use core::ops::Range;
 
 use mode13h::glam::Vec3;
+use mode13h::scene::Path;
 use toml::Spanned;
 
 use super::error::Fault;
 use super::layout::{Axis, CircleLayout, PathLayout};
 use super::value::{List, Name};
-use mode13h::scene::Path;
 
 /// Makes a path in a scene of this duration, in seconds.
 pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, Fault> {

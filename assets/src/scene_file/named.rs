@@ -4,6 +4,11 @@ use std::collections::BTreeMap;
 use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use mode13h::Angle;
+use mode13h::mesh::Mesh;
+use mode13h::palette::{Palette, builtin};
+use mode13h::scene::Shared;
+use mode13h::texture::Texture;
 use toml::Spanned;
 
 use super::error::Fault;
@@ -12,11 +17,6 @@ use super::{LONGEST, SceneErrorKind};
 use crate::obj;
 use crate::palette_file;
 use crate::texture::{self, LoadError, LoadErrorKind};
-use mode13h::Angle;
-use mode13h::mesh::Mesh;
-use mode13h::palette::{Palette, builtin};
-use mode13h::scene::Shared;
-use mode13h::texture::Texture;
 
 /// The caller's function that opens a file.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;

@@ -3,7 +3,10 @@
 use core::ops::Range;
 use std::collections::BTreeMap;
 
+use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::Mesh;
+use mode13h::scene::{Object, Shared};
 use toml::Spanned;
 
 use super::error::Fault;
@@ -11,9 +14,6 @@ use super::layout::ObjectLayout;
 use super::named::Named;
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
-use mode13h::Angle;
-use mode13h::mesh::Mesh;
-use mode13h::scene::{Object, Shared};
 
 /// The changes of a mesh before it is used.
 #[derive(Clone, Copy, PartialEq)]

@@ -5,10 +5,10 @@ use core::marker::PhantomData;
 use core::str::FromStr;
 
 use mode13h::glam::Vec3;
+use mode13h::palette::Rgb;
 use serde::de::{Deserialize, Deserializer, Error, Expected, SeqAccess, Unexpected, Visitor};
 
 use super::renamed;
-use mode13h::palette::Rgb;
 
 /// A kind of number.
 pub(super) trait Number: Sized {

@@ -8,8 +8,6 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use crate::support::film::{Decoded, decode};
-use crate::support::tried::Tried;
 use mode13h::palette::{Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::render::Renderer;
@@ -19,6 +17,9 @@ use mode13h_assets::palette_file;
 use mode13h_assets::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::support::film::{Decoded, decode};
+use crate::support::tried::Tried;
 
 /// The program in a directory, with no display and no preferences from the environment.
 fn program(directory: &TempDir) -> Command {

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::tried::Tried;
 use mode13h_assets::obj::{self, Loaded, ObjError};
 use mode13h_assets::palette_file::FORMATS;
 use tempfile::TempDir;
+
+use crate::support::tried::Tried;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())

@@ -5,11 +5,12 @@ use std::fs;
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use crate::support::tried::{Tried, is_here};
-use crate::verify::{verified, verified_as_json};
 use mode13h_assets::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::support::tried::{Tried, is_here};
+use crate::verify::{verified, verified_as_json};
 
 const COMMANDS: [&str; 11] =
     ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "dos", "verify", "generate"];

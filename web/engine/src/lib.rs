@@ -27,7 +27,6 @@ use std::sync::Arc;
 use mode13h_assets::shipped;
 use mode13h_lab::cost::error_levels;
 use serde_json::{Value, json};
-
 use stage::Stage;
 use turntable::Pose;
 

@@ -2,11 +2,11 @@ use std::cell::Cell;
 use std::io::Cursor;
 use std::rc::Rc;
 
+use mode13h::export::PixelShape;
+use mode13h::palette::builtin::GREY;
 use png::{BlendOp, Decoder, DisposeOp, Transformations};
 
 use super::*;
-use mode13h::export::PixelShape;
-use mode13h::palette::builtin::GREY;
 
 /// Frames of a small film: palette indices and their colours.
 type Frames = Vec<(Vec<u8>, [Rgb; 256])>;

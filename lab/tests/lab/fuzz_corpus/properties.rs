@@ -1,7 +1,6 @@
 //! What holds of every parser, whatever it is given. One function a parser, for the fuzzer
 //! (`fuzz/fuzz_targets`) and for the corpora (`tests/fuzz_corpus.rs`) alike; each panics where it does not hold.
 
-use mode13h_assets::SceneExt;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::io::{self, BufRead, BufReader};
@@ -17,6 +16,7 @@ use mode13h::scene::Scene;
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
+use mode13h_assets::SceneExt;
 use mode13h_assets::animation::{FrameRate, GifWriter};
 use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
 use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
