@@ -18,6 +18,7 @@
 mod allegro;
 mod candidate;
 mod drawing;
+mod field;
 mod ours;
 mod refine;
 mod retrofire;
@@ -97,7 +98,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     let material = Material::new();
     allegro::start()?;
     let mesa = whole::start_mesa(&material)?;
-    let kernels = candidate::kernels();
+    let kernels = field::kernels();
     let workloads: Vec<Workload> = Workload::all(options.rabbit.as_deref(), options.faces, &options.files)?
         .into_iter()
         .filter(|workload| workload.name.contains(&options.only))
@@ -147,7 +148,7 @@ fn triangles(
     kernels: &[Kernel],
     rounds: usize,
 ) -> Result<Value, Box<dyn Error>> {
-    let mut candidates = candidate::all(&workload.triangles, drawing, material, kernels);
+    let mut candidates = field::all(&workload.triangles, drawing, material, kernels);
     let count = workload.triangles.len();
     let pictures = pictures(workload, drawing, &mut candidates)?;
     let repeats: Vec<u32> = candidates.iter_mut().map(|candidate| repeats(candidate.as_mut())).collect();

@@ -73,7 +73,7 @@ impl Candidate for Retrofire {
         }
         for corners in &self.textured {
             let (texture, sampler) = (&self.texture, SamplerRepeatPot::new(&self.texture));
-            tri_fill(corners.clone(), |mut line| {
+            tri_fill(*corners, |mut line| {
                 let Some(part) = part(line.y, &line.xs) else { return };
                 let cells = bytes[part.clone()].iter_mut().zip(&mut depths[part]);
                 for ((pixel, depth), fragment) in cells.zip(line.fragments()) {
@@ -86,7 +86,7 @@ impl Candidate for Retrofire {
         for corners in &self.shaded {
             // At most 255.5.
             let index = corners[0].attrib as u8;
-            tri_fill(corners.clone(), |line| {
+            tri_fill(*corners, |line| {
                 let Some(part) = part(line.y, &line.xs) else { return };
                 let row = &mut bytes[part.clone()];
                 match self.drawing {

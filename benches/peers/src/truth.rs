@@ -3,8 +3,9 @@
 use mode13h::raster::Vertex;
 use mode13h::span::Kernel;
 
-use crate::candidate::{self, Candidate, Triangle};
+use crate::candidate::{Candidate, Triangle};
 use crate::drawing::{Drawing, Material};
+use crate::field;
 use crate::{HEIGHT, WIDTH};
 
 /// How far a candidate is from the truth, over the triangles that were looked at.
@@ -30,7 +31,7 @@ pub fn errors(
     let (mut black, mut white) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
     for triangle in triangles {
         let mut candidate: Box<dyn Candidate> =
-            candidate::all(std::slice::from_ref(triangle), drawing, material, kernels).swap_remove(candidate);
+            field::all(std::slice::from_ref(triangle), drawing, material, kernels).swap_remove(candidate);
         for (index, bytes) in [(0, &mut black), (255, &mut white)] {
             candidate.clear(index);
             candidate.draw();
