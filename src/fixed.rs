@@ -63,7 +63,6 @@ impl I24F8 {
     /// Units in a pixel.
     pub(crate) const ONE: i32 = 256;
     /// The distance from the pixel's left edge to its centre, in units.
-    #[doc(hidden)]
     pub const HALF: i32 = 128;
 
     /// Makes a coordinate from units of 1/256 pixel.
@@ -118,7 +117,6 @@ impl I24F8 {
     /// Every f32 is an f64.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
         Self::round_from_f64(f64::from(pixels))
     }
@@ -126,7 +124,6 @@ impl I24F8 {
     /// Rounds 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn round_from_i16f16(pixels: I16F16) -> Self {
         Self(((pixels.0 as i64 + 128) >> 8) as i32)
     }
@@ -134,7 +131,6 @@ impl I24F8 {
     /// The first pixel whose centre lies at or to the right of (below) this coordinate: `ceil(x − ½)`.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn first_centre(self) -> i32 {
         // ceil((u − 128) / 256) = floor((u + 127) / 256); u is at most 2²⁰ in a raster vertex.
         self.0.saturating_add(Self::HALF - 1) >> 8
@@ -157,7 +153,6 @@ impl From<u8> for U8F8 {
 
 impl U8F8 {
     /// The greatest shade that a vertex may have: 255.0.
-    #[doc(hidden)]
     pub const MAX_VERTEX: Self = Self(0xFF00);
 
     /// Makes a shade from units of 1/256 shade.
@@ -185,7 +180,6 @@ impl U8F8 {
     /// sees to both); what does not fit saturates at 255.0.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
         // `max` gives the other operand for NaN, and `clamp` would not. The product of 24 and 16 bits is exact in
@@ -251,7 +245,6 @@ impl I16F16 {
 
     /// The product, rounded toward minus infinity (`sar`), or `None` if it does not fit.
     #[must_use]
-    #[doc(hidden)]
     pub fn checked_mul_floor(self, other: Self) -> Option<Self> {
         i32::try_from((i64::from(self.0) * i64::from(other.0)) >> 16).ok().map(Self)
     }

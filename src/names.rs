@@ -75,7 +75,6 @@ macro_rules! named {
 
             /// The variant's name, as it is typed.
             #[must_use]
-            #[doc(hidden)]
             pub const fn name(self) -> &'static str {
                 match self { $( Self::$Variant => $name, )* }
             }

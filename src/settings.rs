@@ -50,7 +50,6 @@ pub enum Accuracy {
 impl Accuracy {
     /// The shading; within an error the default, which is what faces get on which nothing has to be decided.
     #[must_use]
-    #[doc(hidden)]
     pub fn shading(self) -> Shading {
         match self {
             Self::Shading(shading) => shading,
@@ -60,7 +59,6 @@ impl Accuracy {
 
     /// Accepted error in shades, if shadings are chosen by that.
     #[must_use]
-    #[doc(hidden)]
     pub const fn max_error(self) -> Option<f32> {
         match self {
             Self::Shading(_) => None,
@@ -154,14 +152,12 @@ impl Settings {
 
     /// Returns whether they say anything about accuracy: a shading, an error or a time.
     #[must_use]
-    #[doc(hidden)]
     pub const fn has_accuracy(&self) -> bool {
         self.accuracy.is_some() || self.max_time.is_some()
     }
 
     /// The accuracy that is asked for, or the default. With a time alone it is the greatest error.
     #[must_use]
-    #[doc(hidden)]
     pub fn asked_accuracy(&self) -> Accuracy {
         let of_time = self.max_time.map(|_| Accuracy::WithinError(Self::MAX_ERROR));
         self.accuracy.or(of_time).unwrap_or_default()
@@ -169,7 +165,6 @@ impl Settings {
 
     /// The accuracy that the vertex path offers for what is asked.
     #[must_use]
-    #[doc(hidden)]
     pub fn drawn_accuracy(&self) -> Accuracy {
         match self.asked_accuracy() {
             Accuracy::Shading(shading) if self.is_integer() => shading.in_integers().into(),
@@ -180,7 +175,6 @@ impl Settings {
 
     /// The time for a frame in milliseconds, if the error is chosen by that.
     #[must_use]
-    #[doc(hidden)]
     pub fn time_for_error(&self) -> Option<f32> {
         self.max_time.filter(|_| self.drawn_accuracy().max_error().is_some())
     }

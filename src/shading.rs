@@ -37,14 +37,12 @@ named! {
 impl Shading {
     /// Returns whether light is computed at every pixel, and not at the vertices or for a face.
     #[must_use]
-    #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
         matches!(self, Self::PhongTable | Self::Phong)
     }
 
     /// The raster's interpolation for faces whose vertices are lit, if their shades differ.
     #[must_use]
-    #[doc(hidden)]
     pub const fn interpolation(self) -> Interpolation {
         match self {
             Self::GouraudVintage => Interpolation::GouraudVintage,
@@ -63,14 +61,12 @@ impl Shading {
 
     /// Returns whether its faces cover the pixels whose centres are in them, and no others.
     #[must_use]
-    #[doc(hidden)]
     pub const fn has_exact_cover(self) -> bool {
         self.interpolation().has_exact_cover()
     }
 
     /// The shading of the 16.16 vertex path for it: itself, or the default if that path lacks it.
     #[must_use]
-    #[doc(hidden)]
     pub const fn in_integers(self) -> Self {
         match self {
             Self::GouraudTessellated | Self::PhongTable | Self::Phong | Self::Float => Self::Gouraud88Reseeded,

@@ -145,7 +145,6 @@ impl Error for ExportError {
 /// assert_eq!(std::fs::read(&path)?, b"320 x 200");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(hidden)]
 pub fn write_atomically(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -163,7 +162,6 @@ pub fn write_atomically(
 /// # Errors
 ///
 /// [`ExportError`], as `write_atomically` would say it.
-#[doc(hidden)]
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
     AtomicFile::create(path.as_ref()).map(drop)
 }

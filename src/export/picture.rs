@@ -7,7 +7,6 @@ use std::ops::RangeInclusive;
 use crate::palette::{Palette, Rgb};
 
 /// The longest side of an exported picture, in pixels.
-#[doc(hidden)]
 pub const MAX_SIDE: u16 = 16_384;
 
 /// The shape of a pixel: its width to its height.

@@ -29,7 +29,6 @@ pub enum Scale {
 
 impl Scale {
     /// The size that a picture of `width` × `height` pixels is exported at.
-    #[doc(hidden)]
     pub fn size(self, width: usize, height: usize) -> (usize, usize) {
         match self {
             Scale::One => (width, height),

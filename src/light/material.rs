@@ -27,7 +27,6 @@ impl RampChoice {
     /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does a
     /// material that needs no ramp.
     #[must_use]
-    #[doc(hidden)]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
         match (self, palette) {
             (Self::Entries(ramp), _) => ramp,
@@ -125,7 +124,6 @@ impl Material {
     /// Puts the picture that an MTL file's `map_Kd` names on the material. Kd tints the picture: a coloured Kd goes
     /// into a copy of it, a grey one leaves it as it is, to be shared.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
         let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
         if !is_colored(surface.diffuse) || most == 0.0 {
@@ -153,7 +151,6 @@ impl Material {
     /// A copy of the material in its [own colours](Self::own_colors) if it has a ramp by number only; otherwise a plain
     /// copy. It is for a palette that has no ramps.
     #[must_use]
-    #[doc(hidden)]
     pub fn in_own_colors(&self, surface: &Surface) -> Self {
         if !matches!(self.ramp, RampChoice::Number(_)) {
             return self.clone();
@@ -164,7 +161,6 @@ impl Material {
 
     /// Returns whether its three channels differ.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))
     }
@@ -172,7 +168,6 @@ impl Material {
     /// Returns whether lighting it takes three channels: it is coloured, or drawn in the nearest entries. An image
     /// alone takes but one.
     #[must_use]
-    #[doc(hidden)]
     pub fn takes_channels(&self) -> bool {
         let has_image = self.texture.is_some() || self.environment.is_some();
         self.is_colored() || (self.ramp == RampChoice::Nearest && !has_image)
@@ -185,7 +180,6 @@ impl Material {
 
     /// Returns whether it has a highlight.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_specular(&self) -> bool {
         self.specular != 0.0 && self.shininess > 0.0
     }

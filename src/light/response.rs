@@ -31,7 +31,6 @@ impl LightResponse {
 
     /// The intensity that is shown, 0 to 1, for one that the lighting model gives, which is clamped to 0 to 1.
     #[must_use]
-    #[doc(hidden)]
     pub fn apply(&self, intensity: f32) -> f32 {
         let shown = (self.0)(intensity.clamp(0.0, 1.0));
         if shown > 0.0 { shown.min(1.0) } else { 0.0 }

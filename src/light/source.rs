@@ -99,7 +99,6 @@ impl Light {
 
     /// Returns the light's intensity.
     #[must_use]
-    #[doc(hidden)]
     pub fn intensity(&self) -> f32 {
         match *self {
             Self::Sun { intensity, .. } | Self::Lamp { intensity, .. } => intensity,
@@ -108,7 +107,6 @@ impl Light {
 
     /// Returns the light's red, green and blue.
     #[must_use]
-    #[doc(hidden)]
     pub fn color(&self) -> [f32; 3] {
         match *self {
             Self::Sun { color, .. } | Self::Lamp { color, .. } => color,
@@ -117,7 +115,6 @@ impl Light {
 
     /// Returns the intensity on one channel: for a coloured light, the luminance after ITU-R BT.601.
     #[must_use]
-    #[doc(hidden)]
     pub fn brightness(&self) -> f32 {
         let color = self.color();
         let share = if self.is_colored() { luminance(color) } else { color[0] };
@@ -126,7 +123,6 @@ impl Light {
 
     /// Returns whether its three channels differ, so that lighting by it takes three.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color())
     }

@@ -243,7 +243,6 @@ impl Mesh {
 
     /// The line of a triangle's face in the model's file, counted from 1; `None` if the mesh was not read from one.
     #[must_use]
-    #[doc(hidden)]
     pub fn line(&self, triangle: usize) -> Option<u32> {
         self.lines.0.get(triangle).copied()
     }
@@ -263,7 +262,6 @@ impl Mesh {
     /// a body, or several that may share edges and points. Vertices at the same position count as one, and triangles
     /// with two corners in one point do not count.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -275,7 +273,6 @@ impl Mesh {
     /// each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the longest
     /// side of the mesh's box: thinner ones are the folds of scans.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_outward(&self) -> bool {
         self.outward
     }
@@ -292,7 +289,6 @@ impl Mesh {
     /// and each triangle. It is negative if the triangles are wound inward, and means nothing if the mesh is not
     /// closed.
     #[must_use]
-    #[doc(hidden)]
     pub fn volume(&self) -> f64 {
         let centre = wide::widen(self.bounds.centre);
         let mut six_volumes = 0.0;

@@ -51,7 +51,6 @@ pub enum Weight {
 /// assert_eq!(face_normal(Vec3::ZERO, Vec3::X, Vec3::X * 2.0), None);
 /// ```
 #[must_use]
-#[doc(hidden)]
 pub fn face_normal(p1: Vec3, p2: Vec3, p3: Vec3) -> Option<Vec3> {
     let face = Face::new([p1, p2, p3]);
     (face.double_area > 0.0).then(|| narrow(face.normal))

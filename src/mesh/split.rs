@@ -11,7 +11,6 @@ const NONE: u32 = u32::MAX;
 impl Mesh {
     /// Returns whether each vertex is used by triangles of one surface only.
     #[must_use]
-    #[doc(hidden)]
     pub fn has_one_surface_a_vertex(&self) -> bool {
         if self.surfaces.len() == 1 {
             return true;
@@ -31,7 +30,6 @@ impl Mesh {
 
     /// Copies the mesh, with every vertex that lies between surfaces split, one for each. New vertices come at the end.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_one_surface_a_vertex(&self) -> Self {
         let mut mesh = self.clone();
         // For each vertex the surface it belongs to, and the next vertex split off the same one.

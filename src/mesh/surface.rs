@@ -31,7 +31,6 @@ impl Surface {
     /// The colour in full light: `Kd`, each channel to the nearest of 0 to 255. Values below 0 and NaN count as 0,
     /// values above 1 as 1.
     #[must_use]
-    #[doc(hidden)]
     pub fn color(&self) -> Rgb {
         Rgb::from_intensities(self.diffuse)
     }
@@ -48,7 +47,6 @@ impl Surface {
     /// assert_eq!(Surface::default().highlight(), None);
     /// ```
     #[must_use]
-    #[doc(hidden)]
     pub fn highlight(&self) -> Option<Rgb> {
         let specular = Rgb::from_intensities(self.specular);
         let is_shiny = specular != Rgb::BLACK && self.shininess > 0.0;

@@ -24,7 +24,6 @@ impl Mesh {
     /// Returns whether a triangle lies back to back with another one: with the same three points, wound the other way.
     /// The one of them that looks toward the eye is drawn.
     #[must_use]
-    #[doc(hidden)]
     pub fn has_twin(&self, triangle: usize) -> bool {
         self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
     }

@@ -11,7 +11,6 @@ use super::{BIOS, Palette, Ramp, Rgb, cube};
 /// A palette with its name and origin.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-#[doc(hidden)]
 pub struct Builtin {
     /// Its name on the command line.
     pub name: &'static str,
@@ -22,7 +21,6 @@ pub struct Builtin {
 }
 
 /// All palettes that are compiled in.
-#[doc(hidden)]
 pub static ALL: [Builtin; 9] = [
     Builtin { name: "grey", palette: &GREY, provenance: "256 even greys; the DAC shows 64 of them. Made here." },
     Builtin {
@@ -75,7 +73,6 @@ pub static ALL: [Builtin; 9] = [
 /// assert!(builtin::by_name("mauve").is_none());
 /// ```
 #[must_use]
-#[doc(hidden)]
 pub fn by_name(name: &str) -> Option<&'static Builtin> {
     ALL.iter().find(|builtin| builtin.name == name)
 }

@@ -81,7 +81,6 @@ const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {
 /// The entry of the 216 that is nearest to a colour: each channel for itself, by a table.
 #[must_use]
 #[inline]
-#[doc(hidden)]
 pub const fn nearest_mixture(color: Rgb) -> u8 {
     // At most 36·5 + 6·5 + 5 = 215.
     36 * LEVEL_OF[color.r as usize] + 6 * LEVEL_OF[color.g as usize] + LEVEL_OF[color.b as usize]
@@ -94,7 +93,6 @@ pub const fn nearest_mixture(color: Rgb) -> u8 {
 /// around it.
 #[must_use]
 #[inline]
-#[doc(hidden)]
 pub const fn nearest(color: Rgb) -> u8 {
     let mixture = nearest_mixture(color);
     let mut best = mixture;

@@ -16,7 +16,6 @@ use super::{NearestColors, Palette, Rgb};
 /// assert_eq!(nearest.get(Rgb::new(255, 255, 255)), 252, "the first of four that the card shows as white");
 /// ```
 #[derive(Clone, PartialEq, Eq)]
-#[doc(hidden)]
 pub struct InverseColormap {
     entries: Box<[u8; InverseColormap::BYTES]>,
     spread: u8,

@@ -20,7 +20,6 @@ use super::{NearestColors, Palette, Rgb};
 /// assert_eq!(fog.as_array()[255 << 8 | 77], fog.get(255, 77));
 /// ```
 #[derive(Clone, PartialEq, Eq)]
-#[doc(hidden)]
 pub struct Lut64K(Box<[u8; Lut64K::BYTES]>);
 
 impl Lut64K {
@@ -29,7 +28,6 @@ impl Lut64K {
 
     /// Makes a table of a byte for every row and column: `byte(high, low)`. Phong's table of shades is one.
     #[must_use]
-    #[doc(hidden)]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
         table.fill(byte);

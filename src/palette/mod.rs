@@ -19,7 +19,6 @@
 mod bios;
 pub mod builtin;
 pub mod cube;
-#[doc(hidden)]
 pub mod gradient;
 #[cfg(feature = "alloc")]
 mod inverse_colormap;
@@ -96,7 +95,6 @@ impl Palette {
 
     /// Makes a palette of 256 DAC colours, 0 to 63 a channel.
     #[must_use]
-    #[doc(hidden)]
     pub const fn from_dac(six: &[[u8; 3]; 256]) -> Self {
         let mut colors = [Rgb::BLACK; 256];
         let mut i = 0;

@@ -26,7 +26,6 @@ const WIDTH: u8 = 32;
 /// assert_eq!(search.nearest(Rgb::new(1, 2, 170)), 1);
 /// ```
 #[derive(Clone, Debug)]
-#[doc(hidden)]
 pub struct NearestColors {
     /// The candidates of all boxes: those of box `i` run from `starts[i]` up to `starts[i + 1]`.
     candidates: Candidates,

@@ -33,7 +33,6 @@ impl Ramp {
     /// The ramp of one entry, which is the index of every shade.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn single(entry: u8) -> Self {
         Self { first: entry, entries: 1 }
     }
@@ -48,7 +47,6 @@ impl Ramp {
     /// The lightest entry's palette index.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn last(self) -> u8 {
         // At most 255, as `first + entries` is at most 256.
         (self.first as u16 + self.entries - 1) as u8
@@ -77,7 +75,6 @@ impl Ramp {
     /// Returns whether a palette index belongs to the ramp.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn contains(self, index: u8) -> bool {
         self.first <= index && index <= self.last()
     }
@@ -85,7 +82,6 @@ impl Ramp {
     /// The palette indices, first to last, in the form that [`Vga::cycle`](crate::vga::Vga::cycle) takes.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn range(self) -> RangeInclusive<u8> {
         self.first..=self.last()
     }

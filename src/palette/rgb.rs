@@ -17,7 +17,6 @@ pub struct Rgb {
 /// are dropped, as the DAC drops them.
 #[must_use]
 #[inline]
-#[doc(hidden)]
 pub const fn dac6_to_8(six: u8) -> u8 {
     let v = six & 63;
     (v << 2) | (v >> 4)
@@ -26,7 +25,6 @@ pub const fn dac6_to_8(six: u8) -> u8 {
 /// 8 bits to 6: `v >> 2`, rounded down. [`dac6_to_8`] undoes it for every value that `dac6_to_8` makes.
 #[must_use]
 #[inline]
-#[doc(hidden)]
 pub const fn to_dac6(eight: u8) -> u8 {
     eight >> 2
 }
@@ -82,7 +80,6 @@ impl Rgb {
     /// Makes a colour from intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. Values below 0 and
     /// NaN count as 0, values above 1 as 1.
     #[must_use]
-    #[doc(hidden)]
     pub const fn from_intensities(intensities: [f32; 3]) -> Self {
         let [r, g, b] = intensities;
         // `as` keeps the whole part, stays within 0 to 255, and gives 0 for NaN.
@@ -92,7 +89,6 @@ impl Rgb {
     /// Makes a colour from the DAC's red, green and blue, 0 to 63 each; higher bits are dropped.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn from_dac(six: [u8; 3]) -> Self {
         Self::new(dac6_to_8(six[0]), dac6_to_8(six[1]), dac6_to_8(six[2]))
     }
@@ -100,7 +96,6 @@ impl Rgb {
     /// The DAC's red, green and blue, 0 to 63 each, rounded down.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn to_dac(self) -> [u8; 3] {
         [to_dac6(self.r), to_dac6(self.g), to_dac6(self.b)]
     }
@@ -113,7 +108,6 @@ impl Rgb {
     /// ```
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn on_dac(self) -> Self {
         Self::from_dac(self.to_dac())
     }
@@ -128,7 +122,6 @@ impl Rgb {
     /// assert_eq!(color.on_dac(), Rgb::new(0, 255, 101));
     /// ```
     #[must_use]
-    #[doc(hidden)]
     pub const fn nearest_on_dac(self) -> Self {
         Self::from_dac([nearest_six(self.r), nearest_six(self.g), nearest_six(self.b)])
     }
@@ -149,7 +142,6 @@ impl Rgb {
     /// This colour in a light, or on a surface, of the other: `a·b/255` a channel, to the nearest.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn modulate(self, other: Self) -> Self {
         Self::new(mix(0, self.r, other.r), mix(0, self.g, other.g), mix(0, self.b, other.b))
     }
@@ -157,7 +149,6 @@ impl Rgb {
     /// The sum of two colours, each channel at most 255.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn saturating_add(self, other: Self) -> Self {
         Self::new(self.r.saturating_add(other.r), self.g.saturating_add(other.g), self.b.saturating_add(other.b))
     }
@@ -197,7 +188,6 @@ impl Rgb {
     /// The square of the distance to `other` in the RGB cube, 0 to 195,075.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn distance_squared(self, other: Self) -> u32 {
         let r = self.r.abs_diff(other.r) as u32;
         let g = self.g.abs_diff(other.g) as u32;

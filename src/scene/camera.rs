@@ -22,7 +22,6 @@ pub struct Camera {
 
 impl Camera {
     /// 40°, rounded to an f32: about that of a 4:3 screen at the length of an arm and a half.
-    #[doc(hidden)]
     pub const FIELD_OF_VIEW: Angle = Angle::from_radians((40.0 * core::f32::consts::PI / 180.0) as f64);
 
     /// The share of the picture's height that a framed sphere fills.
@@ -48,7 +47,6 @@ impl Camera {
 
     /// The near distance that suffices for a target at a distance: a 128th of it.
     #[must_use]
-    #[doc(hidden)]
     pub fn near_for(distance: f32) -> f32 {
         (distance / 128.0).max(f32::MIN_POSITIVE)
     }

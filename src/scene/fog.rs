@@ -27,7 +27,6 @@ impl Fog {
 
     /// The share of fog at a distance: 0, none, to 1, nothing else.
     #[must_use]
-    #[doc(hidden)]
     pub fn level(&self, distance: f64) -> f64 {
         let (start, end) = (f64::from(self.start), f64::from(self.end));
         ((distance - start) / (end - start)).clamp(0.0, 1.0)

@@ -340,7 +340,6 @@ impl Camera {
     /// Makes a camera that looks along −z at an object as it stands, which fills as much of the picture and is in the
     /// middle of it.
     #[must_use]
-    #[doc(hidden)]
     pub fn framing_still(object: &Object) -> Self {
         Self::framing_object(object, Turning::Still)
     }

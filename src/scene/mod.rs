@@ -187,7 +187,6 @@ impl Scene {
 
     /// The index of an object in [`objects`](Self::objects); `None` if it was removed.
     #[must_use]
-    #[doc(hidden)]
     pub fn index_of(&self, id: ObjectId) -> Option<usize> {
         self.object_ids.binary_search(&id).ok()
     }
@@ -312,7 +311,6 @@ impl Scene {
     }
 
     /// Loads the DAC with the scene's palette, if it has one, as it is at the scene's time.
-    #[doc(hidden)]
     pub fn load_palette(&self, vga: &mut Vga) {
         match (&self.palette, &self.palette_animation) {
             (Some(palette), Some(animation)) => animation.load(palette, self.time, vga),

@@ -78,7 +78,6 @@ impl Path {
     /// The point at a time in seconds. With a period that is not above 0, or a time that is not finite, the point where
     /// the path begins.
     #[must_use]
-    #[doc(hidden)]
     pub fn at(&self, seconds: f64) -> Vec3 {
         match *self {
             Self::Line { from, to, period, back } => {

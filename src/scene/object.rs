@@ -291,7 +291,6 @@ impl Scene {
 
     /// Returns whether an object is drawn, by its index: it and all that it hangs from are visible.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_visible(&self, index: usize) -> bool {
         self.objects().get(index).is_some_and(|object| object.visible)
             && self.ancestors(index).all(|above| above.visible)

@@ -33,7 +33,6 @@ impl FromStr for Texture {
 
 impl Texture {
     /// The names of the textures that are compiled in.
-    #[doc(hidden)]
     pub const NAMES: [&'static str; 4] = ["crate", "checker", "bricks", "sky"];
 
     /// A square of 2^`bits` texels a side; `texel(x, y)` with y from the bottom up.

@@ -25,7 +25,6 @@ use crate::span::texture::Levels;
 /// # Ok::<(), mode13h::texture::TextureError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
-#[doc(hidden)]
 pub struct Mipmap {
     /// The texels, level after level, from 1 on.
     texels: Vec<u8>,

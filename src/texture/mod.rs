@@ -107,7 +107,6 @@ impl Index<(u32, u32)> for Texture {
 
 impl Texture {
     /// The max number of texels in a row, and of rows.
-    #[doc(hidden)]
     pub const MAX_SIDE: u32 = 256;
 
     /// The max number of pixels in a row, and of rows, of a picture that becomes a texture.
@@ -132,7 +131,6 @@ impl Texture {
 
     /// Makes a texture of one texel of one colour, which leaves a surface as plain as without it.
     #[must_use]
-    #[doc(hidden)]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
     }
@@ -193,21 +191,18 @@ impl Texture {
     /// The texture's colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
     /// them as they are.
     #[must_use]
-    #[doc(hidden)]
     pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
         self.colors.map(|color| color.modulate(tint))
     }
 
     /// The texture in its [tinted](Self::tinted) colours.
     #[must_use]
-    #[doc(hidden)]
     pub fn modulated(&self, tint: Rgb) -> Self {
         self.recolored(self.tinted(tint))
     }
 
     /// The texture with its texels in other colours.
     #[must_use]
-    #[doc(hidden)]
     pub fn recolored(&self, colors: [Rgb; 256]) -> Self {
         Self { texels: self.texels.clone(), colors, ..*self }
     }
@@ -215,7 +210,6 @@ impl Texture {
     /// The logarithm of the width: 0 to 8.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub fn width_bits(&self) -> u32 {
         self.width_bits
     }
@@ -223,7 +217,6 @@ impl Texture {
     /// The logarithm of the height: 0 to 8.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub fn height_bits(&self) -> u32 {
         self.height_bits
     }
@@ -244,7 +237,6 @@ impl Texture {
 
     /// Counts the texels of each colour.
     #[must_use]
-    #[doc(hidden)]
     pub fn histogram(&self) -> [u32; 256] {
         let mut histogram = [0; 256];
         for &texel in &self.texels {

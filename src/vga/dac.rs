@@ -58,14 +58,12 @@ impl Dac {
 
     /// The pixel mask, 0xFF unless changed through port 3C6h.
     #[must_use]
-    #[doc(hidden)]
     pub const fn mask(&self) -> u8 {
         self.mask
     }
 
     /// The colour that a pixel's byte shows: looked up through the pixel mask, in 8 bits.
     #[must_use]
-    #[doc(hidden)]
     pub const fn color_of(&self, pixel: u8) -> Rgb {
         Rgb::from_u32(self.shown[(pixel & self.mask) as usize])
     }

@@ -55,13 +55,10 @@ impl Vga {
     /// Bytes from a pixel to the one below it.
     pub const PITCH: usize = 320;
     /// Bytes of memory that are shown: 64,000.
-    #[doc(hidden)]
     pub const SHOWN: usize = Self::PITCH * Self::HEIGHT;
     /// Bytes of memory: 65,536.
-    #[doc(hidden)]
     pub const MEMORY: usize = 65_536;
     /// A pixel's width to its height: 320 × 200 of them fill a 4:3 screen.
-    #[doc(hidden)]
     pub const PIXEL_ASPECT: (u32, u32) = (5, 6);
 
     /// The card as the BIOS leaves it: memory clear, the BIOS's colours, pixel mask 0xFF, the beam
@@ -89,14 +86,12 @@ impl Vga {
     /// The byte at an offset. Offsets wrap at 65,536, as DI does.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn peek(&self, offset: u32) -> u8 {
         self.memory[wrapped(offset)]
     }
 
     /// Stores a byte. Offsets wrap at 65,536; from 64,000 on the byte is stored but not shown.
     #[inline]
-    #[doc(hidden)]
     pub fn poke(&mut self, offset: u32, byte: u8) {
         self.stamp.renew();
         self.memory[wrapped(offset)] = byte;

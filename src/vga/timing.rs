@@ -16,32 +16,23 @@
 //! that looks at bit 3 less often than that misses it.
 
 /// Dot clocks in a scan line, shown or not.
-#[doc(hidden)]
 pub const DOTS_PER_LINE: u32 = 800;
 /// Dot clocks of a line during which pixels are shown; two to each of the 320.
-#[doc(hidden)]
 pub const DOTS_SHOWN: u32 = 640;
 /// Scan lines in a frame, shown or not.
-#[doc(hidden)]
 pub const LINES_PER_FRAME: u32 = 449;
 /// Scan lines that are shown; two to each of the 200 rows.
-#[doc(hidden)]
 pub const LINES_SHOWN: u32 = 400;
 /// The first scan line of the vertical retrace.
-#[doc(hidden)]
 pub const RETRACE_START: u32 = 412;
 /// The first scan line after the vertical retrace.
-#[doc(hidden)]
 pub const RETRACE_END: u32 = 414;
 /// The dot clock in Hz.
-#[doc(hidden)]
 pub const DOT_CLOCK: u32 = 25_175_000;
 
 /// Port 3DAh, bit 0: neither the line nor the dot is shown.
-#[doc(hidden)]
 pub const NOT_DISPLAYING: u8 = 1;
 /// Port 3DAh, bit 3: vertical retrace.
-#[doc(hidden)]
 pub const VERTICAL_RETRACE: u8 = 8;
 
 /// 25,175,000 dots in 10⁹ nanoseconds, in lowest terms: 1,007 dots in 40,000 ns. Time is counted in
@@ -81,7 +72,6 @@ impl Beam {
 
     /// The dot in its line, 0 to 799; dots 0 to 639 show column `dot / 2`.
     #[must_use]
-    #[doc(hidden)]
     pub const fn dot(self) -> u32 {
         // Below 800.
         (self.units % UNITS_PER_LINE / UNITS_PER_DOT) as u32
@@ -89,7 +79,6 @@ impl Beam {
 
     /// Returns whether a pixel is being shown.
     #[must_use]
-    #[doc(hidden)]
     pub const fn is_displaying(self) -> bool {
         self.line() < LINES_SHOWN && self.dot() < DOTS_SHOWN
     }
@@ -102,7 +91,6 @@ impl Beam {
 
     /// The value that port 3DAh reads: [`NOT_DISPLAYING`] and [`VERTICAL_RETRACE`], all other bits 0.
     #[must_use]
-    #[doc(hidden)]
     pub const fn status(self) -> u8 {
         let blank = if self.is_displaying() { 0 } else { NOT_DISPLAYING };
         let retrace = if self.is_in_retrace() { VERTICAL_RETRACE } else { 0 };

@@ -51,7 +51,6 @@ pub trait FrameResult {
     /// # Errors
     ///
     /// That of the frame function.
-    #[doc(hidden)]
     fn flow(self) -> Result<Flow, Self::Error>;
 }
 

@@ -52,7 +52,6 @@ const TABLE: [Row; 7] = [
 ];
 
 /// The names that [`by_name`] knows.
-#[doc(hidden)]
 pub const NAMES: [&str; 7] = {
     let mut names = [""; 7];
     let mut i = 0;
@@ -71,7 +70,6 @@ pub const NAMES: [&str; 7] = {
 /// assert_eq!(torus.triangles().len(), 2 * 48 * 24);
 /// ```
 #[must_use]
-#[doc(hidden)]
 pub fn by_name(name: &str) -> Option<Mesh> {
     TABLE.iter().find(|row| row.0 == name).map(|row| row.1())
 }
