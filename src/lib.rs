@@ -59,9 +59,9 @@
 //! # Features
 //!
 //! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
-//! `unsafe` code), and `png`. `window` and `embedded-graphics` (text and shapes on a frame)
-//! are added by name. Files are read by the crate `mode13h-assets`. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster` and `integer` remain, which need
-//! neither `std` nor an allocator; `alloc` adds the engine.
+//! `unsafe` code), and `png`. `window` and `embedded-graphics` (text and shapes on a frame) are added by name.
+//! Files are read by the crate `mode13h-assets`. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster`
+//! and `integer` remain, which need neither `std` nor an allocator; `alloc` adds the engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]

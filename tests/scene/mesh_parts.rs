@@ -2,6 +2,7 @@
 
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, MeshError, Parts, Surface, shapes};
+use mode13h_conformance::Random;
 
 fn square() -> Parts {
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
@@ -79,4 +80,76 @@ fn a_body_that_is_inside_out_is_turned_with_its_lists() {
     assert!(mesh.volume() > 0.0);
     assert_eq!((mesh.triangles(), mesh.texcoords()), (cube.triangles(), Some(&texcoords[..])));
     assert_eq!((mesh.line(3), mesh.triangle_surfaces()[3]), (Some(4), 1));
+}
+
+/// Faces of a few points, many of them back to back, inside out or without area: whatever is mended, the lists stay
+/// together, and every face is one that was given.
+#[test]
+fn lists_stay_together_whatever_is_mended() {
+    let mut random = Random::new(29);
+    let (mut pairs, mut turned, mut refused) = (0, 0, 0);
+    for _ in 0..20_000 {
+        let points = 4 + random.below(5) as u32;
+        let vertices = points + random.below(3) as u32;
+        // Vertices beyond the points lie on them again.
+        let at = |i: u32| {
+            // Corners of a cube, the first four of a tetrahedron.
+            let corner = [0, 1, 2, 4, 3, 5, 6, 7][i as usize];
+            Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32)
+        };
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        if random.below(2) == 0 {
+            triangles.extend([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+        }
+        for _ in 0..random.below(8) {
+            let [a, b, c] = [0; 3].map(|_: u32| random.below(vertices as usize) as u32);
+            triangles.push([a, b, c]);
+            if random.below(3) > 0 {
+                triangles.push([a, c, b]);
+            }
+        }
+        if random.below(2) == 0 {
+            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let n = triangles.len();
+        let normal =
+            |random: &mut Random| (random.below(2) == 0).then(|| at(random.below(8) as u32) - Vec3::splat(0.5));
+        let parts = Parts {
+            positions: (0..vertices).map(|i| at(i % points)).collect(),
+            normals: (0..vertices).map(|_| normal(&mut random)).collect(),
+            texcoords: (0..vertices).map(|i| Vec2::splat(i as f32)).collect(),
+            surfaces: vec![Surface::default(); 2],
+            triangle_surfaces: (0..n).map(|_| random.below(2) as u16).collect(),
+            lines: (1..=n as u32).collect(),
+            groups: (0..n).map(|_| [Parts::FLAT, 1, 2, Parts::NO_GROUP][random.below(4)]).collect(),
+            triangles,
+            ..Parts::default()
+        };
+        let given = parts.clone();
+        let Ok((mesh, repairs)) = Mesh::from_parts(parts) else {
+            assert!(given.triangles.is_empty());
+            refused += 1;
+            continue;
+        };
+        assert_eq!(mesh.triangles().len(), n - 2 * repairs.pairs);
+        let texcoords = mesh.texcoords().expect("given");
+        assert_eq!((texcoords.len(), mesh.normals().len()), (mesh.positions().len(), mesh.positions().len()));
+        for (i, triangle) in mesh.triangles().iter().enumerate() {
+            // A face's line says which it was, and its corners' coordinates which vertices.
+            let line = mesh.line(i).expect("given") as usize - 1;
+            assert_eq!(mesh.triangle_surfaces()[i], given.triangle_surfaces[line]);
+            let mut before = given.triangles[line];
+            let mut now = triangle.map(|vertex| texcoords[vertex as usize].x as u32);
+            for vertex in triangle.map(|vertex| vertex as usize) {
+                assert_eq!(mesh.positions()[vertex], given.positions[texcoords[vertex].x as usize]);
+                assert!((mesh.normals()[vertex].length() - 1.0).abs() < 1e-5);
+            }
+            before.sort_unstable();
+            now.sort_unstable();
+            assert_eq!(now, before, "{given:?}");
+        }
+        pairs += repairs.pairs;
+        turned += repairs.turned;
+    }
+    assert!(pairs > 100 && turned > 100 && refused > 100, "{pairs} {turned} {refused}");
 }
