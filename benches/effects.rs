@@ -7,16 +7,17 @@
 //! As in the table of `spans`: each round times every loop once, in a new order, and the figure is the
 //! median over the rounds. The first row is the span's fastest kernel, for comparison.
 
-use mode13h::lanes::{LANES, Points};
-use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
-use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth};
-use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered, fill_dithered_portable};
-use mode13h::span::fixed16::fill_16_16;
-use mode13h::span::float::fill_float;
-use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::lit::interpolate;
-use mode13h::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
-use mode13h::span::{Kernel, lookup};
+use mode13h::internals::lanes::{LANES, Points};
+use mode13h::internals::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::internals::span::depth::{copy_nearer, copy_nearer_keep_depth};
+use mode13h::internals::span::dither::{DitherPattern, ThresholdRow, fill_dithered, fill_dithered_portable};
+use mode13h::internals::span::fixed16::fill_16_16;
+use mode13h::internals::span::float::fill_float;
+use mode13h::internals::span::hyperbolic::fill_quotients;
+use mode13h::internals::span::lit::interpolate;
+use mode13h::internals::span::lookup;
+use mode13h::internals::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::span::Kernel;
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -11,8 +11,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 use mode13h_assets::shipped;
 

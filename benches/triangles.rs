@@ -19,8 +19,9 @@ use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
-use mode13h::render::{Renderer, Screen, Shading};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Scene};
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 
 type Triangles = Vec<([Vertex; 3], Interpolation)>;

@@ -7,11 +7,12 @@ use std::io::{self, Write};
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
-    View, average_normals,
+    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
+    average_normals,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
+use mode13h::settings::Shading;
 
 const WIDTH: u32 = 320;
 const HEIGHT: u32 = 200;

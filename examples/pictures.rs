@@ -9,7 +9,8 @@ use mode13h::export::{Picture, Png, Scale};
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::render::Renderer;
-use mode13h::scene::{Scene, Shading};
+use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -6,7 +6,8 @@ use mode13h::export;
 use mode13h::light::LightResponse;
 use mode13h::mesh::shapes;
 use mode13h::render::Renderer;
-use mode13h::scene::{Scene, Shading};
+use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

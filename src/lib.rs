@@ -7,13 +7,12 @@
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
-//! | [`lanes`] | eight numbers at a time | – |
-//! | `simd` | what the processor has, as values | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
 //! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, compiled in | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
+//! | [`settings`] | how to draw: shadings, error budgets, ways to hidden surfaces | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
@@ -53,8 +52,8 @@
 //! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
 //! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
 //!
-//! Functions and methods that only the laboratory and the program use are in `src/hooks.rs`, or hidden from this
-//! documentation. They may change with any version.
+//! What only the laboratory, the conformance crate and benchmarks use is behind the feature `internals`. It may change with
+//! any version.
 //!
 //! # Features
 //!
@@ -66,6 +65,8 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]
 #![cfg_attr(any(feature = "asm", feature = "simd"), deny(unsafe_code))]
+// Some of it is seen by `internals` alone.
+#![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports, unreachable_pub))]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
@@ -75,10 +76,21 @@ pub use embedded_graphics;
 #[cfg(feature = "alloc")]
 pub use glam;
 
+/// Makes a function public for `internals`, and the crate's own without.
+macro_rules! internal {
+    ($(#[$meta:meta])* fn $($rest:tt)*) => {
+        #[cfg(feature = "internals")]
+        $(#[$meta])*
+        pub fn $($rest)*
+        #[cfg(not(feature = "internals"))]
+        $(#[$meta])*
+        pub(crate) fn $($rest)*
+    };
+}
+
 pub mod fixed;
 pub mod integer;
-#[doc(hidden)]
-pub mod lanes;
+mod lanes;
 pub mod palette;
 pub mod raster;
 mod simd;
@@ -88,20 +100,18 @@ pub mod vga;
 #[cfg(feature = "alloc")]
 mod angle;
 mod errors;
+#[cfg(feature = "alloc")]
+mod mapping;
 mod names;
-mod shading;
 
 #[cfg(feature = "alloc")]
 pub use angle::Angle;
 pub use names::UnknownName;
 
-#[cfg(feature = "alloc")]
-#[doc(hidden)]
-pub mod hooks;
+#[cfg(feature = "internals")]
+pub mod internals;
 #[cfg(feature = "alloc")]
 pub mod light;
-#[cfg(feature = "alloc")]
-mod mapping;
 #[cfg(feature = "alloc")]
 pub mod mesh;
 #[cfg(feature = "alloc")]
@@ -110,8 +120,7 @@ pub mod plan;
 pub mod render;
 #[cfg(feature = "alloc")]
 pub mod scene;
-#[cfg(feature = "alloc")]
-mod settings;
+pub mod settings;
 #[cfg(feature = "alloc")]
 mod shared;
 #[cfg(feature = "alloc")]

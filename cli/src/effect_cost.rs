@@ -4,8 +4,9 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Renderer, Screen};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
+use mode13h::settings::HiddenSurfaces;
 use mode13h::vga::Vga;
 
 use crate::failure::Failure;

@@ -10,8 +10,10 @@ use clap::{Args, ValueEnum};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::palette::{Rgb, builtin};
-use mode13h::render::{HiddenSurfaces, Mapping, Renderer, VertexPath};
-use mode13h::scene::{DitherPattern, Scene, UpAxis};
+use mode13h::render::Renderer;
+use mode13h::scene::{Scene, UpAxis};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{HiddenSurfaces, Mapping, VertexPath};
 use mode13h::span::Kernel;
 use mode13h_assets::obj;
 

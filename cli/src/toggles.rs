@@ -5,7 +5,8 @@ use mode13h::light::Light;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::plan::{Choice, Decision, Effect, Plan};
 use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::{DitherPattern, Fog, Object, Scene};
+use mode13h::scene::{Fog, Object, Scene};
+use mode13h::settings::DitherPattern;
 use mode13h::window::Key;
 
 use crate::turntable::Turntable;

@@ -93,10 +93,8 @@ impl From<BinaryAngle> for u16 {
 
 impl BinaryAngle {
     /// A quarter of a turn.
-    #[doc(hidden)]
     pub const QUARTER: Self = Self(0x4000);
     /// Half a turn.
-    #[doc(hidden)]
     pub const HALF: Self = Self(0x8000);
 
     /// The angle nearest to so many whole degrees, any number of turns in either direction.

@@ -23,7 +23,6 @@ pub struct Sun {
 
 impl Sun {
     /// The max number of suns in a scene: so many of the greatest intensity stay below 2⁶⁰ in sum.
-    #[doc(hidden)]
     pub const MAX_COUNT: usize = 4096;
 
     pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {

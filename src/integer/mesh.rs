@@ -13,7 +13,6 @@ mod sealed {
 /// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
 pub trait Index: Copy + sealed::Sealed {
     /// The index as a `usize`, for the slices.
-    #[doc(hidden)]
     fn place(self) -> usize;
 }
 
@@ -53,15 +52,22 @@ pub struct FixedMesh<'a, I: Index = u16> {
 
 /// What a [`FixedMesh`] was made of.
 #[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
 pub struct FixedMeshParts<'a, I: Index> {
+    /// The positions of its vertices.
     pub positions: &'a [Vector],
+    /// Their unit normals.
     pub normals: &'a [Vector],
+    /// The vertices of its triangles.
     pub triangles: &'a [[I; 3]],
+    /// True if it is closed and faces outward.
     pub closed: bool,
+    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there is none.
     pub twins: &'a [u64],
+    /// Its coordinates count 2 to the power of this of the scene's units.
     pub exponent: i32,
+    /// The surface of each vertex; empty if there is one.
     pub vertex_surfaces: &'a [u16],
+    /// The surface of each triangle; empty if there is one.
     pub triangle_surfaces: &'a [u16],
 }
 
@@ -116,7 +122,6 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     ///
     /// Its coordinates then count 2^`exponent` units of the scene, so a mesh of any size may use all of its 32 bits.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.exponent = i32::from(exponent);
         self
@@ -144,7 +149,6 @@ impl<'a, I: Index> FixedMesh<'a, I> {
     /// Marks triangles that lie back to back with another, a bit for each, 64 in a word: they are left out if they are
     /// turned away.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
         self.twins = twins;
         self
@@ -152,7 +156,6 @@ impl<'a, I: Index> FixedMesh<'a, I> {
 
     /// Returns what the mesh was made of.
     #[must_use]
-    #[doc(hidden)]
     pub fn parts(&self) -> FixedMeshParts<'a, I> {
         FixedMeshParts {
             positions: self.positions,
@@ -208,7 +211,6 @@ pub(super) fn square(v: Vector) -> u64 {
 /// The unit normal of a face, out of the side from which its corners are counter-clockwise; `None`
 /// if they lie on a line. Exact but for its last rounding.
 #[must_use]
-#[doc(hidden)]
 pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     let [a, b, c] = [a, b, c].map(widen);
     let from_a = |p: [i64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];

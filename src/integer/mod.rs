@@ -20,7 +20,8 @@
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
-//! use mode13h::integer::{BinaryAngle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Shading, Sun, View};
+//! use mode13h::integer::{BinaryAngle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Sun, View};
+//! use mode13h::settings::Shading;
 //! use mode13h::palette::Ramp;
 //! use mode13h::raster::{Frame, Raster};
 //!
@@ -59,11 +60,9 @@ mod view;
 
 use core::fmt;
 
-pub use crate::shading::Shading;
 pub use angle::BinaryAngle;
 pub use light::{Beam, Paint, Sun};
 pub use mesh::{FixedMesh, average_normals, face_normal};
-#[doc(hidden)]
 pub use mesh::{FixedMeshParts, Index};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};

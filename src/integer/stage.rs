@@ -9,7 +9,7 @@ use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
 use crate::raster::clip::doubled_area;
 use crate::raster::{Interpolation, Vertex};
-use crate::shading::Shading;
+use crate::settings::Shading;
 
 /// A mesh in its place, with one paint for each of its surfaces.
 #[derive(Clone, Copy, Debug)]

@@ -72,7 +72,6 @@ pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
 /// assert_eq!(unit, Some([39_322, 0, -52_429])); // 0.6, 0, −0.8
 /// ```
 #[must_use]
-#[doc(hidden)]
 pub fn unit_vector(v: Vector) -> Option<Vector> {
     narrow_unit(widen(v).map(i128::from))
 }
@@ -90,7 +89,6 @@ pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
 /// the same matrix for ever. Every entry is within 0.501 of a 65,536th, so the rows have the length 1
 /// and stand at right angles to within √3 · 2 · 0.501 / 65,536 < 2⁻¹⁵. (The limit is 2⁻¹³.)
 #[must_use]
-#[doc(hidden)]
 pub fn turn(angles: [BinaryAngle; 3]) -> [Vector; 3] {
     // At most 65,536 either way: the entry before is at most 2³⁰ and a few units.
     wide_turn(angles).map(|row| row.map(|c| I16F16::from_bits(round_shift(c, SINE_BITS - 16) as i32)))

@@ -71,7 +71,6 @@ impl Lens {
     ///
     /// # Errors
     /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
-    #[doc(hidden)]
     pub fn with_focal_lengths(width: u32, height: u32, focal: [I16F16; 2]) -> Result<Self, IntegerError> {
         Self::checked(width, height, focal.map(|f| i128::from(f.to_bits())))
     }
@@ -134,7 +133,6 @@ impl View {
     ///
     /// # Errors
     /// A scale below 0; a mesh that may reach farther than 65,535 units from the eye.
-    #[doc(hidden)]
     pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
         ObjectView::new(self, placement, mesh).map(|_| ())
     }

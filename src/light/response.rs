@@ -10,7 +10,8 @@ use crate::shared::Shared;
 /// ```
 /// use mode13h::light::LightResponse;
 /// use mode13h::mesh::shapes;
-/// use mode13h::scene::{Scene, Shading};
+/// use mode13h::scene::Scene;
+/// use mode13h::settings::Shading;
 ///
 /// // A toon shader: three tones.
 /// let toon = LightResponse::new(|intensity| (intensity * 3.0).floor().min(2.0) / 2.0);

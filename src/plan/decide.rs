@@ -6,7 +6,8 @@ use super::stages::{Choice, Dither, Lamps, Lighting, LitAt, Stages, Switches, Ve
 use super::{Decision, Effect, ObjectPlan, Overrides, Plan};
 use crate::light::{LampBeam, Light, Material, lamp_reaches};
 use crate::raster::Rect;
-use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Object, Scene, Settings, Shading};
+use crate::scene::{Object, Scene};
+use crate::settings::{DitherPattern, HiddenSurfaces, Mapping, Settings, Shading};
 use crate::view::{ObjectView, ScreenBounds};
 
 /// The max error of an affine mapping, in texels: half of one.

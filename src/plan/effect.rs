@@ -50,7 +50,6 @@ named! {
 
 /// The possible change by leaving an effect out.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[doc(hidden)]
 pub enum Class {
     /// Nothing: always doing the full work gives the same bytes.
     SavesWork,
@@ -66,12 +65,10 @@ impl Effect {
     }
 
     /// The number of effects.
-    #[doc(hidden)]
     pub const COUNT: usize = Self::ALL.len();
 
     /// The possible change by leaving it out.
     #[must_use]
-    #[doc(hidden)]
     pub const fn class(self) -> Class {
         match self {
             Self::Transform

@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::raster::Interpolation;
 use crate::raster::effects::SampleSpacing;
-use crate::scene::Shading;
+use crate::settings::Shading;
 
 /// The shading of a face: one of the [`Shading`]s, or an approximation of light at every pixel that only an error
 /// budget chooses.
@@ -21,7 +21,6 @@ pub enum FaceShading {
 
 impl FaceShading {
     /// All shadings of a face, from cheap to exact.
-    #[doc(hidden)]
     pub const ALL: [Self; Shading::ALL.len() + 4] = [
         Self::By(Shading::Flat),
         Self::By(Shading::GouraudVintage),
@@ -41,7 +40,6 @@ impl FaceShading {
 
     /// The shading's name.
     #[must_use]
-    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::By(shading) => shading.name(),
@@ -54,7 +52,6 @@ impl FaceShading {
 
     /// Returns whether light beyond that of the corners is computed for the face.
     #[must_use]
-    #[doc(hidden)]
     pub const fn lights_pixels(self) -> bool {
         match self {
             Self::By(shading) => shading.lights_pixels(),

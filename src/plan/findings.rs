@@ -7,7 +7,7 @@ use core::fmt;
 
 use super::{Effect, FaceShading};
 use crate::raster::effects::SampleSpacing;
-use crate::scene::Shading;
+use crate::settings::Shading;
 
 /// Facts that drawing found about an object.
 #[derive(Clone, PartialEq, Debug, Default)]

@@ -8,7 +8,8 @@ use alloc::vec::Vec;
 
 use super::reason::Reason;
 use crate::light::{Blend, Material};
-use crate::scene::{HiddenSurfaces, Object, Scene};
+use crate::scene::{Object, Scene};
+use crate::settings::HiddenSurfaces;
 use crate::view::ObjectView;
 
 /// Returns whether any of an object's materials shines through.

@@ -38,7 +38,8 @@ pub(crate) use hidden::far_to_near;
 
 use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, Switches, VertexStage};
 use crate::raster::Rect;
-use crate::scene::{HiddenSurfaces, Mapping, Scene, Shading};
+use crate::scene::Scene;
+use crate::settings::{HiddenSurfaces, Mapping, Shading};
 
 /// A decision on an effect.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -118,7 +119,6 @@ impl ObjectPlan {
 
     /// The shading of the object.
     #[must_use]
-    #[doc(hidden)]
     pub fn shading(&self) -> Shading {
         self.shading
     }
@@ -126,7 +126,6 @@ impl ObjectPlan {
     /// The budget that its triangles are shaded by, each as is cheapest: the number of shades of error that are
     /// accepted. `None` if there is none, or one shading is known to be the cheapest for all.
     #[must_use]
-    #[doc(hidden)]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
     }
@@ -138,7 +137,6 @@ impl ObjectPlan {
 
 /// Effects that are switched by hand: `None` leaves one to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-#[doc(hidden)]
 pub struct Overrides {
     everywhere: [Option<bool>; Effect::COUNT],
     /// Objects that differ from that, by their places.
@@ -224,7 +222,6 @@ impl Plan {
     /// Returns whether the plan chose the way to leave out hidden surfaces, without a request. Then an object that is
     /// painted far to near is convex, and its faces are drawn in any order.
     #[must_use]
-    #[doc(hidden)]
     pub fn is_chosen(&self) -> bool {
         self.chosen
     }

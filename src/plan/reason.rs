@@ -168,7 +168,6 @@ pub enum Reason {
 impl Reason {
     /// The reason in words, for `object` of `scene`.
     #[must_use]
-    #[doc(hidden)]
     pub fn words(&self, scene: &Scene, object: usize) -> String {
         let material = |i: usize| {
             let name = scene.objects().get(object).and_then(|o| o.materials.get(i)).map_or("", |m| m.name.as_str());

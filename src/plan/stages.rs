@@ -1,7 +1,7 @@
 //! The stages that an object goes through, as values for the renderer. Words and reasons are for people alone.
 
 use super::Effect;
-use crate::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading};
+use crate::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 
 /// The way in which an effect is done, of several.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -29,7 +29,6 @@ pub enum Choice {
 impl Choice {
     /// The choice's name; empty if there is only one way.
     #[must_use]
-    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Only => "",

@@ -4,10 +4,10 @@
 #[cfg(feature = "alloc")]
 use super::frame::Rect;
 use super::frame::{Frame, FrameError};
-pub use crate::span::depth::Cell;
+pub(crate) use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
-/// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines ([`Cell`] says
+/// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines (`Cell` says
 /// what that loses); greater is nearer, 0 is farthest. The slice is the caller's.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
@@ -75,7 +75,6 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     /// The depths of row `y`, or `None` if the buffer does not hold it.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
         // The index of a row far beyond the last may be more than a 32-bit processor counts.
         let width = self.width as usize;

@@ -192,7 +192,6 @@ impl<'a> Frame<'a> {
 
     /// All pixels that it holds.
     #[must_use]
-    #[doc(hidden)]
     pub fn bounds(&self) -> Rect {
         Rect { x0: 0, y0: self.rows.start, x1: self.width, y1: self.rows.end }
     }
@@ -237,7 +236,6 @@ impl<'a> Frame<'a> {
     }
 
     /// Borrows the frame for a shorter time.
-    #[doc(hidden)]
     pub fn reborrow(&mut self) -> Frame<'_> {
         Frame {
             pixels: self.pixels,

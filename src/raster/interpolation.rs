@@ -4,11 +4,11 @@
 ///
 /// | shading | off from exact by less than | in |
 /// |---|---|---|
-/// | `GouraudVintage` | – (from other vertices) | [`vintage`](super::vintage) |
-/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | [`shade`](super::reference::shade) |
-/// | `GouraudReseeded` | ½ + ¼ | [`shade`](super::reference::shade) |
-/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | [`fixed16`](super::reference::fixed16) |
-/// | `GouraudHyperbolic` | ½, or just that | [`hyperbolic`](super::reference::hyperbolic) |
+/// | `GouraudVintage` | – (from other vertices) | `vintage` |
+/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | `shade` |
+/// | `GouraudReseeded` | ½ + ¼ | `shade` |
+/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | `fixed16` |
+/// | `GouraudHyperbolic` | ½, or just that | `hyperbolic` |
 /// | `Float` | ½ + 1/8,192 | `float` |
 ///
 /// Exact is linear on the screen, and for the last two linear on the face.
@@ -43,7 +43,6 @@ pub enum Interpolation {
 
 impl Interpolation {
     /// Interpolations between the vertices, all of them.
-    #[doc(hidden)]
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,
         Self::Gouraud,
@@ -54,9 +53,8 @@ impl Interpolation {
         Self::Float,
     ];
 
-    /// Its name in a [record](crate::record).
+    /// Its name in a recorded frame.
     #[must_use]
-    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flat(_) => "flat",
@@ -73,14 +71,12 @@ impl Interpolation {
     /// Returns whether a pixel is drawn if and only if its centre is in the triangle, and its byte lies within
     /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
     #[must_use]
-    #[doc(hidden)]
     pub const fn has_exact_cover(self) -> bool {
         !matches!(self, Self::GouraudVintage)
     }
 
     /// Returns whether shades are linear on the face in space, and not on the screen.
     #[must_use]
-    #[doc(hidden)]
     pub const fn is_linear_on_the_face(self) -> bool {
         match self {
             Self::GouraudHyperbolic => true,
@@ -92,7 +88,6 @@ impl Interpolation {
 
     /// Summand of a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
-    #[doc(hidden)]
     pub const fn rounding(self) -> u8 {
         match self {
             Self::GouraudVintage => 0,

@@ -13,16 +13,16 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`vertex`] | what may enter: a [`Vertex`] is checked when it is made |
+//! | `vertex` | what may enter: a [`Vertex`] is checked when it is made |
 //! | `clip` | what clipping before the projection leaves of a triangle, in triangles |
-//! | [`frame`] | the bytes, whole or in bands of rows; the clip rectangle |
+//! | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
 //! | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
-//! | [`interpolation`] | the shadings there are |
+//! | `interpolation` | the shadings there are |
 //! | `vintage` | both as the sources print them |
-//! | [`depth`] | depth buffers |
+//! | `depth` | depth buffers |
 //! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
-//! | [`triangle`] | all of it for one triangle: [`Raster::triangle`] |
+//! | `triangle` | all of it for one triangle: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
 //! | `triangles` | the same by vertices: [`Raster::triangles`] |
 //! | `scan_line` | all of it for a frame of triangles, each pixel once |
@@ -40,39 +40,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[doc(hidden)]
-pub mod clip;
+pub(crate) mod clip;
 pub(crate) mod columns;
 pub(crate) mod cull;
-pub mod depth;
+pub(crate) mod depth;
 mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 #[cfg(feature = "alloc")]
-#[doc(hidden)]
-pub mod effects;
-pub mod frame;
-pub mod interpolation;
+pub(crate) mod effects;
+pub(crate) mod frame;
+pub(crate) mod interpolation;
 mod paint;
 pub(crate) mod pick;
-#[doc(hidden)]
-pub mod reference;
+pub(crate) mod reference;
 mod rows;
-#[doc(hidden)]
-pub mod scan_line;
+pub(crate) mod scan_line;
 mod setup;
 #[cfg(feature = "alloc")]
 mod setup_texture;
 #[cfg(feature = "alloc")]
-#[doc(hidden)]
-pub mod shade_trace;
+pub(crate) mod shade_trace;
 mod shaded;
 mod spans;
-pub mod triangle;
-mod triangles;
-pub mod vertex;
-#[doc(hidden)]
-pub mod vintage;
+pub(crate) mod triangle;
+pub(crate) mod triangles;
+pub(crate) mod vertex;
+pub(crate) mod vintage;
 
 pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;
@@ -81,6 +75,4 @@ pub use draw_target::Index;
 pub use frame::{Frame, FrameError, Rect};
 pub use interpolation::Interpolation;
 pub use triangle::Raster;
-#[doc(hidden)]
-pub use triangles::Batch;
 pub use vertex::{Vertex, VertexError};

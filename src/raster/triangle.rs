@@ -31,7 +31,6 @@ impl<'a> Raster<'a> {
     /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
     #[cfg(feature = "alloc")]
     #[must_use]
-    #[doc(hidden)]
     pub fn with_cleared_depth<D: Cell>(self, values: &'a mut alloc::vec::Vec<D>) -> Raster<'a, D> {
         let rows = self.frame.rows();
         values.clear();
@@ -81,7 +80,6 @@ impl<'a, D: Cell> Raster<'a, D> {
 
     /// Draws with `kernel`. All give the same bytes.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_kernel(mut self, kernel: Kernel) -> Self {
         self.kernel = kernel;
         self

@@ -56,7 +56,6 @@ impl Batch {
     /// Returns whether triangles of this shading can be put into a batch: those that have exact cover.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn takes(interpolation: Interpolation) -> bool {
         interpolation.has_exact_cover()
     }
@@ -101,7 +100,6 @@ impl Batch {
     /// Returns whether there is no room left.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn is_full(&self) -> bool {
         self.count == Self::CAPACITY
     }
@@ -168,10 +166,10 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
+    internal! {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
     /// [`triangle`](Self::triangle) called for each.
-    #[doc(hidden)]
-    pub fn batch(&mut self, batch: &Batch) -> DrawStats {
+    fn batch(&mut self, batch: &Batch) -> DrawStats {
         let mut drawn = DrawStats::default();
         let columns = Columns {
             at: &batch.at,
@@ -195,5 +193,6 @@ impl<D: Cell> Raster<'_, D> {
             first = end;
         }
         drawn
+    }
     }
 }

@@ -124,7 +124,6 @@ impl Vertex {
     /// Gives the vertex another shade; one above 255.0 counts as 255.0.
     #[must_use]
     #[inline]
-    #[doc(hidden)]
     pub const fn with_shade(self, shade: U8F8) -> Self {
         let (bits, most) = (shade.to_bits(), U8F8::MAX_VERTEX.to_bits());
         Self { shade: if bits > most { most } else { bits }, ..self }

@@ -57,12 +57,13 @@ crate::errors::debug_as_display!(RenderError);
 impl core::error::Error for RenderError {}
 
 impl RenderError {
+    internal! {
     /// The fault of an object of the scene.
-    #[doc(hidden)]
     #[must_use]
-    pub fn of_object(scene: &Scene, index: usize, what: &'static str) -> Self {
+    fn of_object(scene: &Scene, index: usize, what: &'static str) -> Self {
         let name = scene.objects().get(index).map_or_else(String::new, |object| object.name.clone());
         Self::Object { index, name, what }
+    }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::columns::Triangles;
 use crate::raster::pick::Pick;
-use crate::scene::Shading;
+use crate::settings::Shading;
 use crate::span::Kernel;
 use crate::view::ObjectView;
 

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::stats::Stats;
-use super::{RenderError, Screen, Shading};
+use super::{RenderError, Screen};
 use crate::fixed::I16F16;
 use crate::integer::{
     Beam, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
@@ -19,6 +19,7 @@ use crate::light::{Light, Material};
 use crate::mesh::Mesh;
 use crate::raster::{Interpolation, Vertex};
 use crate::scene::{self, Scene, Shared, UpAxis};
+use crate::settings::Shading;
 
 /// The farthest coordinate.
 const REACH: f64 = 32_767.0;

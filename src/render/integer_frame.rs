@@ -5,8 +5,9 @@ use alloc::vec::Vec;
 use super::{RenderError, Renderer, Screen, VertexPath};
 use crate::fixed::I16F16;
 use crate::integer::{Camera, Object, Sun};
-use crate::scene::{HiddenSurfaces, Scene};
-use crate::shading::Shading;
+use crate::scene::Scene;
+use crate::settings::HiddenSurfaces;
+use crate::settings::Shading;
 
 /// A frame of the 16.16 path before its vertices are made.
 #[derive(Clone, Debug)]

@@ -51,13 +51,11 @@ use self::pipelines::Pipelines;
 use self::tables::Tables;
 use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
-pub use crate::plan::FaceShading;
 use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
 use crate::raster::columns::Triangles;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
-pub use crate::scene::{HiddenSurfaces, Mapping, Shading};
-pub use crate::settings::{Accuracy, Settings, VertexPath};
+use crate::settings::{Accuracy, HiddenSurfaces, Settings, VertexPath};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
@@ -118,7 +116,8 @@ impl Cache {
 /// do not change; the bytes are those of a new renderer.
 ///
 /// ```
-/// use mode13h::render::{Accuracy, Mapping, Renderer};
+/// use mode13h::render::Renderer;
+/// use mode13h::settings::{Accuracy, Mapping};
 ///
 /// let mut renderer = Renderer::new();
 /// renderer.settings.mapping = Some(Mapping::Perspective);
@@ -163,7 +162,6 @@ impl Renderer {
 
     /// A new renderer that is set as this one and draws the same bytes, for another thread.
     #[must_use]
-    #[doc(hidden)]
     pub fn with_same_settings(&self) -> Self {
         Self {
             settings: self.settings,
@@ -216,14 +214,12 @@ impl Renderer {
     /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
     /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
     /// image that changes nothing). Clipping stays on where the plan calls for it.
-    #[doc(hidden)]
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.overrides.set(effect, on);
     }
 
     /// Switches an effect on or off for one object, by its index in the scene, whatever holds for every object. `None`
     /// takes that back. Palette animation is on as soon as it is for one. Otherwise like [`force`](Self::force).
-    #[doc(hidden)]
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.overrides.set_for(object, effect, on);
     }
@@ -247,7 +243,6 @@ impl Renderer {
     /// on. That is worked out here, face by face, and only here. For an object that is drawn within an error
     /// budget, it says how many of its triangles each shading got.
     #[must_use]
-    #[doc(hidden)]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.cache.plan.rows_with(scene, |object| Findings {
             face_counts: self
@@ -265,7 +260,6 @@ impl Renderer {
     /// `object` is its index. `None` if the object has one shade a face, or is not there, or on the
     /// 16.16 path.
     #[must_use]
-    #[doc(hidden)]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
         let stages = plan.stages();
@@ -405,7 +399,6 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`draw`](Self::draw), before the first triangle.
-    #[doc(hidden)]
     pub fn for_each_triangle(
         &mut self,
         scene: &Scene,

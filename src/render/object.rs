@@ -23,8 +23,9 @@ use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, Stages, VertexStage};
 use crate::plan::{Change, FaceCounts, FaceShading, ObjectPlan};
 use crate::raster::columns::Triangles;
-use crate::scene::{Fog, Mapping, Object, Scene, Shading, Shared};
+use crate::scene::{Fog, Object, Scene, Shared};
 use crate::settings::{Accuracy, Settings};
+use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 

@@ -4,10 +4,9 @@ use core::iter::Flatten;
 use core::ops::Index;
 use core::{array, fmt};
 
-use super::{HiddenSurfaces, Shading, VertexPath};
 use crate::plan::FaceShading;
 use crate::raster::DrawStats;
-use crate::settings::{Accuracy, Settings};
+use crate::settings::{Accuracy, HiddenSurfaces, Settings, Shading, VertexPath};
 use crate::span::Kernel;
 
 /// The work of one frame.

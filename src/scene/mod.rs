@@ -27,12 +27,9 @@ use glam::Vec3;
 
 use crate::angle::Angle;
 use crate::light::Light;
-pub use crate::mapping::Mapping;
 use crate::palette::{Palette, Rgb, builtin};
-pub use crate::settings::{Accuracy, HiddenSurfaces, Settings};
-pub use crate::shading::Shading;
+use crate::settings::Settings;
 pub use crate::shared::Shared;
-pub use crate::span::dither::DitherPattern;
 use crate::vga::Vga;
 pub use animation::PaletteAnimation;
 pub use camera::Camera;

@@ -15,7 +15,6 @@ use crate::simd::at_best_level;
 /// So is a quadratic function over a triangle along a row (G. Bishop and D. Weimer, *Fast Phong shading*, 1986, who
 /// take two additions a pixel for it; from its own k every pixel is as near as the first).
 #[inline]
-#[doc(hidden)]
 pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
     curve_inlined(shades, parabola, least, most);
 }
@@ -40,11 +39,12 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
 }
 
 impl Kernel {
+    internal! {
     /// [`curve`] as the kernel's processor does it best: the same numbers.
     #[inline]
-    #[doc(hidden)]
-    pub fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+    fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
         curve_at_best(self, shades, parabola, least, most);
+    }
     }
 }
 

@@ -15,7 +15,7 @@ pub use super::thresholds::{DitherPattern, PERIOD, ThresholdRow, Thresholds};
 /// row; `x` is the frame's column of `row[0]`.
 ///
 /// ```
-/// use mode13h::span::dither::{DitherPattern, fill_dithered};
+/// use mode13h::internals::span::dither::{DitherPattern, fill_dithered};
 ///
 /// let mut row = [0; 8];
 /// // 16.5: half of them 16, half 17

@@ -10,7 +10,7 @@
 /// The compiler makes vectors of it: 4.0 ns at 8 pixels, 9.8 at 64 and 34 at 320.
 ///
 /// ```
-/// use mode13h::span::fixed16::fill_16_16;
+/// use mode13h::internals::span::fixed16::fill_16_16;
 ///
 /// let mut row = [0; 4];
 /// fill_16_16(&mut row, 0x10_8000, 0x0000_4000); // from 16.5, up by ¼ a pixel

@@ -32,7 +32,7 @@ pub(crate) fn quotient(k: i32, [n, dn]: [f32; 2], [d, dd]: [f32; 2], [low, high]
 /// times as fast at 64 pixels as a cast, which checks for numbers out of range (28 ns against 90).
 ///
 /// ```
-/// use mode13h::span::float::fill_float;
+/// use mode13h::internals::span::float::fill_float;
 ///
 /// let mut row = [0; 3];
 /// fill_float(&mut row, 0, [60.0, 0.0], [3.0, -1.0], [0.0, 255.0]); // 60/3, 60/2, 60/1

@@ -32,7 +32,6 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
 /// Six numbers at each of any eight pixels of a row, given by their numbers; see [`interpolate`].
 #[inline]
 #[must_use]
-#[doc(hidden)]
 pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
     interpolate_inlined(places, a, da, d, dd)
 }
@@ -51,13 +50,11 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 }
 
 /// The numerators of six numbers at each of eight pixels, and their denominators.
-#[doc(hidden)]
 pub type Numerators = [Lanes<f64>; 7];
 
 /// Dividends of [`interpolate_at`]: with [`divide`] they give its numbers, for pixels of different rows too.
 #[inline]
 #[must_use]
-#[doc(hidden)]
 pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
     numerators_inlined(places, a, da, d, dd)
 }
@@ -77,7 +74,6 @@ fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
 /// The quotients of [`numerators`].
 #[inline]
 #[must_use]
-#[doc(hidden)]
 pub fn divide(numerators: &Numerators) -> Points {
     divide_inlined(numerators)
 }
@@ -95,28 +91,31 @@ fn divide_inlined(numerators: &Numerators) -> Points {
 }
 
 impl Kernel {
+    internal! {
     /// [`numerators`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    #[doc(hidden)]
-    pub fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+    fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
         numerators_at_best(self, places, a, da, d, dd)
     }
+    }
 
+    internal! {
     /// [`divide`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    #[doc(hidden)]
-    pub fn divide(self, numerators: &Numerators) -> Points {
+    fn divide(self, numerators: &Numerators) -> Points {
         divide_at_best(self, numerators)
     }
+    }
 
+    internal! {
     /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
     #[inline]
     #[must_use]
-    #[doc(hidden)]
-    pub fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
+    fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
         interpolate_at_best(self, places, a, da, d, dd)
+    }
     }
 }
 

@@ -32,17 +32,17 @@
 //!
 //! | loop | what |
 //! |---|---|
-//! | [`fixed16::fill_16_16`] | the span in 16.16 |
-//! | [`hyperbolic::fill_quotients`] | perspective-correct shades |
-//! | [`float::fill_float`] | the same in f32 |
-//! | [`dither::fill_dithered`] | the span with ordered dither |
-//! | [`texture::fill_affine`], [`texture::fill_perspective`] | rows of texels |
-//! | [`lookup()`] | shades of texels, fog, transparency, Phong's table: one byte of two |
-//! | [`channels::mix_cube`], [`channels::mix_nearest`] | red, green and blue to an index, with dither |
-//! | [`depth::fill_nearer`], [`depth::copy_nearer`], [`depth::copy_nearer_keep_depth`] | with a depth test |
-//! | [`list::fill`], [`list::fill_where_nearer`] | a list of spans, as batches make it |
-//! | [`lit::interpolate`] | writes no pixels: normals and positions for Phong's shading |
-//! | [`curve::curve`] | writes no pixels: shades on a parabola |
+//! | `fixed16::fill_16_16` | the span in 16.16 |
+//! | `hyperbolic::fill_quotients` | perspective-correct shades |
+//! | `float::fill_float` | the same in f32 |
+//! | `dither::fill_dithered` | the span with ordered dither |
+//! | `texture::fill_affine`, `texture::fill_perspective` | rows of texels |
+//! | `lookup` | shades of texels, fog, transparency, Phong's table: one byte of two |
+//! | `channels::mix_cube`, `channels::mix_nearest` | red, green and blue to an index, with dither |
+//! | `depth::fill_nearer`, `depth::copy_nearer`, `depth::copy_nearer_keep_depth` | with a depth test |
+//! | `list::fill`, `list::fill_where_nearer` | a list of spans, as batches make it |
+//! | `lit::interpolate` | writes no pixels: normals and positions for Phong's shading |
+//! | `curve::curve` | writes no pixels: shades on a parabola |
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
@@ -55,23 +55,15 @@ use crate::simd::Level;
 #[cfg(simd_x86_64)]
 use crate::simd::{Avx2, Avx512};
 
-#[doc(hidden)]
-pub mod channels;
-#[doc(hidden)]
-pub mod curve;
-#[doc(hidden)]
-pub mod depth;
-#[doc(hidden)]
-pub mod dither;
-#[doc(hidden)]
-pub mod float;
-#[doc(hidden)]
-pub mod hyperbolic;
-#[doc(hidden)]
-pub mod list;
-#[doc(hidden)]
-pub mod lit;
-mod lookup;
+pub(crate) mod channels;
+pub(crate) mod curve;
+pub(crate) mod depth;
+pub(crate) mod dither;
+pub(crate) mod float;
+pub(crate) mod hyperbolic;
+pub(crate) mod list;
+pub(crate) mod lit;
+pub(crate) mod lookup;
 mod portable;
 #[cfg(feature = "simd")]
 #[cfg_attr(
@@ -81,23 +73,20 @@ mod portable;
 mod simd;
 #[cfg(simd_x86_64)]
 pub(crate) use simd::avx512::{LargeTriangle, fill_large};
-#[doc(hidden)]
-pub mod fixed16;
-#[doc(hidden)]
-pub mod texture;
+pub(crate) mod fixed16;
+pub(crate) mod texture;
 mod thresholds;
 #[cfg(any(asm_x86_64, asm_i686))]
 #[expect(unsafe_code, reason = "the assembly's only door")]
 mod x86;
 
-#[doc(hidden)]
-pub use lookup::lookup;
+pub(crate) use lookup::lookup;
 
 /// The bare assembly entries, for the tests that call them with rubbish in their registers and read
 /// their instructions. No part of the interface.
 #[cfg(any(asm_x86_64, asm_i686))]
-#[doc(hidden)]
-pub mod entry {
+#[cfg(feature = "internals")]
+pub(crate) mod entry {
     pub use super::x86::entry::*;
 }
 
@@ -237,7 +226,6 @@ impl Kernel {
 
     /// Name of the level that it draws with: for `simd` the one that was chosen, such as `avx2`.
     #[must_use]
-    #[doc(hidden)]
     pub const fn level(self) -> &'static str {
         self.level.name()
     }
@@ -351,6 +339,7 @@ impl Kernel {
         }
     }
 
+    internal! {
     /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as
     /// [`depth::copy_nearer_keep_depth`]. Returns the
     /// number of pixels written.
@@ -358,8 +347,7 @@ impl Kernel {
     /// Row, cells and bytes may be longer, and what lies behind in the row and in the cells stays as it was: vectors take
     /// whole turns where there is room for them. Pixels beyond the shortest of the three are left alone.
     #[inline]
-    #[doc(hidden)]
-    pub fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
+    fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
         self,
         length: usize,
         row: &mut [u8],
@@ -381,6 +369,7 @@ impl Kernel {
         } else {
             depth::copy_nearer_keep_depth(row, cells, bytes, z, dz)
         }
+    }
     }
 
     /// Copies the first `length` bytes, of which the row has as many. What lies behind them stays as it was.

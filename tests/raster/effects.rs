@@ -5,16 +5,17 @@
 use crate::support::triangles;
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::lanes::{Lanes, Points};
-use mode13h::raster::effects::{
-    Attributes, EffectBatch, Lighting, Limits, Mapping, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
+use mode13h::internals::lanes::{Lanes, Points};
+use mode13h::internals::raster::effects::{
+    Attributes, EffectBatch, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
 };
+use mode13h::internals::span::channels::{mix_cube_portable, mix_nearest};
+use mode13h::internals::span::depth::Cell;
+use mode13h::internals::span::dither::{DitherPattern, ThresholdRow};
+use mode13h::internals::span::texture::{Levels, Texels};
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::settings::Mapping;
 use mode13h::span::Kernel;
-use mode13h::span::channels::{mix_cube_portable, mix_nearest};
-use mode13h::span::depth::Cell;
-use mode13h::span::dither::{DitherPattern, ThresholdRow};
-use mode13h::span::texture::{Levels, Texels};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};
 use num_bigint::BigInt;

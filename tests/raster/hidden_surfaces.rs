@@ -5,7 +5,7 @@ use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::U8F8;
-use mode13h::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
+use mode13h::internals::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -430,8 +430,9 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
 fn depths_of_earlier_frames_do_not_count() {
     use mode13h::glam::Vec3;
     use mode13h::mesh::shapes;
-    use mode13h::render::{HiddenSurfaces, Renderer, Shading};
+    use mode13h::render::Renderer;
     use mode13h::scene::Object;
+    use mode13h::settings::{HiddenSurfaces, Shading};
     use mode13h::vga::Vga;
 
     let mut random = Random::named("depths of earlier frames");

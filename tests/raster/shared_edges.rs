@@ -3,8 +3,8 @@
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
-use mode13h::raster::reference::cover::SortedTriangle;
-use mode13h::raster::reference::shade::ShadePlane;
+use mode13h::internals::raster::reference::cover::SortedTriangle;
+use mode13h::internals::raster::reference::shade::ShadePlane;
 use mode13h::raster::{Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};

@@ -3,8 +3,8 @@
 use crate::support::triangles::{draw, edge_beside, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::reference::cover::SortedTriangle;
-use mode13h::raster::reference::depth::DepthPlane;
+use mode13h::internals::raster::reference::cover::SortedTriangle;
+use mode13h::internals::raster::reference::depth::DepthPlane;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex, VertexError};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;

@@ -3,9 +3,9 @@
 use crate::support::triangles::{draw, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
+use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
-use mode13h::span::depth::Cell;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
@@ -187,7 +187,7 @@ impl Case {
 #[cfg(feature = "alloc")]
 #[test]
 fn by_scan_line_its_shades_are_on_exact_cover() {
-    use mode13h::raster::scan_line::Lists;
+    use mode13h::internals::raster::scan_line::Lists;
 
     let mut tried = Tried::new("by_scan_line_its_shades_are_on_exact_cover", 2_000);
     let mut random = Random::named("period, scan-line");

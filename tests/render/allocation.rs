@@ -14,8 +14,10 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Choice, Decision, Effect};
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Renderer, Shading, Stats, VertexPath};
-use mode13h::scene::{DitherPattern, Motion, Object, Scene};
+use mode13h::render::{Renderer, Stats};
+use mode13h::scene::{Motion, Object, Scene};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_assets::shipped;
 

@@ -5,8 +5,10 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
-use mode13h::render::{Renderer, Shading};
-use mode13h::scene::{DitherPattern, Scene};
+use mode13h::render::Renderer;
+use mode13h::scene::Scene;
+use mode13h::settings::DitherPattern;
+use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 

@@ -5,13 +5,14 @@ use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
-    View, average_normals, face_normal, turn, unit_vector,
+    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, Object, Paint, Placement, Sun, Vector, VertexStage, View,
+    average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Ramp;
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::scene;
+use mode13h::settings::Shading;
 use mode13h_conformance::Random;
 use num_bigint::BigInt;
 use num_rational::BigRational;

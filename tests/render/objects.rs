@@ -6,9 +6,11 @@ use mode13h::light::{Light, LightResponse};
 use mode13h::mesh::shapes;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{Accuracy, RenderError, Renderer, Shading, VertexPath};
-use mode13h::scene::{Motion, Settings};
+use mode13h::render::{RenderError, Renderer};
+use mode13h::scene::Motion;
 use mode13h::scene::{Moving, Object, ObjectId, Path, Scene};
+use mode13h::settings::Settings;
+use mode13h::settings::{Accuracy, Shading, VertexPath};
 use mode13h::vga::Vga;
 
 use crate::support::tried::Tried;
@@ -37,7 +39,7 @@ fn three() -> (Scene, [ObjectId; 3]) {
 #[test]
 fn a_hidden_object_is_as_one_that_was_removed() {
     let mut tried = Tried::new("a_hidden_object_is_as_one_that_was_removed", 3 * 4);
-    for way in [None].into_iter().chain(mode13h::scene::HiddenSurfaces::ALL.into_iter().skip(1).map(Some)) {
+    for way in [None].into_iter().chain(mode13h::settings::HiddenSurfaces::ALL.into_iter().skip(1).map(Some)) {
         for i in 0..3 {
             let (mut hidden, ids) = three();
             hidden.settings = Settings { hidden_surfaces: way, ..Settings::default() };

@@ -3,8 +3,9 @@
 use mode13h::glam::Vec3;
 use mode13h::mesh::shapes;
 use mode13h::raster::Frame;
-use mode13h::render::{HiddenSurfaces, Renderer, Screen};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
+use mode13h::settings::HiddenSurfaces;
 use mode13h_conformance::Random;
 
 const SCREEN: Screen = Screen { width: 400, height: 300, pixel_aspect: (1, 1) };

@@ -8,8 +8,9 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::{Class, Effect};
 use mode13h::raster::Frame;
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, RenderError, Renderer, Screen, Shading, Stats, VertexPath};
+use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::{Object, Scene};
+use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 

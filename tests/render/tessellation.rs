@@ -8,8 +8,10 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{Renderer, Screen, Shading};
-use mode13h::scene::{DitherPattern, Object, Scene};
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::{Object, Scene};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};
@@ -105,7 +107,7 @@ fn r12_walls_that_are_split_are_closed() {
         let mut counts = vec![0_u32; Vga::SHOWN];
         for corners in &parts {
             let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
-            mode13h::raster::reference::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
+            mode13h::internals::raster::reference::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
                 (row.x0..row.x1).for_each(|x| counts[(row.y * 320 + x) as usize] += 1);
             });
         }

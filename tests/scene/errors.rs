@@ -5,8 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::{Object, Scene};
+use mode13h::settings::Shading;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_assets::SceneExt;

@@ -10,7 +10,8 @@ use mode13h::mesh::{Surface, shapes};
 use mode13h::palette::cube::CUBE;
 use mode13h::palette::{Palette, Ramp, Rgb};
 use mode13h::render::Renderer;
-use mode13h::scene::{DitherPattern, Fog, Object, Scene, Shared};
+use mode13h::scene::{Fog, Object, Scene, Shared};
+use mode13h::settings::DitherPattern;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_assets::auto_palette::Entries;
@@ -327,7 +328,7 @@ fn highlights_are_shown_in_their_colours() {
             let body = material.color[i] * (material.ambient + material.diffuse);
             f64::from((body + material.highlight[i] * material.specular).min(1.0)) * 255.0
         });
-        scene.settings.accuracy = Some(mode13h::render::Shading::Phong.into());
+        scene.settings.accuracy = Some(mode13h::settings::Shading::Phong.into());
         let middle = 100 * Vga::WIDTH + 160;
         let mut own = scene.clone();
         let made = made(&mut scene);

@@ -9,10 +9,9 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
-use mode13h::render::Accuracy;
-use mode13h::scene::{
-    DitherPattern, HiddenSurfaces, Mapping, Motion, Moving, PaletteAnimation, Path, Scene, Shading, UpAxis,
-};
+use mode13h::scene::{Motion, Moving, PaletteAnimation, Path, Scene, UpAxis};
+use mode13h::settings::Accuracy;
+use mode13h::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 use mode13h_assets::SceneExt;
 use mode13h_assets::scene_file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 
@@ -833,7 +832,7 @@ fn every_shading_is_documented() {
         .find(|line| line.starts_with("| `shading` |"))
         .expect("a row");
     let named = row.split('|').nth(2).expect("the values");
-    let all = mode13h::render::Shading::ALL.map(|shading| format!("`\"{shading}\"`"));
+    let all = mode13h::settings::Shading::ALL.map(|shading| format!("`\"{shading}\"`"));
     assert_eq!(named.trim(), all.join(", "));
 }
 

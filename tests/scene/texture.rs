@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use mode13h::Angle;
 use mode13h::glam::Vec2;
+use mode13h::internals::span::texture::{Levels, TexelsError};
 use mode13h::mesh::shapes;
 use mode13h::palette::{Lut64K, Palette, Rgb};
-use mode13h::render::{Mapping, Renderer};
+use mode13h::render::Renderer;
 use mode13h::scene::Shared;
-use mode13h::span::texture::{Levels, TexelsError};
+use mode13h::settings::Mapping;
 use mode13h::texture::{Mipmap, Texture, TextureError};
 use mode13h::vga::Vga;
 use mode13h_assets::texture::LoadErrorKind;

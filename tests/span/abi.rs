@@ -6,7 +6,8 @@
 
 use crate::support::tried::Tried;
 use iced_x86::{Decoder, DecoderOptions, Formatter, IntelFormatter, Mnemonic};
-use mode13h::span::{Kernel, entry};
+use mode13h::internals::span::entry;
+use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 use mode13h_conformance::loops::spans::naive_span;
 

@@ -1,6 +1,6 @@
 //! The blue-noise mask: how it is made, and what makes it blue.
 
-use mode13h::span::dither::DitherPattern;
+use mode13h::internals::span::dither::DitherPattern;
 use mode13h_conformance::Random;
 
 const SIDE: usize = 64;

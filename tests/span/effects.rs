@@ -2,20 +2,21 @@
 //! wrong ones, made on purpose, which the same check has to find out.
 
 use crate::support::tried::Tried;
-use mode13h::lanes::LANES;
+use mode13h::internals::lanes::LANES;
+use mode13h::internals::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::internals::span::curve::curve;
+use mode13h::internals::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
+use mode13h::internals::span::dither::{DitherPattern, ThresholdRow, fill_dithered};
+use mode13h::internals::span::fixed16::fill_16_16;
+use mode13h::internals::span::float::fill_float;
+use mode13h::internals::span::hyperbolic::fill_quotients;
+use mode13h::internals::span::list;
+use mode13h::internals::span::lit::interpolate;
+use mode13h::internals::span::lookup;
+use mode13h::internals::span::texture::{Texels, TexelsError, fill_affine, fill_perspective_portable};
 use mode13h::palette::Rgb;
 use mode13h::palette::cube;
-use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
-use mode13h::span::curve::curve;
-use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
-use mode13h::span::dither::{DitherPattern, ThresholdRow, fill_dithered};
-use mode13h::span::fixed16::fill_16_16;
-use mode13h::span::float::fill_float;
-use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::list;
-use mode13h::span::lit::interpolate;
-use mode13h::span::texture::{Texels, TexelsError, fill_affine, fill_perspective_portable};
-use mode13h::span::{Kernel, lookup};
+use mode13h::span::Kernel;
 use mode13h_conformance::loops::channels::{check_cube, check_nearest, naive_level};
 use mode13h_conformance::loops::depth::{check_copy, check_fill as check_fill_nearer, check_list, check_list_nearer};
 use mode13h_conformance::loops::light::{check_curve, check_interpolate, check_interpolate_at};
@@ -417,7 +418,7 @@ fn wrong_lists_are_caught() {
 
 #[test]
 fn wrong_points_are_caught() {
-    type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> mode13h::lanes::Points;
+    type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> mode13h::internals::lanes::Points;
     let accumulated: Interpolate = |first, a, da, d, dd| {
         let (from, mut points) = (f64::from(first), interpolate(first, a, da, d, dd));
         for (i, values) in points.iter_mut().enumerate() {

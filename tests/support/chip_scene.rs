@@ -3,11 +3,12 @@
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
-    View, average_normals,
+    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
+    average_normals,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
+use mode13h::settings::Shading;
 
 pub(crate) const WIDTH: usize = 320;
 pub(crate) const HEIGHT: usize = 200;

@@ -1,8 +1,9 @@
 //! A frame whose every byte is compared with the oracle's.
 
 use mode13h::raster::{Frame, Interpolation, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Stats};
+use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::Scene;
+use mode13h::settings::HiddenSurfaces;
 
 use mode13h_conformance::oracle;
 

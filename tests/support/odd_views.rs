@@ -4,7 +4,8 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
-use mode13h::render::{Renderer, Screen, VertexPath};
+use mode13h::render::{Renderer, Screen};
+use mode13h::settings::VertexPath;
 
 use super::judged::judged;
 use super::scenes::framed;

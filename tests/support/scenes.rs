@@ -7,7 +7,8 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
-use mode13h::scene::{Camera, DitherPattern, Fog, Object, PaletteAnimation, Scene, Settings, Shading, Shared};
+use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Scene, Shared};
+use mode13h::settings::{DitherPattern, Settings, Shading};
 use mode13h::texture::Texture;
 
 use mode13h_conformance::Random;

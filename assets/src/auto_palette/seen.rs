@@ -12,7 +12,8 @@ use alloc::vec::Vec;
 use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::palette::Ramp;
 use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::{Scene, Settings};
+use mode13h::scene::Scene;
+use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
 /// Pictures over one round.

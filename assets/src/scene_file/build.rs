@@ -5,9 +5,10 @@ use std::path::Path as FilePath;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light};
-use mode13h::scene::Accuracy;
 use mode13h::scene::framing::{Swept, Turning};
-use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene, Settings};
+use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene};
+use mode13h::settings::Accuracy;
+use mode13h::settings::Settings;
 use toml::Spanned;
 
 use super::camera::camera;

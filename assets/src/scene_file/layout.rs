@@ -5,7 +5,8 @@ use core::fmt;
 use std::collections::BTreeMap;
 
 use mode13h::light::Blend;
-use mode13h::scene::{DitherPattern, HiddenSurfaces, Mapping, Shading, UpAxis};
+use mode13h::scene::UpAxis;
+use mode13h::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};

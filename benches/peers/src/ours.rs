@@ -1,9 +1,10 @@
 //! Our raster: a triangle a call, in batches, and in batches with effects.
 
-use mode13h::raster::effects::{Attributes, EffectBatch, Mapping, PixelPipeline, ShadeSource, TextureStage};
+use mode13h::internals::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureStage};
+use mode13h::internals::span::texture::Texels;
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
+use mode13h::settings::Mapping;
 use mode13h::span::Kernel;
-use mode13h::span::texture::Texels;
 
 use crate::candidate::{Candidate, Triangle};
 use crate::drawing::{Drawing, Material, SIDE_BITS};

@@ -12,8 +12,9 @@ use std::process::Command;
 use std::{env, fs, process};
 
 use mode13h::plan::Effect;
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::Study;
 

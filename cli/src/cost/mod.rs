@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::render::Shading;
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 

@@ -8,8 +8,9 @@ use std::mem;
 use std::time::Instant;
 
 use mode13h::palette::Rgb;
-use mode13h::render::{RenderError, Renderer, Shading};
+use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 use mode13h::window::{Input, Key};
 use mode13h_lab::truth::Figures;

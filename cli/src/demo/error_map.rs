@@ -399,7 +399,7 @@ fn level_of(error: f64) -> u8 {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Shading;
+    use mode13h::settings::Shading;
     use mode13h_lab::truth::Standard;
 
     #[test]

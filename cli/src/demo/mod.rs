@@ -33,8 +33,10 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use mode13h::palette::{Palette, builtin};
-use mode13h::render::{Mapping, Renderer, Screen, Stats};
-use mode13h::scene::{Scene, Settings};
+use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::scene::Scene;
+use mode13h::settings::Mapping;
+use mode13h::settings::Settings;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};

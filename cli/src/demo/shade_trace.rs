@@ -56,7 +56,7 @@ fn effects(seen: &Seen) -> String {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Shading;
+    use mode13h::settings::Shading;
 
     #[test]
     fn an_account_begins_with_the_pixel() {

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use mode13h::render::{Accuracy, Renderer, Shading, Stats};
+use mode13h::render::{Renderer, Stats};
+use mode13h::settings::{Accuracy, Shading};
 use mode13h::window::{Input, Key};
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.

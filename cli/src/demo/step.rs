@@ -210,8 +210,9 @@ impl Place {
 mod tests {
     use super::*;
     use mode13h::fixed::{I24F8, U8F8};
-    use mode13h::render::{Renderer, Shading};
+    use mode13h::render::Renderer;
     use mode13h::scene::Scene;
+    use mode13h::settings::Shading;
     use mode13h::vga::Vga;
 
     /// Eight pixels wide at the top, one at the bottom, four rows high; the shade of pixel x of row 0 is 50 + 20·x.

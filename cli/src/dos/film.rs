@@ -1,9 +1,10 @@
 //! Writes films of projected scenes, which [`player`](super::player) reads.
 
 use mode13h::fixed::I16F16;
-use mode13h::hooks::IntegerFrame;
-use mode13h::integer::{FixedMeshParts, Object, Shading, Vector};
+use mode13h::integer::{FixedMeshParts, Object, Vector};
+use mode13h::internals::IntegerFrame;
 use mode13h::palette::Palette;
+use mode13h::settings::Shading;
 
 use super::player::MAGIC;
 

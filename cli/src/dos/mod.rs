@@ -14,10 +14,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use mode13h::export;
-use mode13h::hooks;
+use mode13h::internals;
 use mode13h::palette::{BIOS, Palette};
 use mode13h::plan::Effect;
-use mode13h::render::{HiddenSurfaces, Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Renderer, Screen};
+use mode13h::settings::{HiddenSurfaces, Shading, VertexPath};
 use mode13h_conformance::hash::{START, fnv_1a};
 
 use self::pack::pack;
@@ -140,7 +141,7 @@ fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Resul
     let mut writer = film::Writer::new();
     for number in 0..frames {
         show(stage, renderer, number, frames);
-        let frame = hooks::integer_frame(renderer, &stage.scene, Screen::MODE_13H)?;
+        let frame = internals::integer_frame(renderer, &stage.scene, Screen::MODE_13H)?;
         writer.push(&frame).map_err(Failure::words)?;
     }
     let vertices = writer.vertices;

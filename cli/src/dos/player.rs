@@ -20,11 +20,11 @@ use alloc::vec::Vec;
 use core::array::from_fn;
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Shading, Sun, Vector, VertexStage,
-    View,
+    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
+use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 
 /// First bytes of a film: its version is the last of them.

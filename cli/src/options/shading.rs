@@ -1,8 +1,9 @@
 //! Shading of faces: `--shading`, `--max-error` and `--max-time`.
 
 use clap::Args;
-use mode13h::render::{Accuracy, Renderer, Settings, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
+use mode13h::settings::{Accuracy, Settings, Shading};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::calibrate;

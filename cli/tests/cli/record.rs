@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use mode13h::palette::builtin;
-use mode13h::render::HiddenSurfaces;
+use mode13h::settings::HiddenSurfaces;
 use mode13h_lab::record::{Record, Run};
 
 use crate::support::tried::Tried;

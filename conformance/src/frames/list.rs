@@ -9,8 +9,9 @@ use mode13h::glam::{Vec2, Vec3, vec3};
 use mode13h::light::{Blend, Cone, Light, LightResponse, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Rgb, builtin};
-use mode13h::render::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
-use mode13h::scene::{Camera, DitherPattern, Fog, Object, Scene, Shared, UpAxis};
+use mode13h::scene::{Camera, Fog, Object, Scene, Shared, UpAxis};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
 use mode13h::texture::Texture;
 
 use super::{Frame, Picture, Shape, shipped};

@@ -27,8 +27,9 @@ use core::fmt;
 
 use mode13h::palette::{BIOS, Palette};
 use mode13h::raster::Frame as Canvas;
-use mode13h::render::{RenderError, Renderer, Settings};
+use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::Scene;
+use mode13h::settings::Settings;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 

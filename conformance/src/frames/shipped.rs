@@ -10,10 +10,9 @@ use mode13h::glam::{Vec2, Vec3, vec3};
 use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
-use mode13h::render::{Mapping, Shading};
-use mode13h::scene::{
-    Camera, DitherPattern, Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared,
-};
+use mode13h::scene::{Camera, Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Mapping, Shading};
 use mode13h::texture::Texture;
 use mode13h_assets::auto_palette;
 

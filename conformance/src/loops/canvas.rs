@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::span::dither::{DitherPattern, PERIOD, ThresholdRow};
+use mode13h::internals::span::dither::{DitherPattern, PERIOD, ThresholdRow};
 
 use super::{Cases, Checked};
 use crate::Random;

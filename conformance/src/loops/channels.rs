@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::span::dither::ThresholdRow;
+use mode13h::internals::span::dither::ThresholdRow;
 
 use super::canvas::{Canvas, Shape, any_column, any_thresholds, bytes, on_every_shape, other_row, threshold};
 use super::{Cases, Checked};

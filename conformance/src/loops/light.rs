@@ -2,7 +2,7 @@
 
 use alloc::{format, vec};
 
-use mode13h::lanes::{Lanes, Points};
+use mode13h::internals::lanes::{Lanes, Points};
 
 use super::{Cases, Checked};
 

@@ -30,18 +30,18 @@ pub mod texels;
 use alloc::string::String;
 use core::fmt;
 
+use mode13h::internals::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
+use mode13h::internals::span::curve::curve;
+use mode13h::internals::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
+use mode13h::internals::span::dither::{fill_dithered, fill_dithered_portable};
+use mode13h::internals::span::fixed16::fill_16_16;
+use mode13h::internals::span::float::fill_float;
+use mode13h::internals::span::hyperbolic::fill_quotients;
+use mode13h::internals::span::list;
+use mode13h::internals::span::lit::interpolate;
+use mode13h::internals::span::lookup;
+use mode13h::internals::span::texture::{fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::Kernel;
-use mode13h::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
-use mode13h::span::curve::curve;
-use mode13h::span::depth::{copy_nearer, copy_nearer_keep_depth, fill_nearer};
-use mode13h::span::dither::{fill_dithered, fill_dithered_portable};
-use mode13h::span::fixed16::fill_16_16;
-use mode13h::span::float::fill_float;
-use mode13h::span::hyperbolic::fill_quotients;
-use mode13h::span::list;
-use mode13h::span::lit::interpolate;
-use mode13h::span::lookup;
-use mode13h::span::texture::{fill_affine, fill_perspective, fill_perspective_portable};
 
 use crate::Random;
 

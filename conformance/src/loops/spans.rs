@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use alloc::{format, string::ToString};
 
-use mode13h::span::dither::ThresholdRow;
+use mode13h::internals::span::dither::ThresholdRow;
 
 use super::canvas::{Canvas, EDGES, Shape, any_column, any_thresholds, any_u16, on_every_shape, threshold};
 use super::{Cases, Checked};

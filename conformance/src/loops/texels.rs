@@ -4,7 +4,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use alloc::{format, vec};
 
-use mode13h::span::texture::Texels;
+use mode13h::internals::span::texture::Texels;
 
 use super::canvas::{bytes, on_every_shape, other_row};
 use super::{Cases, Checked};

@@ -6,11 +6,13 @@ use allocation_counter::measure;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
+use mode13h::internals::raster::Batch;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Batch, Frame, Interpolation, Raster, Vertex};
-use mode13h::render::{HiddenSurfaces, Renderer};
+use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
+use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Object, Scene, Shared};
+use mode13h::settings::HiddenSurfaces;
 use mode13h::vga::Vga;
 
 /// One frame, drawn again and again.

@@ -14,8 +14,9 @@ use super::quantization::Entries;
 use super::{CostError, Errors, Probe};
 use crate::truth::{ErrorMap, Figures, Shown, Standard, Swim, Truth, TruthFrame};
 use mode13h::plan::Effect;
-use mode13h::render::{Renderer, Screen, Shading, VertexPath};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
+use mode13h::settings::{Shading, VertexPath};
 
 /// Errors over many frames, pixel by pixel and over blocks.
 #[derive(Clone, Copy, Debug, Default)]

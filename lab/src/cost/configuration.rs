@@ -6,9 +6,10 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::Aspect;
-use mode13h::hooks;
-use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading, VertexPath};
-use mode13h::scene::DitherPattern;
+use mode13h::internals;
+use mode13h::render::Renderer;
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
 use mode13h::span::Kernel;
 
 /// The budgets that are measured, in shades, the greatest error first.
@@ -84,7 +85,7 @@ impl<'a> Configuration<'a> {
         let set = self.set;
         let set = Box::new(move |renderer: &mut Renderer| {
             set(renderer);
-            hooks::set_vertex_bits(renderer, bits);
+            internals::set_vertex_bits(renderer, bits);
         });
         Self { set, ..self }
     }
@@ -112,7 +113,11 @@ impl<'a> Configuration<'a> {
             ways.push(with_shading(Aspect::VertexPath, &path, Box::new(move |r| r.settings.vertex_path = Some(path))));
         }
         for (bits, name) in [(8, "1/256 pixel"), (4, "1/16 pixel"), (0, "whole pixels")] {
-            ways.push(with_shading(Aspect::VertexRounding, &name, Box::new(move |r| hooks::set_vertex_bits(r, bits))));
+            ways.push(with_shading(
+                Aspect::VertexRounding,
+                &name,
+                Box::new(move |r| internals::set_vertex_bits(r, bits)),
+            ));
         }
         let fastest = Kernel::default();
         let others = Kernel::available().filter(|kernel| kernel.level() != fastest.level());

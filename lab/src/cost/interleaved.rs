@@ -20,7 +20,8 @@ use super::clock::Clock;
 use super::configuration::{Configuration, Kind};
 use super::statistics::Ratio;
 use mode13h::plan::Effect;
-use mode13h::render::{FaceShading, RenderError, Renderer, Shares};
+use mode13h::plan::FaceShading;
+use mode13h::render::{RenderError, Renderer, Shares};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
@@ -250,7 +251,7 @@ mod tests {
     use super::*;
     use crate::cost::Aspect;
     use mode13h::mesh::shapes;
-    use mode13h::render::Shading;
+    use mode13h::settings::Shading;
 
     #[test]
     fn a_name_with_a_comma_is_one_cell() {

@@ -14,8 +14,11 @@ use super::statistics::{Ratio, quartiles};
 use super::timed::timed_rows;
 use super::{Aspect, BudgetRow, CostError, Host, OptionRow, ShadingRow, Split, Study};
 use mode13h::plan::Effect;
-use mode13h::render::{FaceShading, Renderer, Screen, Shading, VertexPath};
-use mode13h::scene::{DitherPattern, Scene};
+use mode13h::plan::FaceShading;
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::Scene;
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Shading, VertexPath};
 use mode13h_conformance::Random;
 
 /// Subject of a study.

@@ -5,14 +5,16 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crate::truth::{Face, Shown};
-use mode13h::hooks;
+use mode13h::internals;
 use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::Ramp;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, FrameError};
-use mode13h::render::{Accuracy, RenderError, Renderer, Screen, Shading};
-use mode13h::scene::{DitherPattern, Object, Scene, Shared};
+use mode13h::render::{RenderError, Renderer, Screen};
+use mode13h::scene::{Object, Scene, Shared};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Accuracy, Shading};
 
 /// Finds out what a renderer shows, by nothing but drawing with it.
 ///
@@ -102,9 +104,9 @@ impl Probe {
     }
 
     fn channel(&mut self, channel: usize, scene: &Scene, screen: Screen) -> Result<Vec<u8>, ProbeError> {
-        hooks::show_channel(&mut self.renderer, Some(channel));
+        internals::show_channel(&mut self.renderer, Some(channel));
         let bytes = self.draw(scene, screen);
-        hooks::show_channel(&mut self.renderer, None);
+        internals::show_channel(&mut self.renderer, None);
         bytes
     }
 
@@ -198,7 +200,7 @@ impl Numbered {
     /// Takes on a scene's meshes.
     fn renew(&mut self, scene: &Scene) -> Result<(), ProbeError> {
         let objects = scene.objects();
-        let same = |(mesh, object): (&Shared<Mesh>, &Object)| Shared::ptr_eq(mesh, hooks::shared_mesh(object));
+        let same = |(mesh, object): (&Shared<Mesh>, &Object)| Shared::ptr_eq(mesh, internals::shared_mesh(object));
         if self.meshes.len() == objects.len() && self.meshes.iter().zip(objects).all(same) {
             return Ok(());
         }
@@ -230,7 +232,7 @@ impl Numbered {
             digits.push(meshes);
             unit *= base;
         }
-        let meshes = objects.iter().map(|object| Shared::clone(hooks::shared_mesh(object))).collect();
+        let meshes = objects.iter().map(|object| Shared::clone(internals::shared_mesh(object))).collect();
         *self = Self { meshes, base, digits };
         Ok(())
     }
@@ -250,7 +252,7 @@ impl Numbered {
         };
         let surfaces = mesh.surfaces().len() / self.base;
         let materials = like.materials.iter().take(surfaces).flat_map(digits).collect();
-        hooks::with_mesh(like, Shared::clone(mesh), materials)
+        internals::with_mesh(like, Shared::clone(mesh), materials)
     }
 
     /// The triangle of a number.

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::{BudgetRow, ShadingRow, Study};
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 /// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
 pub(super) const PROMISE: f64 = 1.0;

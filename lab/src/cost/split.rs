@@ -24,7 +24,7 @@ use super::clock::Clock;
 use super::configuration::Configuration;
 use super::interleaved::{Spent, always_drawing};
 use super::statistics::median;
-use mode13h::hooks;
+use mode13h::internals;
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
@@ -57,7 +57,7 @@ impl Part {
             Self::Plan => renderer.make_plan(scene, Screen::MODE_13H).map(|plan| {
                 black_box(plan);
             }),
-            Self::Vertices => hooks::make_vertices(renderer, scene, Screen::MODE_13H),
+            Self::Vertices => internals::make_vertices(renderer, scene, Screen::MODE_13H),
             Self::Frame => draw_into(renderer, scene, Screen::MODE_13H, bytes),
             Self::WideFrame => draw_into(renderer, scene, WIDE, bytes),
         }
@@ -139,7 +139,7 @@ fn scan_out(clock: Clock) -> f64 {
 mod tests {
     use super::*;
     use mode13h::mesh::shapes;
-    use mode13h::render::Shading;
+    use mode13h::settings::Shading;
 
     #[test]
     fn the_parts_are_those_of_the_frame() {

@@ -3,7 +3,8 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use mode13h::render::{FaceShading, Shading};
+use mode13h::plan::FaceShading;
+use mode13h::settings::Shading;
 
 /// The cost of accuracy on one scene or model.
 #[derive(Clone, PartialEq, Debug)]

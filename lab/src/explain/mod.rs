@@ -11,7 +11,7 @@
 //!
 //! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
 //! is drawn with the stages after it left out. Starts, steps and sums come from the planes that the loops start from
-//! ([`hooks::ShadeTrace`](mode13h::hooks::ShadeTrace)). So an account agrees with the frame for every shading, kernel, way to hidden surfaces and
+//! ([`internals::ShadeTrace`](mode13h::internals::ShadeTrace)). So an account agrees with the frame for every shading, kernel, way to hidden surfaces and
 //! effect.
 //!
 //! ```
@@ -43,7 +43,7 @@ use core::fmt;
 use crate::cost::ProbeError;
 use crate::truth::TruthError;
 pub use face::{Edge, EdgeKind, FaceHere};
-pub use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
+pub use mode13h::internals::{Accumulator, Progression, Ratio, ShadeTrace};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Screen};
 pub use one_pixel::ShadedBy;

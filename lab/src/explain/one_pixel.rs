@@ -7,15 +7,17 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
-use mode13h::hooks::DrawnTriangle;
-use mode13h::lanes::{LANES, Lanes, Points};
+use mode13h::internals::DrawnTriangle;
+use mode13h::internals::lanes::{LANES, Lanes, Points};
+use mode13h::internals::raster::effects::{
+    Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
+};
+use mode13h::internals::span::dither::Thresholds;
+use mode13h::internals::span::texture::{Levels, Texels};
 use mode13h::palette::Lut64K;
-use mode13h::raster::effects::{Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
-use mode13h::span::dither::Thresholds;
-use mode13h::span::texture::{Levels, Texels};
 
 /// Source of a face's shades.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -102,7 +104,7 @@ impl OnePixel {
     pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
         // Within a frame of at most 4,096 pixels a side.
         let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
-        let area = mode13h::raster::clip::doubled_area(vertices).signum();
+        let area = mode13h::internals::raster::clip::doubled_area(vertices).signum();
         let at = |i: usize| [i64::from(vertices[i].x().to_bits()), i64::from(vertices[i].y().to_bits())];
         let sides = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
             let (a, b) = (at(from), at(to));

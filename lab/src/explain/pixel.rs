@@ -9,15 +9,16 @@ use super::one_pixel::{Bytes, ShadedBy};
 use super::trace::{Fate, Met, trace};
 use super::{ExplainError, check};
 use crate::truth::{Face, Standard, Truth};
-use mode13h::hooks;
-use mode13h::hooks::{ShadeTrace, row_of};
+use mode13h::internals;
+use mode13h::internals::raster::effects::Attributes;
+use mode13h::internals::raster::reference::cover::SortedTriangle;
+use mode13h::internals::{ShadeTrace, row_of};
 use mode13h::palette::{Ramp, Rgb};
 use mode13h::plan::{self, Effect};
-use mode13h::raster::effects::Attributes;
-use mode13h::raster::reference::cover::SortedTriangle;
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Screen, Settings, Shading, VertexPath};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Settings, Shading, VertexPath};
 use mode13h::vga::Vga;
 
 /// One pixel's account of itself. Shown as text it fits a screen of 100 columns.
@@ -196,7 +197,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
         shading_why: shading_why(&renderer.settings, &scene.settings),
         max_error: trace.stats.max_error,
         vertex_path: trace.stats.vertex_path,
-        objects: (0..scene.objects().len()).map(|object| hooks::name_of(scene, object)).collect(),
+        objects: (0..scene.objects().len()).map(|object| internals::name_of(scene, object)).collect(),
         faces,
         seen,
     })

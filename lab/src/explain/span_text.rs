@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::paragraph::Text;
-use mode13h::hooks::{Accumulator, Progression, Ratio, ShadeTrace};
+use mode13h::internals::{Accumulator, Progression, Ratio, ShadeTrace};
 
 /// Sums that are shown of either end of a span.
 const ENDS: i32 = 5;

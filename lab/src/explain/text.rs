@@ -12,8 +12,9 @@ use super::pixel::{Pixel, PixelStage, Seen};
 use super::span_text::{say_account, short_account};
 use super::trace::Fate;
 use mode13h::plan::Effect;
+use mode13h::plan::FaceShading;
 use mode13h::raster::Interpolation;
-use mode13h::render::{FaceShading, Shading};
+use mode13h::settings::Shading;
 
 /// Triangles that are printed, at most.
 const LISTED: usize = 6;

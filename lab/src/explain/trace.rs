@@ -3,15 +3,16 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use mode13h::hooks::{self, DrawnTriangle};
+use mode13h::internals::raster::effects::Attributes;
+use mode13h::internals::raster::reference::cover::SortedTriangle;
+use mode13h::internals::raster::reference::depth::DepthPlane;
+use mode13h::internals::{self, DrawnTriangle};
 use mode13h::palette::Ramp;
 use mode13h::plan;
-use mode13h::raster::effects::Attributes;
-use mode13h::raster::reference::cover::SortedTriangle;
-use mode13h::raster::reference::depth::DepthPlane;
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Screen, Stats};
+use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::Scene;
+use mode13h::settings::HiddenSurfaces;
 
 use super::one_pixel::{Bytes, OnePixel};
 
@@ -80,7 +81,7 @@ pub(super) fn trace(
     let exact = hidden_surfaces == HiddenSurfaces::ScanLine;
     let mut pixel = OnePixel { screen, x, y, kernel: renderer.kernel, row: vec![0; screen.width as usize] };
     let (mut met, mut number) = (Vec::new(), 0);
-    let stats = hooks::each_triangle(renderer, scene, screen, &mut |triangle| {
+    let stats = internals::each_triangle(renderer, scene, screen, &mut |triangle| {
         met.extend(meet(triangle, number, &mut pixel, exact));
         number += 1;
     })?;
@@ -93,7 +94,7 @@ pub(super) fn trace(
         for met in met.iter_mut().filter(|met| met.fate == fate) {
             // What it passes through is known only while it is visited.
             let mut number = 0;
-            hooks::each_triangle(renderer, scene, screen, &mut |triangle| {
+            internals::each_triangle(renderer, scene, screen, &mut |triangle| {
                 if number == met.number {
                     met.bytes = Some(pixel.bytes(triangle, byte, exact));
                 }

@@ -2,9 +2,9 @@
 
 use alloc::vec::Vec;
 
-use mode13h::hooks::{Progression, ShadeTrace, rows_of};
-use mode13h::raster::reference::cover::{Row, SortedTriangle};
-use mode13h::raster::reference::shade::RESEED;
+use mode13h::internals::raster::reference::cover::{Row, SortedTriangle};
+use mode13h::internals::raster::reference::shade::RESEED;
+use mode13h::internals::{Progression, ShadeTrace, rows_of};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 

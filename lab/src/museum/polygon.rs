@@ -23,15 +23,15 @@
 //! be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
 //! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
 //! the shades of its edge's ends; start and step along the row are rounded back toward where shades
-//! come from, as in [`shade`](mode13h::raster::reference::shade), so every sum lies between the two crossings' shades.
+//! come from, as in [`shade`](mode13h::internals::raster::reference::shade), so every sum lies between the two crossings' shades.
 
 use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::reference::quotient::Divisor;
-use mode13h::raster::reference::shade::RESEED;
+use mode13h::internals::raster::reference::quotient::Divisor;
+use mode13h::internals::raster::reference::shade::RESEED;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Rect, Vertex};
 use mode13h::span::Kernel;
 

@@ -45,8 +45,9 @@ use mode13h::export::{ExportError, write_atomically};
 use mode13h::palette::Palette;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, FrameError, Interpolation, Rect, Vertex};
-use mode13h::render::{HiddenSurfaces, RenderError, Renderer, Screen};
+use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
+use mode13h::settings::HiddenSurfaces;
 
 /// The version of the format.
 pub const VERSION: u32 = 1;

@@ -7,7 +7,7 @@ use super::{Record, RecordError, RecordErrorKind, VERSION};
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::palette::{Palette, Rgb};
 use mode13h::raster::{Interpolation, Rect, Vertex};
-use mode13h::render::HiddenSurfaces;
+use mode13h::settings::HiddenSurfaces;
 
 /// No line of a record is longer; what comes of one that is, is not kept.
 const LONGEST_LINE: u64 = 1024;

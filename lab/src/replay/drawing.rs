@@ -1,9 +1,10 @@
 //! A record drawn by the raster, in a frame with guard bytes on all sides.
 
 use crate::record::Record;
-use mode13h::raster::scan_line::Lists;
-use mode13h::raster::{Batch, Frame, FrameError, Interpolation, Raster, Vertex};
-use mode13h::render::HiddenSurfaces;
+use mode13h::internals::raster::Batch;
+use mode13h::internals::raster::scan_line::Lists;
+use mode13h::raster::{Frame, FrameError, Interpolation, Raster, Vertex};
+use mode13h::settings::HiddenSurfaces;
 use mode13h::span::Kernel;
 
 /// Ways to draw a record.

@@ -11,7 +11,7 @@ use crate::record::Record;
 use definition::Drawing;
 use drawing::{Configuration, Draw, Stray};
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::HiddenSurfaces;
+use mode13h::settings::HiddenSurfaces;
 use mode13h::span::Kernel;
 
 /// Results of replaying a frame.

@@ -1,7 +1,7 @@
 //! Bounds of a shading's error.
 
 use super::Standard;
-use mode13h::scene::Shading;
+use mode13h::settings::Shading;
 
 /// Bound of a shading's error against a standard.
 ///
@@ -41,7 +41,7 @@ impl Bound {
     /// The bound of a shading in a frame of `width` columns; `None` if the shading claims none.
     ///
     /// ```
-    /// use mode13h::scene::Shading;
+    /// use mode13h::settings::Shading;
     /// use mode13h_lab::truth::{Bound, Standard};
     ///
     /// let bound = Bound::of(Shading::Gouraud88Reseeded, 320).expect("it claims one");

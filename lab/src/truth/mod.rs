@@ -57,7 +57,7 @@ pub use self::error::{ErrorMap, Figures, Shown, Swim};
 use self::eye::Eye;
 pub use self::tiles::Tiles;
 use self::vector::{times, unit, weighted};
-use mode13h::hooks;
+use mode13h::internals;
 pub use mode13h::render::Screen;
 use mode13h::scene::Scene;
 
@@ -239,10 +239,10 @@ impl<'a> Truth<'a> {
             return Err(TruthError::Ambient);
         }
         for (index, light) in scene.lights().iter().enumerate() {
-            hooks::check_light(light).map_err(|what| TruthError::Light { index, what })?;
+            internals::check_light(light).map_err(|what| TruthError::Light { index, what })?;
         }
         for index in 0..scene.objects().len() {
-            hooks::check_object(scene, index).map_err(|what| TruthError::Object { index, what })?;
+            internals::check_object(scene, index).map_err(|what| TruthError::Object { index, what })?;
         }
         let eye = Eye::new(&scene.camera, screen).map_err(TruthError::Camera)?;
         let bodies = (0..scene.objects().len()).map(|index| Body::new(scene, index, &eye)).collect();

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use mode13h::mesh::shapes;
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h_lab::cost::{Settings, Subject, measure, report};
 
 /// Also a report to be looked at: `report.html` among the test's files.

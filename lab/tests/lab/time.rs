@@ -11,8 +11,9 @@ use mode13h::glam::Mat3;
 use mode13h::integer::{self, BinaryAngle};
 use mode13h::mesh::shapes;
 use mode13h::raster::Frame;
-use mode13h::render::{Renderer, VertexPath};
+use mode13h::render::Renderer;
 use mode13h::scene::{Object, Scene, Shared};
+use mode13h::settings::VertexPath;
 use mode13h::vga::Vga;
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {

@@ -6,16 +6,17 @@ use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::hooks;
+use mode13h::internals;
+use mode13h::internals::span::channels::mix_cube;
+use mode13h::internals::span::dither::ThresholdRow;
 use mode13h::light::{Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::raster::FrameError;
-use mode13h::render::{Accuracy, HiddenSurfaces, RenderError, Renderer, Shading, VertexPath};
+use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::{Camera, Object, Scene, Shared};
-use mode13h::span::channels::mix_cube;
-use mode13h::span::dither::ThresholdRow;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::{Probe, ProbeError};
@@ -292,7 +293,7 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
 fn flattened(scene: &Scene) -> [Scene; 2] {
     let [mut flat, mut parted] = [scene.clone(), scene.clone()];
     for (i, object) in scene.objects().iter().enumerate() {
-        let with = |mesh: Mesh| hooks::with_mesh(object, Shared::new(mesh), object.materials.clone());
+        let with = |mesh: Mesh| internals::with_mesh(object, Shared::new(mesh), object.materials.clone());
         let mut mesh = object.mesh().clone();
         mesh.flat();
         flat.objects_mut()[i] = with(mesh);

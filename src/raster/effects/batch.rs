@@ -91,11 +91,11 @@ impl EffectBatch {
 }
 
 impl<D: Cell> Raster<'_, D> {
+    internal! {
     /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
     /// triangle without area draws nothing. Many triangles are drawn sooner by
     /// [`batch_with_effects`](Self::batch_with_effects), by which this is drawn, too.
-    #[doc(hidden)]
-    pub fn triangle_with_effects(
+    fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
@@ -105,10 +105,11 @@ impl<D: Cell> Raster<'_, D> {
         batch.push(vertices, attributes);
         self.batch_with_effects(&mut batch, pipeline)
     }
+    }
 
+    internal! {
     /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
-    #[doc(hidden)]
-    pub fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
+    fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         let EffectBatch { indices, at, depth, shade, texture, fog, channels, slope, lit, scratch } = &mut *batch;
         let effects = EffectColumns { texture, fog, channels, slope, lit: LitColumn::Values(lit) };
         let triangles = Triangles { columns: Columns { at, depth, shade, effects }, indices };
@@ -121,5 +122,6 @@ impl<D: Cell> Raster<'_, D> {
         let drawn = self.picks_with_effects(&triangles, Picks { picks: list.as_slice(), flat: &[] }, pipeline, scratch);
         batch.clear();
         drawn
+    }
     }
 }

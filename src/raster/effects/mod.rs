@@ -49,7 +49,6 @@ use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
-pub use crate::mapping::Mapping;
 use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
 use crate::span::depth::Cells;
 use crate::span::list::{SpanList, Target};

@@ -61,7 +61,6 @@ pub enum SampleSpacing {
 
 impl SampleSpacing {
     /// All of them, the nearest first.
-    #[doc(hidden)]
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
     /// Distance in pixels.

@@ -23,7 +23,6 @@ use crate::lanes::three;
 
 /// The depth plane of a triangle.
 #[derive(Clone, Copy, Debug)]
-#[doc(hidden)]
 pub struct DepthPlane {
     /// At column 0's centre of row 0, with 24 fraction bits, the half included, modulo 2⁶⁴.
     origin: i64,

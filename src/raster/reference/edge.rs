@@ -17,7 +17,7 @@ use super::quotient::Divisor;
 
 /// An edge at one row.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// The first pixel whose centre is on the edge or right of it.
     pub x: i32,
     rest: i32,
@@ -31,7 +31,7 @@ impl Edge {
     /// whose centre lies in `[a.y, b.y)`; `b.y` is greater than `a.y`.
     #[must_use]
     #[inline]
-    pub fn at_row(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
+    pub(crate) fn at_row(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         debug_assert!(dy > 0);
         let below = row * 256 + 128 - a.1;
@@ -54,7 +54,7 @@ impl Edge {
 
     /// Steps to the next row.
     #[inline]
-    pub fn down(&mut self) {
+    pub(crate) fn down(&mut self) {
         // Both rests are below 2²⁹.
         self.rest += self.step_rest;
         let carry = i32::from(self.rest >= self.denominator);

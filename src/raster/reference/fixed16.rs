@@ -22,7 +22,7 @@ use super::shade::ShadePlane;
 
 /// The shade plane of a triangle, for sums in 16.16.
 #[derive(Clone, Copy, Debug)]
-pub struct ShadePlane16 {
+pub(crate) struct ShadePlane16 {
     plane: ShadePlane,
     step: u32,
 }
@@ -31,7 +31,7 @@ impl ShadePlane16 {
     /// The plane of any three values of 0 to 0xFF00 at the corners of a triangle that is not degenerate,
     /// in the order of its vertices.
     #[must_use]
-    pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
+    pub(crate) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let plane = ShadePlane::of_values(triangle, shades);
         // 2⁸ · |per_column| / A, by its quotient and its rest: at most 2⁴⁶, and less than A.
         let area = plane.area();
@@ -45,7 +45,7 @@ impl ShadePlane16 {
     /// Step from pixel to pixel, in 1/65,536 shade modulo 2³².
     #[must_use]
     #[inline]
-    pub fn step(&self) -> u32 {
+    pub(crate) fn step(&self) -> u32 {
         self.step
     }
 
@@ -53,7 +53,7 @@ impl ShadePlane16 {
     /// 1/65,536, rounded back toward where shades come from, plus half a shade.
     #[must_use]
     #[inline]
-    pub fn start(&self, x: i32, y: i32) -> u32 {
+    pub(crate) fn start(&self, x: i32, y: i32) -> u32 {
         let area = self.plane.area();
         // N·2⁸ / A, N at most 2⁵⁸, by its quotient and its rest, which is less than A.
         let (whole, rest) = area.div_rem_floor(self.plane.numerator(x, y));

@@ -22,7 +22,7 @@ use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_qu
 
 /// The perspective-correct shades of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct HyperbolicPlane {
+pub(crate) struct HyperbolicPlane {
     weights: Weights,
     depths: [i64; 3],
     shades: [i64; 3],
@@ -33,7 +33,7 @@ impl HyperbolicPlane {
     ///
     /// The values are in the order of its vertices. A depth of 0 counts as 1.
     #[must_use]
-    pub fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
+    pub(crate) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
         Self { weights: Weights::new(triangle), depths, shades }
     }
@@ -56,14 +56,14 @@ impl HyperbolicPlane {
 
     /// Numerator and denominator of the byte at pixel (`x`, `y`), whose centre lies in the triangle.
     #[must_use]
-    pub fn quotient(&self, x: i32, y: i32) -> (i128, i128) {
+    pub(crate) fn quotient(&self, x: i32, y: i32) -> (i128, i128) {
         let (n, d) = self.sums(self.weights.at(x, y), 128);
         (n, 256 * d)
     }
 
     /// Change of both from one pixel to the next.
     #[must_use]
-    pub fn step(&self) -> (i128, i128) {
+    pub(crate) fn step(&self) -> (i128, i128) {
         let (n, d) = self.sums(self.weights.per_column(), 128);
         (n, 256 * d)
     }

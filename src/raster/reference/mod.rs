@@ -14,17 +14,17 @@
 //! | [`depth`] | the depth at a pixel |
 //! | `texture`, `level` | the texture coordinates at a pixel, and the level of a mipmap |
 
-pub mod cover;
-pub mod depth;
-pub mod edge;
-pub mod fixed16;
+pub(crate) mod cover;
+pub(crate) mod depth;
+pub(crate) mod edge;
+pub(crate) mod fixed16;
 #[cfg(feature = "alloc")]
-pub mod float;
-pub mod hyperbolic;
+pub(crate) mod float;
+pub(crate) mod hyperbolic;
 #[cfg(feature = "alloc")]
 pub(super) mod level;
-pub mod quotient;
-pub mod shade;
+pub(crate) mod quotient;
+pub(crate) mod shade;
 #[cfg(feature = "alloc")]
 pub(super) mod texture;
 pub(super) mod weights;

@@ -139,6 +139,7 @@ impl Key {
 }
 
 impl<D: Cell> Raster<'_, D> {
+    internal! {
     /// Draws all `faces` of a frame, of each pixel the nearest one, and writes no pixel twice: the
     /// bytes of drawing them one after the other with a cleared depth buffer.
     ///
@@ -147,7 +148,8 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
-    /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex, scan_line};
+    /// use mode13h::internals::raster::scan_line;
+    /// use mode13h::raster::{Frame, Raster, Interpolation, Vertex};
     ///
     /// let at = |x, y, depth| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::default(), depth);
     /// let faces = [
@@ -166,13 +168,13 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// # Errors
     /// `scratch` is too small for so many faces. Nothing is drawn then.
-    #[doc(hidden)]
-    pub fn scan_line(
+    fn scan_line(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],
         scratch: Scratch<'_>,
     ) -> Result<DrawStats, ScratchError> {
         self.scan_line_with(faces, scratch, |_, _, _, _, _| false)
+    }
     }
 
     /// Draws faces like [`scan_line`](Self::scan_line), but lets `paint` paint them otherwise.

@@ -28,7 +28,7 @@ use super::paint::SurfaceMaterial;
 use crate::light::Lights;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;
-use crate::scene::Shading;
+use crate::settings::Shading;
 use crate::shared::Shared;
 use crate::span::Kernel;
 

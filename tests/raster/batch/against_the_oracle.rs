@@ -1,8 +1,9 @@
 //! Batches against the oracle, at every kernel level: bytes, depths and counts.
 
-use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::internals::raster::Batch;
+use mode13h::internals::span::depth::Cell;
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
-use mode13h::span::depth::Cell;
 
 use super::interpolations;
 use super::shapes::{CLASSES, shape};

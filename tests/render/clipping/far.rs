@@ -2,7 +2,8 @@
 
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
-use mode13h::render::{Renderer, Screen, Shading};
+use mode13h::render::{Renderer, Screen};
+use mode13h::settings::Shading;
 
 use super::scene;
 use crate::support::judged::judged;

@@ -5,14 +5,17 @@
 //! end of their pages, with nothing readable or writable beside them. A fault ends the test program.
 
 use mode13h::glam::Vec3;
+use mode13h::internals::raster::Batch;
+use mode13h::internals::span::channels;
+use mode13h::internals::span::depth::Cell;
+use mode13h::internals::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
+use mode13h::internals::span::list::{self, Listed, ListedDepths};
 use mode13h::mesh::Mesh;
-use mode13h::raster::{Batch, DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
-use mode13h::render::{Accuracy, HiddenSurfaces, Renderer, Shading};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::render::Renderer;
 use mode13h::scene::{Object, Scene};
-use mode13h::span::depth::Cell;
-use mode13h::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
-use mode13h::span::list::{self, Listed, ListedDepths};
-use mode13h::span::{Kernel, channels};
+use mode13h::settings::{Accuracy, HiddenSurfaces, Shading};
+use mode13h::span::Kernel;
 
 use super::guarded::{Side, arrays, guarded};
 use super::ran;

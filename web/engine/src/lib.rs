@@ -105,7 +105,7 @@ extern "C" fn about() {
     let levels = levels.map(|level| json!({ "label": level.label, "color": format!("#{:06x}", level.color) }));
     let about = json!({
         "shipped": shipped.collect::<Value>(),
-        "shadings": mode13h::render::Shading::ALL.map(mode13h::render::Shading::name),
+        "shadings": mode13h::settings::Shading::ALL.map(mode13h::settings::Shading::name),
         "levels": levels.collect::<Value>(),
         "notTaken": format!("#{:06x}", error_levels::NOT_TAKEN),
         "kernel": mode13h::span::Kernel::default().name(),

@@ -3,7 +3,8 @@
 //! What no line names is left to the scene and the plan.
 
 use mode13h::plan::Effect;
-use mode13h::render::{Accuracy, Renderer};
+use mode13h::render::Renderer;
+use mode13h::settings::Accuracy;
 
 /// Sets a renderer by the lines, and takes back what was set before.
 pub(crate) fn apply(renderer: &mut Renderer, lines: &str) -> Result<(), String> {

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 use mode13h::plan::{Effect, FaceShading};
-use mode13h::render::{HiddenSurfaces, Mapping, Shading, VertexPath};
-use mode13h::scene::DitherPattern;
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h_assets::shipped;
 

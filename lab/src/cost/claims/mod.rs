@@ -23,8 +23,9 @@ use super::interleaved::{Outcome, Spent, run_interleaved};
 use super::statistics::{Ratio, quartiles};
 use super::{Claim, CostError};
 use crate::truth::Standard;
-use mode13h::render::{Renderer, Shading};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
+use mode13h::settings::Shading;
 use mode13h_conformance::Random;
 
 /// Scenes, and the shadings that draw them.

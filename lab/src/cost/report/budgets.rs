@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::figures::{DASH, asked, count, name_of, percent, ratio, shades, time};
 use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::{BudgetRow, Study};
-use mode13h::render::FaceShading;
+use mode13h::plan::FaceShading;
 
 /// The tables and the chart, for the page.
 pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::figures::{asked, name_of, time_tick};
 use super::labels::{Rectangle, places};
 use crate::cost::{ShadingRow, Study};
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 /// Errors below are drawn here: a logarithmic axis has no 0.
 const FLOOR: f64 = 0.01;

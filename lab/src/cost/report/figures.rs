@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 pub(super) const DASH: &str = "–";
 

@@ -7,7 +7,7 @@ use super::pictures;
 use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study, ties};
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 /// A part of a frame's time: its name, its class in the style, and which it is.
 type Part = (&'static str, &'static str, fn(&Split) -> f64);

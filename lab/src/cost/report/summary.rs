@@ -2,7 +2,7 @@
 
 use super::figures::{at_most, counted_shades, ratio, time};
 use crate::cost::{ShadingRow, Study};
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 /// Below this many shades a difference between two largest errors is none that anyone sees.
 const NOTHING: f64 = 0.05;

@@ -6,7 +6,7 @@ use super::{budget_svg, chart_svg, figures::name_of, html, summary, text, time_s
 use crate::cost::{
     Aspect, BudgetRow, Claim, Errors, Host, Nanoseconds, OptionRow, ShadingRow, Split, Study, TimeRow, Verdict,
 };
-use mode13h::render::Shading;
+use mode13h::settings::Shading;
 
 fn time(median: f64) -> Nanoseconds {
     Nanoseconds { median, lower_quartile: 0.98 * median, upper_quartile: 1.05 * median }

@@ -8,8 +8,9 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light, Material};
 use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::{BIOS, Rgb};
-use mode13h::render::{Accuracy, Renderer};
+use mode13h::render::Renderer;
 use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene};
+use mode13h::settings::Accuracy;
 use mode13h::vga::Vga;
 
 use crate::support::scenes::framed;
@@ -177,7 +178,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
 /// kinds, which are checked where they are read.
 fn sources() -> Vec<PathBuf> {
     let root = crate::support::workspace::root().join("src");
-    let mut files = vec![root.join("settings.rs")];
+    let mut files = vec![root.join("settings/options.rs")];
     for folder in ["scene", "light", "mesh"] {
         let entries = fs::read_dir(root.join(folder)).expect("a folder");
         files.extend(entries.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file()));

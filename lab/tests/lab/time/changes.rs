@@ -11,10 +11,10 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
-use mode13h::render::{
-    Accuracy, HiddenSurfaces, Mapping, RenderError, Renderer, Screen, Settings, Shading, Stats, VertexPath,
-};
-use mode13h::scene::{DitherPattern, Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
+use mode13h::render::{RenderError, Renderer, Screen, Stats};
+use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
+use mode13h::settings::DitherPattern;
+use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
@@ -931,7 +931,7 @@ pub(super) fn in_the_sources() -> Vec<String> {
     let mut names: Vec<String> =
         paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
     // Of a renderer and of a scene.
-    let settings = names_in(&fs::read_to_string(root.join("settings.rs")).expect("a file"));
+    let settings = names_in(&fs::read_to_string(root.join("settings/options.rs")).expect("a file"));
     let fields: Vec<String> = settings.into_iter().filter(|name| name.starts_with("Settings.")).collect();
     names.extend(fields.iter().map(|name| format!("Scene.{}", name.replacen('S', "s", 1))));
     names.extend(fields);

@@ -1,11 +1,9 @@
-//! How to draw: one struct of choices, for a scene and for a renderer alike, and whose choice counts.
+//! One struct of choices, for a scene and for a renderer alike, and whose choice counts.
 
 use core::fmt;
 
-use crate::mapping::Mapping;
+use super::{DitherPattern, Mapping, Shading};
 use crate::names::named;
-use crate::shading::Shading;
-use crate::span::dither::DitherPattern;
 
 named! {
     /// The way to leave out hidden surfaces.
@@ -19,7 +17,7 @@ named! {
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
         /// All faces of the frame at once, row by row, each pixel written once
-        /// ([`raster::scan_line`](crate::raster::scan_line)). The bytes equal those with the depth buffer.
+        /// (`raster::scan_line`). The bytes equal those with the depth buffer.
         ScanLine = "scan-line",
     }
 }
@@ -95,10 +93,10 @@ impl fmt::Display for Accuracy {
 /// which chooses the cheapest that is right.
 ///
 /// ```
-/// use mode13h::scene::Settings;
+/// use mode13h::settings::Settings;
 ///
 /// let scene = Settings { mipmaps: Some(true), max_time: Some(5.0), ..Settings::default() };
-/// let renderer = Settings { accuracy: Some(mode13h::render::Accuracy::WithinError(2.0)), ..Settings::default() };
+/// let renderer = Settings { accuracy: Some(mode13h::settings::Accuracy::WithinError(2.0)), ..Settings::default() };
 /// let merged = renderer.or(&scene);
 /// assert_eq!((merged.mipmaps, merged.max_time), (Some(true), None));
 /// ```

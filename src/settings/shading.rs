@@ -10,7 +10,7 @@ named! {
         /// One shade for each face.
         Flat = "flat",
         /// The method printed in the sources: vertices on whole pixels, a step for every span by a division that cuts.
-        /// Without exact cover ([`raster::vintage`](crate::raster::vintage)).
+        /// Without exact cover (`raster::vintage`).
         GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, each row of a triangle one span.
         Gouraud88 = "gouraud-8.8",

@@ -1,7 +1,81 @@
-//! Hooks for a laboratory, beside the public API: what drew each pixel, one triangle at a time, and a renderer's
-//! settings.
+//! The inside of the engine, for the laboratory, the conformance crate, tests and benchmarks: what drew each pixel, one
+//! triangle at a time; settings of a renderer that no game needs; the loops over spans, and the stages of the raster.
 //!
-//! A game needs none of this. It may change with any version.
+//! It may change with any version.
+
+/// Makes modules that pass on what is public in those of the same names.
+macro_rules! modules {
+    ($room:ident: $($(#[$meta:meta])* $module:ident)*) => {
+        $($(#[$meta])* pub mod $module { pub use crate::$room::$module::*; })*
+    };
+    ($room:ident::$part:ident: $($(#[$meta:meta])* $module:ident)*) => {
+        $($(#[$meta])* pub mod $module { pub use crate::$room::$part::$module::*; })*
+    };
+}
+
+/// Eight numbers at a time.
+pub mod lanes {
+    pub use crate::lanes::*;
+}
+
+/// The loops over spans, and their specifications.
+pub mod span {
+    pub use crate::span::lookup::lookup;
+
+    modules! { span:
+        /// Red, green and blue to an index.
+        channels
+        /// Shades on a parabola.
+        curve
+        /// With a depth test.
+        depth
+        /// With ordered dither.
+        dither
+        /// The span in 16.16.
+        fixed16
+        /// Perspective-correct shades in f32.
+        float
+        /// Perspective-correct shades in integers.
+        hyperbolic
+        /// A list of spans.
+        list
+        /// Normals and positions for Phong's shading.
+        lit
+        /// Rows of texels.
+        texture
+        /// The bare entries of the assembly.
+        #[cfg(any(asm_x86_64, asm_i686))]
+        entry
+    }
+}
+
+/// The stages of the raster.
+pub mod raster {
+    pub use crate::raster::triangles::Batch;
+
+    modules! { raster:
+        /// What clipping leaves of a triangle.
+        clip
+        /// Stages over spans: texture, fog, channels, blending, dither, light at every pixel.
+        effects
+        /// The scan-line method.
+        scan_line
+    }
+
+    /// One triangle in integers.
+    pub mod reference {
+        modules! { raster::reference:
+            /// The pixels of a triangle.
+            cover
+            /// The depth at a pixel.
+            depth
+            /// The shade at a pixel.
+            shade
+            /// Exact floors by one reciprocal for each divisor.
+            quotient
+        }
+    }
+}
 
 use alloc::vec::Vec;
 
