@@ -77,7 +77,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let at = moment.of_picture(&stage.scene);
     stage.show(at, Pose::FIRST);
     let mut renderer = shading.renderer(drawing, kernel);
-    ShadingOptions::settle(&mut renderer, &stage.scene)?;
+    shading.settle(&mut renderer, &stage.scene)?;
     if let Some((x, y)) = *pixel {
         let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::from)?;
         return match json {

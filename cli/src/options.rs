@@ -20,7 +20,7 @@ use mode13h_assets::obj;
 use crate::failure::Failure;
 use crate::input::{self, Input};
 use crate::turntable::{Background, Colors, Turntable};
-pub(crate) use shading::ShadingOptions;
+pub(crate) use shading::{ShadingOptions, pace};
 
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";

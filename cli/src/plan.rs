@@ -58,7 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     });
 
     let (mut renderer, mut vga) = (shading.renderer(drawing, kernel), Vga::new());
-    ShadingOptions::settle(&mut renderer, &frames[1])?;
+    shading.settle(&mut renderer, &frames[1])?;
     let alike = renderer.with_same_settings();
     let mut draw = |scene: &Scene| renderer.draw(scene, &mut vga).map_err(Failure::from);
     draw(&frames[0])?;

@@ -1,6 +1,7 @@
 //! `mode13h render`: one picture, a numbered row of them, or a film.
 
 use std::ffi::OsString;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -163,22 +164,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let renderer_pool = RendererPool::new(make);
     let drawn: Mutex<Vec<Drawn>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
-        let mut stats = artist.draw(&motion, &run, number)?;
-        let timed = run.timed.get(number as usize);
-        if let Some(timed) = timed {
-            (stats.max_time, stats.fits) = (timed.max_time, timed.fits);
-        }
+        let stats = artist.draw(&motion, &run, number)?;
+        let timed = run.timed.get(number as usize).copied();
         if let Some(records) = &records {
             artist.record(&records.of(number))?;
         }
         if options.stats && options.json {
-            drawn.lock().unwrap_or_else(PoisonError::into_inner).push((
-                number,
-                stats,
-                timed.map(|timed| timed.milliseconds),
-            ));
+            drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats, timed));
         } else if options.stats {
-            progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}"));
+            let timed = timed.map(|timed| timed.to_string()).unwrap_or_default();
+            progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}{timed}"));
         }
         Ok(())
     };
@@ -258,10 +253,12 @@ fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn:
         json["film"] = film.json;
     }
     if options.stats {
-        let frame = |(number, stats, milliseconds): &Drawn| {
+        let frame = |(number, stats, timed): &Drawn| {
             let mut frame = stats::json(*number, stats);
-            if let Some(milliseconds) = milliseconds {
-                frame["milliseconds"] = (*milliseconds).into();
+            frame["max_time"] = timed.map(|timed| timed.max_time).into();
+            frame["fits"] = timed.is_none_or(|timed| timed.fits).into();
+            if let Some(timed) = timed {
+                frame["milliseconds"] = timed.milliseconds.into();
             }
             frame
         };
@@ -385,14 +382,23 @@ impl Motion {
     }
 }
 
-/// Number and counts of a frame, and its milliseconds if it was timed.
-type Drawn = (u32, Stats, Option<f64>);
+/// Number and counts of a frame, and its times if it was timed.
+type Drawn = (u32, Stats, Option<Timed>);
 
 /// A frame that was timed.
+#[derive(Clone, Copy)]
 struct Timed {
-    max_time: Option<f32>,
+    /// In milliseconds.
+    max_time: f32,
     milliseconds: f64,
     fits: bool,
+}
+
+impl fmt::Display for Timed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let says = if self.fits { "the least in" } else { "takes more than" };
+        write!(f, ", {says} {} ms", self.max_time)
+    }
 }
 
 /// Errors that the frames are drawn within. Where they are to fit in a time, every frame was drawn once for that, one
@@ -421,22 +427,23 @@ impl Run {
             return Ok(Run { errors: run.errors, timed: Vec::new() });
         }
         let mut renderer = shading.renderer(drawing, kernel);
-        if renderer.settings.or(&stage.scene.settings).time_for_error().is_none() {
+        let (Some(max_time), Some(mut pace)) = (shading.max_time(), shading.pace(&renderer)) else {
             return match record_errors {
                 Some(path) => Err(Failure::words(format!("{}: no --max-time chooses errors", path.display()))),
                 None => Ok(Run::default()),
             };
-        }
+        };
         let (mut stage, mut vga, mut run) = (stage.clone(), Vga::new(), Run::default());
         for number in 0..motion.frames {
             let (seconds, pose) = motion.of(number, &stage);
             stage.show(seconds, pose);
             if number == 0 {
-                calibrate(&mut renderer, &stage.scene, &mut vga, clock()).map_err(Failure::from)?;
+                calibrate((&mut renderer, &mut pace), &stage.scene, &mut vga, clock()).map_err(Failure::from)?;
             }
-            let timed = time_frame(&mut renderer, &stage.scene, &mut vga, clock());
-            let (Stats { max_error, max_time, fits, .. }, milliseconds) = timed.map_err(Failure::from)?;
-            run.errors.extend(max_error);
+            run.errors.push(pace.error());
+            let fits = pace.fits();
+            let timed = time_frame((&mut renderer, &mut pace), &stage.scene, &mut vga, clock());
+            let (_, milliseconds) = timed.map_err(Failure::from)?;
             run.timed.push(Timed { max_time, milliseconds, fits });
         }
         let late = run.timed.iter().filter(|frame| !frame.fits).count();
@@ -463,8 +470,7 @@ struct Artist {
 impl Artist {
     fn draw(&mut self, motion: &Motion, run: &Run, number: u32) -> Result<Stats, Failure> {
         if let Some(error) = run.errors.get(number as usize) {
-            let settings = &mut self.renderer.settings;
-            (settings.accuracy, settings.max_time) = (Some(Accuracy::WithinError(*error)), None);
+            self.renderer.settings.accuracy = Some(Accuracy::WithinError(*error));
         }
         let (seconds, pose) = motion.of(number, &self.stage);
         self.stage.show(seconds, pose);

@@ -15,8 +15,6 @@ pub(crate) fn json(number: u32, stats: &Stats) -> Value {
         "frame": number,
         "shading": stats.shading.name(),
         "max_error": stats.max_error,
-        "max_time": stats.max_time,
-        "fits": stats.fits,
         "arithmetic": stats.vertex_path.name(),
         "kernel": stats.kernel,
         "hidden_surfaces": stats.hidden_surfaces.name(),

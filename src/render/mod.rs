@@ -11,7 +11,7 @@
 //! | `hidden_surfaces` | the ways to visible surfaces: faces drawn as they come, far to near, or row by row |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `integer` | a scene in 16.16 |
-//! | `time_budget` | the least error that fits in a time |
+//! | `pace` | the least error that fits in a time, beside the renderer |
 //! | `stats` | counts of a frame |
 //! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
 //!
@@ -31,6 +31,7 @@ mod hidden_surfaces;
 mod integer;
 pub(crate) mod integer_frame;
 mod object;
+mod pace;
 mod paint;
 mod pick;
 mod pipelines;
@@ -38,30 +39,28 @@ mod pixel_light;
 mod stats;
 mod tables;
 mod tessellate;
-mod time_budget;
 mod vertex;
 
 use alloc::vec::Vec;
-use core::time::Duration;
 
 use self::hidden_surfaces::Scratch;
 use self::integer::IntegerPath;
 use self::object::ObjectState;
 use self::pipelines::Pipelines;
 use self::tables::Tables;
-use self::time_budget::TimeBudget;
 use crate::palette::{BIOS, Palette};
 use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
 use crate::raster::columns::Triangles;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
-use crate::settings::{Accuracy, HiddenSurfaces, Settings, VertexPath};
+use crate::settings::{HiddenSurfaces, Settings, VertexPath};
 use crate::span::Kernel;
 use crate::vga::Vga;
 pub use crate::view::Screen;
 use crate::view::{ObjectView, View};
 pub use error::RenderError;
 use error::check;
+pub use pace::Pace;
 pub use stats::{Shares, Stats};
 
 /// Inputs of the last frame that was drawn, beside its objects.
@@ -135,10 +134,6 @@ pub struct Renderer {
     vertex_bits: u32,
     cache: Cache,
     scratch: Scratch,
-    /// Choice of the error, where that is to fit in a time.
-    time_budget: Option<TimeBudget>,
-    /// True if the last frame was not left as it was.
-    redrawn: bool,
     /// The machine's stamp after the last frame, and what it came to.
     last: Option<(u64, Stats)>,
 }
@@ -154,8 +149,6 @@ impl Renderer {
             vertex_bits: VERTEX_BITS,
             cache: Cache::default(),
             scratch: Scratch::default(),
-            time_budget: None,
-            redrawn: false,
             last: None,
         }
     }
@@ -163,41 +156,7 @@ impl Renderer {
     /// A new renderer that is set as this one and draws the same bytes, for another thread.
     #[must_use]
     pub fn with_same_settings(&self) -> Self {
-        Self {
-            settings: self.settings,
-            kernel: self.kernel,
-            overrides: self.overrides.clone(),
-            time_budget: self.time_budget.clone(),
-            ..Self::new()
-        }
-    }
-
-    /// Tells how long the frame took that was drawn last: what [`Settings::max_time`] chooses the errors of the next
-    /// frames by. The errors follow from these times alone; the engine reads no clock.
-    ///
-    /// ```
-    /// use mode13h::Angle;
-    /// use mode13h::mesh::shapes;
-    /// use mode13h::render::Renderer;
-    /// use mode13h::scene::Scene;
-    /// use mode13h::vga::Vga;
-    /// use std::time::Instant;
-    ///
-    /// let (mut scene, mut renderer, mut vga) = (Scene::showing(shapes::torus(48, 24)), Renderer::new(), Vga::new());
-    /// renderer.settings.max_time = Some(5.0);
-    /// for _ in 0..40 {
-    ///     scene.objects_mut()[0].rotate_y(Angle::from_degrees(1.0));
-    ///     let start = Instant::now();
-    ///     let stats = renderer.draw(&scene, &mut vga)?;
-    ///     renderer.report_frame_time(start.elapsed());
-    ///     assert!(stats.max_error <= Some(16.0));
-    /// }
-    /// # Ok::<(), mode13h::render::RenderError>(())
-    /// ```
-    pub fn report_frame_time(&mut self, time: Duration) {
-        if let Some(time_budget) = &mut self.time_budget {
-            time_budget.took(self.redrawn.then_some(time.as_secs_f32() * 1000.0));
-        }
+        Self { settings: self.settings, kernel: self.kernel, overrides: self.overrides.clone(), ..Self::new() }
     }
 
     /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
@@ -316,14 +275,12 @@ impl Renderer {
         }
         match self.last {
             Some((stamp, last)) if !changed && stamp == vga.stamp() && self.keeps_frames() => {
-                self.redrawn = false;
                 stats.redrawn = false;
                 stats.hidden_surfaces = last.hidden_surfaces;
                 return Ok(stats);
             }
             _ => {}
         }
-        self.redrawn = true;
         let mut frame = Frame::from(&mut *vga);
         frame.clear(scene.background);
         self.fill(scene, &mut stats, frame);
@@ -383,7 +340,7 @@ impl Renderer {
         let rows = frame.rows();
         let before = self.bytes();
         let (mut stats, _) = self.prepare(scene, screen, None, rows.end - rows.start == frame.height())?;
-        (self.last, self.redrawn) = (None, true);
+        self.last = None;
         if clears {
             frame.clear(scene.background);
         }
@@ -456,7 +413,6 @@ impl Renderer {
         }
 
         let mut stats = Stats::new(&settings, self.kernel, self.cache.plan.hidden_surfaces());
-        stats.fits = self.time_budget.as_ref().is_none_or(TimeBudget::fits);
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.cache.states).enumerate() {
             let plan = &self.cache.plan.objects[i];
             if !scene.is_visible(i) {
@@ -499,7 +455,7 @@ impl Renderer {
         self.cache.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
         self.cache.views.extend(scene.objects().iter().enumerate().map(placed));
-        let settings = self.settings_now(scene);
+        let settings = self.settings.or(&scene.settings);
         self.cache.states.resize_with(scene.objects().len(), ObjectState::default);
         self.cache.change.clear();
         for ((object, view), state) in scene.objects().iter().zip(&self.cache.views).zip(&mut self.cache.states) {
@@ -516,21 +472,6 @@ impl Renderer {
         };
         let states = &self.cache.states;
         decide(&inputs, |object| states.get(object).map_or(&[], ObjectState::all_lamps), &mut self.cache.plan);
-        settings
-    }
-
-    /// The settings for the next frame of a scene, with the error that fits in the time for it.
-    fn settings_now(&mut self, scene: &Scene) -> Settings {
-        let mut settings = self.settings.or(&scene.settings);
-        self.time_budget = match (settings.time_for_error(), settings.drawn_accuracy()) {
-            (Some(max_time), Accuracy::WithinError(max_error)) => {
-                let known = self.time_budget.take().filter(|known| known.is_of(max_time, max_error));
-                let time_budget = known.unwrap_or_else(|| TimeBudget::new(max_time, max_error));
-                settings.accuracy = Some(Accuracy::WithinError(time_budget.error()));
-                Some(time_budget)
-            }
-            _ => None,
-        };
         settings
     }
 

@@ -17,10 +17,6 @@ pub struct Stats {
     pub shading: Shading,
     /// Accepted error in shades.
     pub max_error: Option<f32>,
-    /// Time for the frame in milliseconds, if `max_error` was chosen by that.
-    pub max_time: Option<f32>,
-    /// False if not even the greatest accepted error is known to fit in `max_time`.
-    pub fits: bool,
     /// The way from mesh to vertices.
     pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
@@ -98,8 +94,6 @@ impl Stats {
         Self {
             shading: accuracy.shading(),
             max_error: accuracy.max_error(),
-            max_time: settings.time_for_error(),
-            fits: true,
             vertex_path: settings.vertex_path.unwrap_or_default(),
             kernel: kernel.name(),
             hidden_surfaces,
@@ -121,17 +115,10 @@ impl Stats {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            shading, max_error, max_time, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, ..
-        } = self;
+        let Self { shading, max_error, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
         let Self { vertices, lit, faces, clipped, culled, drawn, raster, .. } = self;
         let accuracy = max_error.map_or(Accuracy::Shading(*shading), Accuracy::WithinError);
         write!(f, "{accuracy}")?;
-        match max_time {
-            Some(max_time) if self.fits => write!(f, ", the least in {max_time} ms")?,
-            Some(max_time) => write!(f, ", which takes more than {max_time} ms")?,
-            None => {}
-        }
         if max_error.is_some() {
             for (i, (shading, triangles)) in self.shares.into_iter().enumerate() {
                 write!(f, "{}{triangles} {shading}", if i == 0 { " (" } else { ", " })?;

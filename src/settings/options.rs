@@ -95,20 +95,15 @@ impl fmt::Display for Accuracy {
 /// ```
 /// use mode13h::settings::Settings;
 ///
-/// let scene = Settings { mipmaps: Some(true), max_time: Some(5.0), ..Settings::default() };
+/// let scene = Settings { mipmaps: Some(true), tessellation: Some(5.0), ..Settings::default() };
 /// let renderer = Settings { accuracy: Some(mode13h::settings::Accuracy::WithinError(2.0)), ..Settings::default() };
 /// let merged = renderer.or(&scene);
-/// assert_eq!((merged.mipmaps, merged.max_time), (Some(true), None));
+/// assert_eq!((merged.mipmaps, merged.tessellation), (Some(true), Some(5.0)));
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Settings {
     /// Accuracy of shades: a shading, or an error budget.
     pub accuracy: Option<Accuracy>,
-    /// Time for a frame in milliseconds, above 0: each frame is drawn within the least error that fits, as far as the
-    /// times tell that [`Renderer::report_frame_time`](crate::render::Renderer::report_frame_time) is told. An error in
-    /// `accuracy` is then the greatest that is accepted, otherwise 16 shades. A shading there is a contradiction: an error
-    /// when a scene is drawn.
-    pub max_time: Option<f32>,
     /// Method for hidden surfaces, right or wrong.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// Mapping of textures.
@@ -126,19 +121,14 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The greatest error that is chosen to fit in a time, in shades.
-    pub(crate) const MAX_ERROR: f32 = 16.0;
-
     /// The tessellation error that is asked for by a shading alone, in shades.
     const DEFAULT_TESSELLATION: f32 = 1.0;
 
-    /// These settings, and another's where these leave the choice open. Accuracy and time are one choice.
+    /// These settings, and another's where these leave the choice open.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
-        let Self { accuracy, max_time, .. } = *if self.has_accuracy() { self } else { other };
         Self {
-            accuracy,
-            max_time,
+            accuracy: self.accuracy.or(other.accuracy),
             hidden_surfaces: self.hidden_surfaces.or(other.hidden_surfaces),
             mapping: self.mapping.or(other.mapping),
             mipmaps: self.mipmaps.or(other.mipmaps),
@@ -148,33 +138,14 @@ impl Settings {
         }
     }
 
-    /// Returns whether they say anything about accuracy: a shading, an error or a time.
-    #[must_use]
-    pub const fn has_accuracy(&self) -> bool {
-        self.accuracy.is_some() || self.max_time.is_some()
-    }
-
-    /// The accuracy that is asked for, or the default. With a time alone it is the greatest error.
-    #[must_use]
-    pub fn asked_accuracy(&self) -> Accuracy {
-        let of_time = self.max_time.map(|_| Accuracy::WithinError(Self::MAX_ERROR));
-        self.accuracy.or(of_time).unwrap_or_default()
-    }
-
     /// The accuracy that the vertex path offers for what is asked.
     #[must_use]
     pub fn drawn_accuracy(&self) -> Accuracy {
-        match self.asked_accuracy() {
+        match self.accuracy.unwrap_or_default() {
             Accuracy::Shading(shading) if self.is_integer() => shading.in_integers().into(),
             Accuracy::WithinError(_) if self.is_integer() => Accuracy::default(),
             asked => asked,
         }
-    }
-
-    /// The time for a frame in milliseconds, if the error is chosen by that.
-    #[must_use]
-    pub fn time_for_error(&self) -> Option<f32> {
-        self.max_time.filter(|_| self.drawn_accuracy().max_error().is_some())
     }
 
     /// Returns whether vertices are made in 16.16.
@@ -197,15 +168,10 @@ impl Settings {
     /// Checks the settings; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());
-        if self.max_time.is_some() && matches!(self.accuracy, Some(Accuracy::Shading(_))) {
-            Err("a shading and a time for a frame contradict each other")
-        } else if !legal(self.tessellation) || !legal(self.accuracy.and_then(Accuracy::max_error)) {
-            Err("a number of shades must be above 0 and finite")
-        } else if !legal(self.max_time) {
-            Err("a time for a frame must be above 0 and finite")
-        } else {
-            Ok(())
+        if !legal(self.tessellation) || !legal(self.accuracy.and_then(Accuracy::max_error)) {
+            return Err("a number of shades must be above 0 and finite");
         }
+        Ok(())
     }
 }
 
@@ -224,7 +190,7 @@ mod tests {
                     let scene = Settings { accuracy: of_scene, ..Settings::default() };
                     let merged = settings.or(&scene);
                     let asked = own.or(of_scene).unwrap_or_default();
-                    assert_eq!(merged.asked_accuracy(), asked);
+                    assert_eq!(merged.accuracy.unwrap_or_default(), asked);
                     let drawn = match (vertex_path, asked) {
                         (VertexPath::Float, asked) => asked,
                         // 16.16 has flat shades, and no light at pixels and no budget.
@@ -234,47 +200,6 @@ mod tests {
                     assert_eq!(merged.drawn_accuracy(), drawn, "{settings:?} {scene:?}");
                 }
             }
-        }
-    }
-
-    /// Every combination of times and errors that a renderer and a scene may ask for: the renderer's replace the scene's
-    /// as a whole, and an error is the greatest that a time may choose.
-    #[test]
-    fn a_time_chooses_among_the_errors_up_to_the_greatest() {
-        let within = |error: f32| Accuracy::WithinError(error);
-        let all = [(None, None), (None, Some(2.0)), (Some(within(3.0)), Some(2.0)), (Some(within(3.0)), None)];
-        for own in all {
-            for of_scene in all {
-                let settings = Settings { accuracy: own.0, max_time: own.1, ..Settings::default() };
-                let scene = Settings { accuracy: of_scene.0, max_time: of_scene.1, ..Settings::default() };
-                let (accuracy, max_time) = match (own, of_scene) {
-                    ((None, None), (None, None)) => (Accuracy::default(), None),
-                    ((None, None), asked) | (asked, _) => (asked.0.unwrap_or(within(16.0)), asked.1),
-                };
-                let merged = settings.or(&scene);
-                let chosen = (merged.drawn_accuracy(), merged.time_for_error());
-                assert_eq!(chosen, (accuracy, max_time), "{own:?} {of_scene:?}");
-                assert_eq!(merged.check(), Ok(()));
-                let integers = Settings { vertex_path: Some(VertexPath::Integer), ..merged };
-                assert_eq!(integers.time_for_error(), None, "{own:?} {of_scene:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_time_beside_a_shading_or_out_of_range_is_refused() {
-        let check = |accuracy: Option<Accuracy>, own, of_scene| {
-            let settings = Settings { accuracy, max_time: own, ..Settings::default() };
-            settings.or(&Settings { max_time: of_scene, ..Settings::default() }).check()
-        };
-        let phong = Some(Accuracy::Shading(Shading::Phong));
-        assert!(check(phong, Some(2.0), None).is_err_and(|what| what.contains("contradict")));
-        // The scene's is replaced.
-        assert_eq!(check(phong, None, Some(2.0)), Ok(()));
-        assert_eq!(check(phong, None, Some(-2.0)), Ok(()));
-        for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            assert!(check(None, Some(wrong), None).is_err_and(|what| what.contains("time for a frame")), "{wrong}");
-            assert!(check(None, None, Some(wrong)).is_err_and(|what| what.contains("time for a frame")), "{wrong}");
         }
     }
 

@@ -277,7 +277,6 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog ends no farther than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry lies behind the last"),
         (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),
-        (cube("render.max-time = -1"), "2:19: key `render.max-time`: expected a number above 0, found -1"),
         // Names of nothing.
         (
             list("objects = [{ shape = 'toroid' }]"),
@@ -493,7 +492,6 @@ mapping = "every-16"
 tessellation = 1.5
 dither = true
 max-error = 2
-max-time = 2.5
 
 [[objects]]
 name = "bar"
@@ -527,19 +525,13 @@ range = 5
 path = { circle = { centre = [0, 1, 0], radius = 2, axis = "z", start = 90 }, rounds = -4 }
 "##;
 
-/// An error or a time counts before a shading.
+/// An error counts before a shading.
 #[test]
 fn accuracy_is_one_choice() {
-    let of = |render: &str| {
-        let settings = scene(&format!("objects = [{{ shape = 'cube' }}]\n[render]\n{render}")).settings;
-        (settings.accuracy, settings.max_time)
-    };
-    let (flat, within) = (Some(Shading::Flat.into()), Some(Accuracy::WithinError(2.0)));
-    assert_eq!(of(""), (None, None));
-    assert_eq!(of("shading = 'flat'"), (flat, None));
-    assert_eq!(of("shading = 'flat'\nmax-error = 2"), (within, None));
-    assert_eq!(of("shading = 'flat'\nmax-time = 5"), (None, Some(5.0)));
-    assert_eq!(of("shading = 'flat'\nmax-time = 5\nmax-error = 2"), (within, Some(5.0)));
+    let of = |render: &str| scene(&format!("objects = [{{ shape = 'cube' }}]\n[render]\n{render}")).settings.accuracy;
+    assert_eq!(of(""), None);
+    assert_eq!(of("shading = 'flat'"), Some(Shading::Flat.into()));
+    assert_eq!(of("shading = 'flat'\nmax-error = 2"), Some(Accuracy::WithinError(2.0)));
 }
 
 #[test]
@@ -565,7 +557,6 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!(scene.settings.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
     assert_eq!(scene.settings.mapping, Some(Mapping::Every16));
     assert_eq!(scene.settings.tessellation, Some(1.5));
-    assert_eq!(scene.settings.max_time, Some(2.5));
     assert!(scene.settings.dither == Some(DitherPattern::Ordered) && !scene.auto_palette);
 
     let [bar, first, second] = scene.objects() else { panic!("{} objects", scene.objects().len()) };

@@ -242,13 +242,11 @@ fn cone(
     Ok(Some(Cone { direction: direction.get_ref().vec3(), inner, outer }))
 }
 
-/// How a scene is to be drawn. An error or a time counts before a shading.
+/// How a scene is to be drawn. An error counts before a shading.
 fn settings(layout: &RenderLayout) -> Settings {
-    let max_time = layout.max_time.map(|milliseconds| milliseconds.0);
-    let shading = layout.shading.as_ref().filter(|_| max_time.is_none()).map(|name| Accuracy::Shading(name.0));
+    let shading = layout.shading.as_ref().map(|name| Accuracy::Shading(name.0));
     Settings {
         accuracy: layout.max_error.map(|shades| Accuracy::WithinError(shades.0)).or(shading),
-        max_time,
         hidden_surfaces: layout.hidden_surfaces.as_ref().map(|name| name.0),
         mapping: layout.mapping.as_ref().map(|name| name.0),
         mipmaps: layout.mipmaps,

@@ -155,7 +155,6 @@ pub(super) struct RenderLayout {
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<OffOr<DitherPattern>>,
     pub(super) max_error: Option<Positive>,
-    pub(super) max_time: Option<Positive>,
 }
 
 /// `subdivisions`: a whole number, or several in a list.

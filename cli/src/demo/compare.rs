@@ -15,7 +15,7 @@ use mode13h::vga::Vga;
 use mode13h::window::{Input, Key};
 use mode13h_lab::truth::Figures;
 
-use super::shading::ShadingChoice;
+use super::shading::{Pacing, ShadingChoice};
 use super::timing::Timing;
 use crate::overlay::{Row, Sheet, Side};
 
@@ -27,6 +27,7 @@ const CLICK: f32 = 2.0;
 pub(super) struct Half {
     pub(super) shading: ShadingChoice,
     pub(super) renderer: Renderer,
+    pacing: Pacing,
     pub(super) vga: Vga,
     pub(super) timing: Timing,
 }
@@ -43,6 +44,7 @@ impl Compare {
         let right = Half {
             shading: ShadingChoice::new(Shading::Phong, None),
             renderer: Renderer::new(),
+            pacing: Pacing::default(),
             vga: Vga::new(),
             timing: Timing::default(),
         };
@@ -79,17 +81,18 @@ impl Compare {
     /// Gives the right half a renderer that is set as the left one's.
     pub(super) fn renew(&mut self, left: &Renderer) {
         self.right.renderer = left.with_same_settings();
+        self.right.pacing = Pacing::default();
         self.right.timing = Timing::default();
     }
 
     /// Draws the right half. Whether it is another picture than before.
     pub(super) fn draw(&mut self, scene: &Scene, seconds: f64) -> Result<bool, RenderError> {
-        let Half { shading, renderer, vga, timing } = &mut self.right;
-        shading.set(renderer);
+        let Half { shading, renderer, pacing, vga, timing } = &mut self.right;
+        shading.set(renderer, pacing);
         let start = Instant::now();
         let stats = renderer.draw(scene, vga)?;
         let taken = start.elapsed();
-        renderer.report_frame_time(taken);
+        pacing.report(&stats, taken);
         timing.add(stats.redrawn.then_some(taken.as_secs_f64()), seconds);
         Ok(stats.redrawn)
     }
@@ -131,7 +134,7 @@ impl Compare {
 
     /// Swaps the halves.
     pub(super) fn swap(&mut self, left: (&mut ShadingChoice, &mut Renderer, &mut Vga, &mut Timing)) {
-        let Half { shading, renderer, vga, timing } = &mut self.right;
+        let Half { shading, renderer, vga, timing, .. } = &mut self.right;
         mem::swap(shading, left.0);
         mem::swap(renderer, left.1);
         mem::swap(vga, left.2);

@@ -58,8 +58,8 @@ impl Demo {
             Row::new("plan", format!("{:.1} µs", self.planning.frame * 1e6)),
             Row::new("error", self.map.figures(self.number, self.seconds, self.shading.budget(self.stats.as_ref()))),
         ];
-        if let Some(Stats { max_error: Some(error), max_time: Some(_), fits, .. }) = &self.stats {
-            let late = if *fits { "" } else { ", takes longer" };
+        if let (Some(Stats { max_error: Some(error), .. }), Some(fits)) = (&self.stats, self.pacing.fits()) {
+            let late = if fits { "" } else { ", takes longer" };
             rows.push(Row::new("within", format!("{error} {}{late}", if *error == 1.0 { "shade" } else { "shades" })));
         }
         if let Some(Stats { hidden_surfaces, vertices, drawn, raster, shares, .. }) = &self.stats {

@@ -55,7 +55,7 @@ use loader::{Inputs, Loader, Loading};
 use magnifier::{Cells, Magnifier};
 use motion::{Motion, STOPPED};
 use pixel::Pixel;
-use shading::ShadingChoice;
+use shading::{Pacing, ShadingChoice};
 use step::Stepper;
 use timing::Timing;
 
@@ -219,6 +219,7 @@ struct Demo {
     wrong: Option<Failure>,
     renderer: Renderer,
     shading: ShadingChoice,
+    pacing: Pacing,
     /// True if a key chose it.
     chose_shading: bool,
     kernels: Choice<Kernel>,
@@ -274,6 +275,7 @@ impl Demo {
             wrong: None,
             renderer: shading.renderer(drawing, kernel),
             shading: ShadingChoice::of(shading.asked_for(&Settings::default())),
+            pacing: Pacing::default(),
             chose_shading: false,
             kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
             palettes: palettes(&stage, drawing),
@@ -372,6 +374,7 @@ impl Demo {
             }
         } else {
             self.renderer = shading.renderer(drawing, *self.kernels.chosen());
+            self.pacing = Pacing::default();
             self.switches.clear();
             self.chose_palette = false;
             self.motion.begin_anew();
@@ -597,7 +600,7 @@ impl Demo {
 
     fn draw_scene(&mut self) -> Result<(), Failure> {
         self.stage.show(self.motion.seconds(), self.motion.pose);
-        self.shading.set(&mut self.renderer);
+        self.shading.set(&mut self.renderer, &mut self.pacing);
         self.renderer.kernel = *self.kernels.chosen();
         self.renderer.settings.mapping = *self.mappings.chosen();
         // Of a picture that stands still the time for its plan stays, too.
@@ -609,7 +612,7 @@ impl Demo {
         let start = Instant::now();
         let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)?;
         let taken = start.elapsed();
-        self.renderer.report_frame_time(taken);
+        self.pacing.report(&stats, taken);
         self.is_redrawn = stats.redrawn;
         self.timing.add(stats.redrawn.then_some(taken.as_secs_f64()), self.seconds);
         // What was counted is of the frame that is shown, if that was there already.

@@ -1,10 +1,13 @@
 //! Choice of the shades by keys: a shading, a budget of error, or a time for a frame.
 
 use std::fmt;
+use std::time::Duration;
 
-use mode13h::render::{Renderer, Stats};
+use mode13h::render::{Pace, Renderer, Stats};
 use mode13h::settings::{Accuracy, Shading};
 use mode13h::window::{Input, Key};
+
+use crate::options::pace;
 
 /// The budgets that B goes through, in shades of 1/255 of full intensity.
 pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
@@ -184,19 +187,47 @@ impl ShadingChoice {
         }
     }
 
-    /// Sets a renderer to draw by it.
-    pub(super) fn set(&self, renderer: &mut Renderer) {
-        (renderer.settings.accuracy, renderer.settings.max_time) = match self.by {
-            By::Shading => (Some(Accuracy::Shading(self.shading)), None),
-            By::Budget => (Some(Accuracy::WithinError(self.budget)), None),
-            By::Time => (self.max_error.map(Accuracy::WithinError), Some(self.time)),
+    /// Sets a renderer to draw the next frame by it.
+    pub(super) fn set(&self, renderer: &mut Renderer, pacing: &mut Pacing) {
+        let accuracy = match self.by {
+            By::Shading => Accuracy::Shading(self.shading),
+            By::Budget => Accuracy::WithinError(self.budget),
+            By::Time => pacing.of(self.time, self.max_error.unwrap_or(Pace::MAX_ERROR)).accuracy(),
         };
+        if self.by != By::Time {
+            pacing.0 = None;
+        }
+        renderer.settings.accuracy = Some(accuracy);
     }
 
     /// The error that is or would be accepted, in shades. A time chooses it: then that of the last frame.
     pub(super) fn budget(&self, last: Option<&Stats>) -> f32 {
         let chosen = if self.by == By::Time { last.and_then(|stats| stats.max_error) } else { None };
         chosen.unwrap_or(self.budget)
+    }
+}
+
+/// The pace of frames that are to fit in a time, and the time and the greatest error that it is of.
+#[derive(Default)]
+pub(super) struct Pacing(Option<((f32, f32), Pace)>);
+
+impl Pacing {
+    /// The pace of this time and this greatest error.
+    fn of(&mut self, time: f32, max_error: f32) -> &Pace {
+        let known = self.0.take().filter(|(of, _)| *of == (time, max_error));
+        &self.0.insert(known.unwrap_or_else(|| ((time, max_error), pace(time, max_error)))).1
+    }
+
+    /// Takes how long the last frame took.
+    pub(super) fn report(&mut self, stats: &Stats, time: Duration) {
+        if let Some((_, pace)) = &mut self.0 {
+            pace.report(stats, time);
+        }
+    }
+
+    /// Returns whether frames fit, if they are to fit in a time.
+    pub(super) fn fits(&self) -> Option<bool> {
+        self.0.as_ref().map(|(_, pace)| pace.fits())
     }
 }
 
@@ -276,19 +307,19 @@ mod tests {
         let shading = ShadingChoice::of((Accuracy::WithinError(8.0), Some(3.0)));
         assert_eq!(shading.to_string(), "3 ms a frame");
         let mut renderer = Renderer::new();
-        shading.set(&mut renderer);
-        let settings = &renderer.settings;
-        assert_eq!((settings.accuracy, settings.max_time), (Some(Accuracy::WithinError(8.0)), Some(3.0)));
-        ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
-        assert_eq!(renderer.settings.max_time, None);
+        let mut pacing = Pacing::default();
+        shading.set(&mut renderer, &mut pacing);
+        assert_eq!((renderer.settings.accuracy, pacing.fits()), (Some(Accuracy::WithinError(8.0)), Some(true)));
+        ShadingChoice::new(Shading::Phong, None).set(&mut renderer, &mut pacing);
+        assert_eq!(pacing.fits(), None);
     }
 
     #[test]
     fn a_renderer_draws_by_what_was_chosen() {
         let mut renderer = Renderer::new();
-        ShadingChoice::new(Shading::Flat, Some(4.0)).set(&mut renderer);
+        ShadingChoice::new(Shading::Flat, Some(4.0)).set(&mut renderer, &mut Pacing::default());
         assert_eq!(renderer.settings.accuracy, Some(Accuracy::WithinError(4.0)));
-        ShadingChoice::new(Shading::Phong, None).set(&mut renderer);
+        ShadingChoice::new(Shading::Phong, None).set(&mut renderer, &mut Pacing::default());
         assert_eq!(renderer.settings.accuracy, Some(Accuracy::Shading(Shading::Phong)));
     }
 }

@@ -1,9 +1,11 @@
 //! Shading of faces: `--shading`, `--max-error` and `--max-time`.
 
 use clap::Args;
-use mode13h::render::Renderer;
+use std::time::Duration;
+
+use mode13h::render::{Pace, Renderer};
 use mode13h::scene::Scene;
-use mode13h::settings::{Accuracy, Settings, Shading};
+use mode13h::settings::{Accuracy, Settings, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_lab::cost::calibrate;
@@ -41,9 +43,19 @@ pub(crate) struct ShadingOptions {
 /// A time for a frame on the command line.
 fn milliseconds(words: &str) -> Result<f32, String> {
     match words.parse::<f32>() {
-        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        Ok(number) if number > 0.0 && duration(number).is_some() => Ok(number),
         _ => Err("not a number of milliseconds above 0".to_string()),
     }
+}
+
+/// So many milliseconds; `None` if they are below 0 or no clock has so many.
+fn duration(milliseconds: f32) -> Option<Duration> {
+    Duration::try_from_secs_f32(milliseconds / 1000.0).ok()
+}
+
+/// The pace of frames of so many milliseconds, within this error.
+pub(crate) fn pace(milliseconds: f32, max_error: f32) -> Pace {
+    Pace::new(duration(milliseconds).unwrap_or_default()).at_most(max_error)
 }
 
 impl ShadingOptions {
@@ -54,30 +66,41 @@ impl ShadingOptions {
 
     /// Accuracy and time that are asked for with these settings of a scene.
     pub(crate) fn asked_for(&self, of_scene: &Settings) -> (Accuracy, Option<f32>) {
-        let own = Settings { accuracy: self.accuracy(), max_time: self.max_time, ..Settings::default() };
-        let settings = own.or(of_scene);
-        (settings.asked_accuracy(), settings.time_for_error())
+        match self.max_time {
+            Some(_) => (Accuracy::WithinError(self.max_error.unwrap_or(Pace::MAX_ERROR)), self.max_time),
+            None => (self.accuracy().or(of_scene.accuracy).unwrap_or_default(), None),
+        }
+    }
+
+    /// The time for a frame, in milliseconds.
+    pub(crate) fn max_time(&self) -> Option<f32> {
+        self.max_time
+    }
+
+    /// The pace of the frames of this renderer, if a time was asked for and its vertices know budgets.
+    pub(crate) fn pace(&self, renderer: &Renderer) -> Option<Pace> {
+        let knows_budgets = renderer.settings.vertex_path != Some(VertexPath::Integer);
+        let max_error = self.max_error.unwrap_or(Pace::MAX_ERROR);
+        self.max_time.filter(|_| knows_budgets).map(|milliseconds| pace(milliseconds, max_error))
     }
 
     /// A renderer that is set as the command line says.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
-        (renderer.settings.accuracy, renderer.settings.max_time) = (self.accuracy(), self.max_time);
+        renderer.settings.accuracy = self.accuracy();
         renderer
     }
 
     /// Where the error is to fit in a time, finds it for this scene, says so, and has the renderer draw within it.
-    pub(crate) fn settle(renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
-        let Some(max_time) = renderer.settings.or(&scene.settings).time_for_error() else { return Ok(()) };
-        let stats = calibrate(renderer, scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
-        if let Some(error) = stats.max_error {
-            let accuracy = Accuracy::WithinError(error);
-            match stats.fits {
-                true => eprintln!("mode13h: {accuracy}, the least in {max_time} ms"),
-                false => eprintln!("mode13h: {accuracy}, which takes more than {max_time} ms"),
-            }
-            (renderer.settings.accuracy, renderer.settings.max_time) = (Some(accuracy), None);
+    pub(crate) fn settle(&self, renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
+        let (Some(max_time), Some(mut pace)) = (self.max_time, self.pace(renderer)) else { return Ok(()) };
+        calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
+        let accuracy = pace.accuracy();
+        match pace.fits() {
+            true => eprintln!("mode13h: {accuracy}, the least in {max_time} ms"),
+            false => eprintln!("mode13h: {accuracy}, which takes more than {max_time} ms"),
         }
+        renderer.settings.accuracy = Some(accuracy);
         Ok(())
     }
 }

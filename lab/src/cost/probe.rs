@@ -120,7 +120,7 @@ impl Probe {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
         // Making a table for every digit would take long.
-        let accuracy = self.renderer.settings.or(&scene.settings).asked_accuracy();
+        let accuracy = self.renderer.settings.or(&scene.settings).accuracy.unwrap_or_default();
         let needs_tables = accuracy == Accuracy::Shading(Shading::PhongTable);
         let replaced = needs_tables.then(|| self.renderer.settings.accuracy.replace(Shading::Phong.into()));
         let numbers = self.numbers(scene, screen);

@@ -1,6 +1,7 @@
-//! Frames against the clock: a renderer that chooses the least error that fits in a time is told the times of its frames.
+//! Frames against the clock: a pace that chooses the least error that fits in a time is told the times of its frames.
 
 use alloc::vec::Vec;
+use core::time::Duration;
 
 use super::accuracy::Results;
 use super::clock::Clock;
@@ -8,7 +9,7 @@ use super::configuration::BUDGETS;
 use super::interleaved::Spent;
 use super::{CostError, TimeRow};
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer, Stats};
+use mode13h::render::{Pace, RenderError, Renderer, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
@@ -24,37 +25,40 @@ const TIMES: i32 = 5;
 /// Share of its time that a frame may take beyond it.
 const TOLERANCE: f64 = 1.05;
 
-/// Draws a frame, tells the renderer how long that took, and returns the milliseconds.
+/// Draws a frame within the error that the pace chooses, tells it how long that took, and returns the milliseconds.
 ///
 /// # Errors
 /// As [`Renderer::draw`].
 pub fn time_frame(
-    renderer: &mut Renderer,
+    (renderer, pace): (&mut Renderer, &mut Pace),
     scene: &Scene,
     vga: &mut Vga,
     clock: Clock,
 ) -> Result<(Stats, f64), RenderError> {
+    renderer.settings.accuracy = Some(pace.accuracy());
     let start = (clock.now)();
     let stats = renderer.draw(scene, vga)?;
     let time = (clock.now)().saturating_sub(start);
-    renderer.report_frame_time(time);
+    pace.report(&stats, time);
     Ok((stats, time.as_secs_f64() * 1000.0))
 }
 
-/// Draws a frame as often as it takes to try every error, and says what the next frame is drawn within.
+/// Draws a frame as often as it takes to try every error: the pace then has that of the next frame.
 ///
 /// # Errors
 /// As [`Renderer::draw`].
-pub fn calibrate(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga, clock: Clock) -> Result<Stats, RenderError> {
+pub fn calibrate(
+    (renderer, pace): (&mut Renderer, &mut Pace),
+    scene: &Scene,
+    vga: &mut Vga,
+    clock: Clock,
+) -> Result<(), RenderError> {
     // Every frame is drawn, though nothing moves.
     renderer.force(Effect::Transform, Some(true));
-    let mut frames = (0..=CALIBRATION).map(|_| time_frame(renderer, scene, vga, clock));
-    let last = frames.try_fold(None, |_, frame| frame.map(|(stats, _)| Some(stats)));
+    let mut frames = (0..=CALIBRATION).map(|_| time_frame((renderer, pace), scene, vga, clock));
+    let tried = frames.try_for_each(|frame| frame.map(|_| ()));
     renderer.force(Effect::Transform, None);
-    match last? {
-        Some(stats) => Ok(stats),
-        None => renderer.draw(scene, vga),
-    }
+    tried
 }
 
 /// Frames drawn by several times, from that of the cheapest budget to that of the dearest. None on vertices that know
@@ -76,9 +80,9 @@ pub(super) fn timed_rows(
         let share = f64::from(i) / f64::from(TIMES - 1);
         let max_time = shortest * (longest / shortest).powf(share);
         let mut renderer = base();
-        renderer.settings.accuracy = None;
-        renderer.settings.max_time = Some((max_time / 1e6) as f32);
-        if let Some(row) = timed_row(frames, &mut renderer, max_time, budgets, spent)? {
+        // Of nanoseconds.
+        let mut pace = Pace::new(Duration::from_nanos(max_time as u64));
+        if let Some(row) = timed_row(frames, (&mut renderer, &mut pace), max_time, budgets, spent)? {
             rows.push(row);
         }
         progress(f64::from(i + 1) / f64::from(TIMES));
@@ -88,7 +92,7 @@ pub(super) fn timed_rows(
 
 fn timed_row(
     frames: &[Scene],
-    renderer: &mut Renderer,
+    (renderer, pace): (&mut Renderer, &mut Pace),
     max_time: f64,
     budgets: &[(f64, &Results)],
     spent: &Spent,
@@ -101,7 +105,7 @@ fn timed_row(
     let (mut within, mut sum, mut taken) = (0, 0.0, 0.0);
     for number in 0..CALIBRATION + FRAMES.1 {
         let place = number % frames.len();
-        let (stats, milliseconds) = time_frame(renderer, &frames[place], &mut vga, spent.clock)?;
+        let (stats, milliseconds) = time_frame((renderer, pace), &frames[place], &mut vga, spent.clock)?;
         let Some(error) = stats.max_error.map(f64::from) else { return Ok(None) };
         taken += milliseconds / 1000.0;
         if number < CALIBRATION {

@@ -216,11 +216,11 @@ fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
 
 fn shading_why(of_renderer: &Settings, of_scene: &Settings) -> String {
     let settings = of_renderer.or(of_scene);
-    match settings.asked_accuracy() {
+    match settings.accuracy.unwrap_or_default() {
         asked if asked == settings.drawn_accuracy() => {
-            let origin = if of_renderer.has_accuracy() {
+            let origin = if of_renderer.accuracy.is_some() {
                 "asked for"
-            } else if of_scene.has_accuracy() {
+            } else if of_scene.accuracy.is_some() {
                 "the scene asks for it"
             } else {
                 "the default"

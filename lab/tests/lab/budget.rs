@@ -10,13 +10,14 @@ use mode13h::mesh::shapes;
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
 use mode13h::plan::FaceShading;
-use mode13h::render::{RenderError, Renderer, Stats};
+use mode13h::render::{Pace, RenderError, Renderer, Stats};
 use mode13h::scene::{Object, Scene};
 use mode13h::settings::{Accuracy, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
 use mode13h_lab::truth::{ErrorMap, Screen, Shown, Standard, Truth};
+use std::time::Duration;
 
 const SCREEN: Screen = Screen::MODE_13H;
 const BUDGETS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
@@ -341,25 +342,24 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     }
 }
 
-/// A time chooses the errors by the times that the renderer is told, and nothing else: a frame has the bytes of the error
-/// that its counts name.
+/// A pace chooses the errors by the times that it is told, and nothing else: a frame has the bytes of its error.
 #[test]
-fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
+fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
     let errors_of = |scene: &mut Scene, max_error: Option<f32>, cost: fn(f32) -> u64| {
         let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-        renderer.settings.max_time = Some(5.0);
-        renderer.settings.accuracy = max_error.map(Accuracy::WithinError);
+        let mut pace = Pace::new(Duration::from_millis(5));
+        pace = max_error.map_or(pace.clone(), |max_error| pace.at_most(max_error));
         let mut errors = Vec::new();
         for frame in 0_u8..60 {
             scene.objects_mut()[0].angles[1] = Angle::from_degrees(f64::from(frame));
+            let (error, fits) = (pace.error(), pace.fits());
+            renderer.settings.accuracy = Some(pace.accuracy());
             let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-            let error = stats.max_error.expect("an error");
-            assert_eq!(stats.max_time, Some(5.0));
+            assert_eq!(stats.max_error, Some(error));
             assert!(vga.pixels() == draw(&mut within(error), scene, &mut Vga::new()), "frame {frame}");
-            assert!(draw(&mut renderer.with_same_settings(), scene, &mut Vga::new()) == vga.pixels(), "frame {frame}");
-            renderer.report_frame_time(std::time::Duration::from_micros(cost(error)));
-            errors.push((error, stats.fits));
+            pace.report(&stats, Duration::from_micros(cost(error)));
+            errors.push((error, fits));
         }
         errors
     };
@@ -373,16 +373,35 @@ fn a_time_draws_the_frames_of_the_errors_that_it_chooses() {
     assert_eq!(errors_of(&mut scene, Some(3.0), |_| 9_000)[59], (3.0, false));
     // Frames that stay as they were are told apart: a picture that stands still is refined.
     let (mut renderer, mut vga, mut drawn) = (Renderer::new(), Vga::new(), 0);
-    renderer.settings.max_time = Some(5.0);
+    let mut pace = Pace::new(Duration::from_millis(5));
     for _ in 0..60 {
-        drawn += u32::from(renderer.draw(&scene, &mut vga).expect("a legal scene").redrawn);
-        renderer.report_frame_time(std::time::Duration::from_millis(1));
+        renderer.settings.accuracy = Some(pace.accuracy());
+        let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        drawn += u32::from(stats.redrawn);
+        pace.report(&stats, Duration::from_millis(1));
     }
     assert_eq!(drawn, 6, "once within each error");
     assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));
-    // A shading leaves nothing to choose.
-    renderer.settings.accuracy = Some(Shading::Phong.into());
-    assert!(matches!(renderer.draw(&scene, &mut vga), Err(RenderError::Settings(_))));
+}
+
+/// An error that no renderer accepts is refused when a frame is drawn, and nothing panics before.
+#[test]
+fn a_pace_of_odd_numbers_never_panics() {
+    let scene = crate::support::scenes::framed(shapes::cube());
+    for time in [Duration::ZERO, Duration::MAX] {
+        for max_error in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-9, 3.0] {
+            let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+            let mut pace = Pace::new(time).at_most(max_error);
+            for _ in 0..40 {
+                renderer.settings.accuracy = Some(pace.accuracy());
+                match renderer.draw(&scene, &mut vga) {
+                    Ok(stats) => pace.report(&stats, Duration::MAX),
+                    Err(error) => assert!(matches!(error, RenderError::Settings(_)), "{error}"),
+                }
+            }
+            assert!(pace.error() > 0.0 || !(max_error > 0.0), "{max_error}");
+        }
+    }
 }
 
 /// The 16.16 path has no budget, and says so.

@@ -144,7 +144,6 @@ const FLOATS: &[Row] = &[
     ("Surface.shininess", 1, |s, bad, _| surface(s, |surface| surface.shininess = bad), "object 0"),
     ("Surface.opacity", 1, |s, bad, _| surface(s, |surface| surface.opacity = bad), "object 0"),
     ("Settings.accuracy", 1, |s, bad, _| s.settings.accuracy = Some(Accuracy::WithinError(bad)), "settings"),
-    ("Settings.max_time", 1, |s, bad, _| s.settings.max_time = Some(bad), "settings"),
     ("Settings.tessellation", 1, |s, bad, _| s.settings.tessellation = Some(bad), "settings"),
 ];
 

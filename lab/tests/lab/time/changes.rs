@@ -66,10 +66,7 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
 }
 
 /// What no frame depends on, and what is no state of a scene.
-pub(super) const EXEMPT: [(&str, &str); 2] = [
-    ("Renderer.settings", "its fields are changed one by one"),
-    ("Renderer::report_frame_time", "chooses another error, which a new renderer is not told of; tried in budget.rs"),
-];
+pub(super) const EXEMPT: [(&str, &str); 1] = [("Renderer.settings", "its fields are changed one by one")];
 
 /// All of them.
 pub(super) const CHANGES: &[Change] = &[
@@ -167,7 +164,6 @@ pub(super) const CHANGES: &[Change] = &[
             1 => Some(r.one_of(&Shading::ALL).into()),
             _ => Some(Accuracy::WithinError(between(r, 0.5, 16.0))),
         };
-        w.scene.settings.max_time = None;
     }),
     seen("Scene.settings.hidden_surfaces", |w, r| {
         w.scene.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
@@ -194,9 +190,9 @@ pub(super) const CHANGES: &[Change] = &[
                 w.scene.remove_light(id);
             }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
-            (w.scene.settings.accuracy, w.scene.settings.max_time) = (None, None);
-            (w.settings.accuracy, w.settings.max_time) = (None, None);
-            (w.kept.settings.accuracy, w.kept.settings.max_time) = (None, None);
+            w.scene.settings.accuracy = None;
+            w.settings.accuracy = None;
+            w.kept.settings.accuracy = None;
             w.scene.settings.tessellation = Some(4.0);
             drawn(w);
             w.scene.settings.tessellation = Some(between(r, 0.5, 1.0));
@@ -206,11 +202,6 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Scene.settings.dither", |w, r| {
         w.scene.settings.dither = r.one_of(&[None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]);
-    }),
-    // No frame says how long it took: all are drawn within 16 shades, or what the scene says.
-    seen("Scene.settings.max_time", |w, r| {
-        w.scene.settings.accuracy = sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError);
-        w.scene.settings.max_time = sometimes(r, |r| between(r, 0.5, 16.0));
     }),
     seen("Scene.settings.vertex_path", |w, r| {
         w.scene.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL))
@@ -373,12 +364,6 @@ pub(super) const CHANGES: &[Change] = &[
         };
         w.settings.accuracy = accuracy;
         w.kept.settings.accuracy = accuracy;
-        (w.settings.max_time, w.kept.settings.max_time) = (None, None);
-    }),
-    seen("Settings.max_time", |w, r| {
-        w.settings.accuracy = sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError);
-        w.settings.max_time = sometimes(r, |r| between(r, 0.5, 16.0));
-        (w.kept.settings.accuracy, w.kept.settings.max_time) = (w.settings.accuracy, w.settings.max_time);
     }),
     seen("Settings.mapping", |w, r| {
         // The plan's decision is the same for two of them, and the object's vertices are.

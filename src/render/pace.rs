@@ -1,7 +1,5 @@
 //! The least error that fits in a time: the error budget of the next frames, from the times of the frames before them.
 //!
-//! The engine has no clock. The caller says how long each frame took, and the errors follow from these times alone.
-//!
 //! Frames are taken in blocks of eight that are drawn within one error. A block's mean time is what its error takes, and it
 //! scales the times of the other errors, as a pose that takes longer at one error takes longer at each. First each error has a
 //! block of its own, from the greatest on. From then on each block is drawn within the least error whose time fits.
@@ -10,10 +8,13 @@
 //! once, so a load that comes suddenly is met within a few frames. An error that fits is kept as long as it takes no more than
 //! a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors alternate.
 
-use crate::settings::Settings;
+use core::time::Duration;
+
+use super::Stats;
+use crate::settings::Accuracy;
 
 /// Errors that are chosen from, in shades.
-const ERRORS: [f32; 6] = [Settings::MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
+const ERRORS: [f32; 6] = [Pace::MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
 
 /// Frames of a block.
 const BLOCK: usize = 8;
@@ -34,9 +35,32 @@ const HOLD: usize = 32;
 /// that fails doubles it, up to 16 times this.
 const PATIENCE: usize = 128;
 
-/// Controller of the error that the next frame is drawn within.
+/// Chooses the [error budget](Accuracy::WithinError) of the next frame, so that frames take no longer than they may.
+///
+/// It follows from the times alone that it is told: the engine reads no clock. Errors go from 16 shades down to half a shade.
+///
+/// ```
+/// use mode13h::Angle;
+/// use mode13h::mesh::shapes;
+/// use mode13h::render::{Pace, Renderer};
+/// use mode13h::scene::Scene;
+/// use mode13h::vga::Vga;
+/// use std::time::{Duration, Instant};
+///
+/// let (mut scene, mut renderer, mut vga) = (Scene::showing(shapes::torus(48, 24)), Renderer::new(), Vga::new());
+/// let mut pace = Pace::new(Duration::from_millis(5));
+/// for _ in 0..40 {
+///     scene.objects_mut()[0].rotate_y(Angle::from_degrees(1.0));
+///     renderer.settings.accuracy = Some(pace.accuracy());
+///     let start = Instant::now();
+///     let stats = renderer.draw(&scene, &mut vga)?;
+///     pace.report(&stats, start.elapsed());
+///     assert!(stats.max_error <= Some(16.0));
+/// }
+/// # Ok::<(), mode13h::render::RenderError>(())
+/// ```
 #[derive(Clone, Debug)]
-pub(super) struct TimeBudget {
+pub struct Pace {
     /// In milliseconds.
     max_time: f32,
     /// The greatest error. The smaller ones are those of [`ERRORS`].
@@ -56,8 +80,23 @@ pub(super) struct TimeBudget {
     is_trial: bool,
 }
 
-impl TimeBudget {
-    pub(super) fn new(max_time: f32, max_error: f32) -> Self {
+impl Pace {
+    /// The greatest error that is chosen, in shades, unless [`at_most`](Self::at_most) says otherwise.
+    pub const MAX_ERROR: f32 = 16.0;
+
+    /// A pace of frames that take at most this time each.
+    #[must_use]
+    pub fn new(max_time: Duration) -> Self {
+        Self::in_milliseconds(max_time.as_secs_f32() * 1000.0, Self::MAX_ERROR)
+    }
+
+    /// Accepts at most this error, in shades: above 0 and finite, or the renderer refuses it.
+    #[must_use]
+    pub fn at_most(self, max_error: f32) -> Self {
+        Self::in_milliseconds(self.max_time, max_error)
+    }
+
+    fn in_milliseconds(max_time: f32, max_error: f32) -> Self {
         Self {
             max_time,
             max_error,
@@ -72,24 +111,27 @@ impl TimeBudget {
         }
     }
 
-    /// Returns whether it was made for this time and this error.
-    pub(super) fn is_of(&self, max_time: f32, max_error: f32) -> bool {
-        (self.max_time, self.max_error) == (max_time, max_error)
-    }
-
     /// Errors that are smaller than the greatest.
     fn smaller(&self) -> impl Iterator<Item = f32> {
         let max_error = self.max_error;
         ERRORS.into_iter().filter(move |error| *error < max_error)
     }
 
-    /// The error that the next frame is to be drawn within.
-    pub(super) fn error(&self) -> f32 {
+    /// The error that the next frame is to be drawn within, in shades.
+    #[must_use]
+    pub fn error(&self) -> f32 {
         self.at.checked_sub(1).and_then(|at| self.smaller().nth(at)).unwrap_or(self.max_error)
     }
 
-    /// Returns whether frames within this error fit, as far as is known.
-    pub(super) fn fits(&self) -> bool {
+    /// The accuracy that the next frame is to be drawn with: [`error`](Self::error), for a renderer's settings.
+    #[must_use]
+    pub fn accuracy(&self) -> Accuracy {
+        Accuracy::WithinError(self.error())
+    }
+
+    /// Returns whether frames within this error fit, as far as is known: false if even the greatest takes too long.
+    #[must_use]
+    pub fn fits(&self) -> bool {
         self.at > 0 || self.is_kept()
     }
 
@@ -99,8 +141,14 @@ impl TimeBudget {
         cost.is_infinite() || cost <= TOLERANCE * self.max_time
     }
 
+    /// Takes how long the last frame took, and what it came to: a frame that was [not drawn again](Stats::redrawn) says
+    /// nothing about times.
+    pub fn report(&mut self, stats: &Stats, time: Duration) {
+        self.took(stats.redrawn.then_some(time.as_secs_f32() * 1000.0));
+    }
+
     /// Takes the time of the last frame in milliseconds; `None` for a frame that stayed as it was.
-    pub(super) fn took(&mut self, time: Option<f32>) {
+    fn took(&mut self, time: Option<f32>) {
         if let Some(time) = time {
             // A clock may stand still.
             self.times[self.drawn] = time.max(1e-6);
@@ -185,7 +233,7 @@ mod tests {
     const TRIED: usize = BLOCK * ERRORS.len();
 
     /// Errors and times of so many frames, by a clock that says what `cost` says of a frame's number and error.
-    fn run(budget: &mut TimeBudget, frames: usize, mut cost: impl FnMut(usize, f32) -> Option<f32>) -> Vec<(f32, f32)> {
+    fn run(budget: &mut Pace, frames: usize, mut cost: impl FnMut(usize, f32) -> Option<f32>) -> Vec<(f32, f32)> {
         let frame = |number| {
             let error = budget.error();
             let time = cost(number, error);
@@ -265,7 +313,7 @@ mod tests {
             for step in 0..20_u8 {
                 let max_time = model[0] * (1.2 * model[5] / model[0]).powf(f32::from(step) / 19.0);
                 let mut chance = u64::from(step) + 1;
-                let mut budget = TimeBudget::new(max_time, Settings::MAX_ERROR);
+                let mut budget = Pace::in_milliseconds(max_time, Pace::MAX_ERROR);
                 let frames = run(&mut budget, 1232, |frame, error| {
                     let late = if frame == 0 || frame % 50 == 49 { 3.0 } else { 1.0 };
                     Some(model[place(error)] * POSES[frame % 8] * late * noise(&mut chance, deviation))
@@ -288,14 +336,14 @@ mod tests {
         /// so.
         #[test]
         fn a_steady_scene_gets_the_least_error_that_fits(times in times()) {
-            let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+            let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
             let frames = run(&mut budget, 600, |_, error| Some(times[place(error)]));
             let chosen = place(frames[TRIED + HOLD].0);
             // Sums of eight are rounded.
             let fits = |at: usize, share: f32| times[at] <= share * T;
             prop_assert!(fits(chosen, TOLERANCE * 1.000_01) || chosen == 0, "{times:?}: {frames:?}");
             prop_assert!((chosen + 1..6).all(|at| !fits(at, 0.999_99)), "{times:?}: {frames:?}");
-            prop_assert_eq!(TimeBudget { at: 0, ..budget }.fits(), fits(0, TOLERANCE));
+            prop_assert_eq!(Pace { at: 0, ..budget }.fits(), fits(0, TOLERANCE));
         }
 
         /// Whatever times there are, no two errors alternate, and the error is one of those that are accepted.
@@ -305,11 +353,11 @@ mod tests {
             seed: u64,
             deviation in 0.0_f32..0.5,
             loads in prop::collection::vec((1_usize..200, 0.2_f32..4.0), 1..12),
-            max_error in prop_oneof![Just(Settings::MAX_ERROR), Just(3.0), Just(0.25), Just(100.0)],
+            max_error in prop_oneof![Just(Pace::MAX_ERROR), Just(3.0), Just(0.25), Just(100.0)],
         ) {
             let loads: Vec<f32> = loads.iter().flat_map(|(frames, load)| core::iter::repeat_n(*load, *frames)).collect();
             let mut chance = seed;
-            let mut budget = TimeBudget::new(T, max_error);
+            let mut budget = Pace::in_milliseconds(T, max_error);
             let frames = run(&mut budget, loads.len(), |frame, error| {
                 let place = ERRORS.iter().position(|of| *of <= error).unwrap_or(5);
                 Some((times[place] * loads[frame] * noise(&mut chance, deviation)).max(0.0))
@@ -325,7 +373,7 @@ mod tests {
     fn a_sudden_load_is_met_within_two_blocks() {
         for (load, model) in [1.1, 1.3, 2.0, 3.0].into_iter().flat_map(|load| MODELS.map(|model| (load, model))) {
             let max_time = model[5];
-            let mut budget = TimeBudget::new(max_time, Settings::MAX_ERROR);
+            let mut budget = Pace::in_milliseconds(max_time, Pace::MAX_ERROR);
             let frames =
                 run(&mut budget, 260, |frame, error| Some(model[place(error)] * if frame < 131 { 1.0 } else { load }));
             let fits = model[0] * load <= max_time;
@@ -338,7 +386,7 @@ mod tests {
     #[test]
     fn a_late_frame_changes_nothing() {
         let times = [1.0, 1.5, 2.2, 2.9, 3.6, 5.0];
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let frames = run(&mut budget, 1000, |frame, error| {
             Some(times[place(error)] * if frame % BLOCK == 5 { 10.0 } else { 1.0 })
         });
@@ -354,7 +402,7 @@ mod tests {
         let times = [1.6, 2.0, 2.5, 3.1, 3.8, 4.5];
         let mut chance = 5;
         let load = |frame: usize| 1.0 + 0.5 * libm::sinf(frame as f32 * 0.01);
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let frames =
             run(&mut budget, 6000, |frame, error| Some(times[place(error)] * load(frame) * noise(&mut chance, 0.01)));
         assert_steady(&frames);
@@ -371,18 +419,18 @@ mod tests {
     /// Where the error changes no time there is nothing to gain by a great one.
     #[test]
     fn a_scene_whose_time_the_error_does_not_change_gets_the_least_error() {
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(3.0));
         assert!(frames[TRIED..].iter().all(|(error, _)| *error == 0.5));
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let frames = run(&mut budget, 1000, |_, _| Some(5.0));
-        assert!(frames[TRIED..].iter().all(|(error, _)| *error == Settings::MAX_ERROR) && !budget.fits());
+        assert!(frames[TRIED..].iter().all(|(error, _)| *error == Pace::MAX_ERROR) && !budget.fits());
     }
 
     /// What is known is wrong now, as the scene is another: smaller errors are tried again, seldom, until they fit.
     #[test]
     fn old_times_are_tried_again() {
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let early = |error: f32| if error < 4.0 { 9.0 } else { 2.0 };
         let frames = run(&mut budget, 4000, |_, error| Some(early(error)));
         assert_eq!(budget.error(), 4.0);
@@ -395,7 +443,7 @@ mod tests {
     /// A picture that stands still is refined to the least error, and drawn again only for that.
     #[test]
     fn a_still_picture_is_refined() {
-        let mut budget = TimeBudget::new(T, Settings::MAX_ERROR);
+        let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
         let (mut shown, mut drawn) = (None, 0);
         let frames = run(&mut budget, 400, |_, error| {
             let is_drawn = shown != Some(error);
@@ -410,7 +458,7 @@ mod tests {
     /// The fewest frames: one time, no time, and none at all.
     #[test]
     fn a_clock_that_stands_still_chooses_the_least_error() {
-        let mut budget = TimeBudget::new(T, 3.0);
+        let mut budget = Pace::in_milliseconds(T, 3.0);
         assert_eq!((budget.error(), budget.fits()), (3.0, true));
         budget.took(None);
         assert_eq!((budget.error(), budget.fits()), (3.0, true));
