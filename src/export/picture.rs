@@ -56,6 +56,13 @@ impl<'a> Picture<'a> {
         Picture { pixels, width: 320, height: 200, pitch: 320, palette: palette.colors(), shape: PixelShape::MODE_13H }
     }
 
+    /// Square pixels in rows of `width`, one row after the other, in the colours of `palette`. Bytes behind the last whole
+    /// row are left out.
+    pub fn of(pixels: &'a [u8], width: usize, palette: &'a Palette) -> Picture<'a> {
+        let height = pixels.len().checked_div(width).unwrap_or(0);
+        Picture { pixels, width, height, pitch: width, palette: palette.colors(), shape: PixelShape::default() }
+    }
+
     /// Checks that the sizes agree with each other and with the number of bytes.
     pub fn check(&self) -> Result<(), PictureError> {
         let limit = 1..=MAX_SIDE as usize;

@@ -1,9 +1,10 @@
 //! Depth buffers. What the depth of a triangle is at a pixel is defined by
 //! [`DepthPlane`](super::reference::depth::DepthPlane).
 
+use super::error::RasterError;
+use super::frame::Frame;
 #[cfg(feature = "alloc")]
 use super::frame::Rect;
-use super::frame::{Frame, FrameError};
 pub(crate) use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
@@ -22,13 +23,13 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     ///
     /// # Errors
     /// `values` is shorter than columns × rows.
-    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, FrameError> {
+    pub fn new(values: &'a mut [D], frame: &Frame<'_>) -> Result<Self, RasterError> {
         let rows = frame.rows();
         let needed = frame.width() as usize * (rows.end - rows.start) as usize;
         let given = values.len();
         match values.get_mut(..needed) {
             Some(values) => Ok(Self { values, width: frame.width(), first_row: rows.start }),
-            None => Err(FrameError::Depths { given, needed }),
+            None => Err(RasterError::Depths { given, needed }),
         }
     }
 

@@ -1,8 +1,8 @@
 //! The bytes that are drawn into: a frame of any size, whole or in bands of rows.
 
-use core::fmt;
 use core::ops::Range;
 
+use super::error::{self, RasterError};
 use crate::vga::Vga;
 
 /// A rectangle of pixels: `x0 ≤ x < x1`, `y0 ≤ y < y1`. Empty where an end is not after its start.
@@ -55,69 +55,6 @@ impl Rect {
     }
 }
 
-/// Error of bytes or depths that cannot serve as a frame or as its depth buffer.
-#[derive(Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum FrameError {
-    /// Width or height is 0 or above 4,096.
-    Size {
-        /// Columns asked for.
-        width: u32,
-        /// Rows asked for.
-        height: u32,
-    },
-    /// The pitch is less than the width.
-    Pitch {
-        /// Bytes from one row to the next.
-        pitch: usize,
-        /// Columns.
-        width: u32,
-    },
-    /// The band of rows is empty or reaches beyond the frame.
-    Band {
-        /// First row of the band.
-        first: u32,
-        /// The row after its last.
-        end: u32,
-        /// Rows of the frame.
-        height: u32,
-    },
-    /// There are fewer bytes than the rows need.
-    Short {
-        /// Bytes given.
-        given: usize,
-        /// Bytes needed.
-        needed: usize,
-    },
-    /// There are fewer depths than the frame has columns times rows that it holds.
-    Depths {
-        /// Depths given.
-        given: usize,
-        /// Depths needed.
-        needed: usize,
-    },
-}
-
-impl fmt::Display for FrameError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Size { width, height } => {
-                write!(f, "a frame of {width} × {height} pixels: each side must be 1 to {}", Frame::MAX_SIDE)
-            }
-            Self::Pitch { pitch, width } => write!(f, "a pitch of {pitch} bytes is less than the width, {width}"),
-            Self::Band { first, end, height } => {
-                write!(f, "rows {first} to {end} are no band of a frame of {height} rows")
-            }
-            Self::Short { given, needed } => write!(f, "{given} bytes given for a frame that needs {needed}"),
-            Self::Depths { given, needed } => write!(f, "{given} depths given for a frame that needs {needed}"),
-        }
-    }
-}
-
-crate::errors::debug_as_display!(FrameError);
-
-impl core::error::Error for FrameError {}
-
 /// A frame of bytes, row-major, borrowed from whoever owns them. It may hold all rows or a band of
 /// them; coordinates are those of the whole frame either way, and drawing in bands gives the same
 /// bytes as drawing the whole.
@@ -132,13 +69,13 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// The most columns or rows.
-    pub const MAX_SIDE: u32 = 4096;
+    pub const MAX_SIDE: u32 = error::MAX_SIDE;
 
     /// A whole frame of `width × height` pixels whose rows lie `pitch` bytes apart.
     ///
     /// # Errors
     /// A side of 0 or above 4,096, a pitch below the width, too few bytes.
-    pub fn new(pixels: &'a mut [u8], width: u32, height: u32, pitch: usize) -> Result<Self, FrameError> {
+    pub fn new(pixels: &'a mut [u8], width: u32, height: u32, pitch: usize) -> Result<Self, RasterError> {
         Self::band(pixels, width, height, pitch, 0..height)
     }
 
@@ -153,21 +90,21 @@ impl<'a> Frame<'a> {
         height: u32,
         pitch: usize,
         rows: Range<u32>,
-    ) -> Result<Self, FrameError> {
+    ) -> Result<Self, RasterError> {
         let side = 1..=Self::MAX_SIDE;
         if !side.contains(&width) || !side.contains(&height) {
-            return Err(FrameError::Size { width, height });
+            return Err(RasterError::Size { width, height });
         }
         if pitch < width as usize {
-            return Err(FrameError::Pitch { pitch, width });
+            return Err(RasterError::Pitch { pitch, width });
         }
         if rows.start >= rows.end || rows.end > height {
-            return Err(FrameError::Band { first: rows.start, end: rows.end, height });
+            return Err(RasterError::Band { first: rows.start, end: rows.end, height });
         }
         // The last row needs only its pixels. Saturating: a pitch may be any usize.
         let needed = pitch.saturating_mul((rows.end - rows.start - 1) as usize).saturating_add(width as usize);
         if pixels.len() < needed {
-            return Err(FrameError::Short { given: pixels.len(), needed });
+            return Err(RasterError::Short { given: pixels.len(), needed });
         }
         Ok(Self { pixels, width, height, pitch, rows })
     }
@@ -284,13 +221,13 @@ mod tests {
     #[test]
     fn sizes_that_cannot_be_are_refused() {
         let mut bytes = [0_u8; 64];
-        assert!(matches!(Frame::new(&mut bytes, 0, 4, 8), Err(FrameError::Size { .. })));
-        assert!(matches!(Frame::new(&mut bytes, 4, 4097, 8), Err(FrameError::Size { .. })));
-        assert!(matches!(Frame::new(&mut bytes, 8, 4, 7), Err(FrameError::Pitch { .. })));
-        assert!(matches!(Frame::new(&mut bytes, 8, 9, 8), Err(FrameError::Short { given: 64, needed: 72 })));
-        assert!(matches!(Frame::new(&mut bytes, 8, 2, usize::MAX), Err(FrameError::Short { .. })));
-        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..2), Err(FrameError::Band { .. })));
-        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..5), Err(FrameError::Band { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 0, 4, 8), Err(RasterError::Size { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 4, 4097, 8), Err(RasterError::Size { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 4, 7), Err(RasterError::Pitch { .. })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 9, 8), Err(RasterError::Short { given: 64, needed: 72 })));
+        assert!(matches!(Frame::new(&mut bytes, 8, 2, usize::MAX), Err(RasterError::Short { .. })));
+        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..2), Err(RasterError::Band { .. })));
+        assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..5), Err(RasterError::Band { .. })));
         assert!(Frame::new(&mut bytes, 1, 8, 9).is_ok(), "the last row needs only its pixels");
     }
 

@@ -49,6 +49,7 @@ mod draw_stats;
 mod draw_target;
 #[cfg(feature = "alloc")]
 pub(crate) mod effects;
+mod error;
 pub(crate) mod frame;
 pub(crate) mod interpolation;
 mod paint;
@@ -72,7 +73,8 @@ pub use depth::DepthBuffer;
 pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
-pub use frame::{Frame, FrameError, Rect};
+pub use error::RasterError;
+pub use frame::{Frame, Rect};
 pub use interpolation::Interpolation;
 pub use triangle::Raster;
-pub use vertex::{Vertex, VertexError};
+pub use vertex::Vertex;

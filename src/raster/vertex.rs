@@ -1,7 +1,6 @@
 //! Vertices of the raster: projected ones inside the guard band.
 
-use core::fmt;
-
+use super::error::RasterError;
 use crate::fixed::{I24F8, U8F8};
 
 /// A projected vertex: position in 1/256 pixel, shade, depth. One that exists is legal, so the
@@ -13,44 +12,6 @@ pub struct Vertex {
     shade: u16,
     depth: u32,
 }
-
-/// Error of a vertex that was refused.
-#[derive(Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum VertexError {
-    /// A coordinate lies outside the guard band of ±4,096 pixels.
-    OutsideGuardBand {
-        /// The vertex's x.
-        x: I24F8,
-        /// The vertex's y.
-        y: I24F8,
-    },
-    /// The shade is above 255.0, where the rounding to the nearest byte would wrap.
-    ShadeAbove255 {
-        /// The shade.
-        shade: U8F8,
-    },
-}
-
-impl fmt::Display for VertexError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OutsideGuardBand { x, y } => write!(
-                f,
-                "vertex at ({}, {}) / 256 pixels lies outside the guard band of 4,096 pixels",
-                x.to_bits(),
-                y.to_bits()
-            ),
-            Self::ShadeAbove255 { shade } => {
-                write!(f, "vertex shade {:#06x} is above 0xff00 (255.0)", shade.to_bits())
-            }
-        }
-    }
-}
-
-crate::errors::debug_as_display!(VertexError);
-
-impl core::error::Error for VertexError {}
 
 /// The nearest 1/256, halves upward; what is too large is cut off at the ends of i32, and what is no number counts as 0.
 #[inline]
@@ -72,13 +33,13 @@ impl Vertex {
     /// # Errors
     /// A coordinate outside the guard band, or a shade above 255.0.
     #[inline]
-    pub const fn new(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Result<Self, VertexError> {
+    pub const fn new(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Result<Self, RasterError> {
         let (h, v) = (x.to_bits(), y.to_bits());
         if h < -Self::GUARD_BAND || h > Self::GUARD_BAND || v < -Self::GUARD_BAND || v > Self::GUARD_BAND {
-            return Err(VertexError::OutsideGuardBand { x, y });
+            return Err(RasterError::OutsideGuardBand { x, y });
         }
         if shade.to_bits() > U8F8::MAX_VERTEX.to_bits() {
-            return Err(VertexError::ShadeAbove255 { shade });
+            return Err(RasterError::ShadeAbove255 { shade });
         }
         Ok(Self { x: h, y: v, shade: shade.to_bits(), depth })
     }
@@ -95,7 +56,7 @@ impl Vertex {
     /// let [a, b, c] = [Vertex::at(0.0, 0.0, 10.0), Vertex::at(8.0, 0.0, 170.0), Vertex::at(0.0, 8.0, 10.0)];
     /// raster.triangle(&[a, b, c], Interpolation::Gouraud);
     /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
-    /// # Ok::<(), mode13h::raster::FrameError>(())
+    /// # Ok::<(), mode13h::raster::RasterError>(())
     /// ```
     // Compiled where it is called, so that programs for a chip without floating point hold no float.
     #[must_use]

@@ -131,8 +131,10 @@ impl Scene {
     /// use mode13h::mesh::shapes;
     /// use mode13h::scene::Scene;
     /// let mut scene = Scene::showing(shapes::teapot(8));
+    /// let teapot = scene.object_ids()[0];
+    /// scene[teapot].materials[0].specular = 0.5;
     /// scene.set_time(scene.duration / 4.0);
-    /// assert_eq!(scene.objects()[0].angles[1].to_degrees(), 90.0);
+    /// assert_eq!(scene[teapot].angles[1].to_degrees(), 90.0);
     /// ```
     #[must_use]
     pub fn showing(object: impl Into<Object>) -> Self {

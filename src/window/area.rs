@@ -1,9 +1,6 @@
-//! A rectangle of the window, and the frame that fills it.
+//! A rectangle of the window, and the picture that fills it.
 
-/// Columns of the frame.
-pub(super) const WIDTH: usize = 320;
-/// Rows of the frame.
-pub(super) const HEIGHT: usize = 200;
+use crate::vga::Vga;
 
 /// A rectangle of the window's pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,25 +16,33 @@ pub struct Area {
 }
 
 impl Area {
-    /// The picture's rectangle in a window: the largest of 4:3 in the middle. Both its sides may be a part of a pixel
-    /// too short.
+    /// The rectangle of a picture of mode 13h in a window: the largest of 4:3 in the middle. Both its sides may be a part
+    /// of a pixel too short.
     pub fn within(width: usize, height: usize) -> Area {
-        let (w, h) = if width * 3 <= height * 4 { (width, width * 3 / 4) } else { (height * 4 / 3, height) };
+        Area::of_shape((4, 3), width, height)
+    }
+
+    /// The largest rectangle of this width to height in the middle of a window.
+    pub(super) fn of_shape((across, down): (usize, usize), width: usize, height: usize) -> Area {
+        // A picture has at most 2¹⁴ pixels of 2¹⁶ a side: the products are below 2⁶³ for windows of up to 2³² pixels.
+        let (w, h, across, down) = (width as u64, height as u64, across as u64, down as u64);
+        let (w, h) = if w * down <= h * across { (w, w * down / across) } else { (h * across / down, h) };
+        let (w, h) = (w as usize, h as usize);
         Area { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }
     }
 
-    /// A point of the window as a point of the frame that fills this rectangle: 0 to 320 across and 0 to 200 down if it
-    /// is on the picture, beyond these beside it.
-    pub(crate) fn to_frame(self, x: f32, y: f32) -> (f32, f32) {
-        let along = |at: f32, from: usize, length: usize, frame: usize| {
-            (at - from as f32) * frame as f32 / length.max(1) as f32
+    /// A point of the window as a point of the picture of so many columns and rows that fills this rectangle: 0 to these
+    /// if it is on the picture, beyond them beside it.
+    pub(super) fn to_picture(self, x: f32, y: f32, (columns, rows): (usize, usize)) -> (f32, f32) {
+        let along = |at: f32, from: usize, length: usize, picture: usize| {
+            (at - from as f32) * picture as f32 / length.max(1) as f32
         };
-        (along(x, self.left, self.width, WIDTH), along(y, self.top, self.height, HEIGHT))
+        (along(x, self.left, self.width, columns), along(y, self.top, self.height, rows))
     }
 
     /// A point of the frame that fills this rectangle, 0 to 320 across and 0 to 200 down, as a point of the window.
     pub fn from_frame(self, x: f32, y: f32) -> (f32, f32) {
         let along = |at: f32, from: usize, length: usize, frame: usize| from as f32 + at * length as f32 / frame as f32;
-        (along(x, self.left, self.width, WIDTH), along(y, self.top, self.height, HEIGHT))
+        (along(x, self.left, self.width, Vga::WIDTH), along(y, self.top, self.height, Vga::HEIGHT))
     }
 }

@@ -4,9 +4,10 @@ use std::cell::RefCell;
 use std::mem;
 use std::rc::Rc;
 
-use minifb::{InputCallback, Key, MouseButton, MouseMode, Window};
+use minifb::{InputCallback, MouseButton, MouseMode, Window};
 
 use super::area::Area;
+use super::key::Key;
 
 /// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
@@ -37,12 +38,12 @@ pub struct Input {
     /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
     /// repeats, as the desktop is set up.
     pub typed: String,
-    /// The position of the mouse, in pixels of the frame, from the top left corner: 0 to 320 across and 0 to 200 down
-    /// while it is on the picture, `None` while it is outside of the window.
+    /// The position of the mouse, in pixels of the picture, from the top left corner: 0 to 320 across and 0 to 200 down
+    /// while it is on a picture of mode 13h, `None` while it is outside of the window.
     pub mouse: Option<(f32, f32)>,
     /// The mouse's buttons that are down.
     pub buttons: Buttons,
-    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the frame: to
+    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the picture: to
     /// the right and down.
     pub drag: (f32, f32),
     /// The number of notches that the wheel was turned since the last frame; away from the user is positive.
@@ -110,14 +111,15 @@ impl InputCallback for Events {
         self.queue.borrow_mut().typed.extend(char::from_u32(character).filter(|c| !c.is_control()));
     }
 
-    fn set_key_state(&mut self, key: Key, down: bool) {
-        self.queue.borrow_mut().keys.push((key, down));
+    fn set_key_state(&mut self, key: minifb::Key, down: bool) {
+        self.queue.borrow_mut().keys.extend(Key::of(key).map(|key| (key, down)));
     }
 }
 
 impl Events {
     /// Collects the input since the last call.
-    pub(super) fn collect(&mut self, window: &Window, place: Area) -> Input {
+    /// The picture lies at `place`, and has so many columns and rows.
+    pub(super) fn collect(&mut self, window: &Window, place: Area, size: (usize, usize)) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted, mut released } = self.follow(&keys);
         // A window that is left hears nothing of keys that are let go meanwhile.
@@ -126,7 +128,7 @@ impl Events {
             released.append(&mut self.held);
         }
 
-        let to_frame = |(x, y)| place.to_frame(x, y);
+        let to_frame = |(x, y)| place.to_picture(x, y, size);
         let mouse = window.get_unscaled_mouse_pos(MouseMode::Discard).map(to_frame);
         let buttons = Buttons {
             left: window.get_mouse_down(MouseButton::Left),

@@ -1,4 +1,4 @@
-//! A window that shows a [`Vga`], and the user's input in it.
+//! A window that shows a [`Vga`] or any other picture, and the user's input in it.
 //!
 //! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
 //! both give a [`WindowError`] and no panic.
@@ -7,6 +7,7 @@ mod area;
 mod canvas;
 mod fit;
 mod input;
+mod key;
 mod screen;
 
 use std::error::Error;
@@ -17,10 +18,11 @@ use std::time::{Duration, Instant};
 pub use area::Area;
 pub use canvas::Canvas;
 pub use input::{Buttons, Input};
-pub use minifb::Key;
+pub use key::Key;
 
+use crate::export::{MAX_SIDE, Picture, PictureError};
 use crate::vga::Vga;
-use fit::Picture;
+use fit::Stretched;
 use input::Events;
 
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
@@ -126,14 +128,41 @@ pub fn run<R: FrameResult>(title: &str, mut frame: impl FnMut(&mut Vga, &Input, 
     }
 }
 
-/// An open window. Most programs need only [`run`].
+/// An open window, for programs with a loop of their own. Most need only [`run`].
+///
+/// It shows pictures of any size, in the colours of any palette:
+///
+/// ```no_run
+/// use mode13h::export::{Picture, PixelShape};
+/// use mode13h::mesh::shapes;
+/// use mode13h::raster::Frame;
+/// use mode13h::render::Renderer;
+/// use mode13h::scene::Scene;
+/// use mode13h::window::{Flow, Window};
+///
+/// const WIDTH: u32 = 640;
+/// const HEIGHT: u32 = 480;
+/// let mut scene = Scene::showing(shapes::teapot(8));
+/// let (mut renderer, mut window) = (Renderer::new(), Window::open("teapot")?);
+/// let palette = scene.palette.clone().unwrap_or_default();
+/// let mut pixels = vec![0; (WIDTH * HEIGHT) as usize];
+/// loop {
+///     scene.set_time(window.seconds());
+///     renderer.draw_frame(&scene, Frame::new(&mut pixels, WIDTH, HEIGHT, WIDTH as usize)?, (1, 1))?;
+///     let picture = Picture::of(&pixels, WIDTH as usize, &palette);
+///     if window.show_picture(&picture)? == Flow::Close {
+///         break;
+///     }
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Window {
     window: minifb::Window,
     events: Events,
     input: Input,
     /// The user did something in the time of the input.
     has_input: bool,
-    picture: Picture,
+    picture: Stretched,
     opened: Instant,
     /// The time that the current frame is drawn for.
     now: Instant,
@@ -155,14 +184,30 @@ impl Window {
     ///
     /// [`WindowError`] if there is no display to open it on.
     pub fn open(title: &str) -> Result<Window, WindowError> {
-        let mut window = screen::open(&printable(title)).map_err(WindowError::new)?;
+        screen::open(&printable(title)).map(Window::of).map_err(WindowError::new)
+    }
+
+    /// Opens a window of this many columns and rows of the screen. The user may resize it.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if there is no display to open it on, or if a side is 0 or above 16,384.
+    pub fn open_of_size(title: &str, width: usize, height: usize) -> Result<Window, WindowError> {
+        let sides = 1..=usize::from(MAX_SIDE);
+        if !sides.contains(&width) || !sides.contains(&height) {
+            return Err(WindowError { reason: Reason::Picture(PictureError::Size { width, height }) });
+        }
+        screen::open_of_size(&printable(title), width, height).map(Window::of).map_err(WindowError::new)
+    }
+
+    fn of(mut window: minifb::Window) -> Window {
         // The loop below waits by itself, so that a late frame puts off those that follow.
         window.set_target_fps(0);
         let events = Events::default();
         window.set_input_callback(Box::new(events.clone()));
         let now = Instant::now();
-        let (input, picture) = (Input::default(), Picture::default());
-        Ok(Window {
+        let (input, picture) = (Input::default(), Stretched::default());
+        Window {
             window,
             events,
             input,
@@ -173,7 +218,7 @@ impl Window {
             before: now,
             begun: now,
             sent: now,
-        })
+        }
     }
 
     /// Changes the title.
@@ -200,8 +245,21 @@ impl Window {
     pub fn show(&mut self, vga: &Vga) -> Result<Flow, WindowError> {
         self.before = self.now;
         self.wait(FRAME);
-        let (width, height) = self.size();
-        self.picture.stretch(vga, width, height);
+        self.picture.vga(vga, self.window.get_size());
+        self.send()
+    }
+
+    /// Shows a picture of any size as [`show`](Self::show) shows a machine's: as large as fits, its pixels in their shape,
+    /// black beside it.
+    ///
+    /// # Errors
+    ///
+    /// [`WindowError`] if the picture's sizes do not fit its bytes, or if the display went away.
+    pub fn show_picture(&mut self, picture: &Picture<'_>) -> Result<Flow, WindowError> {
+        picture.check().map_err(|error| WindowError { reason: Reason::Picture(error) })?;
+        self.before = self.now;
+        self.wait(FRAME);
+        self.picture.picture(picture, self.window.get_size());
         self.send()
     }
 
@@ -214,8 +272,7 @@ impl Window {
     pub fn show_over(&mut self, vga: &Vga, over: impl FnOnce(&mut Canvas<'_>)) -> Result<Flow, WindowError> {
         self.before = self.now;
         self.wait(FRAME);
-        let (width, height) = self.size();
-        self.picture.stretch(vga, width, height);
+        self.picture.vga(vga, self.window.get_size());
         over(&mut self.picture.canvas());
         self.send()
     }
@@ -263,7 +320,7 @@ impl Window {
 
     fn collect(&mut self) -> Flow {
         self.now = Instant::now();
-        let mut input = self.events.collect(&self.window, self.picture.place());
+        let mut input = self.events.collect(&self.window, self.picture.place(), self.picture.picture_size());
         input.elapsed = self.now.duration_since(self.before).as_secs_f64();
         self.has_input = input.differs(&self.input);
         self.input = input;
@@ -284,14 +341,19 @@ fn printable(title: &str) -> String {
     title.replace('\0', " ")
 }
 
-/// The error of a display that does not exist, or that went away.
+/// The error of a display that does not exist or that went away, or of a picture that no window can show.
 pub struct WindowError {
-    reason: minifb::Error,
+    reason: Reason,
+}
+
+enum Reason {
+    Display(minifb::Error),
+    Picture(PictureError),
 }
 
 impl WindowError {
     fn new(reason: minifb::Error) -> WindowError {
-        WindowError { reason }
+        WindowError { reason: Reason::Display(reason) }
     }
 }
 
@@ -303,7 +365,11 @@ fn first_line(said: &str) -> &str {
 impl fmt::Display for WindowError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         use minifb::Error::{MenuExists, UpdateFailed, WindowCreate};
-        match &self.reason {
+        let reason = match &self.reason {
+            Reason::Picture(error) => return write!(f, "{error}"),
+            Reason::Display(reason) => reason,
+        };
+        match reason {
             WindowCreate(why) | UpdateFailed(why) | MenuExists(why) => write!(f, "no display: {}", first_line(why)),
             reason => write!(f, "no display: {}", first_line(&reason.to_string())),
         }

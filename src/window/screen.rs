@@ -18,6 +18,12 @@ pub(super) fn open(title: &str) -> Result<Window> {
     }
 }
 
+/// A window of this size.
+pub(super) fn open_of_size(title: &str, width: usize, height: usize) -> Result<Window> {
+    let options = WindowOptions { resize: true, scale_mode: ScaleMode::Stretch, ..WindowOptions::default() };
+    Window::new(title, width, height, options)
+}
+
 /// minifb tells nobody the size of the screen. But it opens a window at the largest multiple of a size that the screen
 /// holds, and says which: a strip one pixel wide and half as high as the question is doubled if the screen is that
 /// high. Two such strips, a few pixels thin and gone at once, tell what opening a window that does not fit would show.

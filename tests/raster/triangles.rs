@@ -5,7 +5,7 @@ use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::raster::reference::cover::SortedTriangle;
 use mode13h::internals::raster::reference::depth::DepthPlane;
-use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex, VertexError};
+use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, RasterError, Rect, Vertex};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
@@ -323,7 +323,7 @@ fn r14_shades_at_both_ends() {
     for above in 0xFF01..=0xFFFF {
         let shade = U8F8::from_bits(above);
         let refused = Vertex::new(I24F8::from(1), I24F8::from(1), shade, 0);
-        assert_eq!(refused, Err(VertexError::ShadeAbove255 { shade }));
+        assert_eq!(refused, Err(RasterError::ShadeAbove255 { shade }));
     }
 }
 
@@ -339,7 +339,7 @@ fn r7_outside_the_guard_band_is_refused() {
         let far = I24F8::from_bits(bits);
         for (x, y) in [(far, zero), (zero, far)] {
             let made = Vertex::new(x, y, U8F8::from_bits(0), 0);
-            let expected = if legal { Ok((x, y)) } else { Err(VertexError::OutsideGuardBand { x, y }) };
+            let expected = if legal { Ok((x, y)) } else { Err(RasterError::OutsideGuardBand { x, y }) };
             assert_eq!(made.map(|v| (v.x(), v.y())), expected);
             tried.add(1);
         }

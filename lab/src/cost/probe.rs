@@ -10,7 +10,7 @@ use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::mesh::{Mesh, Surface};
 use mode13h::palette::Ramp;
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, FrameError};
+use mode13h::raster::{Frame, RasterError};
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::settings::DitherPattern;
@@ -151,7 +151,7 @@ impl Probe {
     fn draw(&mut self, scene: &Scene, screen: Screen) -> Result<Vec<u8>, ProbeError> {
         let Screen { width, height, pixel_aspect } = screen;
         if width.max(height) > Frame::MAX_SIDE {
-            return Err(ProbeError::Screen(FrameError::Size { width, height }));
+            return Err(ProbeError::Screen(RasterError::Size { width, height }));
         }
         let mut bytes = vec![0; width as usize * height as usize];
         let frame = Frame::new(&mut bytes, width, height, width as usize).map_err(ProbeError::Screen)?;
@@ -167,7 +167,7 @@ pub enum ProbeError {
     /// The scene cannot be drawn.
     Scene(RenderError),
     /// There is no frame of the screen's size.
-    Screen(FrameError),
+    Screen(RasterError),
     /// An object has so many surfaces that its triangles cannot be numbered.
     Surfaces(usize),
 }

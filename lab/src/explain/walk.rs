@@ -64,7 +64,7 @@ pub struct Step {
 /// let registers = walk.step(2).and_then(|step| step.registers).expect("the loop's");
 /// // From 50 in the first pixel, and a half, by 20 a pixel.
 /// assert_eq!((registers.edi, registers.eax, registers.ebx, registers.cx), (2, 0x5A80, 0x1400, 5));
-/// # Ok::<(), mode13h::raster::VertexError>(())
+/// # Ok::<(), mode13h::raster::RasterError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Walk {

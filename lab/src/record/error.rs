@@ -5,7 +5,7 @@ use std::fmt;
 use std::io;
 
 use super::VERSION;
-use mode13h::raster::{FrameError, VertexError};
+use mode13h::raster::RasterError;
 
 /// Error of a record that was refused. Nothing of it is used.
 ///
@@ -48,8 +48,6 @@ pub enum RecordErrorKind {
         /// Text that should follow.
         expected: &'static str,
     },
-    /// The frame's size is none.
-    Frame(FrameError),
     /// The clip rectangle does not lie inside the frame, or runs backwards.
     Clip,
     /// A palette falls into 0, 1, 2, 4 … 256 ramps.
@@ -57,8 +55,8 @@ pub enum RecordErrorKind {
         /// The number that stands there.
         found: u16,
     },
-    /// A vertex that the raster refuses.
-    Vertex(VertexError),
+    /// A frame's size or a vertex that the raster refuses.
+    Raster(RasterError),
 }
 
 impl fmt::Display for RecordError {
@@ -80,10 +78,9 @@ impl fmt::Display for RecordErrorKind {
             Self::NoText => f.write_str("no text, or too long a line"),
             Self::Expected { expected, found } => write!(f, "expected {expected}, found {found:?}"),
             Self::BrokenOff { expected } => write!(f, "the file ends where {expected} should follow"),
-            Self::Frame(error) => write!(f, "{error}"),
             Self::Clip => f.write_str("the clip rectangle must lie inside the frame"),
             Self::Ramps { found } => write!(f, "a palette has 0, 1, 2, 4 … 256 ramps, not {found}"),
-            Self::Vertex(error) => write!(f, "{error}"),
+            Self::Raster(error) => write!(f, "{error}"),
         }
     }
 }
@@ -92,8 +89,7 @@ impl Error for RecordError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match &self.kind {
             RecordErrorKind::Read(error) => Some(error),
-            RecordErrorKind::Frame(error) => Some(error),
-            RecordErrorKind::Vertex(error) => Some(error),
+            RecordErrorKind::Raster(error) => Some(error),
             _ => None,
         }
     }

@@ -44,7 +44,7 @@ pub use run::Run;
 use mode13h::export::{ExportError, write_atomically};
 use mode13h::palette::Palette;
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, FrameError, Interpolation, Rect, Vertex};
+use mode13h::raster::{Frame, Interpolation, RasterError, Rect, Vertex};
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h::settings::HiddenSurfaces;
@@ -88,10 +88,10 @@ impl Record {
     ///
     /// # Errors
     /// A side of 0 or above 4,096.
-    pub fn new(width: u32, height: u32) -> Result<Self, FrameError> {
+    pub fn new(width: u32, height: u32) -> Result<Self, RasterError> {
         let side = 1..=Frame::MAX_SIDE;
         if !side.contains(&width) || !side.contains(&height) {
-            return Err(FrameError::Size { width, height });
+            return Err(RasterError::Size { width, height });
         }
         Ok(Self {
             width,

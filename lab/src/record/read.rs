@@ -34,7 +34,7 @@ fn record(lines: &mut Lines<impl BufRead>) -> Result<Record, RecordErrorKind> {
     let mut fields = lines.after("frame", "\"frame\"")?;
     let (width, height) = (fields.number("a width")?, fields.number("a height")?);
     fields.end()?;
-    let mut record = Record::new(width, height).map_err(RecordErrorKind::Frame)?;
+    let mut record = Record::new(width, height).map_err(RecordErrorKind::Raster)?;
 
     lines.need("\"background\"")?;
     if lines.begins_with("clip") {
@@ -117,7 +117,7 @@ fn triangle(fields: &mut Fields<'_>) -> Result<([Vertex; 3], Interpolation), Rec
         let (x, y) = (fields.number("an x in 1/256 pixel")?, fields.number("a y in 1/256 pixel")?);
         let (shade, depth) = (fields.number("a shade in 1/256")?, fields.number("a depth")?);
         *vertex = Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from_bits(shade), depth)
-            .map_err(RecordErrorKind::Vertex)?;
+            .map_err(RecordErrorKind::Raster)?;
     }
     fields.end()?;
     Ok((vertices, interpolation))

@@ -3,7 +3,7 @@
 use crate::record::Record;
 use mode13h::internals::raster::Batch;
 use mode13h::internals::raster::scan_line::Lists;
-use mode13h::raster::{Frame, FrameError, Interpolation, Raster, Vertex};
+use mode13h::raster::{Frame, Interpolation, Raster, RasterError, Vertex};
 use mode13h::settings::HiddenSurfaces;
 use mode13h::span::Kernel;
 
@@ -31,7 +31,7 @@ pub(super) type Draw<'a> = &'a dyn Fn(&Record, Configuration) -> Result<Vec<u8>,
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Stray {
     Byte,
-    Frame(FrameError),
+    Frame(RasterError),
 }
 
 impl std::fmt::Display for Stray {

@@ -13,7 +13,7 @@ use mode13h::light::{Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::builtin;
 use mode13h::plan::Effect;
-use mode13h::raster::FrameError;
+use mode13h::raster::RasterError;
 use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
@@ -499,7 +499,7 @@ fn the_probe_refuses_what_cannot_be_drawn() {
     let scene = crate::support::scenes::framed(shapes::cube());
     let mut probe = Probe::new(Renderer::new());
     let too_wide = Screen { width: 5_000, ..SCREEN };
-    assert!(matches!(probe.look(&scene, too_wide), Err(ProbeError::Screen(FrameError::Size { width: 5_000, .. }))));
+    assert!(matches!(probe.look(&scene, too_wide), Err(ProbeError::Screen(RasterError::Size { width: 5_000, .. }))));
     let none = Screen { width: 0, ..SCREEN };
     assert!(matches!(probe.look(&scene, none), Err(ProbeError::Screen(_))));
     let mut broken = scene.clone();

@@ -1,0 +1,92 @@
+//! What the raster refuses.
+
+use core::fmt;
+
+use crate::fixed::{I24F8, U8F8};
+
+/// The most columns or rows of a frame.
+pub(super) const MAX_SIDE: u32 = 4096;
+
+/// Error of what the raster was given: a frame, a depth buffer or a vertex.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RasterError {
+    /// Width or height is 0 or above 4,096.
+    Size {
+        /// Columns asked for.
+        width: u32,
+        /// Rows asked for.
+        height: u32,
+    },
+    /// The pitch is less than the width.
+    Pitch {
+        /// Bytes from one row to the next.
+        pitch: usize,
+        /// Columns.
+        width: u32,
+    },
+    /// The band of rows is empty or reaches beyond the frame.
+    Band {
+        /// First row of the band.
+        first: u32,
+        /// The row after its last.
+        end: u32,
+        /// Rows of the frame.
+        height: u32,
+    },
+    /// There are fewer bytes than the rows need.
+    Short {
+        /// Bytes given.
+        given: usize,
+        /// Bytes needed.
+        needed: usize,
+    },
+    /// There are fewer depths than the frame has columns times rows that it holds.
+    Depths {
+        /// Depths given.
+        given: usize,
+        /// Depths needed.
+        needed: usize,
+    },
+    /// A coordinate lies outside the guard band of ±4,096 pixels.
+    OutsideGuardBand {
+        /// The vertex's x.
+        x: I24F8,
+        /// The vertex's y.
+        y: I24F8,
+    },
+    /// The shade is above 255.0, where the rounding to the nearest byte would wrap.
+    ShadeAbove255 {
+        /// The shade.
+        shade: U8F8,
+    },
+}
+
+impl fmt::Display for RasterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => {
+                write!(f, "a frame of {width} × {height} pixels: each side must be 1 to {}", MAX_SIDE)
+            }
+            Self::Pitch { pitch, width } => write!(f, "a pitch of {pitch} bytes is less than the width, {width}"),
+            Self::Band { first, end, height } => {
+                write!(f, "rows {first} to {end} are no band of a frame of {height} rows")
+            }
+            Self::Short { given, needed } => write!(f, "{given} bytes given for a frame that needs {needed}"),
+            Self::Depths { given, needed } => write!(f, "{given} depths given for a frame that needs {needed}"),
+            Self::OutsideGuardBand { x, y } => write!(
+                f,
+                "vertex at ({}, {}) / 256 pixels lies outside the guard band of 4,096 pixels",
+                x.to_bits(),
+                y.to_bits()
+            ),
+            Self::ShadeAbove255 { shade } => {
+                write!(f, "vertex shade {:#06x} is above 0xff00 (255.0)", shade.to_bits())
+            }
+        }
+    }
+}
+
+crate::errors::debug_as_display!(RasterError);
+
+impl core::error::Error for RasterError {}
