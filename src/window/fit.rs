@@ -10,7 +10,7 @@ use crate::vga::Vga;
 /// The stretched picture, kept from frame to frame so that nothing is allocated while the window keeps its size.
 #[derive(Default)]
 pub(super) struct Stretched {
-    /// Of the window, and of the picture: its columns and rows, and its width to its height.
+    /// The sizes of the window and of the picture in pixels, and the picture's width to its height.
     sizes: [(usize, usize); 3],
     place: Area,
     /// For each column of the window's rectangle, the picture's column.
