@@ -4,7 +4,7 @@
 //! under the name before is whole until the new one is.
 
 mod atomic;
-#[cfg(feature = "png")]
+#[cfg(any(feature = "png", feature = "window"))]
 mod picture;
 #[cfg(feature = "png")]
 mod png_file;
@@ -12,7 +12,7 @@ mod png_file;
 mod scale;
 
 pub use atomic::{AtomicFile, ExportError, ExportErrorKind, check_writable, write_atomically};
-#[cfg(feature = "png")]
+#[cfg(any(feature = "png", feature = "window"))]
 pub use picture::{FRAME_RATES, MAX_SIDE, Picture, PictureError, PixelShape};
 #[cfg(feature = "png")]
 pub use png_file::{Png, png};
