@@ -7,10 +7,12 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use flate2::bufread::MultiGzDecoder;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, shapes};
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::{Scene, Shared, UpAxis};
@@ -247,24 +249,32 @@ fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
 fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjError> {
     const MOMENT: Duration = Duration::from_millis(300);
-    let begun = Instant::now();
-    let mut bar: Option<ProgressBar> = None;
-    let loaded = obj::load_with(path, options, |read, total| {
-        PERCENT.store((100 * read).checked_div(total).map_or(UNKNOWN, |percent| percent.min(100)), Ordering::Relaxed);
-        if begun.elapsed() < MOMENT {
-            return;
-        }
-        let bar = bar.get_or_insert_with(|| reading(total));
-        bar.set_position(read);
-        // The last call is the one that finds the end of the file.
-        if read >= total {
-            bar.set_message(", making the mesh");
-        }
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(reading());
+    let (done, waits) = mpsc::channel::<()>();
+    let loaded = thread::scope(|scope| {
+        // Beside the reading, as making the mesh may take most of the time and says nothing meanwhile.
+        let bar = &bar;
+        scope.spawn(move || {
+            if waits.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+                bar.enable_steady_tick(Duration::from_millis(100));
+            }
+        });
+        let loaded = obj::load_with(path, options, |read, total| {
+            PERCENT
+                .store((100 * read).checked_div(total).map_or(UNKNOWN, |percent| percent.min(100)), Ordering::Relaxed);
+            bar.set_length(total);
+            bar.set_position(read);
+            // The last call is the one that finds the end of the file.
+            if read >= total {
+                bar.set_message(", making the mesh");
+            }
+        });
+        drop(done);
+        loaded
     });
     PERCENT.store(UNKNOWN, Ordering::Relaxed);
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
+    bar.finish_and_clear();
     loaded
 }
 
@@ -278,15 +288,10 @@ pub(crate) fn percent_read() -> Option<u64> {
     Some(PERCENT.load(Ordering::Relaxed)).filter(|percent| *percent != UNKNOWN)
 }
 
-/// A bar on standard error, if that is a terminal.
-fn reading(bytes: u64) -> ProgressBar {
-    let bar = ProgressBar::new(bytes);
-    // It turns while the mesh is made, which cannot be said in bytes.
-    bar.enable_steady_tick(Duration::from_millis(100));
-    match ProgressStyle::with_template("{spinner} {bar:40} {bytes} of {total_bytes} read{msg}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
+/// The bar of a model that is read.
+fn reading() -> ProgressStyle {
+    ProgressStyle::with_template("{spinner} {bar:40} {bytes} of {total_bytes} read{msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 fn has_extension(path: &Path, wanted: &str) -> bool {
