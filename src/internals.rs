@@ -54,7 +54,7 @@ pub mod raster {
     pub use crate::raster::triangles::Batch;
 
     modules! { raster:
-        /// What clipping leaves of a triangle.
+        /// Clipping of triangles.
         clip
         /// Stages over spans: texture, fog, channels, blending, dither, light at every pixel.
         effects

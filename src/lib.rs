@@ -52,8 +52,8 @@
 //! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
 //! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
 //!
-//! What only the laboratory, the conformance crate and benchmarks use is behind the feature `internals`. It may change with
-//! any version.
+//! The feature `internals` opens the inside of the engine to the laboratory, the conformance crate, tests and benchmarks.
+//! It may change with any version.
 //!
 //! # Features
 //!

@@ -1,4 +1,4 @@
-//! What the raster refuses.
+//! The error of frames, depth buffers and vertices that the raster refuses.
 
 use core::fmt;
 

@@ -90,7 +90,8 @@ impl Pace {
         Self::in_milliseconds(max_time.as_secs_f32() * 1000.0, Self::MAX_ERROR)
     }
 
-    /// Accepts at most this error, in shades: above 0 and finite, or the renderer refuses it.
+    /// Accepts at most this error, in shades: above 0 and finite, or the renderer refuses it. Forgets the times that it was
+    /// told.
     #[must_use]
     pub fn at_most(self, max_error: f32) -> Self {
         Self::in_milliseconds(self.max_time, max_error)

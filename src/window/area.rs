@@ -31,8 +31,8 @@ impl Area {
         Area { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }
     }
 
-    /// A point of the window as a point of the picture of so many columns and rows that fills this rectangle: 0 to these
-    /// if it is on the picture, beyond them beside it.
+    /// Converts a point of the window to the picture's pixels, where the picture fills this rectangle: 0 to `columns` and
+    /// 0 to `rows` on the picture, beyond these beside it.
     pub(super) fn to_picture(self, x: f32, y: f32, (columns, rows): (usize, usize)) -> (f32, f32) {
         let along = |at: f32, from: usize, length: usize, picture: usize| {
             (at - from as f32) * picture as f32 / length.max(1) as f32

@@ -118,7 +118,7 @@ impl InputCallback for Events {
 
 impl Events {
     /// Collects the input since the last call.
-    /// The picture lies at `place`, and has so many columns and rows.
+    /// `place` is the rectangle of the window that the picture fills, and `size` the picture's columns and rows.
     pub(super) fn collect(&mut self, window: &Window, place: Area, size: (usize, usize)) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted, mut released } = self.follow(&keys);

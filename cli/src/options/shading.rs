@@ -48,12 +48,12 @@ fn milliseconds(words: &str) -> Result<f32, String> {
     }
 }
 
-/// So many milliseconds; `None` if they are below 0 or no clock has so many.
+/// Milliseconds as a duration; `None` if they are negative or too many for one.
 fn duration(milliseconds: f32) -> Option<Duration> {
     Duration::try_from_secs_f32(milliseconds / 1000.0).ok()
 }
 
-/// The pace of frames of so many milliseconds, within this error.
+/// The pace that gives each frame this many milliseconds, within this error.
 pub(crate) fn pace(milliseconds: f32, max_error: f32) -> Pace {
     Pace::new(duration(milliseconds).unwrap_or_default()).at_most(max_error)
 }

@@ -80,7 +80,7 @@ pub(super) fn timed_rows(
         let share = f64::from(i) / f64::from(TIMES - 1);
         let max_time = shortest * (longest / shortest).powf(share);
         let mut renderer = base();
-        // Of nanoseconds.
+        // `max_time` is in nanoseconds.
         let mut pace = Pace::new(Duration::from_nanos(max_time as u64));
         if let Some(row) = timed_row(frames, (&mut renderer, &mut pace), max_time, budgets, spent)? {
             rows.push(row);
