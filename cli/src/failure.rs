@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use mode13h::export::{ExportError, PictureError};
 use mode13h::render::RenderError;
 use mode13h::window::WindowError;
+use mode13h_assets::animation::AnimationError;
 use mode13h_assets::obj::{ObjError, ObjErrorKind};
 use mode13h_assets::scene_file::{SceneError, SceneErrorKind};
 use mode13h_assets::texture::LoadErrorKind;
@@ -85,6 +86,7 @@ failures! {
     CostError => words,
     PictureError => words,
     ExportError => file,
+    AnimationError => file,
     WindowError => file,
     std::io::Error => file,
     rayon::ThreadPoolBuildError => file,

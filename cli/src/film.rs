@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use mode13h::export::{Picture, PictureError, Scale};
+use mode13h::export::{Picture, Scale};
 use mode13h::palette::Palette;
 use mode13h::vga::Vga;
-use mode13h_assets::animation::{self, ApngFile, ApngFrame, FilmColors, FrameRate, GifFile, GifFrame};
+use mode13h_assets::animation::{self, AnimationError, ApngFile, ApngFrame, FilmColors, FrameRate, GifFile, GifFrame};
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 
@@ -195,7 +195,7 @@ impl Film {
         progress: &ProgressBar,
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
-        make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, PictureError> + Sync,
+        make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, AnimationError> + Sync,
         mut add: impl FnMut(Made) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));

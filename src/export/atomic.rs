@@ -44,17 +44,6 @@ pub enum ExportErrorKind {
     /// The picture itself cannot be written.
     #[cfg(feature = "png")]
     Picture(super::PictureError),
-    /// A film without a frame.
-    #[cfg(feature = "png")]
-    NoFrames,
-    /// A film of more or fewer frames than were promised.
-    #[cfg(feature = "png")]
-    FrameCount {
-        /// The number of frames that the film's head promises.
-        promised: u32,
-        /// The number of frames that were added.
-        given: u32,
-    },
     /// Any other failure that the system reports.
     Io(io::Error),
 }
@@ -100,12 +89,6 @@ impl fmt::Display for ExportError {
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
             #[cfg(feature = "png")]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),
-            #[cfg(feature = "png")]
-            ExportErrorKind::FrameCount { promised, given } => {
-                write!(f, "a film of {promised} frames was given {given}")
-            }
-            #[cfg(feature = "png")]
-            ExportErrorKind::NoFrames => f.write_str("a film without a frame"),
             ExportErrorKind::Io(error) => write!(f, "{error}"),
         }
     }

@@ -13,7 +13,7 @@ mod scale;
 
 pub use atomic::{AtomicFile, ExportError, ExportErrorKind, check_writable, write_atomically};
 #[cfg(any(feature = "png", feature = "window"))]
-pub use picture::{FRAME_RATES, MAX_SIDE, Picture, PictureError, PixelShape};
+pub use picture::{MAX_SIDE, Picture, PictureError, PixelShape};
 #[cfg(feature = "png")]
 pub use png_file::{Png, png};
 #[cfg(feature = "png")]

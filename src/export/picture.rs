@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::fmt;
-use std::ops::RangeInclusive;
 
 use crate::palette::{Palette, Rgb};
 
@@ -29,9 +28,6 @@ impl PixelShape {
     /// 5:6, which makes 320 × 200 pixels a 4:3 screen.
     pub const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
 }
-
-/// The frames per second that a film may show.
-pub const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
 
 /// A picture of palette indices, as it is exported.
 #[derive(Clone, Copy, Debug)]
@@ -104,22 +100,8 @@ pub enum PictureError {
         /// The pitch that was given.
         pitch: usize,
     },
-    /// A frame shows another colour than the film's fixed ones.
-    OtherColors,
-    /// A frame has another size than the film's first.
-    OtherSize {
-        /// Pixels in a row, and rows, of the first frame.
-        first: (usize, usize),
-        /// Pixels in a row, and rows, of this frame.
-        now: (usize, usize),
-    },
     /// The words are no [`Scale`](super::Scale).
     Scale,
-    /// The rate is none of [`FRAME_RATES`].
-    FrameRate {
-        /// The rate that was given.
-        frames_per_second: f64,
-    },
     /// The picture does not fit in memory.
     Memory {
         /// The number of bytes that were requested.
@@ -136,17 +118,8 @@ impl fmt::Display for PictureError {
             PictureError::Bytes { bytes, pitch } => {
                 write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")
             }
-            PictureError::OtherColors => f.write_str("a frame in a colour that the film's palette has not"),
-            PictureError::OtherSize { first, now } => {
-                write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
-            }
             PictureError::Scale => {
                 write!(f, "a scale is 1, 2, 5x6, or a width and height of 1 to {MAX_SIDE} such as 640x480")
-            }
-            PictureError::FrameRate { frames_per_second: given } => {
-                let (lowest, highest) = FRAME_RATES.into_inner();
-                let too_fast = if *given > highest { ": browsers slow down anything faster" } else { "" };
-                write!(f, "a film shows {lowest} to {highest} frames a second, not {given}{too_fast}")
             }
             PictureError::Memory { bytes } => write!(f, "no memory for a picture of {bytes} bytes"),
         }

@@ -7,16 +7,14 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use mode13h::export::AtomicFile;
-use mode13h::export::Scaled;
-use mode13h::export::{ExportError, ExportErrorKind, Picture, PictureError, Scale};
+use mode13h::export::{AtomicFile, Picture, PictureError, Scale, Scaled};
 use mode13h::palette::Rgb;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-use super::FrameRate;
 use super::chunk::{chunks, write_chunk};
 use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
+use super::{AnimationError, AnimationErrorKind, FrameRate};
 
 /// The colours of a film.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,7 +51,7 @@ impl ApngFrame {
         picture: &Picture<'_>,
         scale: Scale,
         colors: &FilmColors,
-    ) -> Result<ApngFrame, PictureError> {
+    ) -> Result<ApngFrame, AnimationError> {
         let scaled = Scaled::new(picture, scale)?;
         let before = before.map(|before| Scaled::new(before, scale)).transpose()?;
         let area = match &before {
@@ -83,7 +81,7 @@ impl ApngFrame {
             }
         };
         let table = ColorTable::of_all(palette);
-        let places = table.places(picture.palette, &pixels).ok_or(PictureError::OtherColors)?;
+        let places = table.places(picture.palette, &pixels).ok_or(AnimationErrorKind::OtherColors)?;
         pixels.iter_mut().for_each(|index| *index = places[usize::from(*index)]);
         // Neighbours in a ramp are neighbours in the palette: what a filter foretells is near.
         let mut best = (compressed(sides, ColorType::Indexed, &pixels, Filter::Adaptive)?, false);
@@ -157,8 +155,9 @@ impl ApngFile {
     ///
     /// # Errors
     ///
-    /// [`ExportError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has it.
-    pub fn create(path: impl AsRef<Path>, rate: FrameRate, frames: u32) -> Result<ApngFile, ExportError> {
+    /// [`AnimationError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has
+    /// it.
+    pub fn create(path: impl AsRef<Path>, rate: FrameRate, frames: u32) -> Result<ApngFile, AnimationError> {
         let path = path.as_ref();
         let out = AtomicFile::create(path)?;
         let film = Writer { out, rate, frames, given: 0, sequence: 0, first: None, bytes: 0, failed: None };
@@ -169,21 +168,22 @@ impl ApngFile {
     ///
     /// # Errors
     ///
-    /// [`ExportErrorKind::Picture`] if this frame has another size or other [`FilmColors`] than the first, and the film can go on without it;
-    /// [`ExportErrorKind::FrameCount`] if it is one too many; any other if writing failed and the film cannot go on.
-    pub fn add(&mut self, frame: &ApngFrame) -> Result<(), ExportError> {
-        self.film.add(frame).map_err(|kind| ExportError::new(&self.path, kind))
+    /// [`AnimationErrorKind::OtherSize`] or [`AnimationErrorKind::OtherColors`] if this frame has another size or other
+    /// [`FilmColors`] than the first, and the film can go on without it; [`AnimationErrorKind::FrameCount`] if it is one
+    /// too many; any other if writing failed and the film cannot go on.
+    pub fn add(&mut self, frame: &ApngFrame) -> Result<(), AnimationError> {
+        self.film.add(frame).map_err(|error| error.in_file(&self.path))
     }
 
     /// Ends the film, and gives the file its name. Returns how many bytes it has.
     ///
     /// # Errors
     ///
-    /// [`ExportErrorKind::FrameCount`] if frames are missing; any other if writing fails or failed before. The file is
-    /// then removed.
-    pub fn finish(self) -> Result<u64, ExportError> {
+    /// [`AnimationErrorKind::NoFrames`] if none were promised; [`AnimationErrorKind::FrameCount`] if frames are missing;
+    /// any other if writing fails or failed before. The file is then removed.
+    pub fn finish(self) -> Result<u64, AnimationError> {
         let ApngFile { path, film } = self;
-        let (file, bytes) = film.finish().map_err(|kind| ExportError::new(&path, kind))?;
+        let (file, bytes) = film.finish().map_err(|error| error.in_file(&path))?;
         file.commit()?;
         Ok(bytes)
     }
@@ -206,27 +206,27 @@ struct Writer<W> {
 }
 
 impl<W: Write> Writer<W> {
-    fn add(&mut self, frame: &ApngFrame) -> Result<(), ExportErrorKind> {
+    fn add(&mut self, frame: &ApngFrame) -> Result<(), AnimationError> {
         if let Some(kind) = self.failed {
-            return Err(ExportErrorKind::from_writing(kind.into()));
+            return Err(io::Error::from(kind).into());
         }
         if self.given == self.frames {
-            return Err(ExportErrorKind::FrameCount { promised: self.frames, given: self.given.saturating_add(1) });
+            let given = self.given.saturating_add(1);
+            return Err(AnimationErrorKind::FrameCount { promised: self.frames, given }.into());
         }
         if let Some((size, colors)) = &self.first {
             let wide = |(width, height): (u32, u32)| (width as usize, height as usize);
             if *size != frame.size {
-                let error = PictureError::OtherSize { first: wide(*size), now: wide(frame.size) };
-                return Err(ExportErrorKind::Picture(error));
+                return Err(AnimationErrorKind::OtherSize { first: wide(*size), now: wide(frame.size) }.into());
             }
             if *colors != frame.colors {
-                return Err(ExportErrorKind::Picture(PictureError::OtherColors));
+                return Err(AnimationErrorKind::OtherColors.into());
             }
         }
         let result = self.write(frame);
         result.map_err(|error| {
             self.failed = Some(error.kind());
-            ExportErrorKind::from_writing(error)
+            error.into()
         })
     }
 
@@ -285,17 +285,17 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    fn finish(mut self) -> Result<(W, u64), ExportErrorKind> {
+    fn finish(mut self) -> Result<(W, u64), AnimationError> {
         if let Some(kind) = self.failed {
-            return Err(ExportErrorKind::from_writing(kind.into()));
+            return Err(io::Error::from(kind).into());
         }
         if self.frames == 0 {
-            return Err(ExportErrorKind::NoFrames);
+            return Err(AnimationErrorKind::NoFrames.into());
         }
         if self.given != self.frames {
-            return Err(ExportErrorKind::FrameCount { promised: self.frames, given: self.given });
+            return Err(AnimationErrorKind::FrameCount { promised: self.frames, given: self.given }.into());
         }
-        self.chunk(*b"IEND", &[]).map_err(ExportErrorKind::from_writing)?;
+        self.chunk(*b"IEND", &[])?;
         Ok((self.out, self.bytes))
     }
 

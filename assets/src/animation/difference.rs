@@ -1,7 +1,9 @@
 //! Differences between a frame of a film and the one before it.
 
+use mode13h::export::Picture;
 use mode13h::export::Scaled;
-use mode13h::export::{Picture, PictureError};
+
+use super::{AnimationError, AnimationErrorKind};
 
 /// A rectangle of the film, in its pixels: from `left` and `top` to before `right` and `bottom`.
 #[derive(Clone, Copy)]
@@ -37,11 +39,11 @@ impl Area {
 
 /// Finds the least rectangle with all pixels that `now` shows in another colour than `before`, whether the index or the
 /// palette is the reason. Returns `None` if there is none. An index that stands for an equal colour changes nothing.
-pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<Area>, PictureError> {
+pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<Area>, AnimationError> {
     let (picture, columns, rows) = now.sources();
     let (first, size) = ((before.width, before.height), (picture.width, picture.height));
     if first != size {
-        return Err(PictureError::OtherSize { first, now: size });
+        return Err(AnimationErrorKind::OtherSize { first, now: size }.into());
     }
     let same_palette = before.palette == picture.palette;
     let changed = |y: usize| {

@@ -1,6 +1,6 @@
 //! Frames a second, and how long each frame then stays in hundredths of a second, the unit of GIF.
 
-use mode13h::export::{FRAME_RATES, PictureError};
+use super::error::{AnimationError, AnimationErrorKind, FRAME_RATES};
 
 /// A film's frames per second, 0.1 to 50.
 ///
@@ -11,13 +11,13 @@ pub struct FrameRate(f64);
 
 /// So many frames a second: 0.1 to 50.
 impl TryFrom<f64> for FrameRate {
-    type Error = PictureError;
+    type Error = AnimationError;
 
-    fn try_from(frames_per_second: f64) -> Result<FrameRate, PictureError> {
+    fn try_from(frames_per_second: f64) -> Result<FrameRate, AnimationError> {
         // NaN lies in no range.
         match FRAME_RATES.contains(&frames_per_second) {
             true => Ok(FrameRate(frames_per_second)),
-            false => Err(PictureError::FrameRate { frames_per_second }),
+            false => Err(AnimationErrorKind::FrameRate { frames_per_second }.into()),
         }
     }
 }
@@ -39,7 +39,7 @@ impl FrameRate {
     /// use mode13h_assets::animation::FrameRate;
     /// assert_eq!(FrameRate::default().fraction(), (35, 1));
     /// assert_eq!(FrameRate::try_from(29.97)?.fraction(), (2997, 100));
-    /// # Ok::<(), mode13h::export::PictureError>(())
+    /// # Ok::<(), mode13h_assets::animation::AnimationError>(())
     /// ```
     pub fn fraction(self) -> (u16, u16) {
         fraction(self.0)

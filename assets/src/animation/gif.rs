@@ -9,17 +9,15 @@
 //! Nearly all the time goes into making each [`GifFrame`] beside the one before it: several can be made at a time.
 
 use std::collections::BTreeMap;
-use std::error::Error;
-use std::fmt;
 use std::io::{self, Write};
 
 use gif::{Encoder, EncodingError, Frame, Repeat};
-use mode13h::export::{Picture, PictureError, Scale};
+use mode13h::export::{Picture, Scale};
 use mode13h::palette::Rgb;
 
-use super::FrameRate;
 use super::color_table::ColorTable;
 use super::gif_frame::{GifFrame, Image};
+use super::{AnimationError, AnimationErrorKind, FrameRate};
 
 /// A film that goes round for ever, as a GIF, written to `W` while its frames are given.
 ///
@@ -40,7 +38,7 @@ use super::gif_frame::{GifFrame, Image};
 /// let (bytes, film) = film.finish()?;
 /// assert_eq!((film.width, film.height, film.frames, film.seconds()), (640, 480, 70, 2.0));
 /// assert_eq!(bytes.len() as u64, film.bytes);
-/// # Ok::<(), mode13h_assets::animation::GifError>(())
+/// # Ok::<(), mode13h_assets::animation::AnimationError>(())
 /// ```
 pub struct GifWriter<W: Write> {
     scale: Scale,
@@ -89,9 +87,10 @@ impl<W: Write> GifWriter<W> {
     ///
     /// # Errors
     ///
-    /// [`GifError::Picture`] if its sizes do not fit its bytes, or are not those of the first frame, or are too large
-    /// when enlarged: the film can then go on without it. [`GifError::Io`] if writing failed: the film cannot go on.
-    pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), GifError> {
+    /// [`AnimationErrorKind::Picture`] if its sizes do not fit its bytes or are too large when enlarged, and
+    /// [`AnimationErrorKind::OtherSize`] if they are not those of the first frame: the film can then go on without it.
+    /// [`AnimationErrorKind::Io`] if writing failed: the film cannot go on.
+    pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), AnimationError> {
         self.out.check()?;
         let frame = match &self.held {
             None => GifFrame::first(picture, self.scale)?,
@@ -106,8 +105,9 @@ impl<W: Write> GifWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`add`](Self::add); [`GifError::Picture`] too if it was enlarged to another size than the first.
-    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), GifError> {
+    /// Those of [`add`](Self::add); [`AnimationErrorKind::OtherSize`] too if it was enlarged to another size than the
+    /// first.
+    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), AnimationError> {
         self.out.check()?;
         // Nothing stands before it.
         let frame = match &self.held {
@@ -125,7 +125,7 @@ impl<W: Write> GifWriter<W> {
                 let (first, now) = ((self.film.width, self.film.height), frame.size());
                 if first != now {
                     let wide = |(width, height): (u16, u16)| (width.into(), height.into());
-                    return Err(PictureError::OtherSize { first: wide(first), now: wide(now) }.into());
+                    return Err(AnimationErrorKind::OtherSize { first: wide(first), now: wide(now) }.into());
                 }
                 match (frame.changes(), held.delay.checked_add(delay)) {
                     (true, _) => None,
@@ -149,8 +149,9 @@ impl<W: Write> GifWriter<W> {
     ///
     /// # Errors
     ///
-    /// [`GifError::NoFrames`] if there was no frame; [`GifError::Io`] if writing fails or failed before.
-    pub fn finish(mut self) -> Result<(W, Film), GifError> {
+    /// [`AnimationErrorKind::NoFrames`] if there was no frame; [`AnimationErrorKind::Io`] if writing fails or failed
+    /// before.
+    pub fn finish(mut self) -> Result<(W, Film), AnimationError> {
         self.out.check()?;
         self.write_held()?;
         match self.out {
@@ -159,13 +160,13 @@ impl<W: Write> GifWriter<W> {
                 self.film.bytes = bytes;
                 Ok((out, self.film))
             }
-            Out::Failed(kind) => Err(GifError::Io(kind.into())),
-            Out::Unopened(_) => Err(GifError::NoFrames),
+            Out::Failed(kind) => Err(io::Error::from(kind).into()),
+            Out::Unopened(_) => Err(AnimationErrorKind::NoFrames.into()),
         }
     }
 
     /// Writes the frame that is held, if there is one.
-    fn write_held(&mut self) -> Result<(), GifError> {
+    fn write_held(&mut self) -> Result<(), AnimationError> {
         let Some(Held { frame, image, delay }) = self.held.take() else { return Ok(()) };
         let Some(Image { area, palette, transparent, data }) = image.or_else(|| frame.into_image()) else {
             return Ok(());
@@ -207,15 +208,15 @@ enum Out<W: Write> {
 }
 
 impl<W: Write> Out<W> {
-    fn check(&self) -> Result<(), GifError> {
+    fn check(&self) -> Result<(), AnimationError> {
         match self {
-            Out::Failed(kind) => Err(GifError::Io((*kind).into())),
+            Out::Failed(kind) => Err(io::Error::from(*kind).into()),
             _ => Ok(()),
         }
     }
 
     /// Writes an image that is compressed, and the file's head before the first.
-    fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), GifError> {
+    fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), AnimationError> {
         // Should this fail, the file ends amid an image, and nothing may follow.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));
         let written = out.opened(size, palette).and_then(|mut encoder| {
@@ -272,50 +273,5 @@ fn reason(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,
         other => io::Error::other(other),
-    }
-}
-
-/// An error of a film that was not written.
-#[non_exhaustive]
-pub enum GifError {
-    /// A frame cannot be part of the film.
-    Picture(PictureError),
-    /// The film has no frame.
-    NoFrames,
-    /// Writing failed.
-    Io(io::Error),
-}
-
-impl fmt::Display for GifError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            GifError::Picture(error) => write!(f, "{error}"),
-            GifError::NoFrames => f.write_str("a film without a frame"),
-            GifError::Io(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-crate::errors::debug_as_display!(GifError);
-
-impl Error for GifError {
-    fn source(&self) -> Option<&(dyn Error + 'static)> {
-        match self {
-            GifError::Picture(error) => Some(error),
-            GifError::NoFrames => None,
-            GifError::Io(error) => Some(error),
-        }
-    }
-}
-
-impl From<PictureError> for GifError {
-    fn from(error: PictureError) -> GifError {
-        GifError::Picture(error)
-    }
-}
-
-impl From<io::Error> for GifError {
-    fn from(error: io::Error) -> GifError {
-        GifError::Io(error)
     }
 }

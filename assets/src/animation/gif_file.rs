@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use mode13h::export::AtomicFile;
-use mode13h::export::{ExportError, ExportErrorKind, Picture, Scale};
+use mode13h::export::{AtomicFile, Picture, Scale};
 
-use super::{Film, FrameRate, GifError, GifFrame, GifWriter};
+use super::{AnimationError, Film, FrameRate, GifFrame, GifWriter};
 
 /// A film that goes round for ever, written to a file frame by frame as [`GifWriter`] does.
 ///
@@ -40,8 +39,9 @@ impl GifFile {
     ///
     /// # Errors
     ///
-    /// [`ExportError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has it.
-    pub fn create(path: impl AsRef<Path>, scale: Scale, rate: FrameRate) -> Result<GifFile, ExportError> {
+    /// [`AnimationError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has
+    /// it.
+    pub fn create(path: impl AsRef<Path>, scale: Scale, rate: FrameRate) -> Result<GifFile, AnimationError> {
         let path = path.as_ref();
         let file = AtomicFile::create(path)?;
         Ok(GifFile { path: path.to_path_buf(), writer: GifWriter::new(file, scale, rate) })
@@ -51,10 +51,10 @@ impl GifFile {
     ///
     /// # Errors
     ///
-    /// [`ExportErrorKind::Picture`] if this frame cannot be part of the film, which can go on without it; any other if
-    /// writing failed and the film cannot go on.
-    pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), ExportError> {
-        self.writer.add(picture).map_err(|error| failed(&self.path, error))
+    /// [`AnimationErrorKind::Export`](super::AnimationErrorKind::Export) if writing failed and the film cannot go on; any
+    /// other if this frame cannot be part of the film, which can go on without it.
+    pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), AnimationError> {
+        self.writer.add(picture).map_err(|error| error.in_file(&self.path))
     }
 
     /// Adds a frame that was made ready, as [`GifWriter::add_frame`] does.
@@ -62,27 +62,18 @@ impl GifFile {
     /// # Errors
     ///
     /// Those of [`add`](Self::add).
-    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), ExportError> {
-        self.writer.add_frame(frame).map_err(|error| failed(&self.path, error))
+    pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), AnimationError> {
+        self.writer.add_frame(frame).map_err(|error| error.in_file(&self.path))
     }
 
     /// Ends the film, and gives the file its name.
     ///
     /// # Errors
     ///
-    /// [`ExportError`] if the film has no frame, or if writing fails or failed before: the file is then removed.
-    pub fn finish(self) -> Result<Film, ExportError> {
-        let (file, film) = self.writer.finish().map_err(|error| failed(&self.path, error))?;
+    /// [`AnimationError`] if the film has no frame, or if writing fails or failed before: the file is then removed.
+    pub fn finish(self) -> Result<Film, AnimationError> {
+        let (file, film) = self.writer.finish().map_err(|error| error.in_file(&self.path))?;
         file.commit()?;
         Ok(film)
     }
-}
-
-fn failed(path: &Path, error: GifError) -> ExportError {
-    let kind = match error {
-        GifError::Picture(error) => ExportErrorKind::Picture(error),
-        GifError::NoFrames => ExportErrorKind::NoFrames,
-        GifError::Io(error) => ExportErrorKind::from_writing(error),
-    };
-    ExportError::new(path, kind)
 }

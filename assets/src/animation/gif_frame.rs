@@ -5,6 +5,7 @@ use mode13h::export::Scaled;
 use mode13h::export::{Picture, PictureError, PixelShape, Scale};
 use mode13h::palette::Rgb;
 
+use super::AnimationError;
 use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
 
@@ -24,7 +25,7 @@ use super::difference::{Area, changed, kept};
 /// film.add_frame(first)?;
 /// film.add_frame(second)?;
 /// assert_eq!(film.finish()?.1.images, 2);
-/// # Ok::<(), mode13h_assets::animation::GifError>(())
+/// # Ok::<(), mode13h_assets::animation::AnimationError>(())
 /// ```
 pub struct GifFrame {
     /// The pixels that were given, without gaps between the rows.
@@ -55,7 +56,7 @@ impl GifFrame {
     /// # Errors
     ///
     /// Sizes that do not fit the bytes, or are too large when enlarged; no memory.
-    pub fn first(picture: &Picture<'_>, scale: Scale) -> Result<GifFrame, PictureError> {
+    pub fn first(picture: &Picture<'_>, scale: Scale) -> Result<GifFrame, AnimationError> {
         let scaled = Scaled::new(picture, scale)?;
         let image = Image::new(None, &scaled, Area::whole(&scaled), picture.palette)?;
         GifFrame::new(&scaled, Some(image))
@@ -71,7 +72,7 @@ impl GifFrame {
         picture: &Picture<'_>,
         scale: Scale,
         film: &[Rgb; 256],
-    ) -> Result<GifFrame, PictureError> {
+    ) -> Result<GifFrame, AnimationError> {
         before.check()?;
         let scaled = Scaled::new(picture, scale)?;
         let image = match changed(before, &scaled)? {
@@ -81,7 +82,7 @@ impl GifFrame {
         GifFrame::new(&scaled, image)
     }
 
-    fn new(scaled: &Scaled<'_>, image: Option<Image>) -> Result<GifFrame, PictureError> {
+    fn new(scaled: &Scaled<'_>, image: Option<Image>) -> Result<GifFrame, AnimationError> {
         let (picture, ..) = scaled.sources();
         let &Picture { width, height, palette, .. } = picture;
         // The picture has been checked: so many are there.

@@ -5,6 +5,8 @@ use mode13h::export::Scaled;
 use mode13h::export::{Picture, PictureError, Scale};
 use mode13h::palette::Rgb;
 
+use super::AnimationError;
+
 /// The line that a stream of frames like this one begins with. `rate`: frames a second as a fraction.
 ///
 /// ```
@@ -13,13 +15,13 @@ use mode13h::palette::Rgb;
 /// use mode13h::palette::builtin::GREY;
 /// let frame = Picture::mode_13h(&[0; 64_000], &GREY);
 /// assert_eq!(y4m_header(&frame, Scale::One, (35, 1))?, "YUV4MPEG2 W320 H200 F35:1 Ip A5:6 C444\n");
-/// # Ok::<(), mode13h::export::PictureError>(())
+/// # Ok::<(), mode13h_assets::animation::AnimationError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`PictureError`] if the picture's sizes do not fit its bytes or are too large when enlarged.
-pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Result<String, PictureError> {
+/// [`AnimationErrorKind::Picture`](super::AnimationErrorKind::Picture) if the picture's sizes do not fit its bytes or are too large when enlarged.
+pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Result<String, AnimationError> {
     let scaled = Scaled::new(picture, scale)?;
     // Pixels per unit of length: of many across, each is narrow.
     let (across, down) = scaled.density();
@@ -32,7 +34,7 @@ pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Resu
 /// # Errors
 ///
 /// Those of [`y4m_header`]; no memory.
-pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, PictureError> {
+pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, AnimationError> {
     const HEADING: &[u8] = b"FRAME\n";
     let scaled = Scaled::new(picture, scale)?;
     let pixels = scaled.width as usize * scaled.height as usize;

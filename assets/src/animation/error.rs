@@ -1,0 +1,136 @@
+//! The error of animations.
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use mode13h::export::{ExportError, ExportErrorKind, PictureError};
+
+/// The frames per second that a film may show.
+pub(super) const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
+
+/// An error of an animation that was not written.
+#[non_exhaustive]
+pub struct AnimationError {
+    /// The file that was to be written; `None` if there is none, or not yet.
+    pub path: Option<PathBuf>,
+    /// The kind of the error.
+    pub kind: AnimationErrorKind,
+}
+
+/// The kinds of errors of an animation.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum AnimationErrorKind {
+    /// A frame cannot be exported at all.
+    Picture(PictureError),
+    /// A frame shows another colour than the film's fixed ones.
+    OtherColors,
+    /// A frame has another size than the film's first.
+    OtherSize {
+        /// Pixels in a row, and rows, of the first frame.
+        first: (usize, usize),
+        /// Pixels in a row, and rows, of this frame.
+        now: (usize, usize),
+    },
+    /// The rate does not lie between [`FrameRate::LOWEST`](super::FrameRate::LOWEST) and
+    /// [`FrameRate::HIGHEST`](super::FrameRate::HIGHEST).
+    FrameRate {
+        /// The rate that was given.
+        frames_per_second: f64,
+    },
+    /// The film has no frame.
+    NoFrames,
+    /// The film has more or fewer frames than were promised.
+    FrameCount {
+        /// The number of frames that the film's head promises.
+        promised: u32,
+        /// The number of frames that were added.
+        given: u32,
+    },
+    /// The writer failed.
+    Io(io::Error),
+    /// The file cannot be written.
+    Export(ExportError),
+}
+
+impl AnimationError {
+    /// The error of a film that was to stand in this file. What its writer reports is then the file's.
+    pub(super) fn in_file(self, path: &Path) -> AnimationError {
+        match self.kind {
+            AnimationErrorKind::Io(error) => ExportError::new(path, ExportErrorKind::from_writing(error)).into(),
+            kind => AnimationError { path: Some(path.to_path_buf()), kind },
+        }
+    }
+}
+
+impl fmt::Display for AnimationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.path, &self.kind) {
+            // It names the file itself.
+            (_, AnimationErrorKind::Export(error)) => write!(f, "{error}"),
+            (Some(path), kind) => write!(f, "{}: {kind}", path.display()),
+            (None, kind) => write!(f, "{kind}"),
+        }
+    }
+}
+
+impl fmt::Display for AnimationErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Picture(error) => write!(f, "{error}"),
+            Self::OtherColors => f.write_str("a frame in a colour that the film's palette has not"),
+            Self::OtherSize { first, now } => {
+                write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
+            }
+            Self::FrameRate { frames_per_second: given } => {
+                let (lowest, highest) = FRAME_RATES.into_inner();
+                let too_fast = if *given > highest { ": browsers slow down anything faster" } else { "" };
+                write!(f, "a film shows {lowest} to {highest} frames a second, not {given}{too_fast}")
+            }
+            Self::NoFrames => f.write_str("a film without a frame"),
+            Self::FrameCount { promised, given } => write!(f, "a film of {promised} frames was given {given}"),
+            Self::Io(error) => write!(f, "{error}"),
+            Self::Export(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+crate::errors::debug_as_display!(AnimationError);
+
+impl Error for AnimationError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match &self.kind {
+            AnimationErrorKind::Picture(error) => Some(error),
+            AnimationErrorKind::Io(error) => Some(error),
+            AnimationErrorKind::Export(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<AnimationErrorKind> for AnimationError {
+    fn from(kind: AnimationErrorKind) -> AnimationError {
+        AnimationError { path: None, kind }
+    }
+}
+
+impl From<PictureError> for AnimationError {
+    fn from(error: PictureError) -> AnimationError {
+        AnimationErrorKind::Picture(error).into()
+    }
+}
+
+impl From<io::Error> for AnimationError {
+    fn from(error: io::Error) -> AnimationError {
+        AnimationErrorKind::Io(error).into()
+    }
+}
+
+impl From<ExportError> for AnimationError {
+    fn from(error: ExportError) -> AnimationError {
+        AnimationError { path: Some(error.path.clone()), kind: AnimationErrorKind::Export(error) }
+    }
+}
