@@ -31,7 +31,7 @@ pub(crate) enum SizeClass {
 }
 
 /// A triangle that is to be drawn: its index, the side that is seen, and its class for one clip rectangle.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[repr(transparent)]
 pub(crate) struct Pick(pub(crate) u32);
 

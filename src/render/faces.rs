@@ -32,7 +32,7 @@ pub(super) struct Face {
 /// The point of a face at which it is lit as one: its middle, and its normal there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FacePoint {
-    normal: Vec3,
+    pub(super) normal: Vec3,
     centre: Vec3,
 }
 
@@ -90,28 +90,70 @@ impl<'a> Faces<'a> {
         [paint.respond(paint.shade(if face.back_facing { back } else { front })); 3]
     }
 
-    /// The one shade of each of eight faces of one surface.
-    pub(super) fn flat_of_eight(&self, kernel: Kernel, surface: u16, faces: &[Pick; LANES]) -> [U8F8; LANES] {
-        let paint = &self.paints[usize::from(surface)];
-        // Of the side that is seen.
-        let seen = |face: Pick| {
-            let FacePoint { normal, centre } = self.face_points[face.index()];
-            (normal * [1.0, -1.0][face.side()], centre)
-        };
-        let shades = if self.full {
+    /// The face of a pick.
+    pub(super) fn face(&self, pick: Pick) -> Face {
+        let index = pick.index();
+        Face {
+            // Below `Pick::MAX_COUNT`.
+            index: index as u32,
+            indices: self.geometry.triangles[index],
+            surface: self.geometry.triangle_surfaces[index],
+            back_facing: pick.side() != 0,
+        }
+    }
+
+    /// The surface of eight faces, if they have one.
+    #[inline(always)]
+    pub(super) fn surface_of_all(&self, faces: &[Pick; LANES]) -> Option<u16> {
+        if self.paints.len() == 1 {
+            return Some(0);
+        }
+        let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
+        let first = surface(&faces[0]);
+        faces.iter().all(|face| surface(face) == first).then_some(first)
+    }
+
+    /// The one shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
+    pub(super) fn shade_faces<const CULLS: bool>(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+        if self.channels || self.paints.iter().any(|paint| paint.response.is_some()) {
+            for (flat, &pick) in flat.iter_mut().zip(picks) {
+                *flat = self.flat(self.face(Pick(pick)));
+            }
+        } else if self.full {
+            self.shade_in_full_light(kernel, picks, flat);
+        } else if CULLS {
+            light_faces::<false>(kernel.simd_level(), self, picks, flat);
+        } else {
+            light_faces::<true>(kernel.simd_level(), self, picks, flat);
+        }
+    }
+
+    /// [`shade_faces`](Self::shade_faces) with lamps and highlights.
+    fn shade_in_full_light(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+        for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
+            // Without a face the last one's.
+            let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
+            let Some(surface) = self.surface_of_all(&of) else {
+                for (flat, &pick) in flat.iter_mut().zip(eight) {
+                    *flat = self.flat(self.face(Pick(pick)));
+                }
+                continue;
+            };
+            let paint = &self.paints[usize::from(surface)];
             let mut points = [[0.0; LANES]; 6];
-            for (lane, face) in faces.iter().enumerate() {
-                let (n, centre) = seen(*face);
+            for (lane, face) in of.iter().enumerate() {
+                let FacePoint { normal, centre } = self.face_points[face.index()];
+                // Of the side that is seen.
+                let n = normal * [1.0, -1.0][face.side()];
                 for (axis, value) in [n.x, n.y, n.z, centre.x, centre.y, centre.z].into_iter().enumerate() {
                     points[axis][lane] = value;
                 }
             }
-            let front = self.lights.unit_front_of_one_channel(&paint.answer, &points, kernel);
-            paint.shade_of_eight(&front)
-        } else {
-            light_faces(kernel.simd_level(), paint, &self.lights, &each!(lane => seen(faces[lane]).0))
-        };
-        if paint.response.is_some() { shades.map(|shade| paint.respond(shade)) } else { shades }
+            let shades = paint.shade_of_eight(&self.lights.unit_front_of_one_channel(&paint.answer, &points, kernel));
+            for (flat, shade) in flat.iter_mut().zip(shades) {
+                *flat = [shade; 3];
+            }
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use super::faces::{Face, Faces};
 use super::geometry::Geometry;
 use super::stats::Shares;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, each, three};
+use crate::lanes::{LANES, three};
 use crate::light::Blend;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;
@@ -310,7 +310,7 @@ impl Faces<'_> {
             if let Some(look) = one_look.filter(|_| of_common == left) {
                 picker.add(look, first, &masks, left);
                 if self.lit_by_face {
-                    self.light_faces(picker, stats);
+                    self.light_faces::<CULLS>(picker, stats);
                 }
                 picker.make_space(&all);
                 continue;
@@ -408,36 +408,15 @@ impl Faces<'_> {
 
     /// Lights the faces that were picked last, each as one.
     #[inline(never)]
-    fn light_faces(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+    fn light_faces<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
         let PickScratch { picks, flat, .. } = &mut *picker.scratch;
-        let picks = &picks.as_slice()[flat.len()..];
+        let first = flat.len();
+        let picks = &picks.as_slice()[first..];
         stats.lit += picks.len() as u64;
-        for eight in picks.chunks(LANES) {
-            // Without a face the first one's.
-            let faces = match eight.first_chunk::<LANES>() {
-                Some(eight) => each!(lane => eight[lane]),
-                None => each!(lane => if lane < eight.len() { eight[lane] } else { eight[0] }),
-            };
-            let faces = faces.map(Pick);
-            let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
-            let first = surface(&faces[0]);
-            if !self.channels && (self.paints.len() == 1 || faces.iter().all(|face| surface(face) == first)) {
-                let shades = self.flat_of_eight(kernel, first, &faces);
-                // There is room: it was reserved.
-                flat.extend_from_slice(&shades.map(|shade| [shade; 3])[..eight.len()]);
-                continue;
-            }
-            flat.extend(faces[..eight.len()].iter().map(|face| {
-                self.flat(Face {
-                    // Below `Pick::MAX_COUNT`.
-                    index: face.index() as u32,
-                    indices: self.geometry.triangles[face.index()],
-                    surface: surface(face),
-                    back_facing: face.side() != 0,
-                })
-            }));
-        }
+        // There is room: it was reserved.
+        flat.resize(first + picks.len(), Default::default());
+        self.shade_faces::<CULLS>(kernel, picks, &mut flat[first..]);
     }
 
     /// A face that bounds alone do not make linear on the screen. `error` is its bound, if it is not linear on the face

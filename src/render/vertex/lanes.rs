@@ -10,7 +10,9 @@ use super::Geometry;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
+use crate::raster::pick::Pick;
 use crate::render::columns::{ScreenPos, VertexColumns};
+use crate::render::faces::Faces;
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
@@ -160,7 +162,11 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
     for (i, normals) in eights[..n].iter().enumerate() {
         let (shades, surfaces) = (&mut shades[i], &surfaces[i]);
         if *surfaces == [surfaces[0]; LANES] {
-            light_eight::<S, BOTH>(s, &paints[usize::from(surfaces[0])], lights, normals, shades);
+            let mut pairs = [0; LANES];
+            s.store_i32(light_eight::<S, BOTH>(s, &paints[usize::from(surfaces[0])], lights, normals), &mut pairs);
+            for (lane, shades) in shades.iter_mut().enumerate() {
+                *shades = [U8F8::from_bits(pairs[lane] as u16), U8F8::from_bits((pairs[lane] >> 16) as u16)];
+            }
         } else {
             light_one_by_one::<BOTH>(normals, surfaces, paints, lights, shades);
         }
@@ -169,24 +175,36 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
 }
 
 compiled_for_each_level! {
-    /// The shades of eight faces of one surface by the normals of the sides that are seen: suns, and no highlights.
-    pub(in crate::render) fn light_faces[][](
-        paint: &SurfaceMaterial,
-        lights: &Lights<'_>,
-        normals: &[Vec3; LANES],
-    ) -> [U8F8; LANES] = light_faces_by;
+    /// The shades of picked faces, each lit as one by its own normal: suns, no highlights, and one channel.
+    pub(in crate::render) fn light_faces[const BOTH: bool][BOTH](
+        faces: &Faces<'_>,
+        picks: &[u32],
+        flat: &mut [[U8F8; 3]],
+    ) = light_faces_by;
 }
 
 #[inline(always)]
-fn light_faces_by<S: F32Lanes8>(
-    s: S,
-    paint: &SurfaceMaterial,
-    lights: &Lights<'_>,
-    normals: &[Vec3; LANES],
-) -> [U8F8; LANES] {
-    let mut sides = [[U8F8::default(); 2]; LANES];
-    light_eight::<S, false>(s, paint, lights, normals, &mut sides);
-    each!(lane => sides[lane][0])
+fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
+        // Without a face the last one's.
+        let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
+        let Some(surface) = faces.surface_of_all(&of) else {
+            for (flat, &pick) in flat.iter_mut().zip(eight) {
+                *flat = faces.flat(faces.face(Pick(pick)));
+            }
+            continue;
+        };
+        let normals: [Vec3; LANES] = each!(lane => faces.face_points[of[lane].index()].normal);
+        let mut shades = [0; LANES];
+        s.store_i32(
+            light_eight::<S, BOTH>(s, &faces.paints[usize::from(surface)], &faces.lights, &normals),
+            &mut shades,
+        );
+        for (lane, flat) in flat.iter_mut().enumerate() {
+            // The front's shade is in the lower half.
+            *flat = [U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16); 3];
+        }
+    }
 }
 
 /// The definition.
@@ -205,15 +223,15 @@ fn light_one_by_one<const BOTH: bool>(
     }
 }
 
-/// Eight vertices of one surface.
+/// The shades of eight normals of one surface: the front's in the lower half, and where `BOTH` are asked for the back's in
+/// the upper.
 #[inline(always)]
 fn light_eight<S: F32Lanes8, const BOTH: bool>(
     s: S,
     paint: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
-    shades: &mut [[U8F8; 2]; LANES],
-) {
+) -> S::I32 {
     let [nx, ny, nz] = s.vectors(normals);
     let dark = s.splat_f32(0.0);
     let (mut front, mut back) = (s.splat_f64(0.0), s.splat_f64(0.0));
@@ -230,13 +248,7 @@ fn light_eight<S: F32Lanes8, const BOTH: bool>(
         }
     }
     let front = shade(s, paint, front);
-    let both = if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front };
-    let mut pairs = [0; LANES];
-    s.store_i32(both, &mut pairs);
-    // The front's shade in the lower half.
-    for (lane, shades) in shades.iter_mut().enumerate() {
-        *shades = [U8F8::from_bits(pairs[lane] as u16), U8F8::from_bits((pairs[lane] >> 16) as u16)];
-    }
+    if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front }
 }
 
 /// [`SurfaceMaterial::shade`] of these sums of light.
