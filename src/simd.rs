@@ -46,6 +46,23 @@ pub(crate) const SIMD128: wide128::Wide128<wasm::Simd128> = wide128::Wide128(was
 pub(crate) use NEON as BASELINE;
 #[cfg(simd_wasm)]
 pub(crate) use SIMD128 as BASELINE;
+/// Eight words of two numbers.
+#[cfg(simd_x86_64)]
+#[inline(always)]
+const fn words_of([low, high]: [i64; 2]) -> [u16; 8] {
+    // Shifts, so that nothing goes through memory.
+    [
+        low as u16,
+        (low >> 16) as u16,
+        (low >> 32) as u16,
+        (low >> 48) as u16,
+        high as u16,
+        (high >> 16) as u16,
+        (high >> 32) as u16,
+        (high >> 48) as u16,
+    ]
+}
+
 /// What every processor of the target has.
 #[cfg(simd_x86_64)]
 pub(crate) use SSE2 as BASELINE;

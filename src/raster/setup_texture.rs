@@ -10,6 +10,7 @@
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
+use super::rows::Lane;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::LANES;
@@ -107,6 +108,28 @@ impl AffinePlanes8 {
         starts
     }
 
+    /// The coordinates, u and v, of each lane at these columns of rows `j`: [`start`](Self::start) in vectors.
+    #[inline(always)]
+    pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::I32; 2] {
+        let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));
+        let inverse = lane.load_f64(s, &self.inverse);
+        let mut starts = [s.splat_i32(0); 2];
+        for (of, start) in starts.iter_mut().enumerate() {
+            let n = s.mul_add(lane.load_f64(s, &self.per_row[of]), j, lane.load_f64(s, &self.n[of]));
+            let n = s.mul_add(lane.load_f64(s, &self.per_column[of]), i, n);
+            // The low bits; the sum is meant modulo 2³².
+            let change = s.low_bits(s.mul_add(n, inverse, s.splat_f64(ROUND_MAGIC)));
+            *start = s.add_i32(change, lane.load_i32(s, &self.first[of]));
+        }
+        starts
+    }
+
+    /// Changes from a pixel of each lane to the next one.
+    #[inline(always)]
+    pub(super) fn steps<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> [S::I32; 2] {
+        [lane.load_i32(s, &self.step[0]), lane.load_i32(s, &self.step[1])]
+    }
+
     /// Change from a pixel of triangle `lane` to the next one.
     #[inline(always)]
     pub(super) fn step(&self, lane: usize) -> [u32; 2] {
@@ -173,6 +196,22 @@ impl PerspectivePlanes8 {
             let weight = weights[0][lane] + weights[1][lane] * row + weights[2][lane] * column;
             for (sum, values) in sums.iter_mut().zip(values) {
                 *sum += weight * values[lane];
+            }
+        }
+        sums
+    }
+
+    /// The sums of each lane at these columns of rows `j`: [`start`](Self::start) in vectors, which may fuse a product with a
+    /// sum and so rounds no more often.
+    #[inline(always)]
+    pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::F64; 3] {
+        let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));
+        let mut sums = [s.splat_f64(0.0); 3];
+        for (weights, values) in self.weights.iter().zip(&self.values) {
+            let weight = s.mul_add(lane.load_f64(s, &weights[1]), j, lane.load_f64(s, &weights[0]));
+            let weight = s.mul_add(lane.load_f64(s, &weights[2]), i, weight);
+            for (sum, values) in sums.iter_mut().zip(values) {
+                *sum = s.mul_add(weight, lane.load_f64(s, values), *sum);
             }
         }
         sums

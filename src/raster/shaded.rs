@@ -108,7 +108,7 @@ impl Listed<'_> {
 pub(super) struct Shaded8<'a> {
     kind: Kind,
     listed: Listed<'a>,
-    starts: SpanStarts,
+    starts: SpanStarts<2>,
     bytes: SpanBytes,
     /// 16.16: 255·h, and A.
     fraction: Floats,
@@ -268,7 +268,7 @@ fn product<S: Lanes8>(s: S, a: S::F64, b: S::F64) -> S::I64 {
 
 impl Shades8 for Shaded8<'_> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Starts8<S>;
+    type Columns<S: Lanes8> = Starts8<S, 2>;
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -296,7 +296,7 @@ impl Shades8 for Shaded8<'_> {
         setup: &TriangleSetup8,
         (ends, j): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, Starts8<S>) {
+    ) -> (S::I32, Starts8<S, 2>) {
         let magic = s.splat_f64(ROUND_MAGIC);
         // At most 255.
         let face = self.listed.batches.faces(s, lane);
@@ -335,7 +335,7 @@ impl Shades8 for Shaded8<'_> {
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S, Starts8<S>>,
+        spans: &Spans8<S, Starts8<S, 2>>,
         dz: DepthSteps<S>,
     ) {
         let places = list.append::<S, _, DEPTHS>(s, spans, dz);

@@ -140,6 +140,11 @@ impl Lanes8 for Avx2 {
         fn load_i32(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
         fn splat_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
         fn store_i32(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn low_words(from: __m256i) -> [u16; 8] {
+            let from = _mm256_and_si256(from, _mm256_set1_epi32(0xFFFF));
+            let words = _mm_packus_epi32(_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
+            super::words_of([_mm_cvtsi128_si64(words), _mm_extract_epi64::<1>(words)])
+        }
         fn low_bytes(from: __m256i) -> [u8; 8] {
             let fours = _mm256_shuffle_epi8(from, _mm256_set1_epi32(0x0C08_0400));
             let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256::<1>(fours));

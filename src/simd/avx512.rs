@@ -55,6 +55,10 @@ impl Lanes8 for Avx512 {
         fn load_i32(from: &[i32; 8]) -> __m256i { _mm256_loadu_si256(from.as_ptr().cast()) }
         fn splat_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
         fn store_i32(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
+        fn low_words(from: __m256i) -> [u16; 8] {
+            let words = _mm256_cvtepi32_epi16(from);
+            super::words_of([_mm_cvtsi128_si64(words), _mm_extract_epi64::<1>(words)])
+        }
         fn low_bytes(from: __m256i) -> [u8; 8] { _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(from)).to_le_bytes() }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }

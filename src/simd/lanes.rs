@@ -53,6 +53,13 @@ pub(crate) trait Lanes8: Copy {
         self.store_i32(from, &mut lanes);
         crate::lanes::each!(lane => lanes[lane] as u8)
     }
+    /// The lower halves of each, out of a vector and not through memory where the level can do so: each may be an index.
+    #[inline(always)]
+    fn low_words(self, from: Self::I32) -> [u16; 8] {
+        let mut lanes = [0; 8];
+        self.store_i32(from, &mut lanes);
+        crate::lanes::each!(lane => lanes[lane] as u16)
+    }
     fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;

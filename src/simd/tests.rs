@@ -97,6 +97,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
         c.f64s("to_f64", s.to_f64(ii), p.to_f64(i));
         c.f64s("unsigned_to_f64", s.unsigned_to_f64(ii), p.unsigned_to_f64(i));
         assert_eq!(s.low_bytes(ii), p.low_bytes(i), "low_bytes of {name}");
+        assert_eq!(s.low_words(ii), p.low_words(i), "low_words of {name}");
         c.i32s("add_i32", s.add_i32(ii, ij), p.add_i32(i, j));
         c.i32s("sub_i32", s.sub_i32(ii, ij), p.sub_i32(i, j));
         c.i32s("mul_i32", s.mul_i32(ii, ij), p.mul_i32(i, j));

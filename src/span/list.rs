@@ -430,35 +430,40 @@ impl SpanList {
 
 /// First sums of eight spans, where their fill is more than a linear shade.
 #[derive(Clone, Copy)]
-pub(crate) struct Starts8<S: Lanes8>(pub(crate) [S::I64; 2]);
+pub(crate) struct Starts8<S: Lanes8, const N: usize>(pub(crate) [S::I64; N]);
 
-impl<S: Lanes8> SpanColumns<S> for Starts8<S> {
+impl<S: Lanes8, const N: usize> SpanColumns<S> for Starts8<S, N> {
     #[inline(always)]
     fn zip(self, s: S, other: Self) -> [Self; 2] {
-        let [a, more_a] = s.interleave_i64(self.0[0], other.0[0]);
-        let [b, more_b] = s.interleave_i64(self.0[1], other.0[1]);
-        [Self([a, b]), Self([more_a, more_b])]
+        let (mut low, mut high) = (self, other);
+        for i in 0..N {
+            [low.0[i], high.0[i]] = s.interleave_i64(self.0[i], other.0[i]);
+        }
+        [low, high]
     }
 }
 
 /// First sums of each span of a list, as [`Starts8`].
-pub(crate) struct SpanStarts([Depths; 2]);
+#[derive(Clone, Debug)]
+pub(crate) struct SpanStarts<const N: usize>([Depths; N]);
 
-impl SpanStarts {
-    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; 2]);
+impl<const N: usize> SpanStarts<N> {
+    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
 
     /// Puts those of the mask into the places from `at` on.
     #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S>) {
-        let [first, second] = &mut self.0;
-        s.compress_i64(mask, starts.0, [eight(first, at), eight(second, at)]);
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S, N>) {
+        s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
     }
 
     /// Those of span `k`.
     #[inline(always)]
-    pub(crate) fn of(&self, k: usize) -> [i64; 2] {
-        let k = k.min(CAPACITY);
-        [self.0[0][k], self.0[1][k]]
+    pub(crate) fn of(&self, k: usize) -> [i64; N] {
+        let (k, mut of) = (k.min(CAPACITY), [0; N]);
+        for (i, of) in of.iter_mut().enumerate() {
+            *of = self.0[i][k];
+        }
+        of
     }
 }
 

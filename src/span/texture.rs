@@ -15,7 +15,7 @@
 use core::fmt;
 
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
-use crate::lanes::{LANES, NUMBERS};
+use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::{BASELINE, Lanes8};
 
 /// A texture's bytes, row by row, with their shape.
@@ -202,11 +202,21 @@ pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, mut u: u32, mut v: u32, d
 
 /// What becomes of a texel.
 pub(crate) trait Shown: Copy {
+    /// What a loop over a whole span takes for it.
+    #[cfg(feature = "alloc")]
+    type Tint: Tint;
+    #[cfg(feature = "alloc")]
+    fn tint(self) -> Self::Tint;
     fn show(self, pixel: &mut u8, texel: u8);
 }
 
 /// It is shown.
 impl Shown for () {
+    #[cfg(feature = "alloc")]
+    type Tint = ();
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn tint(self) {}
     #[inline(always)]
     fn show(self, pixel: &mut u8, texel: u8) {
         *pixel = texel;
@@ -215,6 +225,13 @@ impl Shown for () {
 
 /// The byte for one shade and the texel is shown.
 impl Shown for &[u8; 256] {
+    #[cfg(feature = "alloc")]
+    type Tint = Self;
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn tint(self) -> Self {
+        self
+    }
     #[inline(always)]
     fn show(self, pixel: &mut u8, texel: u8) {
         *pixel = self[usize::from(texel)];
@@ -223,7 +240,14 @@ impl Shown for &[u8; 256] {
 
 /// The byte for a shade, which the pixel holds, and the texel is shown, as by [`lookup`](super::lookup). In one loop that
 /// takes 0.7 to 0.8 of the time of two.
-impl Shown for &[u8; 65_536] {
+impl<'a> Shown for &'a [u8; 65_536] {
+    #[cfg(feature = "alloc")]
+    type Tint = Held<'a>;
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn tint(self) -> Held<'a> {
+        Held(self)
+    }
     #[inline(always)]
     fn show(self, pixel: &mut u8, texel: u8) {
         *pixel = self[usize::from(*pixel) << 8 | usize::from(texel)];
@@ -243,6 +267,263 @@ pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places
         // Not negative.
         shown.show(pixel, texels.bytes[places[k] as usize & last]);
     }
+}
+
+/// Values of a span that are linear along it: the first, and above it the step.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct SpanValues {
+    /// The shade.
+    pub(crate) paint: u32,
+    /// The density of fog, if there is some.
+    pub(crate) fog: u32,
+    /// Pixels at the beginning that are left out.
+    pub(crate) skipped: u32,
+}
+
+/// What becomes of texels along a span: a loop that writes them where they belong.
+#[cfg(feature = "alloc")]
+pub(crate) trait Tint: Copy {
+    /// True if the density of fog is read.
+    const HAS_FOG: bool = false;
+    /// True if what the pixels hold is read, so that they can be written only once.
+    const READS_PIXELS: bool = false;
+    /// What changes along a span, ...
+    type Along<S: Lanes8>: Copy;
+    /// ... and what of that eight pixels have.
+    type Rows: Copy;
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S>;
+    /// What eight pixels have that hold these bytes. Goes on to the next eight.
+    fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
+    /// The byte for a texel of pixel `k` of eight.
+    fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
+}
+
+/// A linear value of eight pixels in 8.8, and the step to the next eight.
+#[cfg(feature = "alloc")]
+type Ramp8<S> = [<S as Lanes8>::I32; 2];
+
+#[cfg(feature = "alloc")]
+#[inline(always)]
+fn ramp_from<S: Lanes8>(s: S, value: u32, skipped: u32) -> Ramp8<S> {
+    // The sums are meant modulo 2¹⁶; what is above is not read.
+    let step = (value >> 16).cast_signed();
+    let first = value.cast_signed().wrapping_add(step.wrapping_mul(skipped.cast_signed()));
+    let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
+    [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
+}
+
+/// The whole parts of eight values, in the upper bytes: rows of a table. Goes on to the next eight.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+fn rows_of<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
+    let rows = s.low_words(s.and_i32(*values, s.splat_i32(0xFF00)));
+    *values = s.add_i32(*values, *next);
+    rows
+}
+
+/// It is shown.
+#[cfg(feature = "alloc")]
+impl Tint for () {
+    type Along<S: Lanes8> = ();
+    type Rows = ();
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    #[inline(always)]
+    fn show(self, (): (), _: usize, texel: u8) -> u8 {
+        texel
+    }
+}
+
+/// The byte for one shade and the texel is shown.
+#[cfg(feature = "alloc")]
+impl Tint for &[u8; 256] {
+    type Along<S: Lanes8> = ();
+    type Rows = ();
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    #[inline(always)]
+    fn show(self, (): (), _: usize, texel: u8) -> u8 {
+        self[usize::from(texel)]
+    }
+}
+
+/// A table of bytes for a shade and a texel: the shades are those of the span's paint.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct Painted<'a>(pub(crate) &'a [u8; 65_536]);
+
+#[cfg(feature = "alloc")]
+impl Tint for Painted<'_> {
+    type Along<S: Lanes8> = Ramp8<S>;
+    type Rows = [u16; LANES];
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
+        ramp_from(s, values.paint, values.skipped)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
+        rows_of(s, along)
+    }
+    #[inline(always)]
+    fn show(self, rows: [u16; LANES], k: usize, texel: u8) -> u8 {
+        self.0[usize::from(rows[k] | u16::from(texel))]
+    }
+}
+
+/// A table of bytes for a shade and a texel: the shades are what the pixels hold.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct Held<'a>(&'a [u8; 65_536]);
+
+#[cfg(feature = "alloc")]
+impl Tint for Held<'_> {
+    const READS_PIXELS: bool = true;
+    type Along<S: Lanes8> = ();
+    type Rows = [u8; LANES];
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, _: S, (): &mut (), pixels: &[u8; LANES]) -> [u8; LANES] {
+        *pixels
+    }
+    #[inline(always)]
+    fn show(self, shades: [u8; LANES], k: usize, texel: u8) -> u8 {
+        self.0[usize::from(shades[k]) << 8 | usize::from(texel)]
+    }
+}
+
+/// What becomes of texels is mixed with what the pixels hold, by a table: its row is the texel's byte.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct Blended<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
+
+#[cfg(feature = "alloc")]
+impl<T: Tint> Tint for Blended<'_, T> {
+    const HAS_FOG: bool = T::HAS_FOG;
+    const READS_PIXELS: bool = true;
+    type Along<S: Lanes8> = T::Along<S>;
+    type Rows = (T::Rows, [u8; LANES]);
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> T::Along<S> {
+        self.0.begin(s, values)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
+        (self.0.rows(s, along, pixels), *pixels)
+    }
+    #[inline(always)]
+    fn show(self, (rows, pixels): Self::Rows, k: usize, texel: u8) -> u8 {
+        self.1[usize::from(self.0.show(rows, k, texel)) << 8 | usize::from(pixels[k])]
+    }
+}
+
+/// What becomes of texels lies in fog: a table of bytes for a level and a byte.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct Fogged<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
+
+#[cfg(feature = "alloc")]
+impl<T: Tint> Tint for Fogged<'_, T> {
+    const HAS_FOG: bool = true;
+    const READS_PIXELS: bool = T::READS_PIXELS;
+    type Along<S: Lanes8> = (T::Along<S>, Ramp8<S>);
+    type Rows = (T::Rows, [u16; LANES]);
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S> {
+        (self.0.begin(s, values), ramp_from(s, values.fog, values.skipped))
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, (along, fog): &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
+        (self.0.rows(s, along, pixels), rows_of(s, fog))
+    }
+    #[inline(always)]
+    fn show(self, (rows, levels): Self::Rows, k: usize, texel: u8) -> u8 {
+        self.1[usize::from(levels[k] | u16::from(self.0.show(rows, k, texel)))]
+    }
+}
+
+/// Shows texels in the first `length` pixels of a row: `places` gives those of the next eight, in lanes. What lies behind
+/// them stays as it was.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+fn show_along<S: Lanes8, T: Tint>(
+    s: S,
+    (row, length): (&mut [u8], usize),
+    texels: Texels<'_>,
+    (tint, along): (T, &mut T::Along<S>),
+    mut places: impl PlacesAlong<S>,
+) {
+    // Never so: see `show`.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let last = texels.bytes.len() - 1;
+    let (mut rest, mut left) = (row, length);
+    while left > 0 {
+        let places = s.low_words(places.next());
+        let Some(pixels) = rest.first_chunk::<LANES>() else {
+            // At the frame's end.
+            let mut pixels = [0; LANES];
+            for (to, pixel) in pixels.iter_mut().zip(&*rest) {
+                *to = *pixel;
+            }
+            let rows = tint.rows(s, along, &pixels);
+            for (k, pixel) in rest.iter_mut().take(left).enumerate() {
+                *pixel = texel(tint, rows, places, (texels, last), k % LANES);
+            }
+            return;
+        };
+        let rows = tint.rows(s, along, pixels);
+        // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged.
+        if left <= FOUR
+            && let Some(row) = rest.first_chunk_mut()
+        {
+            let mask = u32::MAX >> (8 * (FOUR - left));
+            let bytes = u32::from_le_bytes([
+                texel(tint, rows, places, (texels, last), 0),
+                texel(tint, rows, places, (texels, last), 1),
+                texel(tint, rows, places, (texels, last), 2),
+                texel(tint, rows, places, (texels, last), 3),
+            ]);
+            *row = (bytes & mask | u32::from_le_bytes(*row) & !mask).to_le_bytes();
+            return;
+        }
+        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
+        if left < LANES {
+            let mask = u64::MAX >> (8 * (LANES - left));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, (texels, last), k));
+            *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
+            return;
+        }
+        let mut k = 0;
+        while k < LANES {
+            block[k] = texel(tint, rows, places, (texels, last), k);
+            k += 1;
+        }
+        (rest, left) = (behind, left - LANES);
+    }
+}
+
+/// Texel `k` of eight as it is shown. `last` is the number of the last texel.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
+    tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
+}
+
+/// Pixels that are shown at once where no more are left.
+#[cfg(feature = "alloc")]
+const FOUR: usize = LANES / 2;
+
+/// Places of texels, eight after eight.
+#[cfg(feature = "alloc")]
+trait PlacesAlong<S: Lanes8> {
+    fn next(&mut self) -> S::I32;
 }
 
 /// Places of texels in vectors.
@@ -306,6 +587,71 @@ impl<S: Lanes8> AffineLines<S> {
         for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
             s.store_i32(self.places.at(u, v), block);
             (u, v) = (s.add_i32(u, self.next[0]), s.add_i32(v, self.next[1]));
+        }
+    }
+
+    /// Shows the texels from (`u`, `v`) on in the first pixels of a row, this many.
+    #[inline(always)]
+    pub(crate) fn show<T: Tint>(
+        &self,
+        row: (&mut [u8], usize),
+        texels: Texels<'_>,
+        tint: (T, &mut T::Along<S>),
+        [u, v]: [u32; 2],
+    ) {
+        let s = self.places.s;
+        let u = s.add_i32(s.splat_i32(u.cast_signed()), self.first[0]);
+        let v = s.add_i32(s.splat_i32((v << self.ubits).cast_signed()), self.first[1]);
+        show_along(s, row, texels, tint, AffineAlong { lines: self, at: [u, v] });
+    }
+}
+
+/// Along one of the lines.
+#[cfg(feature = "alloc")]
+struct AffineAlong<'a, S: Lanes8> {
+    lines: &'a AffineLines<S>,
+    at: [S::I32; 2],
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Lanes8> PlacesAlong<S> for AffineAlong<'_, S> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        let (s, [u, v], [du, dv]) = (self.lines.places.s, self.at, self.lines.next);
+        self.at = [s.add_i32(u, du), s.add_i32(v, dv)];
+        self.lines.places.at(u, v)
+    }
+}
+
+/// Shows texels at places that were found before, in the first pixels of a row, this many.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(crate) fn show_places<S: Lanes8, T: Tint>(
+    s: S,
+    row: (&mut [u8], usize),
+    texels: Texels<'_>,
+    tint: (T, &mut T::Along<S>),
+    places: &[i32],
+) {
+    show_along(s, row, texels, tint, PlacesOf { s, places });
+}
+
+#[cfg(feature = "alloc")]
+struct PlacesOf<'a, S> {
+    s: S,
+    places: &'a [i32],
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Lanes8> PlacesAlong<S> for PlacesOf<'_, S> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        match self.places.split_first_chunk::<LANES>() {
+            Some((eight, rest)) => {
+                self.places = rest;
+                self.s.load_i32(eight)
+            }
+            None => self.s.splat_i32(0),
         }
     }
 }
@@ -441,32 +787,101 @@ pub(crate) fn perspective_places<S: Lanes8>(
     [[u, du], [v, dv]]: [[f64; 2]; 2],
     [d, dd]: [f64; 2],
 ) -> bool {
-    // At most PIECE.
-    let last = d + (n as f64 - 1.0) * dd;
-    // False for what is not a number, too.
-    let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
-    if !is_sure {
-        return false;
-    }
-    let at = PlaceLanes::new(s, texels);
-    let (magic, fraction) = (s.splat_f64(ROUND_MAGIC), s.splat_i32(0xFFFF));
-    let mut numbers = s.load_i32(&NUMBERS);
-    let end = s.splat_i32(n as i32);
-    let width = s.splat_i32(1 << texels.ubits);
-    let mut unsure = 0;
+    let Some(mut quotients) = Quotients::new(s, texels, [[u, du], [v, dv]], [d, dd], (0, n)) else { return false };
     for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
-        let k = s.to_f64(numbers);
+        s.store_i32(quotients.next(), block);
+    }
+    quotients.unsure == 0
+}
+
+/// Shows the texels of a span behind the first `skipped` ones, in the first `length` pixels of a row, by the quotients of
+/// [`perspective_places`]. Returns `false` if one of them cannot decide: then the bytes may be anything, unless what pixels
+/// hold is read.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(crate) fn show_perspective<S: Lanes8, T: Tint>(
+    s: S,
+    (row, length, skipped): (&mut [u8], usize, usize),
+    texels: Texels<'_>,
+    tint: (T, &mut T::Along<S>),
+    numerators: [[f64; 2]; 2],
+    divisors: [f64; 2],
+) -> bool {
+    if T::READS_PIXELS {
+        let mut places = [0; PIECE + LANES];
+        let end = (skipped + length).min(PIECE);
+        let is_sure = perspective_places(s, &mut places, end, texels, numerators, divisors);
+        if is_sure {
+            show_places(s, (row, length), texels, tint, &places[skipped.min(PIECE)..]);
+        }
+        return is_sure;
+    }
+    let range = (skipped, skipped + length);
+    let Some(mut quotients) = Quotients::new(s, texels, numerators, divisors, range) else { return false };
+    show_along(s, (row, length), texels, tint, &mut quotients);
+    quotients.unsure == 0
+}
+
+/// The quotients of [`perspective_places`], eight after eight.
+struct Quotients<S: Lanes8> {
+    at: PlaceLanes<S>,
+    numerators: [[f64; 2]; 2],
+    divisors: [f64; 2],
+    width: S::I32,
+    /// The pixels of the next eight, and the end of all.
+    numbers: S::I32,
+    end: S::I32,
+    /// A bit for each lane in which one could not decide.
+    unsure: u32,
+}
+
+impl<S: Lanes8> Quotients<S> {
+    /// Those of the pixels from `first` to `end` of a row, at most [`PIECE`]; `None` where divisors differ too much.
+    #[inline(always)]
+    fn new(
+        s: S,
+        texels: Texels<'_>,
+        numerators: [[f64; 2]; 2],
+        [d, dd]: [f64; 2],
+        (first, end): (usize, usize),
+    ) -> Option<Self> {
+        // At most PIECE.
+        let last = d + (end as f64 - 1.0) * dd;
+        // False for what is not a number, too.
+        let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
+        is_sure.then(|| Self {
+            at: PlaceLanes::new(s, texels),
+            numerators,
+            divisors: [d, dd],
+            width: s.splat_i32(1 << texels.ubits),
+            numbers: s.add_i32(s.splat_i32(first as i32), s.load_i32(&NUMBERS)),
+            end: s.splat_i32(end as i32),
+            unsure: 0,
+        })
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        let (s, [[u, du], [v, dv]], [d, dd]) = (self.at.s, self.numerators, self.divisors);
+        let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), s.splat_i32(0xFFFF), s.splat_i32(0));
+        let k = s.to_f64(self.numbers);
         let reciprocal = s.div(s.splat_f64(1.0), s.mul_add(k, s.splat_f64(dd), s.splat_f64(d)));
         // Modulo 2³². Lanes beyond the last may hold anything.
         let u = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(du), s.splat_f64(u)), reciprocal, magic));
         let v = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(dv), s.splat_f64(v)), reciprocal, magic));
-        let is_there = s.is_greater(end, numbers);
-        let zero = s.splat_i32(0);
-        unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
-        unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
+        let is_there = s.is_greater(self.end, self.numbers);
+        self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
+        self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
+        self.numbers = s.add_i32(self.numbers, s.splat_i32(LANES as i32));
         // By a product: shifts are by constants.
-        s.store_i32(at.at(u, s.mul_i32(v, width)), block);
-        numbers = s.add_i32(numbers, s.splat_i32(LANES as i32));
+        self.at.at(u, s.mul_i32(v, self.width))
     }
-    unsure == 0
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Lanes8> PlacesAlong<S> for &mut Quotients<S> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        Quotients::next(self)
+    }
 }

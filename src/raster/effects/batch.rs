@@ -16,16 +16,54 @@ use crate::raster::vertex::Vertex;
 /// Faces that are drawn by one pixel pipeline. Filled and drawn again and again it allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct EffectBatch {
-    indices: Vec<[u32; 3]>,
-    at: Vec<ScreenPos>,
-    depth: Vec<u32>,
-    shade: Vec<[U8F8; 2]>,
-    texture: Vec<[i32; 2]>,
-    fog: Vec<U8F8>,
-    channels: Vec<[[U8F8; 3]; 2]>,
-    slope: Vec<[U8F8; 2]>,
-    lit: Vec<[f32; 6]>,
+    count: usize,
+    /// None before the first face.
+    corners: Vec<Corners>,
     scratch: EffectScratch,
+}
+
+/// Corners of faces in columns: arrays, of whose lengths the compiler knows.
+#[derive(Clone, Debug)]
+struct Corners {
+    at: [ScreenPos; CORNERS],
+    depth: [u32; CORNERS],
+    shade: [[U8F8; 2]; CORNERS],
+    texture: [[i32; 2]; CORNERS],
+    fog: [U8F8; CORNERS],
+    channels: [[[U8F8; 3]; 2]; CORNERS],
+    slope: [[U8F8; 2]; CORNERS],
+    lit: [[f32; 6]; CORNERS],
+}
+
+/// Corners of a whole batch.
+const CORNERS: usize = 3 * EffectBatch::CAPACITY;
+
+/// The corners of each face: no two share one.
+const INDICES: [[u32; 3]; EffectBatch::CAPACITY] = {
+    let mut indices = [[0; 3]; EffectBatch::CAPACITY];
+    let mut face = 0;
+    while face < EffectBatch::CAPACITY {
+        let first = 3 * face as u32;
+        indices[face] = [first, first + 1, first + 2];
+        face += 1;
+    }
+    indices
+};
+
+impl Corners {
+    const NONE: Self = {
+        let zero = U8F8::from_bits(0);
+        Self {
+            at: [ScreenPos::new(0, 0); CORNERS],
+            depth: [0; CORNERS],
+            shade: [[zero; 2]; CORNERS],
+            texture: [[0; 2]; CORNERS],
+            fog: [zero; CORNERS],
+            channels: [[[zero; 3]; 2]; CORNERS],
+            slope: [[zero; 2]; CORNERS],
+            lit: [[0.0; 6]; CORNERS],
+        }
+    };
 }
 
 impl EffectBatch {
@@ -42,14 +80,14 @@ impl EffectBatch {
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.indices.is_empty()
+        self.count == 0
     }
 
     /// Returns whether the batch has no room for another face.
     #[must_use]
     #[inline]
     pub fn is_full(&self) -> bool {
-        self.indices.len() >= Self::CAPACITY
+        self.count >= Self::CAPACITY
     }
 
     /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing.
@@ -59,34 +97,24 @@ impl EffectBatch {
         if self.is_full() {
             return false;
         }
-        // At most 192 corners.
-        let first = self.at.len() as u32;
-        for (vertex, of) in vertices.iter().zip(attributes) {
-            self.at.push(ScreenPos::of(vertex));
-            self.depth.push(vertex.depth());
-            self.shade.push([vertex.shade(); 2]);
-            self.texture.push(of.texture);
-            self.fog.push(of.fog);
-            self.channels.push([of.channels; 2]);
-            self.slope.push(of.slope);
-            self.lit.push(of.lit);
+        if self.corners.is_empty() {
+            self.corners.push(Corners::NONE);
         }
-        self.indices.push([first, first + 1, first + 2]);
+        let Some(to) = self.corners.first_mut() else { return false };
+        for (k, (vertex, of)) in vertices.iter().zip(attributes).enumerate() {
+            // Below the capacity, which the compiler then sees.
+            let i = 3 * (self.count % Self::CAPACITY) + k;
+            to.at[i] = ScreenPos::of(vertex);
+            to.depth[i] = vertex.depth();
+            to.shade[i] = [vertex.shade(); 2];
+            to.texture[i] = of.texture;
+            to.fog[i] = of.fog;
+            to.channels[i] = [of.channels; 2];
+            to.slope[i] = of.slope;
+            to.lit[i] = of.lit;
+        }
+        self.count += 1;
         true
-    }
-
-    /// Takes all faces out.
-    fn clear(&mut self) {
-        let Self { indices, at, depth, shade, texture, fog, channels, slope, lit, scratch: _ } = self;
-        indices.clear();
-        at.clear();
-        depth.clear();
-        shade.clear();
-        texture.clear();
-        fog.clear();
-        channels.clear();
-        slope.clear();
-        lit.clear();
     }
 }
 
@@ -110,8 +138,12 @@ impl<D: Cell> Raster<'_, D> {
     internal! {
     /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
     fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
-        let EffectBatch { indices, at, depth, shade, texture, fog, channels, slope, lit, scratch } = &mut *batch;
+        let EffectBatch { count, corners, scratch } = &mut *batch;
+        let Some(Corners { at, depth, shade, texture, fog, channels, slope, lit }) = corners.first() else {
+            return DrawStats::default();
+        };
         let effects = EffectColumns { texture, fog, channels, slope, lit: LitColumn::Values(lit) };
+        let indices = &INDICES[..*count];
         let triangles = Triangles { columns: Columns { at, depth, shade, effects }, indices };
         let level = self.kernel().simd_level();
         let masks = cull(level, at, indices, self.clip(), false);
@@ -120,7 +152,7 @@ impl<D: Cell> Raster<'_, D> {
         let mut list = PickList::<{ CHUNK + LANES }>::new();
         pick(level, &mut list, 0, &seen, masks.covers);
         let drawn = self.picks_with_effects(&triangles, Picks { picks: list.as_slice(), flat: &[] }, pipeline, scratch);
-        batch.clear();
+        *count = 0;
         drawn
     }
     }

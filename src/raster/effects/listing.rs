@@ -8,6 +8,7 @@
 //! are worked out by the stage that asks for them, from the planes of eight faces that set-up leaves and the span's [`Mark`].
 
 use super::pipeline::{PixelPipeline, ShadeSource};
+use super::texture::DirectTexture;
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
 use crate::lanes::{LANES, three};
@@ -22,7 +23,7 @@ use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value
 use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::simd::Lanes8;
-use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, Spans8, Target};
+use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, SpanStarts, Spans8, Starts8, Target};
 
 /// Where a span lies in its face, in two numbers of 32 bits.
 ///
@@ -73,12 +74,22 @@ impl Mark {
 /// Numbers of a span: its mark, and the first of each value with its step above it.
 const NUMBERS: usize = 2 + Value::MAX_COUNT;
 
+/// Those of texture coordinates that are linear on the screen: u and v of a span's first pixel, and what each pixel adds.
+const COORDINATES: usize = 4;
+
+/// Sums at a span's first pixel of texture coordinates that are linear on the face: two numerators, and the divisor.
+const SUMS: usize = 3;
+
 /// Numbers of eight spans.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks8<S: Lanes8> {
     /// The mark's two, and those of the slots that are taken.
     numbers: [S::I32; NUMBERS],
     count: usize,
+    /// The mapping whose coordinates there are.
+    texture: Option<Mapping>,
+    coordinates: [S::I32; COORDINATES],
+    sums: Starts8<S, SUMS>,
 }
 
 impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
@@ -87,6 +98,16 @@ impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
         let (mut low, mut high) = (self, other);
         for i in 0..self.count.min(NUMBERS) {
             [low.numbers[i], high.numbers[i]] = s.interleave_i32(self.numbers[i], other.numbers[i]);
+        }
+        match self.texture {
+            Some(Mapping::Affine) => {
+                for i in 0..COORDINATES {
+                    [low.coordinates[i], high.coordinates[i]] =
+                        s.interleave_i32(self.coordinates[i], other.coordinates[i]);
+                }
+            }
+            Some(_) => [low.sums, high.sums] = self.sums.zip(s, other.sums),
+            None => {}
         }
         [low, high]
     }
@@ -181,17 +202,24 @@ impl FacePlanes8 {
 pub(super) struct Columns {
     planes: [FacePlanes8; Batches::COUNT],
     numbers: SpanNumbers<NUMBERS>,
+    coordinates: SpanNumbers<COORDINATES>,
+    sums: SpanStarts<SUMS>,
 }
 
 impl Columns {
-    pub(super) const NONE: Self = Self { planes: [FacePlanes8::NONE; Batches::COUNT], numbers: SpanNumbers::NONE };
+    pub(super) const NONE: Self = Self {
+        planes: [FacePlanes8::NONE; Batches::COUNT],
+        numbers: SpanNumbers::NONE,
+        coordinates: SpanNumbers::NONE,
+        sums: SpanStarts::NONE,
+    };
 }
 
 /// Values that are set up for each face beside its shade.
 #[derive(Clone, Copy)]
-struct Wanted {
+pub(super) struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
-    texture: Option<Mapping>,
+    pub(super) texture: Option<Mapping>,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last that is taken.
@@ -234,12 +262,18 @@ pub(super) struct WalkedFace {
 /// Spans of a list as the stages know them: their marks, and the planes of their faces.
 pub(super) struct Listed<'a> {
     pub(super) faces: Faces<'a>,
-    wanted: Wanted,
+    pub(super) wanted: Wanted,
     pub(super) planes: &'a mut [FacePlanes8; Batches::COUNT],
     pub(super) batches: Batches,
     pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,
+    coordinates: &'a mut SpanNumbers<COORDINATES>,
+    sums: &'a mut SpanStarts<SUMS>,
+    /// True if all spans have the texture coordinates of their first pixel.
+    pub(super) has_texture: bool,
     /// The only face, if its edges are walked down.
     pub(super) walked: Option<WalkedFace>,
+    /// How texels are shown by one loop a span, where that can be.
+    pub(super) direct: Option<DirectTexture<'a>>,
     /// The first row of the frame.
     pub(super) first_row: u32,
 }
@@ -249,6 +283,20 @@ impl Listed<'_> {
     #[inline(always)]
     pub(super) fn mark(&self, k: usize) -> Mark {
         Mark([self.numbers.of(k, 0), self.numbers.of(k, 1)])
+    }
+
+    /// u and v at the first pixel of span `k`, and what each pixel adds, where the texture is linear on the screen.
+    #[inline(always)]
+    pub(super) fn affine(&self, k: usize) -> [[u32; 2]; 2] {
+        let of = |i: usize| self.coordinates.of(k, i);
+        [[of(0), of(1)], [of(2), of(3)]]
+    }
+
+    /// The sums at the first pixel of span `k`, where the texture is linear on the face.
+    #[inline(always)]
+    pub(super) fn sums(&self, k: usize) -> [f64; SUMS] {
+        let [u, v, d] = self.sums.of(k);
+        [f64::from_bits(u.cast_unsigned()), f64::from_bits(v.cast_unsigned()), f64::from_bits(d.cast_unsigned())]
     }
 
     /// A face, and its corners' values.
@@ -281,12 +329,27 @@ impl<'a> EffectSpans<'a> {
     pub(super) fn new(
         faces: Faces<'a>,
         pipeline: &'a PixelPipeline<'a>,
-        Columns { planes, numbers }: &'a mut Columns,
+        Columns { planes, numbers, coordinates, sums }: &'a mut Columns,
         buffers: &'a mut Buffers,
         first_row: u32,
     ) -> Self {
         let wanted = Wanted::by(pipeline);
-        let listed = Listed { faces, wanted, planes, batches: Batches::NONE, numbers, walked: None, first_row };
+        let direct = DirectTexture::of(pipeline);
+        let (batches, has_texture) = (Batches::NONE, wanted.texture.is_some());
+        let walked = None;
+        let listed = Listed {
+            faces,
+            wanted,
+            planes,
+            batches,
+            numbers,
+            coordinates,
+            sums,
+            has_texture,
+            walked,
+            direct,
+            first_row,
+        };
         Self { listed, pipeline, buffers }
     }
 
@@ -305,6 +368,7 @@ impl<'a> EffectSpans<'a> {
                 Some(ShadePlane::of_values(&triangle, corners.value(value)))
             }),
         });
+        self.listed.has_texture = false;
         // Columns and rows are those of the frame.
         self.listed.batches = Batches::from_pick(k);
         (self.listed.planes[0].column, self.listed.planes[0].row) = ([0; LANES], [0; LANES]);
@@ -371,11 +435,13 @@ impl Shades8 for EffectSpans<'_> {
     #[inline(always)]
     fn begin(&mut self, first: usize) {
         self.listed.batches.begin(first);
+        // The spans of others have been drawn.
+        self.listed.has_texture |= self.listed.batches.current() == 0 && self.listed.wanted.texture.is_some();
     }
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        let Listed { faces: Faces { triangles, picks }, wanted, planes, batches, .. } = &mut self.listed;
+        let Listed { faces: Faces { triangles, picks }, wanted, planes, batches, has_texture, .. } = &mut self.listed;
         let first = batches.first_pick();
         let picks = &picks.range(first, picks.picks.len().min(first + LANES));
         let planes = &mut planes[batches.current()];
@@ -391,6 +457,7 @@ impl Shades8 for EffectSpans<'_> {
                     // Sums of large ones do not fit in f64.
                     for (lane, &pick) in picks.picks.iter().enumerate() {
                         planes.affine.fits &= !(u32::from(Pick(pick).class() != SizeClass::Small) << lane);
+                        *has_texture &= planes.affine.fits >> lane & 1 != 0;
                     }
                 }
                 _ => planes.perspective.set_up(s, basis, corners, &of_corners),
@@ -414,7 +481,7 @@ impl Shades8 for EffectSpans<'_> {
     ) -> (S::I32, Marks8<S>) {
         let (row, seed) = (s.low_bits(parts.row), s.low_bits(parts.seed));
         let before = s.sub_i32(seed, row);
-        let Wanted { values: wanted, slots, reseeds, .. } = &self.listed.wanted;
+        let Wanted { values: wanted, slots, reseeds, texture } = &self.listed.wanted;
         let begin = if *reseeds { parts.seed } else { parts.row };
         let mut paint = ends.paint(s, lane, setup, begin);
         if !reseeds {
@@ -441,7 +508,20 @@ impl Shades8 for EffectSpans<'_> {
         let number = s.low_bits(s.add(j, s.splat_f64(ROUND_MAGIC)));
         let [v0, v1, v2, v3] = values;
         let numbers = [mark, s.or_i32(seed, s.shl_i32(number, 16)), v0, v1, v2, v3];
-        (paint, Marks8 { numbers, count: 2 + *slots })
+        let (mut coordinates, mut sums) = ([s.splat_i32(0); COORDINATES], Starts8([s.splat_i64(0); SUMS]));
+        let planes = &self.listed.planes[self.listed.batches.current()];
+        match texture {
+            Some(Mapping::Affine) => {
+                let ([u, v], [du, dv]) = (planes.affine.starts(s, lane, j, parts.seed), planes.affine.steps(s, lane));
+                coordinates = [u, v, du, dv];
+            }
+            Some(_) => {
+                let [u, v, d] = planes.perspective.starts(s, lane, j, parts.seed);
+                sums = Starts8([s.bits(u), s.bits(v), s.bits(d)]);
+            }
+            None => {}
+        }
+        (paint, Marks8 { numbers, count: 2 + *slots, texture: *texture, coordinates, sums })
     }
 
     #[inline(always)]
@@ -453,7 +533,13 @@ impl Shades8 for EffectSpans<'_> {
         dz: DepthSteps<S>,
     ) {
         let places = list.append::<S, _, DEPTHS>(s, spans, dz);
-        self.listed.numbers.put(s, places, spans.columns.numbers, 2 + self.listed.wanted.slots);
+        let Marks8 { numbers, texture, coordinates, sums, .. } = spans.columns;
+        self.listed.numbers.put(s, places, numbers, 2 + self.listed.wanted.slots);
+        match texture {
+            Some(Mapping::Affine) => self.listed.coordinates.put(s, places, coordinates, COORDINATES),
+            Some(_) => self.listed.sums.put(s, places, sums),
+            None => {}
+        }
     }
 
     #[inline(always)]

@@ -39,6 +39,7 @@ pub use self::batch::EffectBatch;
 use self::listing::{Columns, EffectSpans, Faces, Listed};
 pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
+use self::texture::DirectTexture;
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
 use super::depth::{Cell, DepthBuffer};
@@ -162,10 +163,18 @@ fn draw_listed(
     buffers: &mut Buffers,
     target: &mut Target<'_>,
 ) -> u32 {
+    if target.cells.is_none()
+        && pipeline.fog().is_none()
+        && let Some(texture) = listed.direct
+    {
+        texture.show_in_frame(&Spans::all(listed, list), pipeline.blend(), target.pixels, target.kernel);
+        return 0;
+    }
     let (mut first, mut nearer) = (0, 0);
+    let mut offsets = [0; SpanList::CAPACITY + 1];
     while first < list.count() {
-        let spans = Spans::of(listed, list, first);
-        run_stages(&spans, pipeline, buffers, target.kernel);
+        let spans = Spans::of(listed, list, first, &mut offsets);
+        run_stages(&spans, (listed.direct, pipeline), buffers, target.kernel);
         nearer += write(&spans, pipeline, &mut buffers.bytes, target);
         first += spans.count();
     }
@@ -174,7 +183,15 @@ fn draw_listed(
 
 /// Passes spans through the stages up to what the frame holds: their bytes are then in the buffers.
 #[inline(never)]
-fn run_stages(spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, buffers: &mut Buffers, kernel: Kernel) {
+fn run_stages(
+    spans: &Spans<'_>,
+    (direct, pipeline): (Option<DirectTexture<'_>>, &PixelPipeline<'_>),
+    buffers: &mut Buffers,
+    kernel: Kernel,
+) {
+    if let Some(texture) = direct {
+        return texture.show_in_buffer(spans, pipeline.fog(), &mut buffers.bytes, kernel);
+    }
     spans.shade(buffers, pipeline, kernel);
     if let Some(table) = pipeline.fog() {
         let Buffers { bytes, other: levels, .. } = buffers;

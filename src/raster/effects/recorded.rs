@@ -75,18 +75,20 @@ impl Shades8 for Recorder<'_> {
     }
 
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, _: &mut Target<'_>) {
-        let (listed, mut first) = (&self.spans.listed, 0);
+        let (listed, mut first, mut offsets) = (&self.spans.listed, 0, [0; SpanList::CAPACITY + 1]);
         while first < list.count() {
-            let spans = Spans::of(listed, list, first);
+            let spans = Spans::of(listed, list, first, &mut offsets);
             for i in 0..spans.count() {
                 let place = spans.place(i);
                 self.recorded.push(Recorded {
                     pick: listed.batches.first + listed.mark(first + i).face(),
                     span: spans.span(i),
-                    affine: spans.affine(i).map(|(planes, lane)| [planes.start(lane, place), planes.step(lane)]),
-                    perspective: spans
-                        .perspective(i)
-                        .map(|(planes, lane)| [planes.start(lane, place), planes.step(lane)]),
+                    affine: spans.affine(i).map(|(planes, lane)| {
+                        let alone = [planes.start(lane, place), planes.step(lane)];
+                        // As the list has them, if it has those of all spans.
+                        if spans.have_texture() && spans.is_affine() { spans.affine_start(i) } else { alone }
+                    }),
+                    perspective: spans.perspective(i).map(|_| [spans.sums(i), spans.sum_steps(i)]),
                     depth: spans.depth(i).1,
                 });
             }

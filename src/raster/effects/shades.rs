@@ -31,7 +31,7 @@ impl Spans<'_> {
         if let Some(mix) = pipeline.channels() {
             self.shade_channels(buffers, pipeline, kernel);
             let Buffers { other, channels, places, .. } = &mut *buffers;
-            self.texels((), image, (&mut other[..n], places), kernel);
+            self.texels((), image, (other, places), kernel);
             for (channel, table) in channels.iter_mut().zip(stage.tables) {
                 for (i, byte) in channel[..n].iter_mut().enumerate() {
                     table.show(byte, other[i]);
@@ -51,8 +51,8 @@ impl Spans<'_> {
         }
         let Buffers { bytes, places, .. } = buffers;
         match row {
-            Some(row) => self.texels(row, image, (&mut bytes[..n], places), kernel),
-            None => self.texels(stage.tables[0], image, (&mut bytes[..n], places), kernel),
+            Some(row) => self.texels(row, image, (bytes, places), kernel),
+            None => self.texels(stage.tables[0], image, (bytes, places), kernel),
         }
     }
 

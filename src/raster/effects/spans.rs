@@ -14,6 +14,7 @@ use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::SpanList;
+use crate::span::texture::{SpanValues, Tint};
 
 /// Pixels of a span, at most.
 pub(super) const LONGEST: usize = RESEED as usize;
@@ -29,9 +30,14 @@ pub(super) struct Spans<'a> {
     /// Index of the first in the list.
     first: usize,
     count: usize,
-    /// Where the pixels of each begin, and at the end how many there are.
-    pixels: [u32; SpanList::CAPACITY + 1],
+    /// Where the pixels of each begin, and at the end how many there are; zeros where no buffer has them.
+    pixels: &'a Offsets,
 }
+
+/// Memory for where the pixels of spans begin.
+pub(super) type Offsets = [u32; SpanList::CAPACITY + 1];
+
+static NO_OFFSETS: Offsets = [0; SpanList::CAPACITY + 1];
 
 /// A span that passes through the stages.
 #[derive(Clone, Copy)]
@@ -85,19 +91,26 @@ impl Span {
 impl<'a> Spans<'a> {
     /// Takes the spans from index `first` on, as many as pass through the stages together.
     #[inline]
-    pub(super) fn of(listed: &'a Listed<'_>, list: &'a SpanList, first: usize) -> Self {
-        let mut spans = Self { listed, list, first, count: 0, pixels: [0; SpanList::CAPACITY + 1] };
-        let mut end = 0;
+    pub(super) fn of(listed: &'a Listed<'_>, list: &'a SpanList, first: usize, offsets: &'a mut Offsets) -> Self {
+        let (mut count, mut end) = (0, 0);
+        offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
             end += list.fill_of(k).0 as u32 + listed.mark(k).skipped();
             if end as usize > PIXELS {
                 break;
             }
-            spans.count += 1;
-            spans.pixels[spans.count] = end;
+            count += 1;
+            // No more than the list has.
+            offsets[count] = end;
         }
-        spans
+        Self { listed, list, first, count, pixels: offsets }
+    }
+
+    /// Takes all spans of a list, for a stage that asks for no place in a buffer.
+    #[inline]
+    pub(super) fn all(listed: &'a Listed<'_>, list: &'a SpanList) -> Self {
+        Self { listed, list, first: 0, count: list.count(), pixels: &NO_OFFSETS }
     }
 
     #[inline(always)]
@@ -117,8 +130,9 @@ impl<'a> Spans<'a> {
         let mark = self.listed.mark(self.first + i);
         let (planes, lane) = self.listed.planes(mark.face());
         let [column, row] = mark.place();
-        let (first, end) = (self.pixels[i] as usize, self.pixels[i + 1] as usize);
-        Span { mark, x: planes.column[lane] + column, y: planes.row[lane] + row, first, len: end - first }
+        let len = self.list.fill_of(self.first + i).0 + mark.skipped() as usize;
+        let first = self.pixels[i] as usize;
+        Span { mark, x: planes.column[lane] + column, y: planes.row[lane] + row, first, len }
     }
 
     /// Where the pixels of span `i` begin among those of all, and how many it has.
@@ -158,10 +172,48 @@ impl<'a> Spans<'a> {
         self.list.fill_of(self.first + i).1
     }
 
+    /// The linear values of span `i` that this tint reads.
+    #[inline(always)]
+    pub(super) fn values<T: Tint>(&self, i: usize, skipped: u32) -> SpanValues {
+        let fog = if T::HAS_FOG { self.value(Value::Fog, i) } else { 0 };
+        SpanValues { paint: self.paint(i), fog, skipped }
+    }
+
     /// The first of a value of span `i`, and above it the step.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
         self.listed.numbers.of(self.first + i, 2 + value.slot())
+    }
+
+    /// Returns whether the list has the texture coordinates of all spans.
+    #[inline(always)]
+    pub(super) fn have_texture(&self) -> bool {
+        self.listed.has_texture
+    }
+
+    /// Returns whether those are linear on the screen.
+    #[cfg(all(test, feature = "std"))]
+    pub(super) fn is_affine(&self) -> bool {
+        self.listed.wanted.texture == Some(crate::mapping::Mapping::Affine)
+    }
+
+    /// u and v at the first pixel of span `i`, and what each pixel adds, where the texture is linear on the screen.
+    #[inline(always)]
+    pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
+        self.listed.affine(self.first + i)
+    }
+
+    /// The sums at the first pixel of span `i`, where the texture is linear on the face, ...
+    #[inline(always)]
+    pub(super) fn sums(&self, i: usize) -> [f64; 3] {
+        self.listed.sums(self.first + i)
+    }
+
+    /// ... and their changes from a pixel to the next one.
+    #[inline(always)]
+    pub(super) fn sum_steps(&self, i: usize) -> [f64; 3] {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.perspective.step(lane)
     }
 
     /// The planes of texture coordinates that are linear on the screen, and the lane, of the face of span `i`; `None` where
@@ -236,6 +288,23 @@ impl<'a> Spans<'a> {
             let thresholds = dither.map(|dither| span.thresholds(dither));
             shader.piece(&span.row(), span.x, out, thresholds, kernel);
         });
+    }
+
+    /// Where the bytes of span `i` begin, how many they are, and how many of its first pixels are left out: with `DIRECT` the
+    /// drawn pixels in the frame, otherwise all in the buffer of all pixels.
+    #[inline(always)]
+    pub(super) fn target<'o, const DIRECT: bool>(
+        &self,
+        i: usize,
+        out: &'o mut [u8],
+    ) -> Option<(&'o mut [u8], usize, u32)> {
+        let k = self.first + i;
+        if DIRECT {
+            let (at, length) = (self.list.offset(k) as usize, self.list.fill_of(k).0);
+            return Some((out.get_mut(at..)?, length, self.listed.mark(k).skipped()));
+        }
+        let (first, length) = self.range(i);
+        Some((out.get_mut(first..)?, length, 0))
     }
 
     /// Where the drawn pixels of span `i` are among those of all, where they lie in the frame, and how many they are.

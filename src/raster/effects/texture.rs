@@ -1,18 +1,23 @@
 //! Texels: texture coordinates over a triangle, the level of a mipmap, and the bytes of the image along a row.
 //!
-//! The places of all texels are found first, row by row, then the texels of all places in one loop: how long a row is, is
-//! a guess of the processor that costs as much as several pixels.
+//! Eight places are found at a time, and their texels go where they belong at once: into the frame, or into the buffer of
+//! the stages. How long a row is, is a guess of the processor that costs as much as several pixels, so the last few pixels
+//! of a span are written by a mask.
 
 use super::listing::FaceCorners;
-use super::pipeline::TextureStage;
+use super::pipeline::{PixelPipeline, ShadeSource, TextureStage};
 use super::spans::{LONGEST, Span, Spans};
+use crate::lanes::LANES;
 use crate::mapping::Mapping;
+use crate::raster::interpolation::Interpolation;
 use crate::raster::reference::level::{self, LevelPlane};
 use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{AffineLines, Levels, Shown, Texels, perspective_places, show};
+use crate::span::texture::{
+    AffineLines, Blended, Fogged, Levels, Painted, Shown, Texels, Tint, show, show_perspective, show_places,
+};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -20,6 +25,94 @@ const EVERY_WHOLE: i32 = 16;
 
 /// An image, with its levels where one of them is chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
+
+/// How the texels of faces are shown by one loop a span, with nothing stored between.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectTexture<'a> {
+    image: Texels<'a>,
+    is_perspective: bool,
+    tint: DirectTint<'a>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum DirectTint<'a> {
+    None,
+    Row(&'a [u8; 256]),
+    Lit(&'a [u8; 65_536]),
+}
+
+impl<'a> DirectTexture<'a> {
+    /// That of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
+    pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
+        let stage = pipeline.texture()?;
+        let table = stage.tables[0];
+        let is_plain =
+            pipeline.levels().is_none() && pipeline.channels().is_none() && stage.mapping != Mapping::Every16;
+        let tint = match pipeline.source {
+            ShadeSource::Shaded(Interpolation::Flat(shade)) => {
+                let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
+                let is_identity = row.iter().zip(0..=255).all(|(byte, texel)| *byte == texel);
+                if is_identity { DirectTint::None } else { DirectTint::Row(row) }
+            }
+            ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded)
+                if pipeline.dither().is_none() =>
+            {
+                DirectTint::Lit(table)
+            }
+            _ => return None,
+        };
+        is_plain.then_some(Self { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
+    }
+
+    /// Shows the texels of every span in the frame, mixed with what is there by a table if there is one.
+    pub(super) fn show_in_frame(
+        self,
+        spans: &Spans<'_>,
+        blend: Option<&[u8; 65_536]>,
+        pixels: &mut [u8],
+        kernel: Kernel,
+    ) {
+        match (self.tint, blend) {
+            (DirectTint::None, None) => self.show::<_, true>(spans, (), pixels, kernel),
+            (DirectTint::Row(row), None) => self.show::<_, true>(spans, row, pixels, kernel),
+            (DirectTint::Lit(table), None) => self.show::<_, true>(spans, Painted(table), pixels, kernel),
+            (DirectTint::None, Some(blend)) => self.show::<_, true>(spans, Blended((), blend), pixels, kernel),
+            (DirectTint::Row(row), Some(blend)) => self.show::<_, true>(spans, Blended(row, blend), pixels, kernel),
+            (DirectTint::Lit(table), Some(blend)) => {
+                self.show::<_, true>(spans, Blended(Painted(table), blend), pixels, kernel);
+            }
+        }
+    }
+
+    /// Shows the texels of every span in the buffer of all pixels, in fog if there is some.
+    pub(super) fn show_in_buffer(
+        self,
+        spans: &Spans<'_>,
+        fog: Option<&[u8; 65_536]>,
+        bytes: &mut [u8],
+        kernel: Kernel,
+    ) {
+        match (self.tint, fog) {
+            (DirectTint::None, None) => self.show::<_, false>(spans, (), bytes, kernel),
+            (DirectTint::Row(row), None) => self.show::<_, false>(spans, row, bytes, kernel),
+            (DirectTint::Lit(table), None) => self.show::<_, false>(spans, Painted(table), bytes, kernel),
+            (DirectTint::None, Some(fog)) => self.show::<_, false>(spans, Fogged((), fog), bytes, kernel),
+            (DirectTint::Row(row), Some(fog)) => self.show::<_, false>(spans, Fogged(row, fog), bytes, kernel),
+            (DirectTint::Lit(table), Some(fog)) => {
+                self.show::<_, false>(spans, Fogged(Painted(table), fog), bytes, kernel);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn show<T: Tint, const DIRECT: bool>(self, spans: &Spans<'_>, tint: T, out: &mut [u8], kernel: Kernel) {
+        let level = kernel.simd_level();
+        match self.is_perspective {
+            false => show_spans::<T, false, DIRECT>(level, spans, self.image, tint, out),
+            true => show_spans::<T, true, DIRECT>(level, spans, self.image, tint, out),
+        }
+    }
+}
 
 impl Spans<'_> {
     /// The texels of every span, from the levels of the image where there are any, and what is shown of them; and room for
@@ -32,21 +125,19 @@ impl Spans<'_> {
         kernel: Kernel,
     ) {
         let image = (stage.texels, levels);
+        let level = kernel.simd_level();
         // A function for each, so that none is compiled otherwise where another is left out.
         match (stage.mapping, levels) {
-            (Mapping::Affine, None) => find_affine(kernel.simd_level(), self, stage.texels, places),
-            (Mapping::Affine, Some(_)) => {
-                return self.affine_levels(shown, image, (out, places));
+            (Mapping::Affine, None) => {
+                show_spans::<_, false, false>(level, self, stage.texels, shown.tint(), out);
             }
-            (Mapping::Perspective, None) => find_perspective(kernel.simd_level(), self, stage.texels, places),
-            (Mapping::Perspective, Some(_)) => {
-                return self.perspective_levels::<false>(shown, image, (out, places), kernel);
+            (Mapping::Perspective, None) => {
+                show_spans::<_, true, false>(level, self, stage.texels, shown.tint(), out);
             }
-            (Mapping::Every16, _) => {
-                return self.perspective_levels::<true>(shown, image, (out, places), kernel);
-            }
+            (Mapping::Affine, Some(_)) => self.affine_levels(shown, image, (out, places)),
+            (Mapping::Perspective, Some(_)) => self.perspective_levels::<false>(shown, image, (out, places), kernel),
+            (Mapping::Every16, _) => self.perspective_levels::<true>(shown, image, (out, places), kernel),
         }
-        show(shown, out, stage.texels, places);
     }
 
     /// Texels whose coordinates are linear on the screen, of the level of each face.
@@ -86,72 +177,156 @@ impl Spans<'_> {
     }
 }
 
-compiled_for_each_level! {
-    #[inline(never)]
-    fn find_affine[][](spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) = find_affine_by;
-}
-
-/// Places of texels whose coordinates are linear on the screen.
-#[inline(always)]
-fn find_affine_by<S: Lanes8>(s: S, spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) {
-    let mut i = 0;
-    while i < spans.count() {
-        let end = spans.end_of_face(i);
-        if let Some((planes, lane)) = spans.affine(i) {
-            let lines = AffineLines::new(s, image, planes.step(lane));
-            while i < end {
-                let (first, len) = spans.range(i);
-                lines.places(&mut places[first..], len, planes.start(lane, spans.place(i)));
-                i += 1;
-            }
-            continue;
-        }
-        let texture = affine_texture(spans, i, (image, None));
-        let lines = AffineLines::new(s, image, texture.steps());
-        while i < end {
-            let span = spans.span(i);
-            lines.places(&mut places[span.first..], span.len, texture.start(&span));
-            i += 1;
-        }
-    }
-}
-
 #[inline(never)]
 fn affine_texture<'a>(spans: &Spans<'_>, i: usize, image: Image<'a>) -> AffineTexture<'a> {
     AffineTexture::new(&spans.corners(&spans.span(i)), image)
 }
 
 compiled_for_each_level! {
+    /// Shows the texels of every span: with `DIRECT` in the frame, otherwise in the buffer of all pixels.
     #[inline(never)]
-    fn find_perspective[][](spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) = find_perspective_by;
+    fn show_spans[T: Tint, const PERSPECTIVE: bool, const DIRECT: bool][T, PERSPECTIVE, DIRECT](
+        spans: &Spans<'_>,
+        image: Texels<'_>,
+        tint: T,
+        out: &mut [u8],
+    ) = show_spans_by;
 }
 
-/// Places of texels whose coordinates are linear on the face, exact at every pixel.
 #[inline(always)]
-fn find_perspective_by<S: Lanes8>(s: S, spans: &Spans<'_>, image: Texels<'_>, places: &mut [i32]) {
+fn show_spans_by<S: Lanes8, T: Tint, const PERSPECTIVE: bool, const DIRECT: bool>(
+    s: S,
+    spans: &Spans<'_>,
+    image: Texels<'_>,
+    tint: T,
+    out: &mut [u8],
+) {
+    if spans.have_texture() {
+        return show_listed::<S, T, PERSPECTIVE, DIRECT>(s, spans, image, tint, out);
+    }
     let mut i = 0;
     while i < spans.count() {
         let end = spans.end_of_face(i);
-        let Some((planes, lane)) = spans.perspective(i) else {
-            let plane = perspective_texture(spans, i);
-            while i < end {
-                let span = spans.span(i);
-                plane.exact(s, (image, 0), (span.x, span.y), (&mut places[span.first..], span.len));
-                i += 1;
-            }
+        if PERSPECTIVE {
+            show_perspective_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
+        } else {
+            show_affine_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
+        }
+        i = end;
+    }
+}
+
+/// Shows the texels of spans whose coordinates are in the list.
+#[inline(always)]
+fn show_listed<S: Lanes8, T: Tint, const PERSPECTIVE: bool, const DIRECT: bool>(
+    s: S,
+    spans: &Spans<'_>,
+    image: Texels<'_>,
+    tint: T,
+    out: &mut [u8],
+) {
+    for i in 0..spans.count() {
+        let Some((row, length, skipped)) = spans.target::<DIRECT>(i, out) else { continue };
+        let mut along = tint.begin(s, spans.values::<T>(i, skipped));
+        if !PERSPECTIVE {
+            // Small faces, of which the clip rectangle hides nothing.
+            let [from, step] = spans.affine_start(i);
+            AffineLines::new(s, image, step).show((row, length), image, (tint, &mut along), from);
             continue;
-        };
-        let [du, dv, dd] = planes.step(lane);
-        while i < end {
-            let (first, len) = spans.range(i);
-            let (places, [u, v, d]) = (&mut places[first..], planes.start(lane, spans.place(i)));
-            if !perspective_places(s, places, len, image, [[u, du], [v, dv]], [d, dd]) {
-                let (plane, span) = (perspective_texture(spans, i), spans.span(i));
-                plane.in_integers((image, 0), (span.x, span.y), &mut places[..len]);
-            }
-            i += 1;
+        }
+        let ([u, v, d], [du, dv, dd]) = (spans.sums(i), spans.sum_steps(i));
+        let shown = (&mut *row, length, skipped as usize);
+        if !show_perspective(s, shown, image, (tint, &mut along), [[u, du], [v, dv]], [d, dd]) {
+            show_exactly(s, spans, i, image, tint, (row, length, skipped));
         }
     }
+}
+
+/// Shows the texels of a span in integers, for an estimate could not decide.
+#[inline(never)]
+fn show_exactly<S: Lanes8, T: Tint>(
+    s: S,
+    spans: &Spans<'_>,
+    i: usize,
+    image: Texels<'_>,
+    tint: T,
+    (row, length, skipped): (&mut [u8], usize, u32),
+) {
+    let mut places = [0; LONGEST + LANES];
+    let n = find_exactly(spans, i, image, true, &mut places);
+    let places = &places[(skipped as usize).min(n)..];
+    show_places(s, (row, length), image, (tint, &mut tint.begin(s, spans.values::<T>(i, skipped))), places);
+}
+
+#[inline(always)]
+fn show_affine_face<S: Lanes8, T: Tint, const DIRECT: bool>(
+    s: S,
+    spans: &Spans<'_>,
+    (first, end): (usize, usize),
+    image: Texels<'_>,
+    tint: T,
+    out: &mut [u8],
+) {
+    let planes = spans.affine(first);
+    let walked = if planes.is_none() { Some(affine_texture(spans, first, (image, None))) } else { None };
+    let [du, dv] = match (planes, &walked) {
+        (Some((planes, lane)), _) => planes.step(lane),
+        (None, Some(walked)) => walked.steps(),
+        (None, None) => return,
+    };
+    let lines = AffineLines::new(s, image, [du, dv]);
+    for i in first..end {
+        let [u, v] = match (planes, &walked) {
+            (Some((planes, lane)), _) => planes.start(lane, spans.place(i)),
+            (None, Some(walked)) => walked.start(&spans.span(i)),
+            (None, None) => return,
+        };
+        let Some((row, length, skipped)) = spans.target::<DIRECT>(i, out) else { continue };
+        // At most 63; the sums are meant modulo 2³².
+        let from = [u.wrapping_add(du.wrapping_mul(skipped)), v.wrapping_add(dv.wrapping_mul(skipped))];
+        lines.show((row, length), image, (tint, &mut tint.begin(s, spans.values::<T>(i, skipped))), from);
+    }
+}
+
+#[inline(always)]
+fn show_perspective_face<S: Lanes8, T: Tint, const DIRECT: bool>(
+    s: S,
+    spans: &Spans<'_>,
+    (first, end): (usize, usize),
+    image: Texels<'_>,
+    tint: T,
+    out: &mut [u8],
+) {
+    let planes = spans.perspective(first);
+    for i in first..end {
+        let Some((row, length, skipped)) = spans.target::<DIRECT>(i, out) else { continue };
+        let along = tint.begin(s, spans.values::<T>(i, skipped));
+        if let Some((planes, lane)) = planes {
+            let ([du, dv, dd], [u, v, d]) = (planes.step(lane), planes.start(lane, spans.place(i)));
+            let (row, along) = ((&mut *row, length, skipped as usize), &mut { along });
+            if show_perspective(s, row, image, (tint, along), [[u, du], [v, dv]], [d, dd]) {
+                continue;
+            }
+        }
+        // Most often there are planes, and they decide.
+        let mut places = [0; LONGEST + LANES];
+        let n = find_exactly(spans, i, image, planes.is_some(), &mut places);
+        let places = &places[(skipped as usize).min(n)..];
+        show_places(s, (row, length), image, (tint, &mut { along }), places);
+    }
+}
+
+/// The places of all texels of a span, and how many they are: in integers, where an estimate could not decide.
+#[inline(never)]
+fn find_exactly(spans: &Spans<'_>, i: usize, image: Texels<'_>, was_unsure: bool, places: &mut [i32]) -> usize {
+    let (plane, span) = (perspective_texture(spans, i), spans.span(i));
+    let n = span.len.min(LONGEST);
+    if was_unsure {
+        plane.in_integers((image, 0), (span.x, span.y), &mut places[..n]);
+    } else {
+        plane.exact(BASELINE, (image, 0), (span.x, span.y), (places, n));
+    }
+    n
 }
 
 fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
@@ -460,6 +635,66 @@ mod tests {
                         }
                     }
                 }
+            }
+        }
+    }
+
+    /// A face whose estimates cannot decide at any pixel, since u is a whole number everywhere: stages that read what the
+    /// pixels hold, shades that were lit before or the frame behind glass, read it once.
+    #[test]
+    fn pixels_are_read_before_they_are_written() {
+        use crate::raster::effects::{Attributes, EffectBatch};
+        use crate::raster::{Frame, Raster};
+        const SIDE: usize = 48;
+        let at = |x: i32, y: i32, shade: u8, depth| {
+            Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from(shade), depth).expect("inside")
+        };
+        let vertices = [at(300, 400, 10, 4_000), at(11_000, 700, 240, 9_000), at(2_000, 11_900, 90, 2_000)];
+        let texture = |v: i32| Attributes { texture: [7 << 16, v << 16], ..Attributes::default() };
+        let attributes = [texture(0), texture(90), texture(40)];
+        let texels: Vec<u8> = (0..=255).flat_map(|y: u8| (0..=255_u8).map(move |x| x.wrapping_mul(31) ^ y)).collect();
+        let table: Vec<u8> = (0..65_536_u32).map(|i| (i.wrapping_mul(40_503) >> 8) as u8).collect();
+        let table = table.first_chunk::<65_536>().expect("as many");
+        let before: Vec<u8> = (0..SIDE * SIDE).map(|i| (i * 7) as u8).collect();
+        let draw = |kernel: Kernel, pipeline: &PixelPipeline<'_>, there: &[u8]| {
+            let mut bytes = there.to_vec();
+            let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE).expect("a frame");
+            let mut batch = EffectBatch::new();
+            batch.push(&vertices, &attributes);
+            Raster::new(frame).with_kernel(kernel).batch_with_effects(&mut batch, pipeline);
+            bytes
+        };
+        for kernel in Kernel::available() {
+            // The shade alone, and an image on it; each over a frame of 0 and of 255 to see what is covered.
+            for source in [Interpolation::Flat(77), Interpolation::Gouraud, Interpolation::GouraudHyperbolic] {
+                let shaded = PixelPipeline { source: ShadeSource::Shaded(source), ..PixelPipeline::PLAIN };
+                let stage = TextureStage {
+                    texels: Texels::new(&texels, 8, 8).expect("as many texels"),
+                    levels: None,
+                    mapping: Mapping::Perspective,
+                    tables: [table; 3],
+                };
+                let textured = PixelPipeline { texture: Some(stage), ..shaded };
+                let glass = PixelPipeline { blend: Some(table), ..textured };
+                let [black, white] = [0, 255].map(|index| draw(kernel, &textured, &[index; SIDE * SIDE]));
+                let [shades, blended] = [&shaded, &glass].map(|pipeline| draw(kernel, pipeline, &before));
+                let mut covered = 0;
+                for i in 0..SIDE * SIDE {
+                    let own = black[i];
+                    if own != white[i] {
+                        assert_eq!(blended[i], before[i]);
+                        continue;
+                    }
+                    covered += 1;
+                    let row = usize::from(shades[i]) << 8;
+                    assert!((0..=255_u8).any(|y| table[row | usize::from((7_u8.wrapping_mul(31)) ^ y)] == own));
+                    assert_eq!(
+                        blended[i],
+                        table[usize::from(own) << 8 | usize::from(before[i])],
+                        "{kernel} {source:?} {i}"
+                    );
+                }
+                assert!(covered > 800, "{covered}");
             }
         }
     }
