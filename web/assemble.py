@@ -62,7 +62,7 @@ packed = {
         [
             scripts(page, "elements", "background", "picture"),
             scripts(shared, "chart", "divider"),
-            scripts(page, "accuracy", "plan", "magnifier", "scenes", "link", "save", "page"),
+            scripts(page, "stops", "accuracy", "plan", "magnifier", "scenes", "link", "save", "page"),
         ]
     ),
     "figures": read(*figures),

@@ -1,22 +1,20 @@
 // The slider: how wrong a pixel may be. Its figures, the error map, and the chart on which the point moves.
 
-/** Budgets from the slider's left to its right: off, a gap, then 16 shades to ½ in quarters of an octave. */
-const STOPS = 24;
-const FIRST_STOP = 3;
-const budgetAt = (stop) => (stop <= FIRST_STOP - 2 ? null : Number((16 * 2 ** (-(Math.max(stop, FIRST_STOP) - FIRST_STOP) / 4)).toPrecision(3)));
-const stopOf = (budget) => (budget ? clamp(Math.round(FIRST_STOP - 4 * Math.log2(budget / 16)), FIRST_STOP, STOPS - 1) : 0);
-const shadesText = (shades) => (shades === 0.5 ? "½" : `${Number(shades.toPrecision(2))}`);
-const budgetText = (budget) => `${shadesText(budget)} ${budget <= 1 ? "shade" : "shades"}`;
-
-/** Colours of the techniques, from cheap to exact. */
-const TECHNIQUES = ["flat", "gouraud-vintage", "gouraud-8.8", "gouraud-8.8-reseeded", "gouraud-16.16", "gouraud-hyperbolic", "gouraud-tessellated", "phong-table", "float", "phong-quadratic", "phong-every-16", "phong-every-8", "phong-every-4", "phong"];
-const techniqueColor = (name) => `hsl(${205 - 190 * (TECHNIQUES.indexOf(name) / (TECHNIQUES.length - 1))} 62% ${TECHNIQUES.indexOf(name) % 2 ? 46 : 56}%)`;
-
 /** Rounds in which all are measured. */
 const ROUNDS = 5;
 
 /** Milliseconds over which frames are counted. */
 const WINDOW = 500;
+
+/** The value of the choice that leaves shadings to the slider. */
+const SLIDER = "slider";
+
+/** What is asked for, in a sentence's words. */
+function wishText({ maxError, shading }) {
+  if (maxError) return `at most ${shadesText(maxError)} of 255 shades`;
+  if (shading === CHEAPEST) return "as cheap as it gets: one shade a face";
+  return shading ? `every face ${fullName(shading)}` : "whatever the scene asks for";
+}
 
 class Accuracy {
   #frames = [];
@@ -27,19 +25,14 @@ class Accuracy {
   /** `page` has state, engine, background, and question() for the worker. */
   constructor(page) {
     this.page = page;
-    const slider = element("accuracy");
-    slider.max = STOPS - 1;
-    const names = [["off", 0], ...[16, 8, 4, 2, 1, 0.5].map((budget) => [shadesText(budget), stopOf(budget)])];
-    element("octaves").replaceChildren(...names.map(([label, stop]) => new Option(label, stop)));
-    document.querySelector(".scale").replaceChildren(...names.map(([label, stop]) => {
-      const mark = make("span", {}, label);
-      mark.style.setProperty("--stop", stop / (STOPS - 1));
-      return mark;
-    }));
-    slider.addEventListener("input", () => page.choose({ maxError: budgetAt(Number(slider.value)) }));
+    this.#offerStops();
     const shadings = element("shading");
-    shadings.replaceChildren(new Option("what the scene asks for", ""), ...page.engine.shadings.map((name) => new Option(name, name)));
-    shadings.addEventListener("change", () => page.choose({ maxError: null, shading: shadings.value }));
+    const methods = page.engine.shadings.map((name) => new Option(fullName(name), name));
+    shadings.replaceChildren(new Option("as the slider says", SLIDER), new Option("as the scene asks", ""), ...methods);
+    shadings.addEventListener("change", () => {
+      if (shadings.value === SLIDER) page.choose(settingAt(Number(element("accuracy").value)));
+      else page.choose({ maxError: null, shading: shadings.value });
+    });
     element("measure").addEventListener("click", () => this.measureAll());
     element("within").addEventListener("submit", (event) => {
       event.preventDefault();
@@ -51,16 +44,36 @@ class Accuracy {
     new ResizeObserver(() => this.#draw()).observe(element("chart"));
   }
 
-  /** Shows what is set. */
-  follow() {
-    const { maxError, shading } = this.page.state;
+  #offerStops() {
     const slider = element("accuracy");
-    slider.value = stopOf(maxError);
-    const wish = maxError ? `at most ${budgetText(maxError)}` : "off: one shading for all faces";
+    slider.max = LAST_STOP;
+    const marks = [["cheapest", 0], ...OCTAVES.map((budget) => [shadesText(budget), stopOf({ maxError: budget })])];
+    element("octaves").replaceChildren(...marks.map(([label, stop]) => new Option(label, stop)));
+    document.querySelector(".scale").replaceChildren(...marks.map(([label, stop]) => {
+      const mark = make("span", {}, label);
+      mark.style.setProperty("--stop", stop / LAST_STOP);
+      return mark;
+    }));
+    const choose = () => this.page.choose(settingAt(Number(slider.value)));
+    slider.addEventListener("input", choose);
+    // A shading that is not on the slider leaves the thumb where it was: any key or touch takes the slider up again, even
+    // at its ends, where there is no input.
+    for (const touched of ["keydown", "pointerdown"]) {
+      slider.addEventListener(touched, ({ key }) => key !== "Tab" && key !== "Shift" && stopOf(this.page.state) === null && choose());
+    }
+  }
+
+  /** Shows what is set. The thumb stays where it is if that is no stop of the slider. */
+  follow() {
+    const { state } = this.page;
+    const slider = element("accuracy");
+    const stop = stopOf(state);
+    if (stop !== null) slider.value = stop;
+    slider.classList.toggle("aside", stop === null);
+    const wish = wishText(state);
     element("wish").textContent = wish;
     slider.setAttribute("aria-valuetext", wish);
-    element("choice").hidden = Boolean(maxError);
-    element("shading").value = shading ?? "";
+    element("shading").value = stop === null ? state.shading : SLIDER;
   }
 
   /** Takes in the time of a frame. */
@@ -102,12 +115,12 @@ class Accuracy {
   shares({ shares, shading }) {
     const all = shares.reduce((sum, [, faces]) => sum + faces, 0) || 1;
     const bar = shares.map(([name, faces]) => {
-      const part = make("i", { title: `${name}: ${faces} faces` });
+      const part = make("i", { title: `${fullName(name)}: ${faces} faces` });
       part.style.cssText = `flex:${faces};background:${techniqueColor(name)}`;
       return part;
     });
     element("shares").replaceChildren(...bar);
-    const words = shares.map(([name, faces]) => [name, `${name} ${faces * 200 < all ? "under 1" : Math.round((100 * faces) / all)} %`]);
+    const words = shares.map(([name, faces]) => [name, `${plainName(name)} ${faces * 200 < all ? "under 1" : Math.round((100 * faces) / all)} %`]);
     element("shares-key").replaceChildren(...words.map(([name, text]) => keyItem(techniqueColor(name), text)));
     element("shares").setAttribute("aria-label", `Share of faces by technique: ${words.map(([, text]) => text).join(", ") || shading}`);
   }
@@ -167,7 +180,7 @@ class Accuracy {
     const button = element("measure");
     const settings = [
       ...this.page.engine.shadings.map((shading) => ({ shading, maxError: null })),
-      ...[16, 8, 4, 2, 1, 0.5].map((maxError) => ({ maxError })),
+      ...OCTAVES.map((maxError) => ({ maxError })),
     ];
     button.disabled = true;
     this.measuring = true;
@@ -197,10 +210,10 @@ class Accuracy {
     if (!(limit > 0)) return;
     const { scene, state } = this.page;
     const takes = (stop) => {
-      scene.set({ ...this.page.settings(), maxError: budgetAt(stop) });
+      scene.set({ ...this.page.settings(), ...settingAt(stop) });
       return median([1, 2, 3].map(() => scene.time(state.seconds, state.pose, 8)));
     };
-    let [fits, beyond] = [FIRST_STOP - 1, STOPS];
+    let [fits, beyond] = [-1, LAST_STOP + 1];
     const times = new Map();
     while (beyond - fits > 1) {
       const middle = (fits + beyond) >> 1;
@@ -208,13 +221,10 @@ class Accuracy {
       if (times.get(middle) <= limit) fits = middle;
       else beyond = middle;
     }
-    if (fits < FIRST_STOP) {
-      element("found").textContent = `Not here: 16 shades take ${timeText(times.get(FIRST_STOP) ?? takes(FIRST_STOP))}.`;
-      this.page.choose({ maxError: 16 });
-      return;
-    }
-    element("found").textContent = `${budgetText(budgetAt(fits))}, in ${timeText(times.get(fits))}.`;
-    this.page.choose({ maxError: budgetAt(fits) });
+    const stop = Math.max(fits, 0);
+    const took = timeText(times.get(stop));
+    element("found").textContent = fits < 0 ? `Not here: the cheapest takes ${took}.` : `${settingName(settingAt(stop))}, in ${took}.`;
+    this.page.choose(settingAt(stop));
   }
 }
 

@@ -40,8 +40,8 @@ class Page {
     element("play").addEventListener("click", () => this.choose({ playing: !state.playing }));
     element("time").addEventListener("input", ({ target }) => this.choose({ seconds: Number(target.value), playing: false }));
     const beside = element("beside");
-    const budgets = [16, 8, 4, 2, 1, 0.5].map((budget) => [`max-error ${budget}`, `at most ${budgetText(budget)}`]);
-    const shadings = this.engine.shadings.map((name) => [`shading ${name}`, name]);
+    const budgets = OCTAVES.map((budget) => [`max-error ${budget}`, `at most ${budgetText(budget)}`]);
+    const shadings = this.engine.shadings.map((name) => [`shading ${name}`, fullName(name)]);
     beside.append(new Option("the truth in f64", "truth"), ...[...budgets, ...shadings].map(([value, text]) => new Option(text, value)));
     beside.addEventListener("change", () => this.choose({ beside: beside.value }));
     this.moveDivider = divide(element("screen"), "How much of the picture is the left one", (place) => {
@@ -238,7 +238,7 @@ class Page {
   #showBeside(edge, ms) {
     const { state } = this;
     const words = element("beside").selectedOptions[0].text;
-    this.#label("left", this.#name(), ms);
+    this.#label("left", settingName(state), ms);
     if (state.beside === "truth") {
       this.#label("right", words);
       const key = JSON.stringify([state.toml, state.seconds, state.pose]);
@@ -264,11 +264,6 @@ class Page {
     if (!frame) return;
     this.#exact = { key, frame };
     this.#isStale = true;
-  }
-
-  #name() {
-    const { maxError, shading } = this.state;
-    return maxError ? `at most ${budgetText(maxError)}` : shading || "the scene’s";
   }
 
   /** Marks the chosen pixel. */

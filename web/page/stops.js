@@ -1,0 +1,56 @@
+// The slider's stops, and the names of what they stand for.
+
+/** The cheapest shading, the slider's left end on every scene. */
+const CHEAPEST = "flat";
+/** Budgets that are measured and have a mark on the slider. */
+const OCTAVES = [16, 8, 4, 2, 1, 0.5];
+/** Stop 0 is the cheapest shading. Budgets follow, from 16 shades to ½ in quarters of an octave. */
+const LAST_STOP = 21;
+
+/** What a stop stands for. */
+function settingAt(stop) {
+  if (stop < 1) return { maxError: null, shading: CHEAPEST };
+  return { maxError: Number((16 * 2 ** (-(stop - 1) / 4)).toPrecision(3)) };
+}
+
+/** The nearest stop; null for a shading that is not on the slider. */
+function stopOf({ maxError, shading }) {
+  if (maxError) return clamp(Math.round(1 - 4 * Math.log2(maxError / 16)), 1, LAST_STOP);
+  return shading === CHEAPEST ? 0 : null;
+}
+
+const shadesText = (shades) => (shades === 0.5 ? "½" : `${Number(shades.toPrecision(2))}`);
+const budgetText = (budget) => `${shadesText(budget)} ${budget <= 1 ? "shade" : "shades"}`;
+
+/** Techniques from cheap to exact, in plain words. */
+const TECHNIQUES = new Map([
+  ["flat", "one shade a face"],
+  ["gouraud-vintage", "straight blend of 1994"],
+  ["gouraud-8.8", "straight blend, 8.8"],
+  ["gouraud-8.8-reseeded", "straight blend"],
+  ["gouraud-16.16", "straight blend, 16.16"],
+  ["gouraud-hyperbolic", "straight in space, exact"],
+  ["gouraud-tessellated", "straight blend, faces split"],
+  ["phong-table", "lit from a table"],
+  ["float", "straight in space"],
+  ["phong-quadratic", "curve"],
+  ["phong-every-16", "lit at every 16th pixel"],
+  ["phong-every-8", "lit at every 8th pixel"],
+  ["phong-every-4", "lit at every 4th pixel"],
+  ["phong", "lit at every pixel"],
+]);
+const plainName = (technique) => TECHNIQUES.get(technique) ?? technique;
+const fullName = (technique) => `${plainName(technique)} (${technique})`;
+
+/** Colours of the techniques, from cheap to exact. */
+function techniqueColor(name) {
+  const at = [...TECHNIQUES.keys()].indexOf(name);
+  return `hsl(${205 - 190 * (at / (TECHNIQUES.size - 1))} 62% ${at % 2 ? 46 : 56}%)`;
+}
+
+/** A setting's name, as short as the picture's edge takes it. */
+function settingName({ maxError, shading }) {
+  if (maxError) return `at most ${budgetText(maxError)}`;
+  if (shading === CHEAPEST) return "cheapest";
+  return shading ? plainName(shading) : "as the scene asks";
+}
