@@ -114,14 +114,14 @@ class Accuracy {
 
   shares({ shares, shading }) {
     const all = shares.reduce((sum, [, faces]) => sum + faces, 0) || 1;
-    const bar = shares.map(([name, faces]) => {
-      const part = make("i", { title: `${fullName(name)}: ${faces} faces` });
-      part.style.cssText = `flex:${faces};background:${techniqueColor(name)}`;
+    const colored = (name) => {
+      const part = make("i");
+      part.style.background = techniqueColor(name);
       return part;
-    });
-    element("shares").replaceChildren(...bar);
+    };
     const words = shares.map(([name, faces]) => [name, `${plainName(name)} ${faces * 200 < all ? "under 1" : Math.round((100 * faces) / all)} %`]);
-    element("shares-key").replaceChildren(...words.map(([name, text]) => keyItem(techniqueColor(name), text)));
+    keyed(element("shares"), shares, ([name]) => name, ([name]) => colored(name), (part, [, faces]) => (part.style.flex = faces));
+    keyed(element("shares-key"), words, ([name]) => name, ([name]) => keyItem(techniqueColor(name), ""), (item, [, text]) => setText(item.lastElementChild, text));
     element("shares").setAttribute("aria-label", `Share of faces by technique: ${words.map(([, text]) => text).join(", ") || shading}`);
   }
 
@@ -158,7 +158,7 @@ class Accuracy {
     const present = settingLines({ maxError: state.maxError, shading: state.shading });
     // The present point stands for what was measured of its setting.
     const others = [...this.#points].filter(([lines]) => !isShown || lines !== present).map(([, point]) => point);
-    const points = others.map((point) => ({ ...point, choose: () => this.page.choose(point.settings) }));
+    const points = others.map((point) => ({ ...point, key: settingLines(point.settings), choose: () => this.page.choose(point.settings) }));
     if (isShown) {
       const name = state.maxError ? `≤ ${shadesText(state.maxError)}` : state.shading || "the scene’s";
       points.push({ ms: this.mean(), error: this.#judged.rms, kind: "now", name: `${name}, now` });

@@ -3,8 +3,11 @@
 const LENS = { columns: 21, rows: 13, zoom: 20 };
 
 class Magnifier {
+  #parts;
+
   constructor(page) {
     this.page = page;
+    this.#parts = this.#build();
     this.canvas = element("lens");
     this.context = this.canvas.getContext("2d");
     this.canvas.width = LENS.columns * LENS.zoom;
@@ -36,6 +39,8 @@ class Magnifier {
   }
 
   show(pixel, frame, account) {
+    // While the picture moves there would be no end to what is announced.
+    this.#parts.head.setAttribute("aria-live", this.page.state.playing ? "off" : "polite");
     this.#draw(pixel, frame, account);
     this.#say(account);
   }
@@ -74,46 +79,55 @@ class Magnifier {
     context.strokeRect((columns >> 1) * zoom - 1, (rows >> 1) * zoom - 1, zoom + 1, zoom + 1);
   }
 
+  /** The account's elements. They are made once, so that what is open stays open, and what has the focus keeps it. */
+  #build() {
+    const register = (name) => {
+      const box = make("div", { className: "register" });
+      box.append(make("dt", {}, name), make("dd", { className: "mono" }));
+      return box;
+    };
+    const parts = {
+      head: make("h3"), swatch: make("i", { className: "swatch" }), name: make("span"), color: make("span", { className: "mono muted" }),
+      face: make("p"), registers: make("dl", { className: "registers" }), exact: make("p"), off: make("p"),
+      text: make("pre", { className: "mono", tabIndex: 0 }),
+    };
+    const all = make("details");
+    parts.head.append(parts.swatch, parts.name, parts.color);
+    parts.registers.append(register("AX, the shade"), register("BX, the step"), register("CX, pixels left"), register("EDI, the address"));
+    all.append(make("summary", {}, "Full details"), parts.text);
+    element("account").replaceChildren(parts.head, parts.face, parts.registers, parts.exact, parts.off, all);
+    return parts;
+  }
+
   #say(account) {
     const { x, y, byte, color, registers, exact, against = [], object, triangle } = account;
+    const parts = this.#parts;
     const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, "0");
-    const swatch = make("i", { className: "swatch" });
-    swatch.style.background = color;
-    const head = make("h3");
-    head.append(swatch, ` Pixel ${x}, ${y}: byte ${byte} `, make("span", { className: "mono muted" }, `${hex(byte, 2)}h ${color}`));
-    const parts = [head];
-    parts.push(make("p", {}, object === undefined ? "No face is here: the background." : `Triangle ${triangle} of ${object}.`));
-    if (registers) {
-      const wide = registers.eax > 0xffff || registers.ebx > 0xffff;
-      const digits = wide ? 8 : 4;
-      const ax = hex(registers.eax, digits);
-      // The byte is AH, or in 16.16 the third of EAX.
-      const [before, seen, after] = wide ? [ax.slice(0, 2), ax.slice(2, 4), ax.slice(4)] : ["", ax.slice(0, 2), ax.slice(2)];
-      const box = (name, ...content) => {
-        const register = make("div", { className: "register" });
-        const value = make("dd", { className: "mono" });
-        value.append(...content);
-        register.append(make("dt", {}, name), value);
-        return register;
-      };
-      const list = make("dl", { className: "registers" });
-      list.append(
-        box(wide ? "EAX, the shade" : "AX, the shade", before, make("b", {}, seen), after),
-        box(wide ? "EBX, the step" : "BX, the step", hex(registers.ebx, digits)),
-        box("CX, pixels left", hex(registers.cx, 4)),
-        box("EDI, the place", hex(0xa0000 + registers.edi, 5)),
-      );
-      parts.push(list);
-    }
-    if (typeof exact === "number") parts.push(make("p", {}, `Exactly, the shade here is ${exact.toFixed(4)}.`));
+    parts.swatch.style.background = color;
+    setText(parts.name, ` Pixel ${x}, ${y}: byte ${byte} `);
+    setText(parts.color, `${hex(byte, 2)}h ${color}`);
+    setText(parts.face, object === undefined ? "No face is here: the background." : `Triangle ${triangle} of ${object}.`);
+    parts.registers.hidden = !registers;
+    if (registers) this.#sayRegisters(registers, hex);
     const lit = against.find(([standard]) => standard === "lit");
-    if (lit) {
-      parts.push(make("p", {}, `Lit at the pixel itself it would be ${lit[1].toFixed(2)} shades: this is off by ${lit[2] < 0 ? "−" : "+"}${Math.abs(lit[2]).toFixed(2)}.`));
-    }
-    const all = make("details");
-    all.open = element("account").querySelector("details")?.open ?? false;
-    all.append(make("summary", {}, "The whole account"), make("pre", { className: "mono", tabIndex: 0 }, account.text.trim()));
-    parts.push(all);
-    element("account").replaceChildren(...parts);
+    setText(parts.exact, typeof exact === "number" ? `Exactly, the shade here is ${exact.toFixed(4)}.` : "");
+    const off = lit && `${lit[2] < 0 ? "−" : "+"}${Math.abs(lit[2]).toFixed(2)}`;
+    setText(parts.off, lit ? `Lit at the pixel itself it would be ${lit[1].toFixed(2)} shades: this is off by ${off}.` : "");
+    setText(parts.text, account.text.trim());
+  }
+
+  #sayRegisters({ eax, ebx, cx, edi }, hex) {
+    const isWide = eax > 0xffff || ebx > 0xffff;
+    const digits = isWide ? 8 : 4;
+    const ax = hex(eax, digits);
+    // The byte is AH, or in 16.16 the third of EAX.
+    const at = isWide ? 2 : 0;
+    const [shade, step, left, place] = this.#parts.registers.children;
+    setText(shade.firstElementChild, isWide ? "EAX, the shade" : "AX, the shade");
+    setText(step.firstElementChild, isWide ? "EBX, the step" : "BX, the step");
+    shade.lastElementChild.replaceChildren(ax.slice(0, at), make("b", {}, ax.slice(at, at + 2)), ax.slice(at + 2));
+    setText(step.lastElementChild, hex(ebx, digits));
+    setText(left.lastElementChild, hex(cx, 4));
+    setText(place.lastElementChild, hex(0xa0000 + edi, 5));
   }
 }

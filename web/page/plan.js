@@ -8,26 +8,21 @@ const ROUNDS_OF_PRICE = 15;
 
 class PlanTable {
   #prices = new Map();
-  #said = "";
 
   constructor(page) {
     this.page = page;
     this.body = document.querySelector("#effects tbody");
-    element("object").addEventListener("change", () => this.show(this.rows, true));
+    element("object").addEventListener("change", () => this.show(this.rows));
     element("price").addEventListener("click", () => this.measure());
     element("as-planned").addEventListener("click", () => page.choose({ effects: {} }));
   }
 
   forget() {
     this.#prices.clear();
-    this.#said = "";
   }
 
-  show(rows, again = false) {
+  show(rows) {
     this.rows = rows;
-    const said = JSON.stringify(rows.map(({ on, choice, reason }) => [on, choice, reason])) + JSON.stringify(this.page.state.effects);
-    if (said === this.#said && !again) return;
-    this.#said = said;
     const objects = [...new Map(rows.map((row) => [row.place, row.object])).entries()];
     const chosen = element("object");
     const names = objects.map(([place, name]) => `${place}: ${name}`).join("\n");
@@ -36,24 +31,36 @@ class PlanTable {
       chosen.replaceChildren(...objects.map(([place, name]) => new Option(objects.length > 1 ? `${place + 1}. ${name}` : name, place)));
       for (const part of [chosen, element("object-label")]) part.hidden = objects.length < 2;
     }
-    const place = Number(chosen.value || 0);
-    this.body.replaceChildren(...rows.filter((row) => row.place === place).map((row) => this.#row(row)));
+    const shown = rows.filter((row) => row.place === Number(chosen.value || 0));
+    keyed(this.body, shown, ({ effect }) => effect, (row) => this.#make(row), (made, row) => this.#update(made, row));
     element("as-planned").hidden = Object.keys(this.page.state.effects).length === 0;
   }
 
-  #row({ effect, on, choice, reason }) {
-    const row = make("tr", { className: on ? "on" : "" });
-    const forced = this.page.state.effects[effect];
-    const box = make("input", { type: "checkbox", checked: on, disabled: FIXED.includes(effect), ariaLabel: effect });
+  #make({ effect }) {
+    const row = make("tr");
+    const box = make("input", { type: "checkbox", id: `effect-${effect}`, disabled: FIXED.includes(effect), ariaLabel: effect });
     box.addEventListener("change", () => this.page.choose({ effects: { ...this.page.state.effects, [effect]: box.checked } }));
-    const name = make("th", { scope: "row" }, choice && on ? `${effect}: ${choice}` : effect);
-    const price = this.#prices.get(effect);
-    const cost = make("td", { className: "number mono" }, price === undefined ? "" : price === null ? "–" : on ? timeText(price) : `(${timeText(price)})`);
-    if (price === 0) cost.textContent = "0";
-    const switched = make("td");
+    const [name, switched] = [make("th", { scope: "row" }), make("td")];
+    name.append(make("label", { htmlFor: box.id }));
     switched.append(box);
-    row.append(name, switched, cost, make("td", {}, reason + (forced === undefined ? "" : " (switched by hand)")));
+    row.append(name, switched, make("td", { className: "number mono" }), make("td"));
     return row;
+  }
+
+  #update(row, { effect, on, choice, reason }) {
+    const [name, switched, cost, why] = row.children;
+    const box = switched.firstElementChild;
+    row.classList.toggle("on", on);
+    if (box.checked !== on) box.checked = on;
+    setText(name.firstElementChild, choice && on ? `${effect}: ${choice}` : effect);
+    setText(cost, this.#priceText(this.#prices.get(effect), on));
+    setText(why, reason);
+  }
+
+  /** A price in words: null for what cannot be switched, 0 for what is within the noise. */
+  #priceText(price, on) {
+    if (!price) return price === undefined ? "" : price === null ? "–" : "0";
+    return on ? timeText(price) : `(${timeText(price)})`;
   }
 
   /** Measures how much longer a frame is with each effect than without: the two drawn in turn. */
@@ -68,7 +75,7 @@ class PlanTable {
       await new Promise((resolve) => setTimeout(resolve));
       if (toml !== state.toml) break;
       this.#prices.set(effect, FIXED.includes(effect) ? null : this.#price(scene, effect, on));
-      this.show(this.rows, true);
+      this.show(this.rows);
     }
     button.disabled = false;
     button.textContent = "Measure again";

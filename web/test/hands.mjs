@@ -1,12 +1,14 @@
 // What hands do with the page, in Chromium: hands.mjs PAGE.html
 //
-// The slider by every key at every stop.
-import { openScene, Suite } from "./suite.mjs";
+// The slider by every key at every stop; presses as long as a hand's while the picture turns; where the focus is then.
+import { openScene, Suite, wait } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
 suite.run(async () => {
   const tab = await suite.open();
   await slider(tab);
+  await presses(tab);
+  await focus(tab);
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 });
 
@@ -32,4 +34,46 @@ async function slider(tab) {
   suite.check("a shading that is not on it leaves the thumb where it was", await tab.value("element('accuracy').value === String(LAST_STOP)"));
   await tab.key("ArrowRight");
   suite.check("and a key takes it up again, at its end too", await tab.value("page.state.maxError === 0.5"));
+}
+
+/** Presses for 110 ms, as a hand does, while the picture turns. */
+async function press(tab, selector) {
+  const { x, y, width, height } = await tab.box(selector);
+  const at = [x + width / 2, y + height / 2];
+  await tab.mouse("mousePressed", ...at);
+  await wait(110);
+  await tab.mouse("mouseReleased", ...at);
+}
+
+async function presses(tab) {
+  await openScene(tab, "teapot");
+  await tab.value("page.choose({ ...settingAt(9), playing: true, beside: '', pixel: { x: 160, y: 100 } })");
+  await tab.value("element('account').scrollIntoView({ block: 'center', behavior: 'instant' })");
+  await tab.until("element('account').textContent.includes('Pixel 160')");
+  const targets = [
+    ["the plan", "#effect-back-face-culling", "element('effect-back-face-culling').checked"],
+    ["the account", "#account summary", "document.querySelector('#account details').open"],
+  ];
+  for (const [what, selector, state] of targets) {
+    let took = 0;
+    for (let i = 0; i < 24; i++) {
+      const before = await tab.value(state);
+      await press(tab, selector);
+      await tab.value("new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))");
+      took += (await tab.value(state)) !== before;
+    }
+    suite.check(`24 presses on ${what} all take while the picture turns`, took === 24 && (await tab.value("page.state.playing")), took);
+  }
+  await tab.value("page.choose({ effects: {} })");
+}
+
+async function focus(tab) {
+  await tab.value("element('effect-back-face-culling').focus()");
+  await tab.key(" ", "Space", " ");
+  await wait(700);
+  suite.check("a switch of the plan keeps the focus", (await tab.value("document.activeElement.id")) === "effect-back-face-culling");
+  await tab.value("page.choose({ effects: {} })");
+  await tab.value("document.querySelector('#account summary').focus()");
+  await wait(700);
+  suite.check("and so does the account", (await tab.value("document.activeElement.tagName")) === "SUMMARY");
 }

@@ -32,7 +32,8 @@ function logSpan(numbers) {
  * Draws the chart into an element, at its width.
  *
  * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
- * Efficient shadings are joined, and so are budgets, in the order of `budget`. A click on a point that has `choose` calls it.
+ * Efficient shadings are joined, and so are budgets, in the order of `budget`. A press of a point that has `choose` calls
+ * it, by pointer or by key; its `key` is its own, so that a chart that is drawn again under a press or the focus keeps them.
  * `across` and `down` name the axes.
  */
 function drawChart(element, points, { height = 260, description = "Error against time", across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s." } = {}) {
@@ -56,7 +57,7 @@ function drawChart(element, points, { height = 260, description = "Error against
   const xTicks = logTicks(...across);
   for (const tick of xTicks) {
     make("line", { class: "chart-grid", x1: x(tick), x2: x(tick), y1: top, y2: bottom }, svg);
-    const isAtEnd = x(tick) + 20 > width;
+    const isAtEnd = x(tick) + 28 > width;
     make("text", { class: "chart-tick", x: isAtEnd ? width : x(tick), y: bottom + 15, "text-anchor": isAtEnd ? "end" : "middle" }, svg, timeText(tick));
   }
   for (const tick of logTicks(...down)) {
@@ -90,12 +91,13 @@ function drawChart(element, points, { height = 260, description = "Error against
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
     const at = { x: x(point.ms), y: y(point.error) };
     const group = make("g", { class: `chart-point ${point.kind}${point.efficient ? " efficient" : ""}` }, svg);
-    make("title", {}, group, point.title ?? `${point.name}: ${acrossName} ${timeText(point.ms)}, ${downName} ${point.error.toPrecision(2)}`);
+    const title = point.title ?? `${point.name}: ${acrossName} ${timeText(point.ms)}, ${downName} ${point.error.toPrecision(2)}`;
+    make("title", {}, group, title);
     if (point.kind === "budget") make("path", { d: `M${at.x} ${at.y - 5}l5 9h-10z` }, group);
     else make("circle", { cx: at.x, cy: at.y, r: point.kind === "shading" ? 4.5 : 7 }, group);
     if (point.choose) {
       group.classList.add("chosen-by-click");
-      group.addEventListener("click", point.choose);
+      for (const [key, value] of Object.entries({ tabindex: 0, role: "button", "data-key": point.key, "aria-label": title })) group.setAttribute(key, value);
     }
   }
   // Every point has a name. Budgets at one place share it.
@@ -135,7 +137,19 @@ function drawChart(element, points, { height = 260, description = "Error against
     taken.push({ ...box, isName: true });
     make("text", { class: `chart-label ${point.kind}`, x: point.x + dx, y: point.y + dy, "text-anchor": anchor }, svg, point.name);
   }
+  const focused = element.querySelector(":focus")?.dataset.key;
   element.replaceChildren(svg);
+  const keyOf = (target) => target.closest?.(".chosen-by-click")?.dataset.key;
+  const choose = (key) => points.find((point) => point.choose && point.key === key)?.choose();
+  if (focused !== undefined) [...svg.querySelectorAll("[data-key]")].find((group) => group.dataset.key === focused)?.focus({ preventScroll: true });
+  // Not by `click`: between a press and its release another chart may have come.
+  element.onpointerdown = ({ target }) => (element.dataset.pressed = keyOf(target) ?? "");
+  element.onpointerup = ({ target }) => keyOf(target) !== undefined && keyOf(target) === element.dataset.pressed && choose(keyOf(target));
+  element.onkeydown = (event) => {
+    if ((event.key !== "Enter" && event.key !== " ") || keyOf(event.target) === undefined) return;
+    event.preventDefault();
+    choose(keyOf(event.target));
+  };
 }
 
 /** Marks the shadings that no other is both nearer and faster than. */
