@@ -56,13 +56,13 @@ out, module = map(pathlib.Path, sys.argv[1:])
 figures = sorted((text / "figures").glob("*.js"))
 packed = {
     "wasm": module.read_bytes(),
-    "engine": scripts(page, "engine"),
+    "engine": scripts(page, "engine", "stopwatch"),
     "worker": scripts(page, "worker"),
     "page": "\n".join(
         [
             scripts(page, "elements", "background", "picture"),
             scripts(shared, "chart", "divider"),
-            scripts(page, "stops", "accuracy", "plan", "magnifier", "scenes", "link", "save", "page"),
+            scripts(page, "stops", "accuracy", "curve", "plan", "magnifier", "scenes", "link", "save", "page"),
         ]
     ),
     "figures": read(*figures),

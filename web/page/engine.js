@@ -166,11 +166,9 @@ class Scene {
     this.#ask("show", seconds, turn, tilt, zoom);
   }
 
-  /** Draws a frame, `again` even where nothing has changed. Returns the milliseconds that it took. */
+  /** Draws a frame, `again` even where nothing has changed. */
   draw(again = false) {
-    const before = performance.now();
     this.#ask("draw", again ? 1 : 0);
-    return performance.now() - before;
   }
 
   #picture() {
@@ -236,26 +234,6 @@ class Scene {
   truth(standard = "lit") {
     this.#ask("exact", STANDARDS.indexOf(standard));
     return this.#picture();
-  }
-
-  /** Milliseconds a frame at this time, the mean of as many as fit in `budget` milliseconds. */
-  time(seconds, pose, budget = 12) {
-    // Vertices and tables are made in the first.
-    for (let i = 0; i < 2; i++) {
-      this.show(seconds + i / 70, pose);
-      this.draw(true);
-    }
-    let frames = 0;
-    const before = performance.now();
-    let took = 0;
-    do {
-      this.show(seconds + (frames % 2) / 70, pose);
-      this.#ask("draw", 1);
-      frames++;
-      took = performance.now() - before;
-    } while (took < budget);
-    this.show(seconds, pose);
-    return took / frames;
   }
 
   free() {

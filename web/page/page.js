@@ -7,11 +7,15 @@ class Page {
   };
   /** The scene under the divider, if there is one. */
   other = null;
+  /** The times of the picture, and of the one under the divider. */
+  left = new Stopwatch();
+  right = new Stopwatch();
   #files = new Map();
   #last = 0;
   #told = 0;
   #stops = 0;
   #linkTimer = 0;
+  #turn = 0;
   #exact = null;
   #isStale = true;
 
@@ -22,6 +26,7 @@ class Page {
     this.overlay = element("overlay").getContext("2d");
     Object.assign(element("overlay"), { width: WIDTH, height: HEIGHT });
     this.accuracy = new Accuracy(this);
+    this.curve = new Curve(this);
     this.plan = new PlanTable(this);
     this.magnifier = new Magnifier(this);
     this.#handle();
@@ -104,6 +109,9 @@ class Page {
     if (!keepsMoment) Object.assign(this.state, { seconds: isStill() ? scene.about.picture : 0, pose: { ...FIRST_POSE }, pixel: null, effects: {} });
     this.accuracy.forget();
     this.plan.forget();
+    this.curve.forget();
+    this.left.reset();
+    this.right.reset();
     element("time").max = scene.about.duration;
     this.scenes?.follow();
     this.choose({});
@@ -112,9 +120,11 @@ class Page {
   /** Changes the state, and shows that. */
   choose(change) {
     const { state } = this;
-    const before = JSON.stringify(this.settings());
+    const settings = () => [this.settings(), this.#besideSettings()].map(settingLines);
+    const before = settings();
     Object.assign(state, change);
-    if (JSON.stringify(this.settings()) !== before) this.accuracy.restart();
+    settings().forEach((lines, side) => lines !== before[side] && [this.left, this.right][side].reset());
+    if ("seconds" in change || "pose" in change) for (const watch of [this.left, this.right]) watch.renew();
     this.accuracy.follow();
     const play = element("play");
     play.textContent = state.playing ? "❚❚" : "▶";
@@ -159,11 +169,11 @@ class Page {
     element("trouble").hidden = !message;
   }
 
-  /** Draws the picture on the left, at the present moment. Returns its milliseconds. */
+  /** Draws the picture on the left, at the present moment. */
   drawLeft() {
     this.scene.set(this.settings());
     this.scene.show(this.state.seconds, this.state.pose);
-    return this.scene.draw();
+    this.scene.draw();
   }
 
   /** Draws a frame of the page. */
@@ -174,6 +184,8 @@ class Page {
     try {
       if (state.playing) state.seconds = (state.seconds + step) % this.scene.about.duration;
       if (state.playing || this.#isStale) this.#show(now);
+      this.#time();
+      this.accuracy.tell(now);
       this.#stops = 0;
     } catch (error) {
       this.trouble(error.message);
@@ -188,34 +200,38 @@ class Page {
     const { state } = this;
     const wasStale = this.#isStale;
     this.#isStale = false;
-    const ms = this.drawLeft();
+    this.drawLeft();
     const frame = this.scene.frame();
     const counts = this.scene.counts();
-    if (state.playing) this.accuracy.count(ms, now);
-    else this.#timeStill();
     const edge = state.beside ? Math.round(state.divider * WIDTH) : WIDTH;
     this.canvas.show(frame, 0, edge);
-    if (state.beside) this.#showBeside(edge, ms);
+    if (state.beside) this.#showBeside(edge);
     this.#mark();
     element("time").value = state.seconds;
     element("seconds").textContent = `${state.seconds.toFixed(2)} s`;
     if (wasStale || now - this.#told > 250) {
       this.#told = now;
-      if (counts.redrawn) this.accuracy.shares(counts);
+      if (counts.redrawn) this.accuracy.counts(counts);
       this.plan.show(this.scene.plan());
       this.magnifier.follow(this.scene, frame, state.pixel);
     }
     this.#judge();
   }
 
-  /** Times a picture that stands, once for its settings: it is drawn again and again. */
-  #timeStill() {
-    const { toml, seconds, pose } = this.state;
-    const key = JSON.stringify([toml, seconds, pose, this.settings()]);
-    if (key === this.timed) return;
-    this.timed = key;
-    this.accuracy.stand(this.scene.time(seconds, pose, 10));
-    this.scene.draw();
+  /** Takes laps of what is shown: of one picture in each frame while they move, and until they are settled where they stand. */
+  #time() {
+    const { seconds, pose, playing } = this.state;
+    const sides = [[this.left, this.scene]];
+    if (this.#isBesideDrawn()) sides.push([this.right, this.other]);
+    this.#turn = (this.#turn + 1) % sides.length;
+    for (const [watch, scene] of playing ? [sides[this.#turn]] : sides) {
+      if (playing || !watch.isSettled) watch.add(Stopwatch.lap(scene, seconds, pose));
+    }
+  }
+
+  /** Whether the engine draws what is beside the picture. */
+  #isBesideDrawn() {
+    return this.other && this.state.beside && this.state.beside !== "truth";
   }
 
   /** Has the frame compared with the truth. Of a picture that stands the last word is its own. */
@@ -225,34 +241,28 @@ class Page {
   }
 
   /** The pictures' names and, of what the engine draws, their times. */
-  #label(side, words, ms) {
+  #label(side, words, watch) {
     const label = document.querySelector(`.side.${side}`);
     label.hidden = false;
-    // One frame in a while: the eye cannot read them all.
-    const now = performance.now();
-    if (label.dataset.words === words && now - label.dataset.said < 300) return;
-    Object.assign(label.dataset, { words, said: now });
-    label.textContent = ms === undefined || !this.state.playing ? words : `${words}: ${timeText(ms)}`;
+    setText(label, watch?.ms && watch.isRedrawn ? `${words}: ${msText(watch.ms)}` : words);
   }
 
-  #showBeside(edge, ms) {
+  #showBeside(edge) {
     const { state } = this;
     const words = element("beside").selectedOptions[0].text;
-    this.#label("left", settingName(state), ms);
+    this.#label("left", settingName(state), this.left);
     if (state.beside === "truth") {
       this.#label("right", words);
       const key = JSON.stringify([state.toml, state.seconds, state.pose]);
-      if (this.#exact?.key === key) this.canvas.show(this.#exact.frame, edge);
-      else {
-        if (this.#exact) this.canvas.show(this.#exact.frame, edge);
-        this.#askExact(key);
-      }
+      if (this.#exact) this.canvas.show(this.#exact.frame, edge);
+      if (this.#exact?.key !== key) this.#askExact(key);
       return;
     }
     this.other ??= this.engine.open(state.toml);
     this.other.set(this.#besideSettings());
     this.other.show(state.seconds, state.pose);
-    this.#label("right", words, this.other.draw());
+    this.other.draw();
+    this.#label("right", words, this.right);
     this.canvas.show(this.other.frame(), edge);
   }
 

@@ -60,14 +60,16 @@ class PlanTable {
   /** A price in words: null for what cannot be switched, 0 for what is within the noise. */
   #priceText(price, on) {
     if (!price) return price === undefined ? "" : price === null ? "–" : "0";
-    return on ? timeText(price) : `(${timeText(price)})`;
+    return on ? msText(price) : `(${msText(price)})`;
   }
 
   /** Measures how much longer a frame is with each effect than without: the two drawn in turn. */
   async measure() {
     const button = element("price");
-    const { scene, state } = this.page;
+    const { engine, state } = this.page;
     const { toml } = state;
+    // A scene of its own, so that the picture goes on.
+    const scene = engine.open(toml);
     button.disabled = true;
     const rows = this.rows.filter((row) => row.place === Number(element("object").value || 0));
     for (const [at, { effect, on }] of rows.entries()) {
@@ -77,26 +79,26 @@ class PlanTable {
       this.#prices.set(effect, FIXED.includes(effect) ? null : this.#price(scene, effect, on));
       this.show(this.rows);
     }
+    scene.free();
     button.disabled = false;
     button.textContent = "Measure again";
   }
 
   #price(scene, effect, on) {
-    const { state } = this.page;
+    const { seconds, pose } = this.page.state;
     const usual = this.page.settings();
     const switched = { ...usual, effects: { ...usual.effects, [effect]: !on } };
     const differences = [];
-    try {
-      for (let round = 0; round < ROUNDS_OF_PRICE; round++) {
-        scene.set(usual);
-        const as = scene.time(state.seconds, state.pose, 4);
-        scene.set(switched);
-        const other = scene.time(state.seconds, state.pose, 4);
-        differences.push(on ? as - other : other - as);
-      }
-      if (scene.plan().find((row) => row.effect === effect)?.on === on) return null;
-    } finally {
-      scene.set(usual);
+    const lap = (settings) => {
+      scene.set(settings);
+      return Stopwatch.lap(scene, seconds, pose).ms;
+    };
+    lap(usual);
+    lap(switched);
+    if (scene.plan().find((row) => row.effect === effect)?.on === on) return null;
+    for (let round = 0; round < ROUNDS_OF_PRICE; round++) {
+      const [as, other] = [lap(usual), lap(switched)];
+      differences.push(on ? as - other : other - as);
     }
     // Of n differences by chance half are above 0, with a standard deviation of √n/2: what is not three times that above
     // has no price.

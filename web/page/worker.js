@@ -26,12 +26,13 @@ function judge(scene, { seconds, pose, settings }) {
 
 const questions = {
   judge: (question) => judge(sceneOf(question), question),
-  /** Time of one setting and, if it is asked for, its error. */
+  /** Laps of one setting and, if they are asked for, its errors and counts. */
   measure(question) {
     const scene = sceneOf(question);
-    const { rms } = question.judges ? judge(scene, question) : {};
+    const { frame, map, counts, ...errors } = question.judges ? judge(scene, question) : {};
     scene.set(question.settings);
-    return { ms: scene.time(question.seconds, question.pose, 10), rms };
+    const judged = counts && { ...errors, lit: counts.lit, pixels: counts.pixels };
+    return { laps: Stopwatch.laps(scene, question.seconds, question.pose, question.laps), judged };
   },
   exact(question) {
     const scene = sceneOf(question);

@@ -94,6 +94,11 @@ class Tab {
     return this.browser.ask(method, params, this.session);
   }
 
+  /** Closes the page, so that it works no more. */
+  close() {
+    return this.ask("Page.close");
+  }
+
   event(method) {
     return new Promise((resolve) => this.#waiting.push({ method, resolve }));
   }

@@ -13,7 +13,7 @@ pub(crate) fn counts(stats: &Stats) -> Value {
     json!({
         "shading": stats.shading.name(), "maxError": stats.max_error, "hidden": stats.hidden_surfaces.name(),
         "kernel": stats.kernel, "redrawn": stats.redrawn, "faces": stats.faces, "drawn": stats.drawn,
-        "pixels": stats.raster.pixels, "vertices": stats.vertices, "shares": shares,
+        "pixels": stats.raster.pixels, "lit": stats.raster.lit, "vertices": stats.vertices, "shares": shares,
     })
 }
 

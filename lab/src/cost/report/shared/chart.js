@@ -34,9 +34,9 @@ function logSpan(numbers) {
  * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
  * Efficient shadings are joined, and so are budgets, in the order of `budget`. A press of a point that has `choose` calls
  * it, by pointer or by key; its `key` is its own, so that a chart that is drawn again under a press or the focus keeps them.
- * `across` and `down` name the axes.
+ * `across` and `down` name the axes, `time` words a time.
  */
-function drawChart(element, points, { height = 260, description = "Error against time", across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s." } = {}) {
+function drawChart(element, points, { height = 260, description = "Error against time", across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s.", time = timeText } = {}) {
   const SVG = "http://www.w3.org/2000/svg";
   const make = (name, attributes, parent, text) => {
     const made = document.createElementNS(SVG, name);
@@ -58,7 +58,7 @@ function drawChart(element, points, { height = 260, description = "Error against
   for (const tick of xTicks) {
     make("line", { class: "chart-grid", x1: x(tick), x2: x(tick), y1: top, y2: bottom }, svg);
     const isAtEnd = x(tick) + 28 > width;
-    make("text", { class: "chart-tick", x: isAtEnd ? width : x(tick), y: bottom + 15, "text-anchor": isAtEnd ? "end" : "middle" }, svg, timeText(tick));
+    make("text", { class: "chart-tick", x: isAtEnd ? width : x(tick), y: bottom + 15, "text-anchor": isAtEnd ? "end" : "middle" }, svg, time(tick));
   }
   for (const tick of logTicks(...down)) {
     make("line", { class: "chart-grid", x1: left, x2: right, y1: y(tick), y2: y(tick) }, svg);
@@ -91,7 +91,7 @@ function drawChart(element, points, { height = 260, description = "Error against
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
     const at = { x: x(point.ms), y: y(point.error) };
     const group = make("g", { class: `chart-point ${point.kind}${point.efficient ? " efficient" : ""}` }, svg);
-    const title = point.title ?? `${point.name}: ${acrossName} ${timeText(point.ms)}, ${downName} ${point.error.toPrecision(2)}`;
+    const title = point.title ?? `${point.name}: ${acrossName} ${time(point.ms)}, ${downName} ${point.error.toPrecision(2)}`;
     make("title", {}, group, title);
     if (point.kind === "budget") make("path", { d: `M${at.x} ${at.y - 5}l5 9h-10z` }, group);
     else make("circle", { cx: at.x, cy: at.y, r: point.kind === "shading" ? 4.5 : 7 }, group);

@@ -1,0 +1,102 @@
+// The chart: what settings take and how far off they are, and where the present one is among them.
+
+/** Laps of a setting in each turn, and turns of all settings. */
+const LAPS_A_TURN = 4;
+const TURNS = 5;
+/** Milliseconds after which a new scene's curve is measured: first its picture. */
+const SETTLING = 400;
+
+/** The slider's marks, from the cheapest to half a shade. */
+const MARKS = [0, ...OCTAVES.map((maxError) => stopOf({ maxError }))].map(settingAt);
+
+class Curve {
+  /** By their lines: settings, their stopwatch, and their errors and counts once judged. */
+  #points = new Map();
+  /** Counts the measurements: an older one ends when a newer begins. */
+  #number = 0;
+  #timer = 0;
+
+  constructor(page) {
+    this.page = page;
+    element("measure").addEventListener("click", () => this.#measureAll());
+    new ResizeObserver(() => this.draw()).observe(element("chart"));
+  }
+
+  /** Forgets another scene, and measures this one's curve in the background. */
+  forget() {
+    this.#points.clear();
+    this.#number++;
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#measure(MARKS), SETTLING);
+    this.draw();
+  }
+
+  /** What is known of a setting: milliseconds, errors, counts; undefined as long as nothing is. */
+  at(settings) {
+    const point = this.#points.get(settingLines(settings));
+    return point?.judged && { ...point.judged, ms: point.watch.ms, isRedrawn: point.watch.isRedrawn };
+  }
+
+  async #measureAll() {
+    const button = element("measure");
+    button.disabled = true;
+    const shadings = this.page.engine.shadings.filter((shading) => shading !== CHEAPEST).map((shading) => ({ maxError: null, shading }));
+    await this.#measure([...MARKS, ...shadings], (part) => setText(button, `Measuring, ${Math.round(100 * part)} %`));
+    button.disabled = false;
+    setText(button, "Measure all methods again");
+  }
+
+  /** Measures settings in turn, so that what else the machine does meets all of them. */
+  async #measure(settings, onProgress = () => {}) {
+    const number = ++this.#number;
+    const question = this.page.question();
+    // A moving scene is measured where its picture is taken: at first there may be nothing to see.
+    if (this.page.state.playing) question.seconds = this.page.scene.about.picture;
+    const watches = settings.map(() => new Stopwatch());
+    const all = TURNS * settings.length;
+    for (let turn = 0; turn < all; turn++) {
+      const at = turn % settings.length;
+      onProgress(turn / all);
+      const asked = { ...question, settings: { ...question.settings, ...settings[at] }, judges: turn < settings.length, laps: LAPS_A_TURN };
+      const answer = await this.page.ask("measure", asked);
+      if (!answer || number !== this.#number) return;
+      watches[at].add(...answer.laps);
+      const lines = settingLines(settings[at]);
+      const judged = answer.judged ?? this.#points.get(lines)?.judged;
+      this.#points.set(lines, { settings: settings[at], watch: watches[at], judged });
+      this.draw();
+    }
+  }
+
+  /** Draws the chart. What is not redrawn takes no time, and is not on it. */
+  draw() {
+    const { state, left, accuracy } = this.page;
+    const now = left?.isRedrawn && left.ms && accuracy?.judged;
+    const present = settingLines({ maxError: state.maxError, shading: state.shading });
+    const points = [];
+    for (const [lines, { settings, watch, judged }] of this.#points) {
+      // The present point stands for what was measured of its setting.
+      if ((now && lines === present) || !watch.isRedrawn || !watch.ms || !judged) continue;
+      points.push(this.#point(lines, settings, watch.ms, judged.rms));
+    }
+    if (now) points.push({ ms: left.ms, error: accuracy.judged.rms, kind: "now", name: `${this.#name(state)}, now` });
+    element("still").hidden = left?.isRedrawn !== false;
+    drawChart(element("chart"), markEfficient(points), { height: 250, time: (ms) => `${Number(ms.toPrecision(3))} ms` });
+  }
+
+  #name({ maxError, shading }) {
+    return maxError ? `≤ ${shadesText(maxError)}` : settingName({ shading });
+  }
+
+  #point(key, settings, ms, error) {
+    const stop = stopOf(settings);
+    return {
+      key, ms, error,
+      // The cheapest is the slider's left end: its line begins there.
+      ...(stop === null ? { kind: "shading" } : { kind: "budget", budget: settings.maxError ?? 255 }),
+      name: this.#name(settings),
+      title: `${settings.maxError ? settingName(settings) : fullName(settings.shading)}: ${msText(ms)}, off by ${error.toFixed(2)} shades r.m.s.`,
+      choose: () => this.page.choose(settings),
+    };
+  }
+}
