@@ -13,6 +13,22 @@ function wishText({ maxError, shading }) {
   return shading ? `every face ${fullName(shading)}` : "whatever the scene asks for";
 }
 
+/** Colour of pixels on faces that are seen edge on, in the error map. */
+const EDGE_ON = "#3f9ea8";
+
+/** What a byte is off by at most where light is computed at the pixel: no budget is kept more closely. */
+const LIT = 0.52;
+
+/** Whether the promise is kept, in words: what is beyond it is never left without them. */
+function promiseText({ max, maxError, beyond, edgeOn }) {
+  if (!maxError) return "No limit is promised: the largest error is what it happens to be.";
+  if (beyond) return `The promise is broken at ${group(beyond)} pixels, by up to ${max.toFixed(2)} shades: please report this.`;
+  const kept = `Kept: no pixel is off by more than ${maxError < LIT ? "0.52: ½ for rounding to a byte, 0.02 for arithmetic" : shadesText(maxError)}`;
+  const faces = edgeOn.pixels === 1 ? "1 pixel of a face" : `${group(edgeOn.pixels)} pixels of faces`;
+  if (!edgeOn.pixels) return `${kept}.`;
+  return `${kept}. Apart from ${faces} seen edge on, up to ${edgeOn.max.toFixed(2)}: rounding corners to 1/256 pixel moves their light that far.`;
+}
+
 const group = (number) => number.toLocaleString("en");
 
 class Accuracy {
@@ -36,7 +52,7 @@ class Accuracy {
       event.preventDefault();
       this.within(Number(element("limit").value));
     });
-    const levels = [...page.engine.levels, { label: "not compared", color: page.engine.notTaken }];
+    const levels = [...page.engine.levels, { label: "not compared", color: page.engine.notTaken }, { label: "edge on", color: EDGE_ON }];
     element("levels").replaceChildren(...levels.map(({ label, color }) => keyItem(color, label)));
     setText(element("clock"), `Times are lower quartiles of ${KEPT_LAPS} laps of redrawing; the clock’s step is ${CLOCK_STEP} ms.`);
     this.map = new PalettedCanvas(element("errors"));
@@ -114,6 +130,7 @@ class Accuracy {
     this.judged = judged;
     setText(element("worst"), judged.max.toFixed(2));
     setText(element("rms"), judged.rms.toFixed(2));
+    setText(element("promise"), promiseText(judged));
     this.map.show(mapPicture(map, frame, this.page.engine));
     this.lastMap = { map, asked };
     const age = Math.abs(this.page.state.seconds - asked.seconds);
@@ -163,7 +180,7 @@ const LAPS_OF_SEARCH = 16;
 
 /** An error map in the colours of its levels; pixels that show nothing are as the frame has them. */
 function mapPicture(map, frame, { levels, notTaken }) {
-  const colors = [...levels.map((level) => level.color), notTaken].map((color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16)));
+  const colors = [...levels.map((level) => level.color), notTaken, EDGE_ON].map((color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16)));
   const palette = new Uint8Array(768);
   colors.forEach((color, at) => palette.set(color, 3 * at));
   palette.set([22, 22, 26], 3 * 255);

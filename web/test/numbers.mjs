@@ -1,7 +1,7 @@
 // Whether the page's numbers are true, in Chromium: numbers.mjs PAGE.html
 //
 // The time that is shown against one that is taken here in place, by other means, on five scenes in three states; scenes
-// in which nothing is redrawn have none.
+// in which nothing is redrawn have none. Over all shipped scenes no error is beyond the budget without its words.
 import { openScene, Suite, wait } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
@@ -16,6 +16,7 @@ const SCENES = [["torus", 1.2], ["teapot", 0.5], ["cone", 1.2], ["phong", 1.5], 
 suite.run(async () => {
   await times();
   await notRedrawn();
+  await promise();
 });
 
 /**
@@ -84,4 +85,26 @@ async function notRedrawn() {
     const points = await tab.value("document.querySelectorAll('#chart .chart-point').length");
     suite.check(`${name}: says that it is not redrawn, and has no point on the chart`, points === 0, points);
   }
+}
+
+/** The promise, as the panel tells it: on every shipped scene at six moments of its round. */
+async function promise() {
+  const tab = await suite.open();
+  const wrong = [];
+  let edgeOn = 0;
+  const scenes = await tab.value("page.engine.shipped.map(({ name }) => name)");
+  for (const name of scenes) {
+    await openScene(tab, name);
+    const duration = await tab.value("page.scene.about.duration");
+    for (const [at, maxError] of [0.5, 4, 0.5, 1, 0.5, 16].entries()) {
+      await tab.value(`page.choose(${JSON.stringify({ maxError, seconds: (duration * (at + 0.4)) / 6, playing: false, beside: "" })})`);
+      await tab.until("JSON.stringify(page.accuracy.lastMap.asked) === JSON.stringify(page.question())", 60);
+      const [worst, words, { pixels }] = await tab.value("[Number(element('worst').textContent), element('promise').textContent, page.accuracy.judged.edgeOn]");
+      const holds = worst <= Math.max(maxError, 0.52) && words.startsWith("Kept") && (pixels === 0) !== words.includes("edge on");
+      if (!holds) wrong.push(`${name}, ${maxError}, moment ${at}: ${worst}: ${words}`);
+      edgeOn += pixels;
+    }
+  }
+  suite.check(`no error of ${scenes.length} scenes is beyond the budget without its words`, wrong.length === 0, wrong.join("\n"));
+  suite.check(`and words stand for ${edgeOn} pixels seen edge on`, edgeOn > 0);
 }

@@ -210,8 +210,8 @@ extern "C" fn judge(stage: usize) -> bool {
     on(stage, |stage| stage.judge().map(|figures| as_text(&figures)))
 }
 
-/// Answers with the level of each pixel's error, 64,000 bytes: an index of the levels, the next where no error was taken,
-/// 255 where there is no face nor should be.
+/// Answers with the level of each pixel's error, 64,000 bytes: an index of the levels; the next where no error was taken;
+/// the one after it where a face is seen edge on; 255 where there is no face nor should be.
 #[unsafe(no_mangle)]
 extern "C" fn error_map(stage: usize) -> bool {
     on(stage, |stage| Ok(stage.error_map().to_vec()))

@@ -15,7 +15,7 @@ use mode13h_assets::SceneExt;
 use mode13h_assets::animation::{FrameRate, GifWriter};
 use mode13h_assets::scene_file::SceneError;
 use mode13h_lab::cost::{Probe, error_levels};
-use mode13h_lab::truth::{ErrorMap, Face, Standard, TruePixel, Truth, TruthFrame};
+use mode13h_lab::truth::{ErrorMap, Standard, TruePixel, Truth, TruthFrame};
 use serde_json::{Value, json};
 
 use crate::turntable::{Colors, Pose, Turntable};
@@ -26,6 +26,14 @@ const PATH: &str = "scene.toml";
 
 /// Level of a pixel that shows no face, nor should.
 const BACKGROUND: u8 = 255;
+/// Level where no error was taken, as truth and frame show different faces. Behind the levels of errors.
+const NOT_COMPARED: u8 = error_levels::ALL.len() as u8;
+/// Level of a pixel that is beyond the budget by no more than the rounding of corners explains.
+const EDGE_ON: u8 = NOT_COMPARED + 1;
+
+/// What a byte is off by where light is computed at the pixel: a half, and what the rounding of shades adds. No budget is
+/// kept more closely.
+const LIT: f64 = 0.52;
 
 pub(crate) struct Stage {
     turntable: Turntable,
@@ -157,27 +165,48 @@ impl Stage {
         Ok(with_palette(truth.pixels.iter().map(entry).collect(), &shown))
     }
 
-    /// Compares the frame of the moment with the truth.
+    /// Compares the frame of the moment with the truth. Within a budget, pixels that are beyond it by no more than the
+    /// rounding of corners explains are counted apart: their faces are seen edge on.
     pub(crate) fn judge(&mut self) -> Result<Value, String> {
         settings::apply(self.probe.renderer(), &self.lines)?;
-        let shown = self.probe.look(&self.turntable.scene, Screen::MODE_13H).map_err(|error| error.to_string())?;
-        let truth = self.truth()?;
-        let errors = ErrorMap::new(truth, &shown).ok_or("truth and frame differ in size")?;
-        let levels = errors.errors().zip(&truth.pixels).zip(&shown.faces);
-        let level =
-            |((error, right), face): ((Option<f64>, &Option<TruePixel>), &Option<Face>)| match (error, right, face) {
-                (Some(error), ..) => error_levels::index_of(error as f32),
-                (None, None, None) => BACKGROUND,
-                _ => error_levels::ALL.len() as u8,
-            };
-        let map = levels.map(level).collect();
+        let screen = Screen::MODE_13H;
+        let shown = self.probe.look(&self.turntable.scene, screen).map_err(|error| error.to_string())?;
+        let max_error = self.stats.as_ref().and_then(|stats| stats.max_error);
+        let allowed = max_error.map_or(f64::INFINITY, |shades| f64::from(shades).max(LIT));
+        self.truth()?;
+        let frame = self.truth.as_ref().ok_or("no truth")?;
+        let errors = ErrorMap::new(frame, &shown).ok_or("truth and frame differ in size")?;
         let figures = errors.figures();
-        let judged = json!({
-            "max": figures.max, "mean": figures.mean(), "rms": figures.rms(), "pixels": figures.count,
-            "coverErrors": errors.cover_errors(),
-        });
+        // Where a corner may be takes long to say, and matters only where something is beyond.
+        let truth = (figures.max > allowed).then(|| Truth::new(&self.turntable.scene, screen)).transpose();
+        let truth = truth.map_err(|error| error.to_string())?;
+        let (mut max, mut edge_on, mut beyond) = (0.0_f64, (0_u32, 0.0_f64), 0_u32);
+        let mut map = Vec::with_capacity(frame.pixels.len());
+        for (place, ((error, right), face)) in errors.errors().zip(&frame.pixels).zip(&shown.faces).enumerate() {
+            map.push(match (error, right, face) {
+                (Some(error), Some(right), _) => {
+                    // Below 320 and 200.
+                    let (x, y) = (place as u32 % screen.width, place as u32 / screen.width);
+                    let shift = || truth.as_ref().and_then(|truth| truth.rounding_shift(right.face, x, y));
+                    if error > allowed && error - shift().unwrap_or_default() <= allowed {
+                        edge_on = (edge_on.0 + 1, edge_on.1.max(error));
+                        EDGE_ON
+                    } else {
+                        max = max.max(error);
+                        beyond += u32::from(error > allowed);
+                        error_levels::index_of(error as f32)
+                    }
+                }
+                (None, None, None) => BACKGROUND,
+                _ => NOT_COMPARED,
+            });
+        }
         self.error_map = map;
-        Ok(judged)
+        Ok(json!({
+            "max": max, "mean": figures.mean(), "rms": figures.rms(), "compared": figures.count,
+            "coverErrors": errors.cover_errors(), "maxError": max_error, "beyond": beyond,
+            "edgeOn": { "pixels": edge_on.0, "max": edge_on.1 },
+        }))
     }
 
     pub(crate) fn error_map(&self) -> &[u8] {
