@@ -29,6 +29,29 @@ function promiseText({ max, maxError, beyond, edgeOn }) {
   return `${kept}. Apart from ${faces} seen edge on, up to ${edgeOn.max.toFixed(2)}: rounding corners to 1/256 pixel moves their light that far.`;
 }
 
+/** Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks. */
+function whyText(state, marks) {
+  if (marks.some((mark) => !mark)) return "";
+  const [cheapest, ...budgets] = marks;
+  const finest = budgets.at(-1);
+  const isFinest = (mark) => Math.abs(mark.rms - finest.rms) < 0.005 && mark.lit === finest.lit;
+  // The first mark from which on nothing changes.
+  const from = marks.findIndex((_, at) => marks.slice(at).every(isFinest));
+  if (from === 0) return "Flat faces: already exact. The slider changes nothing here.";
+  if (from === 1) {
+    const how = finest.lit ? `What is not flat is lit at every pixel from 16 shades on` : "Straight blends are already exact here";
+    return `${how}: only the cheapest method differs (${cheapest.rms.toFixed(1)} shades off, r.m.s.).`;
+  }
+  if (!state.maxError) return "";
+  if (from < budgets.length && state.maxError <= OCTAVES[from - 1]) return `Already as exact as it gets: from ${budgetText(OCTAVES[from - 1])} on the slider changes nothing.`;
+  const here = budgets[Math.round((stopOf(state) - 1) / 4)];
+  const isDearer = here.isRedrawn && here.ms > DEARER * finest.ms;
+  return isDearer ? "Dearer than ½ shade here: proving how far off a blend may be takes longer than lighting its pixels." : "";
+}
+
+/** How much longer a coarser picture must take for the page to say why. */
+const DEARER = 1.08;
+
 const group = (number) => number.toLocaleString("en");
 
 class Accuracy {
@@ -101,6 +124,7 @@ class Accuracy {
     const rate = left.ms === null ? "…" : left.isRedrawn ? group(Math.round(1000 / left.ms)) : "–";
     setText(element("rate"), rate);
     this.page.curve.draw();
+    setText(element("why"), whyText(this.page.state, MARKS.map((mark) => this.page.curve.at(mark))));
   }
 
   /** Tells what the engine counted of a frame. */

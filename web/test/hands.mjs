@@ -9,6 +9,7 @@ suite.run(async () => {
   await slider(tab);
   await presses(tab);
   await focus(tab);
+  await words(tab);
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 });
 
@@ -76,4 +77,14 @@ async function focus(tab) {
   await tab.value("document.querySelector('#account summary').focus()");
   await wait(700);
   suite.check("and so does the account", (await tab.value("document.activeElement.tagName")) === "SUMMARY");
+}
+
+/** Where the slider changes nothing the page says why. */
+async function words(tab) {
+  for (const [name, said] of [["cube", "Flat faces: already exact"], ["flash", "only the cheapest method differs"]]) {
+    await openScene(tab, name);
+    await tab.value("page.choose({ maxError: 4, beside: '' })");
+    await tab.until(`element('why').textContent.includes(${JSON.stringify(said)})`, 40);
+    suite.check(`${name}: the page says why the slider changes nothing`, true);
+  }
 }
