@@ -32,6 +32,12 @@ function keyed(parent, items, keyOf, create, update = () => {}) {
   }
 }
 
+/** Shows what is wrong above the page; nothing hides it. */
+function showTrouble(message) {
+  setText(element("trouble").firstElementChild, message);
+  element("trouble").hidden = !message;
+}
+
 /** An item of a key: a colour, and what it stands for. */
 function keyItem(color, text) {
   const item = make("li");

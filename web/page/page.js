@@ -16,6 +16,8 @@ class Page {
   #stops = 0;
   #linkTimer = 0;
   #turn = 0;
+  /** What is wrong, by its cause. */
+  #troubles = new Map();
   #exact = null;
   #isStale = true;
 
@@ -53,6 +55,7 @@ class Page {
       this.state.divider = place;
       this.#isStale = true;
     });
+    element("trouble-close").addEventListener("click", () => this.#forgetTroubles());
     element("theme").addEventListener("click", () => {
       const root = document.documentElement;
       const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
@@ -79,12 +82,14 @@ class Page {
     return { toml, version: this.version, seconds, pose: { ...pose }, settings: this.settings() };
   }
 
-  /** Asks the worker; what goes wrong is said. */
+  /** Asks the worker; what goes wrong is said, unless another scene has been opened since. */
   async ask(kind, question, onProgress) {
     try {
-      return await this.background.ask(kind, question, onProgress);
+      const answer = await this.background.ask(kind, question, onProgress);
+      this.trouble(kind);
+      return answer;
     } catch (error) {
-      this.trouble(error.message);
+      if (question.toml === this.state.toml) this.trouble(kind, error.message);
       return null;
     }
   }
@@ -110,6 +115,7 @@ class Page {
     this.accuracy.forget();
     this.plan.forget();
     this.curve.forget();
+    this.#forgetTroubles();
     this.left.reset();
     this.right.reset();
     element("time").max = scene.about.duration;
@@ -164,9 +170,16 @@ class Page {
     this.choose({ ...rest, playing: false });
   }
 
-  trouble(message) {
-    element("trouble").textContent = message;
-    element("trouble").hidden = !message;
+  /** Says what is wrong, of one cause; without a message that cause is gone. The last one is shown. */
+  trouble(cause, message = "") {
+    this.#troubles.delete(cause);
+    if (message) this.#troubles.set(cause, message);
+    showTrouble([...this.#troubles.values()].at(-1) ?? "");
+  }
+
+  #forgetTroubles() {
+    this.#troubles.clear();
+    showTrouble("");
   }
 
   /** Draws the picture on the left, at the present moment. */
@@ -188,7 +201,7 @@ class Page {
       this.accuracy.tell(now);
       this.#stops = 0;
     } catch (error) {
-      this.trouble(error.message);
+      this.trouble("picture", error.message);
       // One stop may be chance; a scene that stops the engine again is left.
       if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
       else if (!(error instanceof EngineStopped)) state.playing = false;
@@ -293,8 +306,9 @@ async function begin() {
   const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
   globalThis.page = page;
   page.open(engine.shipped[0].toml, engine.shipped[0].name);
-  await page.follow(location.hash).catch((error) => page.trouble(error.message));
-  addEventListener("hashchange", () => page.follow(location.hash).catch((error) => page.trouble(error.message)));
+  const follow = () => page.follow(location.hash).catch((error) => page.trouble("link", error.message));
+  await follow();
+  addEventListener("hashchange", follow);
   requestAnimationFrame((now) => page.frame(now));
   page.scenes = new Scenes(page);
   page.scenes.follow();
@@ -302,8 +316,4 @@ async function begin() {
   globalThis.mountFigures?.(engine);
 }
 
-begin().catch((error) => {
-  const box = element("trouble");
-  box.textContent = `The engine could not be started: ${error.message}`;
-  box.hidden = false;
-});
+begin().catch((error) => showTrouble(`The engine could not be started: ${error.message}`));

@@ -111,7 +111,7 @@ class Scenes {
       else this.page.open(this.page.state.toml, this.page.state.name);
       element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
     } catch (error) {
-      this.page.trouble(`${files.map((file) => file.name).join(", ")}: ${error.message}`);
+      this.page.trouble("files", `${files.map((file) => file.name).join(", ")}: ${error.message}`);
     }
   }
 

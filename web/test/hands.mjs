@@ -1,6 +1,7 @@
 // What hands do with the page, in Chromium: hands.mjs PAGE.html
 //
-// The slider by every key at every stop; presses as long as a hand's while the picture turns; where the focus is then.
+// The slider by every key at every stop; presses as long as a hand's while the picture turns; where the focus is then; the
+// banner.
 import { openScene, Suite, wait } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
@@ -10,6 +11,7 @@ suite.run(async () => {
   await presses(tab);
   await focus(tab);
   await words(tab);
+  await banner(tab);
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 });
 
@@ -87,4 +89,21 @@ async function words(tab) {
     await tab.until(`element('why').textContent.includes(${JSON.stringify(said)})`, 40);
     suite.check(`${name}: the page says why the slider changes nothing`, true);
   }
+}
+
+/** The banner is there as long as its cause, and can be closed. */
+async function banner(tab) {
+  const drop = (name, text) => tab.value(`page.scenes.take([new File([${JSON.stringify(text)}], ${JSON.stringify(name)})])`);
+  const isThere = () => tab.value("!element('trouble').hidden");
+  await drop("bad.obj", "v 0 0 0\nf 1 2 3\n");
+  suite.check("a bad model is named in the banner", (await isThere()) && (await tab.value("element('trouble').textContent")).includes("bad.obj"));
+  await openScene(tab, "cube");
+  suite.check("a scene that works takes it away", !(await isThere()));
+  await tab.value("location.hash = '#scene=nothing'");
+  await tab.until("!element('trouble').hidden");
+  await drop("good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  suite.check("and so does a model, after a link that leads nowhere", !(await isThere()));
+  await drop("bad.obj", "v 0 0 0\nf 1 2 3\n");
+  await tab.click("#trouble-close");
+  suite.check("its button closes it", !(await isThere()));
 }
