@@ -62,7 +62,7 @@ packed = {
         [
             scripts(page, "elements", "background", "picture"),
             scripts(shared, "chart", "divider"),
-            scripts(page, "stops", "accuracy", "curve", "plan", "magnifier", "scenes", "link", "save", "page"),
+            scripts(page, "stops", "accuracy", "curve", "plan", "magnifier", "mini", "scenes", "link", "save", "page"),
         ]
     ),
     "figures": read(*figures),

@@ -4,6 +4,9 @@ const LENS = { columns: 21, rows: 13, zoom: 20 };
 
 class Magnifier {
   #parts;
+  #isSeen = false;
+  /** Where it is before a pixel is chosen. */
+  #start = { x: WIDTH / 2, y: HEIGHT / 2 };
 
   constructor(page) {
     this.page = page;
@@ -18,10 +21,9 @@ class Magnifier {
       event.preventDefault();
       page.movePixel(...arrows[event.key]);
     });
-    this.isSeen = false;
     new IntersectionObserver(([{ isIntersecting }]) => {
-      this.isSeen = isIntersecting;
-      page.choose({});
+      this.#isSeen = isIntersecting;
+      page.redraw();
     }).observe(element("pixel"));
     this.canvas.addEventListener("pointerdown", (event) => {
       const box = this.canvas.getBoundingClientRect();
@@ -31,11 +33,30 @@ class Magnifier {
     });
   }
 
-  /** Follows the picture while it is in the window: the chosen pixel, or that in the middle. */
-  follow(scene, frame, pixel) {
-    if (!this.isSeen) return;
-    const at = pixel ?? { x: WIDTH / 2, y: HEIGHT / 2 };
-    this.show(at, frame, scene.explain(at.x, at.y));
+  /** Follows the picture while it is in the window. */
+  follow(scene, frame) {
+    if (!this.#isSeen) return;
+    const { x, y } = this.at;
+    this.show({ x, y }, frame, scene.explain(x, y));
+  }
+
+  /** The chosen pixel or, before one is chosen, the nearest to the middle that shows an object. */
+  get at() {
+    return this.page.state.pixel ?? this.#first();
+  }
+
+  #first() {
+    const { engine, accuracy } = this.page;
+    const map = accuracy.lastMap?.map;
+    // Levels of errors come first; where there are none, no object is seen.
+    const shows = ({ x, y }) => map?.[y * WIDTH + x] < engine.levels.length;
+    if (!map || shows(this.#start)) return this.#start;
+    const far = ({ x, y }) => Math.hypot(x - WIDTH / 2, y - HEIGHT / 2);
+    let nearest = null;
+    for (let y = 0; y < HEIGHT; y++) {
+      for (let x = 0; x < WIDTH; x++) if (shows({ x, y }) && !(nearest && far(nearest) <= far({ x, y }))) nearest = { x, y };
+    }
+    return (this.#start = nearest ?? this.#start);
   }
 
   show(pixel, frame, account) {

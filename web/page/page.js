@@ -20,6 +20,8 @@ class Page {
   #troubles = new Map();
   #exact = null;
   #isStale = true;
+  /** Whether the last picture could be drawn: only then is it timed. */
+  #isDrawn = false;
 
   constructor(engine, background) {
     this.engine = engine;
@@ -31,6 +33,7 @@ class Page {
     this.curve = new Curve(this);
     this.plan = new PlanTable(this);
     this.magnifier = new Magnifier(this);
+    this.mini = new MiniPicture();
     this.#handle();
     offerFiles(this);
   }
@@ -40,7 +43,7 @@ class Page {
     handle(this.canvas, {
       turn: (turn, tilt) => this.choose({ pose: { ...state.pose, turn: state.pose.turn + turn, tilt: state.pose.tilt + tilt } }),
       zoom: (factor) => this.choose({ pose: { ...state.pose, zoom: clamp(state.pose.zoom * factor, 0.05, 20) } }),
-      choose: (pixel) => this.choose({ pixel, playing: false }),
+      choose: (pixel) => this.#choosePixel(pixel ?? this.magnifier.at),
       move: (dx, dy) => this.movePixel(dx, dy),
       play: () => this.choose({ playing: !state.playing }),
     });
@@ -144,8 +147,19 @@ class Page {
     this.#linkTimer = setTimeout(() => this.link(), 400);
   }
 
+  /** Stops at a pixel, and shows its account beside the picture. */
+  #choosePixel(pixel) {
+    this.choose({ pixel, playing: false });
+    element("pixel").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
+  }
+
+  /** Has the picture drawn again. */
+  redraw() {
+    this.#isStale = true;
+  }
+
   movePixel(dx, dy) {
-    const { x, y } = this.state.pixel ?? { x: WIDTH / 2, y: HEIGHT / 2 };
+    const { x, y } = this.magnifier.at;
     this.choose({ pixel: { x: clamp(x + dx, 0, WIDTH - 1), y: clamp(y + dy, 0, HEIGHT - 1) }, playing: false });
   }
 
@@ -197,14 +211,15 @@ class Page {
     try {
       if (state.playing) state.seconds = (state.seconds + step) % this.scene.about.duration;
       if (state.playing || this.#isStale) this.#show(now);
-      this.#time();
+      if (this.#isDrawn) this.#time();
       this.accuracy.tell(now);
       this.#stops = 0;
     } catch (error) {
-      this.trouble("picture", error.message);
+      this.#isDrawn = false;
       // One stop may be chance; a scene that stops the engine again is left.
       if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
-      else if (!(error instanceof EngineStopped)) state.playing = false;
+      this.trouble("picture", error.message);
+      if (!(error instanceof EngineStopped)) state.playing = false;
     }
     requestAnimationFrame((next) => this.frame(next));
   }
@@ -226,8 +241,9 @@ class Page {
       this.#told = now;
       if (counts.redrawn) this.accuracy.counts(counts);
       this.plan.show(this.scene.plan());
-      this.magnifier.follow(this.scene, frame, state.pixel);
+      this.magnifier.follow(this.scene, frame);
     }
+    this.#isDrawn = true;
     this.#judge();
   }
 

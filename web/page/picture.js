@@ -42,7 +42,7 @@ const STILL = 5;
 const TURN = 0.008;
 const KEY_TURN = Math.PI / 24;
 
-/** What hands do with the picture. `on` has turn(turn, tilt), zoom(factor), choose(pixel), move(dx, dy), play(). */
+/** What hands do with the picture. `on` has turn(turn, tilt), zoom(factor), choose(pixel?), move(dx, dy), play(). */
 function handle(canvas, on) {
   const element = canvas.canvas;
   let from = null;
@@ -72,7 +72,7 @@ function handle(canvas, on) {
       if (event.shiftKey) on.move(dx, dy);
       else on.turn(dx * KEY_TURN, dy * KEY_TURN);
     } else if (event.key === " ") on.play();
-    else if (event.key === "Enter") on.choose({ x: WIDTH / 2, y: HEIGHT / 2 });
+    else if (event.key === "Enter") on.choose();
     else if (event.key === "+" || event.key === "=") on.zoom(1.1);
     else if (event.key === "-") on.zoom(1 / 1.1);
     else return;

@@ -1,7 +1,7 @@
 // What hands do with the page, in Chromium: hands.mjs PAGE.html
 //
 // The slider by every key at every stop; presses as long as a hand's while the picture turns; where the focus is then; the
-// banner.
+// banner; the pixel's account and the picture in one window.
 import { openScene, Suite, wait } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
@@ -12,6 +12,7 @@ suite.run(async () => {
   await focus(tab);
   await words(tab);
   await banner(tab);
+  await account();
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 });
 
@@ -106,4 +107,32 @@ async function banner(tab) {
   await drop("bad.obj", "v 0 0 0\nf 1 2 3\n");
   await tab.click("#trouble-close");
   suite.check("its button closes it", !(await isThere()));
+}
+
+/** A click on the picture opens the pixel's account where the picture still is; and it begins on an object. */
+async function account() {
+  for (const [width, height] of [[1280, 800], [390, 844], [360, 640]]) {
+    const tab = await suite.open({ width, height });
+    await openScene(tab, "torus");
+    await tab.until("page.accuracy.lastMap.asked.toml === page.state.toml");
+    await tab.value("element('pixel').scrollIntoView({ behavior: 'instant' })");
+    await tab.until("element('account').textContent.includes('Triangle')");
+    suite.check(`${width}: the magnifier begins on an object`, true);
+    await tab.value("scrollTo({ top: 0, behavior: 'instant' })");
+    await tab.until("!element('bezel').classList.contains('mini')");
+    await tab.click("#picture", 0.3, 0.5);
+    await tab.until("page.state.pixel");
+    // The page scrolls there smoothly.
+    const seen = "(box, least) => Math.min(box.bottom, innerHeight) - Math.max(box.top, 0) >= least";
+    await tab.until(`(${seen})(element('account').getBoundingClientRect(), 100)`);
+    await wait(900);
+    for (const [what, id, least] of [["account", "account", 100], ["picture", "picture", 90]]) {
+      const box = await tab.value(`(({ top, bottom }) => ({ top, bottom }))(element(${JSON.stringify(id)}).getBoundingClientRect())`);
+      suite.check(`${width}: after a click the ${what} is in the window`, await tab.value(`(${seen})(${JSON.stringify(box)}, ${least})`), JSON.stringify(box));
+    }
+    await tab.value("element('plan').scrollIntoView({ behavior: 'instant' })");
+    await wait(300);
+    suite.check(`${width}: and at the plan the picture is still there`, await tab.value(`(${seen})(element('picture').getBoundingClientRect(), 90)`));
+    await tab.close();
+  }
 }

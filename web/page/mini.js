@@ -1,0 +1,31 @@
+// A small picture in the corner: there while the large one is out of the window, and something that acts on it is in it.
+
+/** What acts on the picture. */
+const ACTS = "#panel, #pixel, #scenes, #plan";
+
+class MiniPicture {
+  #isOut = false;
+  /** The parts that act on the picture and are in the window. */
+  #acting = new Set();
+
+  constructor() {
+    new IntersectionObserver(([{ isIntersecting }]) => {
+      this.#isOut = !isIntersecting;
+      this.#follow();
+    }).observe(element("holder"));
+    const acts = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) this.#acting[isIntersecting ? "add" : "delete"](target);
+      this.#follow();
+    });
+    for (const part of document.querySelectorAll(ACTS)) acts.observe(part);
+  }
+
+  #follow() {
+    const isMini = this.#isOut && this.#acting.size > 0;
+    const [holder, bezel] = [element("holder"), element("bezel")];
+    if (bezel.classList.contains("mini") === isMini) return;
+    // The place that the picture leaves stays as high as it was.
+    holder.style.height = isMini ? `${holder.offsetHeight}px` : "";
+    bezel.classList.toggle("mini", isMini);
+  }
+}
