@@ -195,27 +195,29 @@ const tests = {
     assert.ok(seen[Math.round(.35 * 639)] < .19 && seen[Math.round(.65 * 639)] > .81);
   },
 
-  "the floor is where a ray from the eye hits it"() {
+  "the wall is where a ray from the eye hits it"() {
     for (const ratio of [1.25, 2, 6, 16]) {
-      const { us, vs } = M.floorTexels(ratio, "exact");
-      const every = M.floorTexels(ratio, "every16");
-      const affine = M.floorTexels(ratio, "affine");
-      const K = 124 / (1 - 1 / ratio);
+      const { us, vs } = M.wallTexels(ratio, "exact");
+      const every = M.wallTexels(ratio, "every16");
+      const affine = M.wallTexels(ratio, "affine");
+      const K = 316 / (1 - 1 / ratio);
       let [hit, off, offAffine] = [0, 0, 0];
       for (let i = 0; i < us.length; i++) {
         assert.equal(Number.isNaN(us[i]), Number.isNaN(every.us[i]));
         if (Number.isNaN(us[i])) continue;
         hit++;
-        // Row y shows the distance w with y = 127 − K·(1 − 1/w).
-        const w = 1 / (1 - (127 - Math.floor(i / 320) - .5) / K);
-        const u = ((i % 320 + .5 - 160) * w / 170 + 1) / 2 * 256;
-        const v = (w - 1) / (ratio - 1) * 256;
+        // Column x shows the distance w with x = 2 + K·(1 − 1/w).
+        const w = 1 / (1 - (i % 320 + .5 - 2) / K);
+        const u = (w - 1) / (ratio - 1) * 256;
+        const v = ((Math.floor(i / 320) + .5 - 64) * w / 62 + 1) / 2 * 256;
         assert.ok(Math.abs(us[i] - u) < 1e-6 && Math.abs(vs[i] - v) < 1e-6, `${[ratio, i, us[i], u, vs[i], v]}`);
         off = Math.max(off, Math.abs(every.us[i] - u), Math.abs(every.vs[i] - v));
         offAffine = Math.max(offAffine, Math.abs(affine.us[i] - u), Math.abs(affine.vs[i] - v));
       }
       assert.ok(hit > 10000 && off < offAffine && affine.divisions === 0, `${[ratio, hit, off, offAffine]}`);
-      assert.ok(every.divisions * 8 < M.floorTexels(ratio, "exact").divisions);
+      // Dividing at every 16th pixel is a bargain, not a gift: what it is off by can be seen.
+      assert.ok(ratio < 6 || off > 2, `${[ratio, off]}`);
+      assert.ok(every.divisions * 8 < M.wallTexels(ratio, "exact").divisions);
     }
   },
 
@@ -359,10 +361,10 @@ const tests = {
     for (const [name, source] of sources) assert.doesNotMatch(source, /setInterval|setTimeout|\.animate\(|behavior: "smooth"/, name);
   },
 
-  "all of it is below 90 kB, without indentation and comments"() {
+  "all of it is below 95 kB, without indentation and comments"() {
     const pieces = [...sources.map(([, s]) => s.replace(/^ +/gm, "").replace(/^\/\/.*\n/gm, "")), html, css];
     const size = Buffer.byteLength(pieces.join(""));
-    assert.ok(size < 90_000, `${size}`);
+    assert.ok(size < 95_000, `${size}`);
   },
 };
 

@@ -1,4 +1,5 @@
-// A textured floor: affine, exact at every 16th pixel, exact everywhere.
+// A textured wall, seen along it: affine, exact at every 16th pixel, exact everywhere. On a level floor all pixels of a row
+// are equally far, and one division a row would do.
 (() => {
   const M = mode13hFigures;
   const [WIDTH, HEIGHT] = [320, 128];
@@ -13,12 +14,12 @@
   }
   const on = ([at, gx, gy], x, y) => at + gx * x + gy * y;
 
-  // Texture coordinates of the floor at every pixel: u and v in texels, NaN beside the floor.
-  // `ratio` is the distance of the far edge over that of the near one; `mapping` is "affine",
-  // "every16" or "exact".
-  function floorTexels(ratio, mapping) {
-    const K = (HEIGHT - 4) / (1 - 1 / ratio);
-    const corner = (side, w) => ({ p: [WIDTH / 2 + side * 170 / w, HEIGHT - 1 - K * (1 - 1 / w)], w, u: side < 0 ? 0 : TEXELS, v: w === 1 ? 0 : TEXELS });
+  // Texture coordinates of the wall at every pixel: u and v in texels, NaN beside the wall. `ratio`
+  // is the distance of the far edge, on the right, over that of the near one; `mapping` is
+  // "affine", "every16" or "exact".
+  function wallTexels(ratio, mapping) {
+    const K = (WIDTH - 4) / (1 - 1 / ratio);
+    const corner = (side, w) => ({ p: [2 + K * (1 - 1 / w), HEIGHT / 2 + side * 62 / w], w, u: w === 1 ? 0 : TEXELS, v: side < 0 ? 0 : TEXELS });
     const [a, b, c, d] = [corner(-1, 1), corner(1, 1), corner(1, ratio), corner(-1, ratio)];
     const us = new Float64Array(WIDTH * HEIGHT).fill(NaN);
     const vs = new Float64Array(WIDTH * HEIGHT).fill(NaN);
@@ -55,7 +56,7 @@
     }
     return { us, vs, divisions, points: [a, b, c, d].map((q) => q.p) };
   }
-  M.floorTexels = floorTexels;
+  M.wallTexels = wallTexels;
 
   // Tiles of 16 texels with joints, each of its own tone.
   function texel(u, v) {
@@ -114,8 +115,8 @@
       format: (v) => `${v} times as far`, input: (v) => ((ratio = v), show()),
     });
     function show() {
-      const truth = floorTexels(ratio, "exact");
-      const drawn = mapping === "exact" ? truth : floorTexels(ratio, mapping);
+      const truth = wallTexels(ratio, "exact");
+      const drawn = mapping === "exact" ? truth : wallTexels(ratio, mapping);
       let worst = 0;
       bytes = new Uint8Array(WIDTH * HEIGHT);
       for (let i = 0; i < bytes.length; i++) {
@@ -126,9 +127,9 @@
         }
       }
       points = drawn.points;
-      board.describe(`A tiled floor; the chosen mapping is off by up to ${worst.toFixed(1)} texels`);
+      board.describe(`A tiled wall; the chosen mapping is off by up to ${worst.toFixed(1)} texels`);
       say("Worst error ", { b: `${worst.toFixed(1)} texels`, warn: worst >= 1 }, `, ${(worst / 16).toFixed(1)} tiles. `,
-        `Divisions for the floor: `, { b: M.group(drawn.divisions) }, ".");
+        `Divisions for the wall: `, { b: M.group(drawn.divisions) }, ".");
       board.repaint();
     }
     show();
