@@ -62,7 +62,7 @@ packed = {
         [
             scripts(page, "elements", "background", "picture"),
             scripts(shared, "chart", "divider"),
-            scripts(page, "stops", "accuracy", "curve", "plan", "magnifier", "mini", "scenes", "link", "save", "page"),
+            scripts(page, "stops", "versus", "accuracy", "curve", "plan", "magnifier", "mini", "scenes", "link", "save", "page"),
         ]
     ),
     "figures": read(*figures),

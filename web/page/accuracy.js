@@ -22,11 +22,11 @@ const LIT = 0.52;
 /** Whether the promise is kept, in words: what is beyond it is never left without them. */
 function promiseText({ max, maxError, beyond, edgeOn }) {
   if (!maxError) return "No limit is promised: the largest error is what it happens to be.";
-  if (beyond) return `The promise is broken at ${group(beyond)} pixels, by up to ${max.toFixed(2)} shades: please report this.`;
+  if (beyond) return `The promise is broken at ${group(beyond)} pixels, by up to ${errorText(max)} shades: please report this.`;
   const kept = `Kept: no pixel is off by more than ${maxError < LIT ? "0.52: ½ for rounding to a byte, 0.02 for arithmetic" : shadesText(maxError)}`;
   const faces = edgeOn.pixels === 1 ? "1 pixel of a face" : `${group(edgeOn.pixels)} pixels of faces`;
   if (!edgeOn.pixels) return `${kept}.`;
-  return `${kept}. Apart from ${faces} seen edge on, up to ${edgeOn.max.toFixed(2)}: rounding corners to 1/256 pixel moves their light that far.`;
+  return `${kept}. Apart from ${faces} seen edge on, up to ${errorText(edgeOn.max)}: rounding corners to 1/256 pixel moves their light that far.`;
 }
 
 /** Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks. */
@@ -34,17 +34,17 @@ function whyText(state, marks) {
   if (marks.some((mark) => !mark)) return "";
   const [cheapest, ...budgets] = marks;
   const finest = budgets.at(-1);
-  const isFinest = (mark) => Math.abs(mark.rms - finest.rms) < 0.005 && mark.lit === finest.lit;
+  const isFinest = (mark) => Math.abs(mark.rms - finest.rms) < 0.005 && Math.abs(mark.max - finest.max) < 0.05;
   // The first mark from which on nothing changes.
   const from = marks.findIndex((_, at) => marks.slice(at).every(isFinest));
   if (from === 0) return "Flat faces: already exact. The slider changes nothing here.";
   if (from === 1) {
-    const how = finest.lit ? `What is not flat is lit at every pixel from 16 shades on` : "Straight blends are already exact here";
+    const how = finest.lit ? "Every budget already lights what needs it at every pixel" : "Straight blends are already exact here";
     return `${how}: only the cheapest method differs (${cheapest.rms.toFixed(1)} shades off, r.m.s.).`;
   }
   if (!state.maxError) return "";
   if (from < budgets.length && state.maxError <= OCTAVES[from - 1]) return `Already as exact as it gets: from ${budgetText(OCTAVES[from - 1])} on the slider changes nothing.`;
-  const here = budgets[Math.round((stopOf(state) - 1) / 4)];
+  const here = budgets[clamp(Math.round((stopOf(state) - stopOf(MARKS[1])) / 4), 0, budgets.length - 1)];
   const isDearer = here.isRedrawn && here.ms > DEARER * finest.ms;
   return isDearer ? "Dearer than ½ shade here: proving how far off a blend may be takes longer than lighting its pixels." : "";
 }
@@ -119,12 +119,14 @@ class Accuracy {
     this.#told = now;
     const { left } = this.page;
     const cell = element("ms");
-    setText(cell, left.ms === null ? "…" : left.isRedrawn ? msText(left.ms) : "not redrawn");
+    setText(cell, timeOf(left));
     cell.classList.toggle("settling", !left.isSettled);
     const rate = left.ms === null ? "…" : left.isRedrawn ? group(Math.round(1000 / left.ms)) : "–";
     setText(element("rate"), rate);
     this.page.curve.draw();
-    setText(element("why"), whyText(this.page.state, MARKS.map((mark) => this.page.curve.at(mark))));
+    const marks = MARKS.map((mark) => this.page.curve.at(mark));
+    this.page.versus.tell(marks);
+    setText(element("why"), whyText(this.page.state, marks));
   }
 
   /** Tells what the engine counted of a frame. */
@@ -150,12 +152,12 @@ class Accuracy {
     const answer = await this.page.ask("judge", asked);
     this.#isAsking = false;
     if (!answer || asked.toml !== this.page.state.toml) return asked;
-    const { frame, map, ...judged } = answer;
+    const { map, ...judged } = answer;
     this.judged = judged;
-    setText(element("worst"), judged.max.toFixed(2));
+    setText(element("worst"), errorText(judged.max));
     setText(element("rms"), judged.rms.toFixed(2));
     setText(element("promise"), promiseText(judged));
-    this.map.show(mapPicture(map, frame, this.page.engine));
+    this.map.show(mapPicture(map, this.page.engine));
     this.lastMap = { map, asked };
     const age = Math.abs(this.page.state.seconds - asked.seconds);
     setText(element("errors-age"), age < 0.02 || !this.page.state.playing ? "Error in shades" : `Error in shades, ${age.toFixed(1)} s ago`);
@@ -202,8 +204,8 @@ class Accuracy {
 /** Laps of each stop that a search looks at. */
 const LAPS_OF_SEARCH = 16;
 
-/** An error map in the colours of its levels; pixels that show nothing are as the frame has them. */
-function mapPicture(map, frame, { levels, notTaken }) {
+/** An error map in the colours of its levels. */
+function mapPicture(map, { levels, notTaken }) {
   const colors = [...levels.map((level) => level.color), notTaken, EDGE_ON].map((color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16)));
   const palette = new Uint8Array(768);
   colors.forEach((color, at) => palette.set(color, 3 * at));

@@ -116,7 +116,8 @@ class Magnifier {
     parts.head.append(parts.swatch, parts.name, parts.color);
     parts.registers.append(register("AX, the shade"), register("BX, the step"), register("CX, pixels left"), register("EDI, the address"));
     all.append(make("summary", {}, "Full details"), parts.text);
-    element("account").replaceChildren(parts.head, parts.face, parts.registers, parts.exact, parts.off, all);
+    // What opens stands above what comes and goes with the pixel, so that it does not move under a press.
+    element("account").replaceChildren(parts.head, parts.face, all, parts.off, parts.exact, parts.registers);
     return parts;
   }
 

@@ -1,9 +1,15 @@
 // The page: its state, and the loop that draws it.
 
+/** The scene of the first screen: one in which it is seen what accuracy is for. */
+const FIRST_SCENE = "phong";
+
+/** Milliseconds in which the divider moves by itself. */
+const SWEEP = 4500;
+
 class Page {
   state = {
-    name: "torus", toml: "", seconds: 0, playing: !isStill(), pose: { ...FIRST_POSE }, maxError: 4, shading: "", effects: {},
-    beside: "", divider: 0.5, pixel: null,
+    name: "", toml: "", seconds: 0, playing: !isStill(), pose: { ...FIRST_POSE }, ...settingAt(0), effects: {},
+    beside: "max-error 0.5", divider: 0.5, pixel: null,
   };
   /** The scene under the divider, if there is one. */
   other = null;
@@ -20,6 +26,10 @@ class Page {
   #troubles = new Map();
   #exact = null;
   #isStale = true;
+  /** When the divider began to move by itself; null once it has, or where nothing should move. */
+  #swept = isStill() ? null : 0;
+  /** While the error map covers the picture. */
+  #showsErrors = false;
   /** Whether the last picture could be drawn: only then is it timed. */
   #isDrawn = false;
 
@@ -31,6 +41,7 @@ class Page {
     Object.assign(element("overlay"), { width: WIDTH, height: HEIGHT });
     this.accuracy = new Accuracy(this);
     this.curve = new Curve(this);
+    this.versus = new Versus(this);
     this.plan = new PlanTable(this);
     this.magnifier = new Magnifier(this);
     this.mini = new MiniPicture();
@@ -52,12 +63,14 @@ class Page {
     const beside = element("beside");
     const budgets = OCTAVES.map((budget) => [`max-error ${budget}`, `at most ${budgetText(budget)}`]);
     const shadings = this.engine.shadings.map((name) => [`shading ${name}`, fullName(name)]);
-    beside.append(new Option("the truth in f64", "truth"), ...[...budgets, ...shadings].map(([value, text]) => new Option(text, value)));
+    beside.append(new Option("exact (64-bit)", "truth"), ...[...budgets, ...shadings].map(([value, text]) => new Option(text, value)));
     beside.addEventListener("change", () => this.choose({ beside: beside.value }));
     this.moveDivider = divide(element("screen"), "How much of the picture is the left one", (place) => {
       this.state.divider = place;
       this.#isStale = true;
     });
+    for (const touched of ["pointerdown", "keydown"]) element("screen").addEventListener(touched, () => (this.#swept = null));
+    this.#offerErrors();
     element("trouble-close").addEventListener("click", () => this.#forgetTroubles());
     element("theme").addEventListener("click", () => {
       const root = document.documentElement;
@@ -67,6 +80,25 @@ class Page {
     });
   }
 
+  /** Lays the error map over the picture while a button is held. */
+  #offerErrors() {
+    const button = element("show-errors");
+    const show = (isHeld) => {
+      this.#showsErrors = isHeld;
+      button.classList.toggle("held", isHeld);
+      this.redraw();
+    };
+    button.addEventListener("pointerdown", (event) => {
+      button.setPointerCapture(event.pointerId);
+      show(true);
+    });
+    for (const end of ["pointerup", "pointercancel", "blur"]) button.addEventListener(end, () => show(false));
+    const isKey = ({ key }) => key === " " || key === "Enter";
+    button.addEventListener("keydown", (event) => isKey(event) && show(true));
+    button.addEventListener("keyup", (event) => isKey(event) && show(false));
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
   /** How the picture on the left is drawn. */
   settings() {
     const { maxError, shading, effects } = this.state;
@@ -74,9 +106,7 @@ class Page {
   }
 
   #besideSettings() {
-    const [kind, value] = this.state.beside.split(" ");
-    const { effects } = this.state;
-    return kind === "max-error" ? { maxError: Number(value), effects } : { shading: value, effects };
+    return { ...besideSetting(this.state.beside), effects: this.state.effects };
   }
 
   /** What the worker has to know of the present frame. */
@@ -181,6 +211,7 @@ class Page {
     if (!linked) return;
     const { toml, name, ...rest } = linked;
     this.open(toml, name);
+    this.#swept = null;
     this.choose({ ...rest, playing: false });
   }
 
@@ -209,6 +240,7 @@ class Page {
     const step = Math.min(now - this.#last, 100) / 1000;
     this.#last = now;
     try {
+      this.#sweep(now);
       if (state.playing) state.seconds = (state.seconds + step) % this.scene.about.duration;
       if (state.playing || this.#isStale) this.#show(now);
       if (this.#isDrawn) this.#time();
@@ -224,6 +256,15 @@ class Page {
     requestAnimationFrame((next) => this.frame(next));
   }
 
+  /** Moves the divider to and fro once, so that nobody misses it. */
+  #sweep(now) {
+    if (this.#swept === null) return;
+    this.#swept ||= now;
+    const part = (now - this.#swept) / SWEEP;
+    if (part >= 1) this.#swept = null;
+    this.moveDivider(0.5 - 0.34 * Math.sin(2 * Math.PI * Math.min(part, 1)));
+  }
+
   #show(now) {
     const { state } = this;
     const wasStale = this.#isStale;
@@ -234,6 +275,7 @@ class Page {
     const edge = state.beside ? Math.round(state.divider * WIDTH) : WIDTH;
     this.canvas.show(frame, 0, edge);
     if (state.beside) this.#showBeside(edge);
+    if (this.#showsErrors && this.accuracy.lastMap) this.canvas.show(mapPicture(this.accuracy.lastMap.map, this.engine));
     this.#mark();
     element("time").value = state.seconds;
     element("seconds").textContent = `${state.seconds.toFixed(2)} s`;
@@ -269,19 +311,9 @@ class Page {
     if (asked && JSON.stringify(asked) !== JSON.stringify(this.question()) && !this.state.playing) this.#isStale = true;
   }
 
-  /** The pictures' names and, of what the engine draws, their times. */
-  #label(side, words, watch) {
-    const label = document.querySelector(`.side.${side}`);
-    label.hidden = false;
-    setText(label, watch?.ms && watch.isRedrawn ? `${words}: ${msText(watch.ms)}` : words);
-  }
-
   #showBeside(edge) {
     const { state } = this;
-    const words = element("beside").selectedOptions[0].text;
-    this.#label("left", settingName(state), this.left);
     if (state.beside === "truth") {
-      this.#label("right", words);
       const key = JSON.stringify([state.toml, state.seconds, state.pose]);
       if (this.#exact) this.canvas.show(this.#exact.frame, edge);
       if (this.#exact?.key !== key) this.#askExact(key);
@@ -291,7 +323,6 @@ class Page {
     this.other.set(this.#besideSettings());
     this.other.show(state.seconds, state.pose);
     this.other.draw();
-    this.#label("right", words, this.right);
     this.canvas.show(this.other.frame(), edge);
   }
 
@@ -321,7 +352,8 @@ async function begin() {
   const engine = new Engine(await WebAssembly.compile(wasm));
   const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
   globalThis.page = page;
-  page.open(engine.shipped[0].toml, engine.shipped[0].name);
+  const first = engine.shipped.find(({ name }) => name === FIRST_SCENE) ?? engine.shipped[0];
+  page.open(first.toml, first.name);
   const follow = () => page.follow(location.hash).catch((error) => page.trouble("link", error.message));
   await follow();
   addEventListener("hashchange", follow);

@@ -4,18 +4,19 @@
 const CHEAPEST = "flat";
 /** Budgets that are measured and have a mark on the slider. */
 const OCTAVES = [16, 8, 4, 2, 1, 0.5];
-/** Stop 0 is the cheapest shading. Budgets follow, from 16 shades to ½ in quarters of an octave. */
-const LAST_STOP = 21;
+/** Stop 0 is the cheapest shading. Budgets follow, from the widest to ½ shade in quarters of an octave. */
+const WIDEST = 32;
+const LAST_STOP = 25;
 
 /** What a stop stands for. */
 function settingAt(stop) {
   if (stop < 1) return { maxError: null, shading: CHEAPEST };
-  return { maxError: Number((16 * 2 ** (-(stop - 1) / 4)).toPrecision(3)) };
+  return { maxError: Number((WIDEST * 2 ** (-(stop - 1) / 4)).toPrecision(3)) };
 }
 
 /** The nearest stop; null for a shading that is not on the slider. */
 function stopOf({ maxError, shading }) {
-  if (maxError) return clamp(Math.round(1 - 4 * Math.log2(maxError / 16)), 1, LAST_STOP);
+  if (maxError) return clamp(Math.round(1 - 4 * Math.log2(maxError / WIDEST)), 1, LAST_STOP);
   return shading === CHEAPEST ? 0 : null;
 }
 
@@ -47,6 +48,9 @@ function techniqueColor(name) {
   const at = [...TECHNIQUES.keys()].indexOf(name);
   return `hsl(${205 - 190 * (at / (TECHNIQUES.size - 1))} 62% ${at % 2 ? 46 : 56}%)`;
 }
+
+/** An error in three digits. */
+const errorText = (error) => error.toFixed(error < 9.995 ? 2 : error < 99.95 ? 1 : 0);
 
 /** A setting's name, as short as the picture's edge takes it. */
 function settingName({ maxError, shading }) {

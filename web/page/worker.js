@@ -15,13 +15,12 @@ function sceneOf({ toml, version }) {
   return known.scene;
 }
 
-/** How far a frame is from the truth, and the frame. */
+/** How far a frame is from the truth, and what was counted of it. */
 function judge(scene, { seconds, pose, settings }) {
   scene.set(settings);
   scene.show(seconds, pose);
   scene.draw();
-  const frame = scene.frame();
-  return { ...scene.judge(), frame, counts: scene.counts() };
+  return { ...scene.judge(), counts: scene.counts() };
 }
 
 const questions = {
@@ -29,7 +28,7 @@ const questions = {
   /** Laps of one setting and, if they are asked for, its errors and counts. */
   measure(question) {
     const scene = sceneOf(question);
-    const { frame, map, counts, ...errors } = question.judges ? judge(scene, question) : {};
+    const { map, counts, ...errors } = question.judges ? judge(scene, question) : {};
     scene.set(question.settings);
     const judged = counts && { ...errors, lit: counts.lit, pixels: counts.pixels };
     return { laps: Stopwatch.laps(scene, question.seconds, question.pose, question.laps), judged };

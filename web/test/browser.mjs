@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Browser } from "./devtools.mjs";
+import { openScene } from "./suite.mjs";
 
 const [page, program, folder = "target/web/screenshots"] = process.argv.slice(2);
 const address = pathToFileURL(resolve(page)).href;
@@ -53,6 +54,11 @@ try {
   const first = await hash(tab);
   await new Promise((resolve) => setTimeout(resolve, 300));
   check("the picture turns", (await hash(tab)) !== first);
+  await tab.until("/^[\\d.]+ ×$/.test(element('times').textContent)");
+  check("the first screen says how many times the time accuracy takes", (await text(tab, "times-words")) === "the time →" && (await text(tab, "left-name")) === "cheapest", await text(tab, "versus"));
+  await tab.until("page.curve.at({ maxError: 0.5 }) && document.querySelectorAll('#chart .chart-point.budget').length >= 5");
+  check("the curve is measured without being asked for", true);
+  await openScene(tab, "torus");
 
   // The slider, by pointer and by key.
   await tab.drag("#accuracy", [0.48, 0.5], [0.97, 0.5]);
@@ -100,7 +106,7 @@ try {
   check("and it follows keys", (await tab.value("page.state.divider")) > place);
   writeFileSync(join(folder, "divided.png"), await tab.screenshot());
   await tab.value("page.choose({ beside: 'truth' })");
-  await tab.until("document.querySelector('.side.right').textContent.includes('truth')");
+  await tab.until("element('right-name').textContent.includes('64-bit')");
 
   // The magnifier: its byte is the frame's.
   await tab.value("page.choose({ beside: '', maxError: null, shading: 'gouraud-8.8' })");

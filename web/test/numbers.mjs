@@ -9,7 +9,7 @@ const suite = new Suite(process.argv[2]);
 /** Part by which a shown time may differ from the one measured in place. */
 const NEAR = 0.15;
 /** Tries, as other programs run as well. */
-const TRIES = 4;
+const TRIES = 6;
 const SETTINGS = [{ maxError: null, shading: "flat" }, { maxError: 4 }, { maxError: 0.5 }];
 const SCENES = [["torus", 1.2], ["teapot", 0.5], ["cone", 1.2], ["phong", 1.5], ["rgb", 1.5]];
 
@@ -20,10 +20,10 @@ suite.run(async () => {
 });
 
 /**
- * Milliseconds of a redraw of the picture that is shown, taken in place: the lower quartile of 40 batches. Every batch
- * redraws two moments in turn, as an animation does.
+ * Milliseconds of a redraw of the picture that is shown, taken in place: the lower quartile of 40 batches, spread over a
+ * second as the page's own laps are. Every batch redraws two moments in turn, as an animation does.
  */
-const inPlace = (tab) => tab.value(`(() => {
+const inPlace = (tab) => tab.value(`(async () => {
   const { scene, state } = page;
   const batches = [];
   for (let batch = 0; batch < 40; batch++) {
@@ -37,39 +37,38 @@ const inPlace = (tab) => tab.value(`(() => {
       }
     } while (performance.now() - begun < 5);
     batches.push((performance.now() - begun) / frames);
+    await new Promise((later) => setTimeout(later, 20));
   }
   return batches.sort((a, b) => a - b)[10];
 })()`);
 
 const shown = (tab) => tab.value("Number(/^([\\d.]+) ms$/.exec(element('ms').textContent)?.[1])");
 
-async function isNear(tab, what) {
-  const found = [];
-  for (let i = 0; i < TRIES; i++) {
-    await tab.until("page.left.isSettled", 60);
-    await wait(400);
-    const [told, taken] = [await shown(tab), await inPlace(tab)];
-    if (Math.abs(told - taken) <= NEAR * taken) return suite.check(`${what}: ${told.toFixed(2)} ms shown, ${taken.toFixed(2)} in place`, true);
-    found.push(`${told} shown, ${taken.toFixed(3)} in place`);
-    await tab.value("page.left.reset()");
-  }
-  suite.check(`${what}: the time shown is near the one in place`, false, found.join("; "));
-}
-
 async function times() {
   for (const [state, isStill] of [["turning", false], ["a link", false], ["less motion", true]]) {
     for (const [at, [name, seconds]] of SCENES.entries()) {
       const setting = SETTINGS[at % SETTINGS.length];
       const accuracy = setting.maxError ? `max-error=${setting.maxError}` : `shading=${setting.shading}`;
-      const link = state === "a link" ? `#scene=${name}&t=${seconds}&${accuracy}` : "";
-      const tab = await suite.open({ isStill, link });
-      if (!link) {
-        await openScene(tab, name);
-        await tab.value(`page.choose(${JSON.stringify({ ...setting, beside: "" })})`);
+      const found = [];
+      for (let i = 0; i < TRIES && !found.at(-1)?.isNear; i++) {
+        // Opened anew, as it is the first times that were wrong.
+        const tab = await suite.open({ isStill, link: state === "a link" ? `#scene=${name}&t=${seconds}&${accuracy}` : "" });
+        if (state !== "a link") {
+          await openScene(tab, name);
+          await tab.value(`page.choose(${JSON.stringify({ ...setting, beside: "" })})`);
+        }
+        await tab.until("page.left.isSettled", 60);
+        await wait(300);
+        // What turns is told all the time, so what is told last was taken together with what is taken here.
+        const before = await shown(tab);
+        const taken = await inPlace(tab);
+        const told = state === "turning" ? await shown(tab) : before;
+        found.push({ told, taken, isNear: Math.abs(told - taken) <= NEAR * taken, said: tab.said });
+        await tab.close();
       }
-      await isNear(tab, `${name}, ${accuracy}, ${state}`);
-      suite.check(`${name}, ${state}: no message on the console`, tab.said.length === 0, tab.said.join("; "));
-      await tab.close();
+      const { told, taken, isNear, said } = found.at(-1);
+      suite.check(`${name}, ${accuracy}, ${state}: ${told} ms shown, ${taken.toFixed(3)} in place`, isNear, JSON.stringify(found));
+      if (said.length) suite.check(`${name}, ${state}: no message on the console`, false, said.join("; "));
     }
   }
 }
