@@ -171,7 +171,9 @@
     const wrap = make("label", "fig-slider", parent);
     const head = make("span", "fig-slider-head", wrap);
     make("span", "", head, label);
-    const out = make("output", "", head);
+    // Told by aria-valuetext: an output would tell it a second time.
+    const out = make("span", "fig-slider-value", head);
+    out.setAttribute("aria-hidden", "true");
     const range = make("input", "", wrap);
     Object.assign(range, { type: "range", min, max, step, value });
     const show = () => {

@@ -102,7 +102,7 @@
     const say = M.readout(stage);
     const bar = M.controls(stage);
     const fader = M.slider(bar, {
-      label: "Fade to black", min: 0, max: 256, value: t, format: (v) => `${v}/256`, input: (v) => ((t = v), show()),
+      label: "Fade to black", min: 0, max: 256, step: 4, value: t, format: (v) => `${v / 4} of 64`, input: (v) => ((t = v), show()),
     });
     const jump = (by) => {
       t = M.clamp(t + by, 0, 256);
