@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Puts the page together: assemble.py OUT MODULE.wasm
 
+With PAGE_ADDRESS in the environment links to the page have a picture: page.png, beside the page.
 One HTML file that needs nothing else. The engine and the scripts are packed by LZMA, the rest stands as it is. Prints what
 takes the room.
 """
 
+import html
 import json
 import lzma
+import os
 import pathlib
 import re
 import sys
@@ -46,6 +49,13 @@ def without_comments(script):
     return re.sub(r"^ *(//.*|/\*\*.*\*/)\n", "", script, flags=re.MULTILINE)
 
 
+def address_tags(address):
+    """What a preview of a link needs to know of where the page stands."""
+    folder = address.rsplit("/", 1)[0]
+    tags = {"og:url": address, "og:image": f"{folder}/page.png"}
+    return "\n".join(f'<meta property="{name}" content="{html.escape(value)}">' for name, value in tags.items())
+
+
 def scripts(folder, *names):
     return read(*(folder / f"{name}.js" for name in names))
 
@@ -78,13 +88,15 @@ parts = {
     "unpack": scripts(page, "lzma", "begin"),
     "packed": in_letters(pack(b"".join(packed.values()))),
 }
-html = (page / "index.html").read_text()
+address = os.environ.get("PAGE_ADDRESS")
+parts["address"] = address_tags(address) if address else ""
+whole = (page / "index.html").read_text()
 for name, content in parts.items():
     for mark in (f"/*{{{name}}}*/", f"<!--{{{name}}}-->"):
-        html = html.replace(mark, content)
+        whole = whole.replace(mark, content)
 out.parent.mkdir(parents=True, exist_ok=True)
-out.write_text(html)
-size = len(html.encode())
+out.write_text(whole)
+size = len(whole.encode())
 print(f"{'bytes':>9}  {'packed':>9}")
 for name, part in packed.items():
     print(f"{len(part):9,}  {round(1.231 * len(pack(part))):9,}  {name}")

@@ -9,7 +9,7 @@ const TELLING = 250;
 /** What is asked for, in a sentence's words. */
 function wishText({ maxError, shading }) {
   if (maxError) return `at most ${shadesText(maxError)} of 255 shades`;
-  if (shading === CHEAPEST) return "as cheap as it gets: one shade a face";
+  if (shading === CHEAPEST) return "cheapest: one shade a face";
   return shading ? `every face ${fullName(shading)}` : "whatever the scene asks for";
 }
 
@@ -26,7 +26,7 @@ function promiseText({ max, maxError, beyond, edgeOn }) {
   const kept = `Kept: no pixel is off by more than ${maxError < LIT ? "0.52: ½ for rounding to a byte, 0.02 for arithmetic" : shadesText(maxError)}`;
   const faces = edgeOn.pixels === 1 ? "1 pixel of a face" : `${group(edgeOn.pixels)} pixels of faces`;
   if (!edgeOn.pixels) return `${kept}.`;
-  return `${kept}. Apart from ${faces} seen edge on, up to ${errorText(edgeOn.max)}: rounding corners to 1/256 pixel moves their light that far.`;
+  return `${kept}. Apart from ${faces} seen edge on, up to ${errorText(Math.ceil(100 * edgeOn.max) / 100)}: rounding corners to 1/256 pixel moves their light that far.`;
 }
 
 /** Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks. */
@@ -141,7 +141,7 @@ class Accuracy {
     keyed(element("shares"), shares, ([name]) => name, ([name]) => colored(name), (part, [, faces]) => (part.style.flex = faces));
     keyed(element("shares-key"), words, ([name]) => name, ([name]) => keyItem(techniqueColor(name), ""), (item, [, text]) => setText(item.lastElementChild, text));
     element("shares").setAttribute("aria-label", `Share of faces by technique: ${words.map(([, text]) => text).join(", ") || shading}`);
-    setText(element("lit"), `Light computed at ${group(lit)} of ${group(pixels)} pixels.`);
+    setText(element("lit"), `Light computed ${group(lit)} times for ${group(pixels)} pixels drawn.`);
   }
 
   /** Asks the worker for the errors of the present frame, if it is idle. Returns what was asked. */

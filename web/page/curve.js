@@ -1,8 +1,8 @@
 // The chart: what settings take and how far off they are, and where the present one is among them.
 
-/** Laps of a setting in each turn, and turns of all settings. */
-const LAPS_A_TURN = 4;
-const TURNS = 5;
+/** Laps of a setting in each turn, and turns of all settings: enough for the first, while the browser still compiles, to leave. */
+const LAPS_A_TURN = 5;
+const TURNS = 12;
 /** Milliseconds after which a new scene's curve is measured: first its picture. */
 const SETTLING = 400;
 

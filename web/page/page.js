@@ -69,15 +69,30 @@ class Page {
       this.state.divider = place;
       this.#isStale = true;
     });
-    for (const touched of ["pointerdown", "keydown"]) element("screen").addEventListener(touched, () => (this.#swept = null));
+    for (const touched of ["pointerdown", "keydown"]) element("screen").addEventListener(touched, () => (this.#swept = null), { capture: true });
     this.#offerErrors();
     element("trouble-close").addEventListener("click", () => this.#forgetTroubles());
-    element("theme").addEventListener("click", () => {
-      const root = document.documentElement;
-      const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-      root.dataset.theme = isDark ? "light" : "dark";
-      this.#isStale = true;
+    element("first-pose").addEventListener("click", () => this.choose({ pose: { ...FIRST_POSE } }));
+    this.#offerTheme();
+  }
+
+  /** Light or dark, as the system has it until one is chosen; that is kept. */
+  #offerTheme() {
+    const root = document.documentElement;
+    const button = element("theme");
+    const isDark = () => (root.dataset.theme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+    const tell = () => button.setAttribute("aria-pressed", isDark());
+    button.addEventListener("click", () => {
+      root.dataset.theme = isDark() ? "light" : "dark";
+      tell();
+      this.redraw();
+      try {
+        localStorage.setItem("theme", root.dataset.theme);
+      } catch {
+        // A page from a disk may have no storage: then the choice lasts as long as the page.
+      }
     });
+    tell();
   }
 
   /** Lays the error map over the picture while a button is held. */
@@ -136,6 +151,11 @@ class Page {
     this.background.setFiles(files);
   }
 
+  /** Files that were dropped and that the scene names: no link carries them. */
+  namedFiles() {
+    return [...this.#files.keys()].filter((name) => this.state.toml.includes(name));
+  }
+
   /** Opens a scene; an error leaves the one that is shown. */
   open(toml, name, keepsMoment = false) {
     const scene = this.engine.open(toml);
@@ -167,8 +187,8 @@ class Page {
     this.accuracy.follow();
     const play = element("play");
     play.textContent = state.playing ? "❚❚" : "▶";
-    play.setAttribute("aria-pressed", state.playing);
-    play.setAttribute("aria-label", state.playing ? "Stop the time" : "Let the time run");
+    play.setAttribute("aria-label", state.playing ? "Pause" : "Play");
+    element("first-pose").hidden = Object.keys(FIRST_POSE).every((axis) => state.pose[axis] === FIRST_POSE[axis]);
     element("beside").value = state.beside;
     element("screen").classList.toggle("divided", Boolean(state.beside));
     if ("divider" in change) this.moveDivider(state.divider);
@@ -180,7 +200,9 @@ class Page {
   /** Stops at a pixel, and shows its account beside the picture. */
   #choosePixel(pixel) {
     this.choose({ pixel, playing: false });
-    element("pixel").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
+    // Beside the picture no farther than it must be, so that the picture stays whole; under it from its beginning.
+    const block = matchMedia("(min-width: 60rem)").matches ? "nearest" : "start";
+    element("pixel").scrollIntoView({ behavior: isStill() ? "auto" : "smooth", block });
   }
 
   /** Has the picture drawn again. */

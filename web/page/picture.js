@@ -42,28 +42,48 @@ const STILL = 5;
 const TURN = 0.008;
 const KEY_TURN = Math.PI / 24;
 
+/** Enlargement for a step of the wheel. */
+const WHEEL = 0.0015;
+
 /** What hands do with the picture. `on` has turn(turn, tilt), zoom(factor), choose(pixel?), move(dx, dy), play(). */
 function handle(canvas, on) {
   const element = canvas.canvas;
+  /** Pointers that are down, by their numbers: where they were last. */
+  const down = new Map();
   let from = null;
+  const spread = () => {
+    const [a, b] = [...down.values()];
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  };
   element.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
-    from = { x: event.clientX, y: event.clientY, lastX: event.clientX, lastY: event.clientY, moved: false };
+    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    from = { x: event.clientX, y: event.clientY, moved: down.size > 1 };
     element.setPointerCapture(event.pointerId);
   });
   element.addEventListener("pointermove", (event) => {
-    if (!from) return;
-    const far = Math.hypot(event.clientX - from.x, event.clientY - from.y) > STILL;
-    if (!from.moved && !far) return;
+    const last = down.get(event.pointerId);
+    if (!last) return;
+    const before = down.size === 2 ? spread() : 0;
+    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
+    if (!from.moved && Math.hypot(event.clientX - from.x, event.clientY - from.y) <= STILL) return;
     from.moved = true;
-    on.turn((event.clientX - from.lastX) * TURN, (event.clientY - from.lastY) * TURN);
-    [from.lastX, from.lastY] = [event.clientX, event.clientY];
+    [last.x, last.y] = [event.clientX, event.clientY];
+    if (down.size === 2) on.zoom(spread() / Math.max(before, 1));
+    // Up and down a finger scrolls the page.
+    else on.turn(dx * TURN, event.pointerType === "touch" ? 0 : dy * TURN);
   });
   element.addEventListener("pointerup", (event) => {
-    if (from && !from.moved) on.choose(canvas.pixelAt(event));
-    from = null;
+    if (down.has(event.pointerId) && !from.moved) on.choose(canvas.pixelAt(event));
+    down.delete(event.pointerId);
   });
-  element.addEventListener("pointercancel", () => (from = null));
+  element.addEventListener("pointercancel", (event) => down.delete(event.pointerId));
+  // By the wheel alone the page scrolls: over so large a picture it would stick.
+  element.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && document.activeElement !== element) return;
+    event.preventDefault();
+    on.zoom(Math.exp(-event.deltaY * WHEEL * (event.ctrlKey ? 4 : 1)));
+  }, { passive: false });
   element.addEventListener("keydown", (event) => {
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     if (event.ctrlKey || event.metaKey || event.altKey) return;

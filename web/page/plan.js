@@ -3,6 +3,26 @@
 /** Effects that are chosen by another setting, or that keep triangles inside what the raster can draw. */
 const FIXED = ["transform", "hidden-surfaces", "near-clipping", "screen-clipping"];
 
+/** Why a budget draws faces by a technique, in plain words. */
+const WHY = new Map([
+  ["flat", "one shade is close enough"],
+  ["float", "straight in space, curved on the screen"],
+  ["phong-quadratic", "a curve is close enough"],
+  ["phong-every-16", "lit at every 16th pixel, straight between"],
+  ["phong-every-8", "lit at every 8th pixel"],
+  ["phong-every-4", "lit at every 4th pixel"],
+  ["phong", "no proof, so lit at every pixel"],
+]);
+
+/** A reason in plain words: where the engine counts faces by technique, a sentence for each. */
+function plainReason(reason) {
+  const counted = /: ((?:\d+ [\w.-]+ \([^)]*\), )+)(\d+) not drawn$/.exec(reason);
+  if (!counted) return reason;
+  const parts = [...counted[1].matchAll(/(\d+) ([\w.-]+) \(/g)].map(([, faces, technique], at) =>
+    `${group(Number(faces))}${at ? "" : faces === "1" ? " face" : " faces"}: ${WHY.get(technique) ?? "a straight blend is provably close enough"}.`);
+  return `${parts.join(" ")} ${group(Number(counted[2]))} not seen.`;
+}
+
 /** How often each effect's frames are timed. */
 const ROUNDS_OF_PRICE = 15;
 
@@ -13,6 +33,10 @@ class PlanTable {
     this.page = page;
     this.body = document.querySelector("#effects tbody");
     element("object").addEventListener("change", () => this.show(this.rows));
+    element("unused").addEventListener("click", () => {
+      this.body.classList.toggle("all");
+      this.show(this.rows);
+    });
     element("price").addEventListener("click", () => this.measure());
     element("as-planned").addEventListener("click", () => page.choose({ effects: {} }));
   }
@@ -33,6 +57,9 @@ class PlanTable {
     }
     const shown = rows.filter((row) => row.place === Number(chosen.value || 0));
     keyed(this.body, shown, ({ effect }) => effect, (row) => this.#make(row), (made, row) => this.#update(made, row));
+    const unused = this.body.querySelectorAll(".unused").length;
+    element("unused").hidden = !unused;
+    setText(element("unused"), this.body.classList.contains("all") ? "Hide what no material has" : `Show ${unused} more, which no material has`);
     element("as-planned").hidden = Object.keys(this.page.state.effects).length === 0;
   }
 
@@ -51,10 +78,11 @@ class PlanTable {
     const [name, switched, cost, why] = row.children;
     const box = switched.firstElementChild;
     row.classList.toggle("on", on);
+    row.classList.toggle("unused", !on && reason === "no material has it");
     if (box.checked !== on) box.checked = on;
     setText(name.firstElementChild, choice && on ? `${effect}: ${choice}` : effect);
     setText(cost, this.#priceText(this.#prices.get(effect), on));
-    setText(why, reason);
+    setText(why, plainReason(reason));
   }
 
   /** A price in words: null for what cannot be switched, 0 for what is within the noise. */

@@ -22,11 +22,13 @@ function offerFiles(page) {
   });
   element("copy-link").addEventListener("click", async () => {
     await page.link();
+    const files = page.namedFiles();
+    const without = files.length ? ` It cannot carry ${files.join(", ")}: whoever opens it has to drop the files, too.` : "";
     try {
       await navigator.clipboard.writeText(location.href);
-      element("saved").textContent = "The link is copied.";
+      element("saved").textContent = `The link is copied.${without}`;
     } catch {
-      element("saved").textContent = "The link is in the address bar.";
+      element("saved").textContent = `The link is in the address bar.${without}`;
     }
   });
 }

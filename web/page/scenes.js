@@ -3,6 +3,9 @@
 /** Milliseconds without a key before the text is tried. */
 const PAUSE = 300;
 
+/** What files may be dropped. */
+const TAKEN = [".obj", ".mtl", ".png", ".toml"];
+
 class Scenes {
   #timer = 0;
   #files = new Map();
@@ -81,7 +84,7 @@ class Scenes {
 
   #try() {
     try {
-      this.page.open(this.text.value, this.page.state.name, true);
+      this.page.open(this.text.value, this.#nameOf(this.text.value), true);
     } catch (error) {
       const { line, column, message } = error;
       element("verdict").className = "wrong";
@@ -89,6 +92,12 @@ class Scenes {
       this.text.setAttribute("aria-invalid", "true");
       this.#number(line);
     }
+  }
+
+  /** The name of a scene that was edited: its own, unless the text is that of a shipped one. */
+  #nameOf(toml) {
+    const shipped = this.page.engine.shipped.find((scene) => scene.toml === toml);
+    return shipped?.name ?? `${this.page.state.name.replace(/-edited$/, "")}-edited`;
   }
 
   verdict({ faces, objects, warnings }) {
@@ -99,20 +108,27 @@ class Scenes {
   }
 
   /** Takes files: a scene, or a model with what it names. */
-  async take(files) {
+  async take(dropped) {
+    const files = dropped.filter(({ name }) => TAKEN.some((extension) => name.toLowerCase().endsWith(extension)));
+    const others = dropped.filter((file) => !files.includes(file)).map(({ name }) => name);
     try {
-      for (const file of files) this.#files.set(file.name, new Uint8Array(await file.arrayBuffer()));
-      this.page.setFiles(this.#files);
-      element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${bytes.length.toLocaleString("en")} bytes`)));
-      const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
-      const [scene, model] = [find(".toml"), find(".obj")];
-      if (scene) this.page.open(await scene.text(), scene.name.replace(/\.toml$/i, ""));
-      else if (model) this.page.open(this.#showing(model.name), model.name.replace(/\.obj$/i, ""));
-      else this.page.open(this.page.state.toml, this.page.state.name);
-      element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
+      if (files.length) await this.#open(files);
+      if (others.length) this.page.trouble("files", `${others.join(", ")}: not read. This page takes OBJ, MTL, PNG and TOML.`);
     } catch (error) {
       this.page.trouble("files", `${files.map((file) => file.name).join(", ")}: ${error.message}`);
     }
+  }
+
+  async #open(files) {
+    for (const file of files) this.#files.set(file.name, new Uint8Array(await file.arrayBuffer()));
+    this.page.setFiles(this.#files);
+    element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${group(bytes.length)} bytes`)));
+    const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
+    const [scene, model] = [find(".toml"), find(".obj")];
+    if (scene) this.page.open(await scene.text(), scene.name.replace(/\.toml$/i, ""));
+    else if (model) this.page.open(this.#showing(model.name), model.name.replace(/\.obj$/i, ""));
+    else this.page.open(this.page.state.toml, this.page.state.name);
+    element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
   }
 
   /** The scene of a model that turns; in colours of its own where its materials have any. */

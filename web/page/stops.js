@@ -11,7 +11,7 @@ const LAST_STOP = 25;
 /** What a stop stands for. */
 function settingAt(stop) {
   if (stop < 1) return { maxError: null, shading: CHEAPEST };
-  return { maxError: Number((WIDEST * 2 ** (-(stop - 1) / 4)).toPrecision(3)) };
+  return { maxError: Number((WIDEST * 2 ** (-(stop - 1) / 4)).toPrecision(3)), shading: "" };
 }
 
 /** The nearest stop; null for a shading that is not on the slider. */

@@ -72,10 +72,11 @@ try {
   await tab.value("element('accuracy').focus()");
   await tab.key("Home");
   check("its left end is the cheapest", await tab.value("page.state.maxError === null && page.state.shading === 'flat'"));
-  await tab.until("page.accuracy.lastMap.asked.settings.shading === 'flat'");
+  await tab.until("page.accuracy.lastMap.asked.settings.shading === 'flat' && page.accuracy.lastMap.asked.settings.maxError === null");
   const coarse = await tab.value("Number(element('worst').textContent)");
   check("a flat picture is farther off", coarse > 4 * fine, `${coarse} against ${fine}`);
-  check("the chart shows where it is", (await tab.value("document.querySelectorAll('#chart .chart-point.now').length")) === 1);
+  await tab.until("document.querySelectorAll('#chart .chart-point.now').length === 1");
+  check("the chart shows where it is", true);
 
   // All shadings, measured on the spot.
   await tab.click("#measure");
@@ -113,7 +114,7 @@ try {
   await tab.click("#picture", 0.3, 0.5);
   check("a click chooses a pixel", await tab.value("page.state.pixel !== null && !page.state.playing"));
   await tab.box("#pixel");
-  await tab.until("element('account').textContent.includes('AX, the shade')");
+  await tab.until("element('account').textContent.includes(`Pixel ${page.state.pixel.x}, ${page.state.pixel.y}:`) && document.querySelector('.register b')");
   const [byte, shown] = await tab.value("(() => { const { x, y } = page.state.pixel; return [Number(/byte (\\d+)/.exec(element('account').textContent)[1]), page.scene.frame().bytes[y * 320 + x]]; })()");
   check("the pixel's byte is the frame's", byte === shown, `${byte}, ${shown}`);
   const ah = await tab.value("parseInt(document.querySelector('.register b').textContent, 16)");

@@ -4,6 +4,9 @@
 /** Errors below are drawn here: a logarithmic axis has no 0. */
 const ERROR_FLOOR = 0.01;
 
+/** Room for the name of a tick, in pixels. */
+const TICK_NAME = 46;
+
 /** A time with its unit, in three digits: `412 µs`. */
 function timeText(ms) {
   const [number, unit] = ms >= 1000 ? [ms / 1000, "s"] : ms >= 1 ? [ms, "ms"] : ms >= 1e-3 ? [ms * 1e3, "µs"] : [ms * 1e6, "ns"];
@@ -54,10 +57,13 @@ function drawChart(element, points, { height = 260, description = "Error against
   const [x, y] = [on(across, left, right), on(down, bottom, top)];
 
   const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, class: "chart-svg", role: "group", "aria-label": description });
-  const xTicks = logTicks(...across);
-  for (const tick of xTicks) {
+  // A tick has no name where that of the one before would touch it.
+  let lastNamed = -Infinity;
+  for (const tick of logTicks(...across)) {
     make("line", { class: "chart-grid", x1: x(tick), x2: x(tick), y1: top, y2: bottom }, svg);
     const isAtEnd = x(tick) + 28 > width;
+    if (x(tick) - lastNamed < TICK_NAME) continue;
+    lastNamed = x(tick);
     make("text", { class: "chart-tick", x: isAtEnd ? width : x(tick), y: bottom + 15, "text-anchor": isAtEnd ? "end" : "middle" }, svg, time(tick));
   }
   for (const tick of logTicks(...down)) {

@@ -19,6 +19,7 @@ function divide(element, label, change = () => {}) {
     place = Math.min(Math.max(to, 0), 1);
     element.style.setProperty("--at", `${100 * place}%`);
     handle.setAttribute("aria-valuenow", Math.round(100 * place));
+    handle.setAttribute("aria-valuetext", `${Math.round(100 * place)} % from the left`);
     change(place);
   };
   const follow = (event) => {
@@ -32,7 +33,7 @@ function divide(element, label, change = () => {}) {
   });
   for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, () => (handle.onpointermove = null));
   handle.addEventListener("keydown", (event) => {
-    const steps = { ArrowLeft: -0.01, ArrowRight: 0.01, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
+    const steps = { ArrowLeft: -0.01, ArrowDown: -0.01, ArrowRight: 0.01, ArrowUp: 0.01, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
     if (!(event.key in steps)) return;
     event.preventDefault();
     event.stopPropagation();
