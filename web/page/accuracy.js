@@ -121,6 +121,7 @@ class Accuracy {
     const cell = element("ms");
     setText(cell, timeOf(left));
     cell.classList.toggle("settling", !left.isSettled);
+    setText(element("once"), left.isRedrawn || left.ms === null ? "" : `Drawn once, in ${msText(left.ms)}, and then left as it is.`);
     const rate = left.ms === null ? "…" : left.isRedrawn ? group(Math.round(1000 / left.ms)) : "–";
     setText(element("rate"), rate);
     this.page.curve.draw();

@@ -108,7 +108,7 @@ class Magnifier {
       return box;
     };
     const parts = {
-      head: make("h3"), swatch: make("i", { className: "swatch" }), name: make("span"), color: make("span", { className: "mono muted" }),
+      head: make("h3"), swatch: make("i", { className: "swatch" }), name: make("span", {}, " Pixel"), color: make("span", { className: "mono muted" }),
       face: make("p"), registers: make("dl", { className: "registers" }), exact: make("p"), off: make("p"),
       text: make("pre", { className: "mono", tabIndex: 0 }),
     };

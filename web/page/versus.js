@@ -37,9 +37,17 @@ class Versus {
     setText(element("left-ms"), timeOf(left));
     setText(element("right-name"), state.beside ? besideName(state.beside) : "");
     setText(element("right-ms"), isTimed ? timeOf(right) : state.beside ? "not timed" : "");
-    const [times, words] = !isTimed || left.ms === null || right.ms === null ? ["", ""] : left.isRedrawn ? ratioText(left.ms, right.ms) : ["", "nothing moves, so nothing is redrawn"];
+    const [times, words] = isTimed && left.ms !== null && right.ms !== null ? this.#ratio() : ["", ""];
     setText(element("times"), times);
     setText(element("times-words"), words);
+  }
+
+  #ratio() {
+    const { left, right, state } = this.page;
+    if (!left.isRedrawn) return ["", "nothing moves, so nothing is redrawn"];
+    // Their times would differ by noise.
+    if (settingLines(besideSetting(state.beside)) === settingLines({ maxError: state.maxError, shading: state.shading })) return ["", "the same on both sides"];
+    return ratioText(left.ms, right.ms);
   }
 
   #bar(id, part) {
