@@ -24,7 +24,7 @@ class Versus {
     this.#compare();
     const known = marks.filter((mark) => mark);
     const full = (of, own) => Math.max(own ?? 0, ...known.map(of));
-    this.#bar("time-bar", left.ms / full(({ ms }) => ms, left.ms));
+    this.#bar("time-bar", left.isRedrawn && left.ms / full(({ ms }) => ms, left.ms));
     this.#bar("error-bar", accuracy.judged?.max / full(({ max }) => max, accuracy.judged?.max));
     this.#strip.classList.toggle("settling", state.playing ? left.ms === null : !left.isSettled);
   }
@@ -44,7 +44,7 @@ class Versus {
 
   #ratio() {
     const { left, right, state } = this.page;
-    if (!left.isRedrawn) return ["", "nothing moves, so nothing is redrawn"];
+    if (!left.isRedrawn) return ["", "no pixel changes, so nothing is redrawn"];
     // Their times would differ by noise.
     if (settingLines(besideSetting(state.beside)) === settingLines({ maxError: state.maxError, shading: state.shading })) return ["", "the same on both sides"];
     return ratioText(left.ms, right.ms);
