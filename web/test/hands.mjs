@@ -7,9 +7,11 @@ import { openScene, Suite, wait } from "./suite.mjs";
 const suite = new Suite(process.argv[2]);
 suite.run(async () => {
   const tab = await suite.open();
+  await sweep(tab);
   await slider(tab);
   await presses(tab);
   await focus(tab);
+  await chart(tab);
   await words(tab);
   await banner(tab);
   await pose(tab);
@@ -172,4 +174,37 @@ async function names(tab) {
   await tab.click("#copy-link");
   await tab.until("element('saved').textContent.includes('cannot carry mine.obj')");
   suite.check("a link says what it cannot carry", true);
+}
+
+/** The divider moves once by itself and stops in the middle; where less motion is asked for it does not. */
+async function sweep(tab) {
+  const places = (tab) => tab.value(`(async () => {
+    const places = new Set();
+    for (const end = performance.now() + 1500; performance.now() < end; ) {
+      places.add(page.state.divider);
+      await new Promise((later) => setTimeout(later, 50));
+    }
+    return places.size;
+  })()`);
+  await tab.open(suite.address);
+  await tab.until("globalThis.page?.scenes");
+  suite.check("the divider moves by itself at first", (await places(tab)) > 3);
+  await wait(4000);
+  suite.check("and then stands in the middle", (await places(tab)) === 1 && Math.abs((await tab.value("page.state.divider")) - 0.5) < 0.001);
+  const still = await suite.open({ isStill: true });
+  suite.check("where less motion is asked for it stands", (await places(still)) === 1);
+  await still.close();
+  await tab.front();
+}
+
+/** Points of the chart by keys: the chart is drawn again and again under the focus. */
+async function chart(tab) {
+  await openScene(tab, "torus");
+  await tab.value("page.choose({ ...settingAt(9), playing: true, beside: '' })");
+  await tab.until("document.querySelectorAll('#chart [data-key]').length >= 6", 40);
+  await tab.value("document.querySelector('#chart [data-key=\"max-error 1\"]').focus()");
+  await wait(900);
+  suite.check("a point of the chart keeps the focus", (await tab.value("document.activeElement.dataset.key")) === "max-error 1");
+  await tab.key("Enter", "Enter", "\r");
+  suite.check("and Enter chooses it", (await tab.value("page.state.maxError")) === 1);
 }

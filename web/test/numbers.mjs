@@ -15,6 +15,7 @@ const SCENES = [["torus", 1.2], ["teapot", 0.5], ["cone", 1.2], ["phong", 1.5], 
 
 suite.run(async () => {
   await times();
+  await search();
   await notRedrawn();
   await promise();
 });
@@ -71,6 +72,23 @@ async function times() {
       if (said.length) suite.check(`${name}, ${state}: no message on the console`, false, said.join("; "));
     }
   }
+}
+
+/** What "Find it" says of a picture is what the panel then says of it. */
+async function search() {
+  const tab = await suite.open({ link: "#scene=phong&t=1.5&max-error=4" });
+  const found = [];
+  for (let i = 0; i < TRIES && !found.at(-1)?.isNear; i++) {
+    await tab.value("page.choose({ maxError: 4 }), page.accuracy.within(1000)");
+    const said = Number(/in ([\d.]+) ms/.exec(await tab.value("element('found').textContent"))[1]);
+    await tab.until("page.left.isSettled", 60);
+    await wait(300);
+    const told = await shown(tab);
+    found.push({ said, told, isNear: Math.abs(said - told) <= NEAR * told });
+  }
+  const { said, told, isNear } = found.at(-1);
+  suite.check(`"Find it" says ${said} ms, and the panel ${told}`, isNear, JSON.stringify(found));
+  await tab.close();
 }
 
 async function notRedrawn() {
