@@ -161,7 +161,7 @@ class Accuracy {
     this.map.show(mapPicture(map, this.page.engine));
     this.lastMap = { map, asked };
     const age = Math.abs(this.page.state.seconds - asked.seconds);
-    const isOld = age >= 0.02 && this.page.state.playing && this.page.left.isRedrawn;
+    const isOld = age >= 0.05 && this.page.state.playing && this.page.left.isRedrawn;
     setText(element("errors-age"), isOld ? `Error in shades, ${age.toFixed(1)} s ago` : "Error in shades");
     return asked;
   }

@@ -75,9 +75,10 @@ class Curve {
     const present = settingLines({ maxError: state.maxError, shading: state.shading });
     const points = [];
     for (const [lines, { settings, watch, judged }] of this.#points) {
-      // The present point stands for what was measured of its setting.
-      if ((now && lines === present) || !watch.isRedrawn || !watch.ms || !judged) continue;
-      points.push(this.#point(lines, settings, watch.ms, judged.rms));
+      if (!watch.isRedrawn || !watch.ms || !judged) continue;
+      const point = this.#point(lines, settings, watch.ms, judged.rms);
+      // The name of the present setting stands at the present point.
+      points.push(now && lines === present ? { ...point, name: "" } : point);
     }
     if (now) points.push({ ms: left.ms, error: accuracy.judged.rms, kind: "now", name: `${this.#name(state)}, now` });
     element("still").hidden = left?.isRedrawn !== false;
