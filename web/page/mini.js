@@ -20,8 +20,13 @@ class MiniPicture {
     for (const part of document.querySelectorAll(ACTS)) acts.observe(part);
   }
 
+  /** Whether the picture is in the window, large or small. */
+  get isSeen() {
+    return !this.#isOut || this.#acting.size > 0;
+  }
+
   #follow() {
-    const isMini = this.#isOut && this.#acting.size > 0;
+    const isMini = this.#isOut && this.isSeen;
     const [holder, bezel] = [element("holder"), element("bezel")];
     if (bezel.classList.contains("mini") === isMini) return;
     // The place that the picture leaves stays as high as it was.

@@ -263,9 +263,11 @@ class Page {
     this.#last = now;
     try {
       this.#sweep(now);
-      if (state.playing) state.seconds = (state.seconds + step) % this.scene.about.duration;
-      if (state.playing || this.#isStale) this.#show(now);
-      if (this.#isDrawn) this.#time();
+      const { isSeen } = this.mini;
+      if (state.playing && isSeen) state.seconds = (state.seconds + step) % this.scene.about.duration;
+      // Nobody looks at what is out of the window; a change is drawn there as well.
+      if ((state.playing && isSeen) || this.#isStale) this.#show(now);
+      if (this.#isDrawn && isSeen) this.#time();
       this.accuracy.tell(now);
       this.#stops = 0;
     } catch (error) {
