@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::columns::VertexColumns;
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::vertex::light_faces;
+use super::vertex::light_eight;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, each, three};
 use crate::light::{Lights, both_sides};
@@ -15,6 +15,7 @@ use crate::mesh::normals::face_normal;
 use crate::raster::columns::Triangles;
 use crate::raster::pick::Pick;
 use crate::settings::Shading;
+use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::view::ObjectView;
 
@@ -32,7 +33,7 @@ pub(super) struct Face {
 /// The point of a face at which it is lit as one: its middle, and its normal there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FacePoint {
-    pub(super) normal: Vec3,
+    normal: Vec3,
     centre: Vec3,
 }
 
@@ -153,6 +154,39 @@ impl<'a> Faces<'a> {
             for (flat, shade) in flat.iter_mut().zip(shades) {
                 *flat = [shade; 3];
             }
+        }
+    }
+}
+
+compiled_for_each_level! {
+    /// The shades of picked faces, each lit as one by its own normal: suns, no highlights, and one channel.
+    fn light_faces[const BOTH: bool][BOTH](
+        faces: &Faces<'_>,
+        picks: &[u32],
+        flat: &mut [[U8F8; 3]],
+    ) = light_faces_by;
+}
+
+#[inline(always)]
+fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
+        // Without a face the last one's.
+        let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
+        let Some(surface) = faces.surface_of_all(&of) else {
+            for (flat, &pick) in flat.iter_mut().zip(eight) {
+                *flat = faces.flat(faces.face(Pick(pick)));
+            }
+            continue;
+        };
+        let normals: [Vec3; LANES] = each!(lane => faces.face_points[of[lane].index()].normal);
+        let mut shades = [0; LANES];
+        s.store_i32(
+            light_eight::<S, BOTH>(s, &faces.paints[usize::from(surface)], &faces.lights, &normals),
+            &mut shades,
+        );
+        for (lane, flat) in flat.iter_mut().enumerate() {
+            // The front's shade is in the lower half.
+            *flat = [U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16); 3];
         }
     }
 }

@@ -7,8 +7,8 @@
 //! A linear value has its start and its step in a column beside the list. Starts of texture coordinates, depths and light
 //! are worked out by the stage that asks for them, from the planes of eight faces that set-up leaves and the span's [`Mark`].
 
+use super::direct::DirectTexture;
 use super::pipeline::{PixelPipeline, ShadeSource};
-use super::texture::DirectTexture;
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
 use crate::lanes::{LANES, three};

@@ -24,6 +24,7 @@
 
 mod batch;
 mod curve;
+mod direct;
 mod listing;
 mod lit;
 mod pipeline;
@@ -36,10 +37,10 @@ mod texture;
 use alloc::vec::Vec;
 
 pub use self::batch::EffectBatch;
+use self::direct::DirectTexture;
 use self::listing::{Columns, EffectSpans, Faces, Listed};
 pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
-use self::texture::DirectTexture;
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
 use super::depth::{Cell, DepthBuffer};

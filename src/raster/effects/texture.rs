@@ -4,12 +4,12 @@
 //! the stages. How long a row is, is a guess of the processor that costs as much as several pixels, so the last few pixels
 //! of a span are written by a mask.
 
+use super::direct::{DirectTexture, DirectTint};
 use super::listing::FaceCorners;
-use super::pipeline::{PixelPipeline, ShadeSource, TextureStage};
+use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
-use crate::raster::interpolation::Interpolation;
 use crate::raster::reference::level::{self, LevelPlane};
 use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
@@ -26,44 +26,7 @@ const EVERY_WHOLE: i32 = 16;
 /// An image, with its levels where one of them is chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 
-/// How the texels of faces are shown by one loop a span, with nothing stored between.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct DirectTexture<'a> {
-    image: Texels<'a>,
-    is_perspective: bool,
-    tint: DirectTint<'a>,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum DirectTint<'a> {
-    None,
-    Row(&'a [u8; 256]),
-    Lit(&'a [u8; 65_536]),
-}
-
-impl<'a> DirectTexture<'a> {
-    /// That of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
-    pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
-        let stage = pipeline.texture()?;
-        let table = stage.tables[0];
-        let is_plain =
-            pipeline.levels().is_none() && pipeline.channels().is_none() && stage.mapping != Mapping::Every16;
-        let tint = match pipeline.source {
-            ShadeSource::Shaded(Interpolation::Flat(shade)) => {
-                let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
-                let is_identity = row.iter().zip(0..=255).all(|(byte, texel)| *byte == texel);
-                if is_identity { DirectTint::None } else { DirectTint::Row(row) }
-            }
-            ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded)
-                if pipeline.dither().is_none() =>
-            {
-                DirectTint::Lit(table)
-            }
-            _ => return None,
-        };
-        is_plain.then_some(Self { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
-    }
-
+impl DirectTexture<'_> {
     /// Shows the texels of every span in the frame, mixed with what is there by a table if there is one.
     pub(super) fn show_in_frame(
         self,
@@ -480,9 +443,10 @@ mod tests {
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
     use crate::raster::cull::{PickList, cull, pick};
-    use crate::raster::effects::PixelPipeline;
     use crate::raster::effects::recorded::record;
+    use crate::raster::effects::{PixelPipeline, ShadeSource};
     use crate::raster::frame::Rect;
+    use crate::raster::interpolation::Interpolation;
     use crate::raster::pick::{Pick, SizeClass};
     use crate::raster::reference::cover::SortedTriangle;
     use crate::raster::reference::depth::DepthPlane;

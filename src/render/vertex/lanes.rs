@@ -10,9 +10,7 @@ use super::Geometry;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
-use crate::raster::pick::Pick;
 use crate::render::columns::{ScreenPos, VertexColumns};
-use crate::render::faces::Faces;
 use crate::render::paint::SurfaceMaterial;
 use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
@@ -174,39 +172,6 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
     light_one_by_one::<BOTH>(rest, rest_surfaces, paints, lights, rest_shades);
 }
 
-compiled_for_each_level! {
-    /// The shades of picked faces, each lit as one by its own normal: suns, no highlights, and one channel.
-    pub(in crate::render) fn light_faces[const BOTH: bool][BOTH](
-        faces: &Faces<'_>,
-        picks: &[u32],
-        flat: &mut [[U8F8; 3]],
-    ) = light_faces_by;
-}
-
-#[inline(always)]
-fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-    for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
-        // Without a face the last one's.
-        let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
-        let Some(surface) = faces.surface_of_all(&of) else {
-            for (flat, &pick) in flat.iter_mut().zip(eight) {
-                *flat = faces.flat(faces.face(Pick(pick)));
-            }
-            continue;
-        };
-        let normals: [Vec3; LANES] = each!(lane => faces.face_points[of[lane].index()].normal);
-        let mut shades = [0; LANES];
-        s.store_i32(
-            light_eight::<S, BOTH>(s, &faces.paints[usize::from(surface)], &faces.lights, &normals),
-            &mut shades,
-        );
-        for (lane, flat) in flat.iter_mut().enumerate() {
-            // The front's shade is in the lower half.
-            *flat = [U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16); 3];
-        }
-    }
-}
-
 /// The definition.
 #[inline(never)]
 fn light_one_by_one<const BOTH: bool>(
@@ -226,7 +191,7 @@ fn light_one_by_one<const BOTH: bool>(
 /// The shades of eight normals of one surface: the front's in the lower half, and where `BOTH` are asked for the back's in
 /// the upper.
 #[inline(always)]
-fn light_eight<S: F32Lanes8, const BOTH: bool>(
+pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
     s: S,
     paint: &SurfaceMaterial,
     lights: &Lights<'_>,

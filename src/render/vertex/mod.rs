@@ -18,7 +18,7 @@ use crate::view::ObjectView;
 
 mod lanes;
 
-pub(super) use lanes::light_faces;
+pub(super) use lanes::light_eight;
 
 /// Gives each vertex the shade that its material's own answer to light makes of what it has.
 #[inline(never)]

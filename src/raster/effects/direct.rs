@@ -1,0 +1,49 @@
+//! Pipelines whose texels need no stage before them: one loop a span shows them.
+
+use super::pipeline::{PixelPipeline, ShadeSource};
+use crate::mapping::Mapping;
+use crate::raster::interpolation::Interpolation;
+use crate::span::texture::Texels;
+
+/// How the texels of faces are shown by one loop a span, with nothing stored between.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectTexture<'a> {
+    pub(super) image: Texels<'a>,
+    pub(super) is_perspective: bool,
+    pub(super) tint: DirectTint<'a>,
+}
+
+/// What becomes of its texels.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum DirectTint<'a> {
+    /// They are shown.
+    None,
+    /// A row of a table has their bytes: the shade is one.
+    Row(&'a [u8; 256]),
+    /// A table has their bytes, by linear shades.
+    Lit(&'a [u8; 65_536]),
+}
+
+impl<'a> DirectTexture<'a> {
+    /// That of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
+    pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
+        let stage = pipeline.texture()?;
+        let table = stage.tables[0];
+        let is_plain =
+            pipeline.levels().is_none() && pipeline.channels().is_none() && stage.mapping != Mapping::Every16;
+        let tint = match pipeline.source {
+            ShadeSource::Shaded(Interpolation::Flat(shade)) => {
+                let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
+                let is_identity = row.iter().zip(0..=255).all(|(byte, texel)| *byte == texel);
+                if is_identity { DirectTint::None } else { DirectTint::Row(row) }
+            }
+            ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded)
+                if pipeline.dither().is_none() =>
+            {
+                DirectTint::Lit(table)
+            }
+            _ => return None,
+        };
+        is_plain.then_some(Self { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
+    }
+}
