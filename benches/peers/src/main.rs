@@ -1,7 +1,7 @@
 //! mode13h side by side with Allegro 4, retrofire and Mesa's llvmpipe, on the same triangles.
 //!
 //! ```text
-//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--rounds N] [--faces N] [--only TEXT]
+//! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--table] [--rounds N] [--faces N] [--only TEXT]
 //!     [--no-frames | --no-triangles] [MODEL.obj | TRIANGLES.tri] ...
 //! ```
 //!
@@ -53,6 +53,7 @@ struct Options {
     triangles: bool,
     frames: bool,
     only: String,
+    table: bool,
     files: Vec<String>,
 }
 
@@ -65,6 +66,7 @@ fn options() -> Result<Options, String> {
         triangles: true,
         frames: true,
         only: String::new(),
+        table: false,
         files: Vec::new(),
     };
     let mut words = std::env::args().skip(1);
@@ -77,6 +79,7 @@ fn options() -> Result<Options, String> {
             "--rounds" => options.rounds = number(next()?)?,
             "--faces" => options.faces = number(next()?)?,
             "--only" => options.only = next()?,
+            "--table" => options.table = true,
             "--no-triangles" => options.triangles = false,
             "--no-frames" => options.frames = false,
             _ if word.starts_with('-') => return Err(format!("no such option: {word}")),
@@ -123,6 +126,11 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
                 let whole = whole::measure(mesh, stages, &material, &kernels, options.rounds)?;
                 frames.push(frame(&workload.name, stages, mesh.triangles().len(), &whole)?);
             }
+        }
+    }
+    if options.table {
+        for kernel in ["simd-avx2", "simd-avx512"] {
+            print_table(kernel, &tables);
         }
     }
     if let Some(path) = &options.json {
@@ -208,6 +216,32 @@ fn triangles(
         "best_peer_by_ours": ratio.json(),
         "candidates": rows,
     }))
+}
+
+/// Prints how many times as long as our batches by this kernel the best peer takes, by medians: a row for each drawing, a
+/// column for each workload.
+fn print_table(kernel: &str, tables: &[Value]) {
+    let named = |workload: &Value| workload["name"].as_str().unwrap_or_default().to_owned();
+    let workloads = |table: &Value| table["workloads"].as_array().cloned().unwrap_or_default();
+    // Those of the drawing that most have.
+    let Some(most) = tables.iter().map(workloads).max_by_key(Vec::len) else { return };
+    let names: Vec<String> = most.iter().map(named).collect();
+    println!("\n| best peer ÷ ours, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
+    for table in tables {
+        let of = workloads(table);
+        let ratio = |name: &String| {
+            let workload = of.iter().find(|workload| named(workload) == *name)?;
+            let times = |wanted: &dyn Fn(&Value) -> bool| {
+                let candidates = workload["candidates"].as_array()?.iter().filter(|candidate| wanted(candidate));
+                candidates.filter_map(|candidate| candidate["ns"]["median"].as_f64()).min_by(f64::total_cmp)
+            };
+            let ours = times(&|candidate| candidate["name"] == format!("batches, {kernel}"))?;
+            Some(times(&|candidate| candidate["is_ours"] == false)? / ours)
+        };
+        let cell = |name| ratio(name).map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
+        let cells: Vec<String> = names.iter().map(cell).collect();
+        println!("| {} | {} |", table["drawing"].as_str().unwrap_or_default(), cells.join(" | "));
+    }
 }
 
 /// A median and its interval.

@@ -35,6 +35,13 @@ struct Corners {
     lit: [[f32; 6]; CORNERS],
 }
 
+/// Returns whether no pixel centre lies between these coordinates, the least included and the greatest not.
+#[inline]
+fn has_no_centre([a, b, c]: [i32; 3]) -> bool {
+    let first_centre = |coordinate: i32| (coordinate + 127) >> 8;
+    first_centre(a.min(b).min(c)) == first_centre(a.max(b).max(c))
+}
+
 /// Corners of a whole batch.
 const CORNERS: usize = 3 * EffectBatch::CAPACITY;
 
@@ -90,12 +97,18 @@ impl EffectBatch {
         self.count >= Self::CAPACITY
     }
 
-    /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing.
-    /// Returns `false`, and adds nothing, if there is no room.
+    /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing. One
+    /// whose box has no pixel centre is left out. Returns `false`, and adds nothing, if there is no room.
     #[inline]
     pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
         if self.is_full() {
             return false;
+        }
+        // On a fine model most are such: they are not worth the storing.
+        if has_no_centre(vertices.each_ref().map(|vertex| vertex.x().to_bits()))
+            || has_no_centre(vertices.each_ref().map(|vertex| vertex.y().to_bits()))
+        {
+            return true;
         }
         if self.corners.is_empty() {
             self.corners.push(Corners::NONE);
@@ -155,5 +168,43 @@ impl<D: Cell> Raster<'_, D> {
         *count = 0;
         drawn
     }
+    }
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fixed::I24F8;
+    use crate::raster::frame::Frame;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4_000))]
+        /// A face that is left out covers no pixel, and one that stays in is drawn.
+        #[test]
+        fn what_is_left_out_covers_nothing(corners in prop::array::uniform3((0_i32..40, 0_i32..40))) {
+            let at = |(x, y): (i32, i32)| {
+                let place = |c: i32| I24F8::from_bits(c * 32);
+                Vertex::new(place(x), place(y), U8F8::from(9), 1).expect("inside the guard band")
+            };
+            let vertices = corners.map(at);
+            let mut batch = EffectBatch::new();
+            prop_assert!(batch.push(&vertices, &[Attributes::default(); 3]));
+            let is_left_out = batch.is_empty();
+            let draw = |draw: &mut dyn FnMut(&mut Raster<'_>)| {
+                let mut bytes = [0; 64];
+                draw(&mut Raster::new(Frame::new(&mut bytes, 8, 8, 8).expect("a frame")));
+                bytes
+            };
+            let alone = draw(&mut |raster| {
+                raster.triangle(&vertices, crate::raster::Interpolation::Gouraud);
+            });
+            let together = draw(&mut |raster| {
+                raster.batch_with_effects(&mut batch, &PixelPipeline::PLAIN);
+            });
+            prop_assert_eq!(alone, together);
+            prop_assert!(!is_left_out || alone == [0; 64]);
+        }
     }
 }
