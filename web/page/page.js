@@ -191,6 +191,8 @@ class Page {
     element("first-pose").hidden = Object.keys(FIRST_POSE).every((axis) => state.pose[axis] === FIRST_POSE[axis]);
     element("beside").value = state.beside;
     element("screen").classList.toggle("divided", Boolean(state.beside));
+    // At once: what is told with the times waits for them.
+    this.versus.compare();
     if ("divider" in change) this.moveDivider(state.divider);
     this.#isStale = true;
     clearTimeout(this.#linkTimer);

@@ -21,7 +21,7 @@ class Versus {
   /** Tells the times; `marks` is what was measured at the slider's marks, undefined where nothing was yet. */
   tell(marks) {
     const { left, state, accuracy } = this.page;
-    this.#compare();
+    this.compare();
     const known = marks.filter((mark) => mark);
     const full = (of, own) => Math.max(own ?? 0, ...known.map(of));
     this.#bar("time-bar", left.isRedrawn && left.ms / full(({ ms }) => ms, left.ms));
@@ -29,8 +29,8 @@ class Versus {
     this.#strip.classList.toggle("settling", state.playing ? left.ms === null : !left.isSettled);
   }
 
-  /** The two pictures' names, their times, and the ratio. */
-  #compare() {
+  /** Tells the two pictures' names, their times, and the ratio. */
+  compare() {
     const { left, right, state } = this.page;
     const isTimed = state.beside && state.beside !== "truth";
     setText(element("left-name"), settingName(state));
