@@ -71,8 +71,8 @@ impl DirectTexture<'_> {
     fn show<T: Tint, const DIRECT: bool>(self, spans: &Spans<'_>, tint: T, out: &mut [u8], kernel: Kernel) {
         let level = kernel.simd_level();
         match self.is_perspective {
-            false => show_spans::<T, false, DIRECT>(level, spans, self.image, tint, out),
-            true => show_spans::<T, true, DIRECT>(level, spans, self.image, tint, out),
+            false => show_affine::<T, DIRECT>(level, spans, self.image, tint, out),
+            true => show_exact::<T, DIRECT>(level, spans, self.image, tint, out),
         }
     }
 }
@@ -92,10 +92,10 @@ impl Spans<'_> {
         // A function for each, so that none is compiled otherwise where another is left out.
         match (stage.mapping, levels) {
             (Mapping::Affine, None) => {
-                show_spans::<_, false, false>(level, self, stage.texels, shown.tint(), out);
+                show_affine::<_, false>(level, self, stage.texels, shown.tint(), out);
             }
             (Mapping::Perspective, None) => {
-                show_spans::<_, true, false>(level, self, stage.texels, shown.tint(), out);
+                show_exact::<_, false>(level, self, stage.texels, shown.tint(), out);
             }
             (Mapping::Affine, Some(_)) => self.affine_levels(shown, image, (out, places)),
             (Mapping::Perspective, Some(_)) => self.perspective_levels::<false>(shown, image, (out, places), kernel),
@@ -146,18 +146,29 @@ fn affine_texture<'a>(spans: &Spans<'_>, i: usize, image: Image<'a>) -> AffineTe
 }
 
 compiled_for_each_level! {
-    /// Shows the texels of every span: with `DIRECT` in the frame, otherwise in the buffer of all pixels.
+    /// Shows the texels of every span, linear on the screen: with `DIRECT` in the frame, otherwise in the buffer of all pixels.
     #[inline(never)]
-    fn show_spans[T: Tint, const PERSPECTIVE: bool, const DIRECT: bool][T, PERSPECTIVE, DIRECT](
+    fn show_affine[T: Tint, const DIRECT: bool][T, DIRECT](
         spans: &Spans<'_>,
         image: Texels<'_>,
         tint: T,
         out: &mut [u8],
-    ) = show_spans_by;
+    ) = show_affine_by;
+}
+
+compiled_for_each_level! {
+    /// Shows the texels of every span, linear on the face, as [`show_affine`] does.
+    #[inline(never)]
+    fn show_exact[T: Tint, const DIRECT: bool][T, DIRECT](
+        spans: &Spans<'_>,
+        image: Texels<'_>,
+        tint: T,
+        out: &mut [u8],
+    ) = show_exact_by;
 }
 
 #[inline(always)]
-fn show_spans_by<S: Lanes8, T: Tint, const PERSPECTIVE: bool, const DIRECT: bool>(
+fn show_affine_by<S: Lanes8, T: Tint, const DIRECT: bool>(
     s: S,
     spans: &Spans<'_>,
     image: Texels<'_>,
@@ -165,16 +176,31 @@ fn show_spans_by<S: Lanes8, T: Tint, const PERSPECTIVE: bool, const DIRECT: bool
     out: &mut [u8],
 ) {
     if spans.have_texture() {
-        return show_listed::<S, T, PERSPECTIVE, DIRECT>(s, spans, image, tint, out);
+        return show_listed::<S, T, false, DIRECT>(s, spans, image, tint, out);
     }
     let mut i = 0;
     while i < spans.count() {
         let end = spans.end_of_face(i);
-        if PERSPECTIVE {
-            show_perspective_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
-        } else {
-            show_affine_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
-        }
+        show_affine_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
+        i = end;
+    }
+}
+
+#[inline(always)]
+fn show_exact_by<S: Lanes8, T: Tint, const DIRECT: bool>(
+    s: S,
+    spans: &Spans<'_>,
+    image: Texels<'_>,
+    tint: T,
+    out: &mut [u8],
+) {
+    if spans.have_texture() {
+        return show_listed::<S, T, true, DIRECT>(s, spans, image, tint, out);
+    }
+    let mut i = 0;
+    while i < spans.count() {
+        let end = spans.end_of_face(i);
+        show_perspective_face::<S, T, DIRECT>(s, spans, (i, end), image, tint, out);
         i = end;
     }
 }
