@@ -94,21 +94,7 @@ impl AffinePlanes8 {
         }
     }
 
-    /// The coordinates of triangle `lane` at column i of row j.
-    #[inline(always)]
-    pub(super) fn start(&self, lane: usize, [i, j]: [i32; 2]) -> [u32; 2] {
-        let (lane, [column, row]) = (lane % LANES, [i, j].map(f64::from));
-        let mut starts = [0; 2];
-        for (of, start) in starts.iter_mut().enumerate() {
-            let n = self.n[of][lane] + self.per_row[of][lane] * row + self.per_column[of][lane] * column;
-            // The low bits; the sum is meant modulo 2³².
-            let change = (n * self.inverse[lane] + ROUND_MAGIC).to_bits() as u32;
-            *start = change.wrapping_add(self.first[of][lane].cast_unsigned());
-        }
-        starts
-    }
-
-    /// The coordinates, u and v, of each lane at these columns of rows `j`: [`start`](Self::start) in vectors.
+    /// The coordinates, u and v, of each lane at these columns of rows `j`.
     #[inline(always)]
     pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::I32; 2] {
         let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));
@@ -128,12 +114,6 @@ impl AffinePlanes8 {
     #[inline(always)]
     pub(super) fn steps<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> [S::I32; 2] {
         [lane.load_i32(s, &self.step[0]), lane.load_i32(s, &self.step[1])]
-    }
-
-    /// Change from a pixel of triangle `lane` to the next one.
-    #[inline(always)]
-    pub(super) fn step(&self, lane: usize) -> [u32; 2] {
-        [self.step[0][lane % LANES].cast_unsigned(), self.step[1][lane % LANES].cast_unsigned()]
     }
 }
 
@@ -187,22 +167,7 @@ impl PerspectivePlanes8 {
         }
     }
 
-    /// The sums of triangle `lane` at column i of row j.
-    #[inline(always)]
-    pub(super) fn start(&self, lane: usize, [i, j]: [i32; 2]) -> [f64; 3] {
-        let (lane, [column, row]) = (lane % LANES, [i, j].map(f64::from));
-        let mut sums = [0.0; 3];
-        for (weights, values) in self.weights.iter().zip(&self.values) {
-            let weight = weights[0][lane] + weights[1][lane] * row + weights[2][lane] * column;
-            for (sum, values) in sums.iter_mut().zip(values) {
-                *sum += weight * values[lane];
-            }
-        }
-        sums
-    }
-
-    /// The sums of each lane at these columns of rows `j`: [`start`](Self::start) in vectors, which may fuse a product with a
-    /// sum and so rounds no more often.
+    /// The sums of each lane at these columns of rows `j`. A product may be fused with a sum, which rounds less often.
     #[inline(always)]
     pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::F64; 3] {
         let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));

@@ -116,7 +116,7 @@ impl<'a> Faces<'a> {
 
     /// The one shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
     pub(super) fn shade_faces<const CULLS: bool>(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-        if self.channels || self.paints.iter().any(|paint| paint.response.is_some()) {
+        if self.channels {
             for (flat, &pick) in flat.iter_mut().zip(picks) {
                 *flat = self.flat(self.face(Pick(pick)));
             }
@@ -152,7 +152,7 @@ impl<'a> Faces<'a> {
             }
             let shades = paint.shade_of_eight(&self.lights.unit_front_of_one_channel(&paint.answer, &points, kernel));
             for (flat, shade) in flat.iter_mut().zip(shades) {
-                *flat = [shade; 3];
+                *flat = [paint.respond(shade); 3];
             }
         }
     }
@@ -179,14 +179,12 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
             continue;
         };
         let normals: [Vec3; LANES] = each!(lane => faces.face_points[of[lane].index()].normal);
-        let mut shades = [0; LANES];
-        s.store_i32(
-            light_eight::<S, BOTH>(s, &faces.paints[usize::from(surface)], &faces.lights, &normals),
-            &mut shades,
-        );
+        let (paint, mut shades) = (&faces.paints[usize::from(surface)], [0; LANES]);
+        s.store_i32(light_eight::<S, BOTH>(s, paint, &faces.lights, &normals), &mut shades);
         for (lane, flat) in flat.iter_mut().enumerate() {
             // The front's shade is in the lower half.
-            *flat = [U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16); 3];
+            let shade = U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16);
+            *flat = [paint.respond(shade); 3];
         }
     }
 }

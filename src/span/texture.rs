@@ -202,7 +202,7 @@ pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, mut u: u32, mut v: u32, d
 
 /// What becomes of a texel.
 pub(crate) trait Shown: Copy {
-    /// What a loop over a whole span takes for it.
+    /// The tint that does this to a whole span.
     #[cfg(feature = "alloc")]
     type Tint: Tint;
     #[cfg(feature = "alloc")]
@@ -281,19 +281,19 @@ pub(crate) struct SpanValues {
     pub(crate) skipped: u32,
 }
 
-/// What becomes of texels along a span: a loop that writes them where they belong.
+/// Turns the texels of a span into the bytes that are written: as they are, lit, fogged or blended.
 #[cfg(feature = "alloc")]
 pub(crate) trait Tint: Copy {
     /// True if the density of fog is read.
     const HAS_FOG: bool = false;
     /// True if what the pixels hold is read, so that they can be written only once.
     const READS_PIXELS: bool = false;
-    /// What changes along a span, ...
+    /// State that changes along a span.
     type Along<S: Lanes8>: Copy;
-    /// ... and what of that eight pixels have.
+    /// Table rows of eight pixels.
     type Rows: Copy;
     fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S>;
-    /// What eight pixels have that hold these bytes. Goes on to the next eight.
+    /// The table rows of the next eight pixels, whose present bytes are `pixels`; advances the state.
     fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
     /// The byte for a texel of pixel `k` of eight.
     fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
@@ -322,7 +322,7 @@ fn rows_of<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
     rows
 }
 
-/// It is shown.
+/// Texels as they are.
 #[cfg(feature = "alloc")]
 impl Tint for () {
     type Along<S: Lanes8> = ();
@@ -337,7 +337,7 @@ impl Tint for () {
     }
 }
 
-/// The byte for one shade and the texel is shown.
+/// Texels looked up in one row of a table: one shade for all.
 #[cfg(feature = "alloc")]
 impl Tint for &[u8; 256] {
     type Along<S: Lanes8> = ();
@@ -352,7 +352,7 @@ impl Tint for &[u8; 256] {
     }
 }
 
-/// A table of bytes for a shade and a texel: the shades are those of the span's paint.
+/// Texels lit by a table, with the shades of the span's paint.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct Painted<'a>(pub(crate) &'a [u8; 65_536]);
@@ -375,7 +375,7 @@ impl Tint for Painted<'_> {
     }
 }
 
-/// A table of bytes for a shade and a texel: the shades are what the pixels hold.
+/// Texels lit by a table, with the shades that the pixels hold.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct Held<'a>(&'a [u8; 65_536]);
@@ -397,7 +397,7 @@ impl Tint for Held<'_> {
     }
 }
 
-/// What becomes of texels is mixed with what the pixels hold, by a table: its row is the texel's byte.
+/// Blends the bytes of another tint with those of the pixels, by a table with a row for each byte of the tint.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct Blended<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
@@ -422,7 +422,7 @@ impl<T: Tint> Tint for Blended<'_, T> {
     }
 }
 
-/// What becomes of texels lies in fog: a table of bytes for a level and a byte.
+/// Fogs the bytes of another tint, by a table with a row for each level of fog.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct Fogged<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);

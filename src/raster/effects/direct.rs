@@ -13,14 +13,14 @@ pub(super) struct DirectTexture<'a> {
     pub(super) tint: DirectTint<'a>,
 }
 
-/// What becomes of its texels.
+/// The tint of its texels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectTint<'a> {
-    /// They are shown.
+    /// None: texels are shown as they are.
     None,
-    /// A row of a table has their bytes: the shade is one.
+    /// One row of a table, for one shade.
     Row(&'a [u8; 256]),
-    /// A table has their bytes, by linear shades.
+    /// A table, for linear shades.
     Lit(&'a [u8; 65_536]),
 }
 

@@ -74,7 +74,7 @@ impl Mark {
 /// Numbers of a span: its mark, and the first of each value with its step above it.
 const NUMBERS: usize = 2 + Value::MAX_COUNT;
 
-/// Those of texture coordinates that are linear on the screen: u and v of a span's first pixel, and what each pixel adds.
+/// Numbers of texture coordinates that are linear on the screen: u and v at a span's first pixel, and their steps.
 const COORDINATES: usize = 4;
 
 /// Sums at a span's first pixel of texture coordinates that are linear on the face: two numerators, and the divisor.
@@ -217,9 +217,9 @@ impl Columns {
 
 /// Values that are set up for each face beside its shade.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted {
+struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
-    pub(super) texture: Option<Mapping>,
+    texture: Option<Mapping>,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last that is taken.
@@ -262,7 +262,7 @@ pub(super) struct WalkedFace {
 /// Spans of a list as the stages know them: their marks, and the planes of their faces.
 pub(super) struct Listed<'a> {
     pub(super) faces: Faces<'a>,
-    pub(super) wanted: Wanted,
+    wanted: Wanted,
     pub(super) planes: &'a mut [FacePlanes8; Batches::COUNT],
     pub(super) batches: Batches,
     pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,

@@ -21,7 +21,7 @@ pub(super) struct Recorded {
     pub(super) span: Span,
     /// Start and step.
     pub(super) affine: Option<[[u32; 2]; 2]>,
-    pub(super) perspective: Option<[[f64; 3]; 2]>,
+    pub(super) perspective: [[f64; 3]; 2],
     pub(super) depth: [i64; 2],
 }
 
@@ -79,16 +79,11 @@ impl Shades8 for Recorder<'_> {
         while first < list.count() {
             let spans = Spans::of(listed, list, first, &mut offsets);
             for i in 0..spans.count() {
-                let place = spans.place(i);
                 self.recorded.push(Recorded {
                     pick: listed.batches.first + listed.mark(first + i).face(),
                     span: spans.span(i),
-                    affine: spans.affine(i).map(|(planes, lane)| {
-                        let alone = [planes.start(lane, place), planes.step(lane)];
-                        // As the list has them, if it has those of all spans.
-                        if spans.have_texture() && spans.is_affine() { spans.affine_start(i) } else { alone }
-                    }),
-                    perspective: spans.perspective(i).map(|_| [spans.sums(i), spans.sum_steps(i)]),
+                    affine: spans.fits_affine(i).then(|| spans.affine_start(i)),
+                    perspective: [spans.sums(i), spans.sum_steps(i)],
                     depth: spans.depth(i).1,
                 });
             }

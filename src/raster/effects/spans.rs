@@ -2,14 +2,13 @@
 
 use core::ops::Range;
 
-use super::listing::{FaceCorners, FacePlanes8, Listed, Mark};
+use super::listing::{FaceCorners, Listed, Mark};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::shade::RESEED;
-use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
@@ -191,12 +190,6 @@ impl<'a> Spans<'a> {
         self.listed.has_texture
     }
 
-    /// Returns whether those are linear on the screen.
-    #[cfg(all(test, feature = "std"))]
-    pub(super) fn is_affine(&self) -> bool {
-        self.listed.wanted.texture == Some(crate::mapping::Mapping::Affine)
-    }
-
     /// u and v at the first pixel of span `i`, and what each pixel adds, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
@@ -216,30 +209,11 @@ impl<'a> Spans<'a> {
         planes.perspective.step(lane)
     }
 
-    /// The planes of texture coordinates that are linear on the screen, and the lane, of the face of span `i`; `None` where
-    /// set-up in f64 has none.
+    /// Returns whether the list has the coordinates, linear on the screen, of the face of span `i`.
     #[inline(always)]
-    pub(super) fn affine(&self, i: usize) -> Option<(&'a AffinePlanes8, usize)> {
-        let (planes, lane) = self.planes(i)?;
-        (planes.affine.fits >> lane & 1 != 0).then_some((&planes.affine, lane))
-    }
-
-    /// The planes of the spans whose texture is linear on the face.
-    #[inline(always)]
-    pub(super) fn perspective(&self, i: usize) -> Option<(&'a PerspectivePlanes8, usize)> {
-        self.planes(i).map(|(planes, lane)| (&planes.perspective, lane))
-    }
-
-    #[inline(always)]
-    fn planes(&self, i: usize) -> Option<(&'a FacePlanes8, usize)> {
-        let mark = self.listed.mark(self.first + i);
-        if self.listed.walked.is_some() { None } else { Some(self.listed.planes(mark.face())) }
-    }
-
-    /// The column and the row of span `i` from those of its planes.
-    #[inline(always)]
-    pub(super) fn place(&self, i: usize) -> [i32; 2] {
-        self.listed.mark(self.first + i).place()
+    pub(super) fn fits_affine(&self, i: usize) -> bool {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        self.listed.walked.is_none() && planes.affine.fits >> lane & 1 != 0
     }
 
     /// One stage: for every face `plane` makes what its values are over it, from its corners top to bottom; for every
