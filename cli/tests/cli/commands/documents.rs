@@ -42,7 +42,7 @@ const PROGRAM: &str = include_str!("../../../../docs/program.md");
 const SCENES: &str = include_str!("../../../../assets/scenes/README.md");
 
 /// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
-const OTHERS: [&str; 10] = [
+const OTHERS: [&str; 11] = [
     "--bench",
     "--ignored",
     "--no-fail-fast",
@@ -51,6 +51,7 @@ const OTHERS: [&str; 10] = [
     "--rabbit",
     "--release",
     "--renew",
+    "--table",
     "--test",
     "--test-threads",
 ];
