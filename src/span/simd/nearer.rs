@@ -16,6 +16,8 @@ use crate::span::fixed16::fill_16_16 as fill_16_16_portable;
 
 /// Pixels a turn, ...
 const EIGHT: usize = 8;
+/// ... of the shades of long spans, ...
+const SIXTEEN: usize = 16;
 /// ... or of spans that have no more than
 const FOUR: usize = 4;
 
@@ -96,6 +98,16 @@ fn fill<'a>(
             if let (Some(row), Some(near)) = (row, near) {
                 of_four = _mm_add_epi32(of_four, four(row, near, span, depth, own));
                 turned = turned.wrapping_add(FOUR as u32);
+                continue;
+            }
+        }
+        if let Own::Linear = own
+            && length > EIGHT
+        {
+            let whole = length.next_multiple_of(SIXTEEN);
+            if let (Some(row), Some(near)) = (pixels.get_mut(at..at + whole), cells.get_mut(cell..cell + whole)) {
+                of_eight = _mm256_add_epi32(of_eight, sixteens(row, near, span, depth));
+                turned = turned.wrapping_add(whole as u32);
                 continue;
             }
         }
@@ -209,6 +221,21 @@ fn ones(bytes: __m128i) -> u32 {
     _mm_cvtsi128_si32(_mm_sad_epu8(_mm_sub_epi8(zero, bytes), zero)).cast_unsigned()
 }
 
+/// Eight lanes that are set, and eight that are not.
+static SET_THEN_CLEAR: [i32; 2 * EIGHT] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+
+/// The first `count` lanes set, at most eight.
+///
+/// (From memory, and not by a comparison: from that the compiler knows that the lanes it clears are stored as they were
+/// read, and stores the others by `vpmaskmovd`, which takes AMD's processors 20 cycles.)
+#[inline]
+#[target_feature(enable = "avx2")]
+fn first_eight(count: i32) -> __m256i {
+    let clear = EIGHT - count.clamp(0, EIGHT as i32) as usize;
+    // SAFETY: eight of the sixteen, from at most the ninth on; the load asks for no alignment.
+    unsafe { _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(clear).cast()) }
+}
+
 /// The depths of eight pixels a turn.
 struct Depths {
     /// With 32 fraction bits, so arranged that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
@@ -236,35 +263,62 @@ impl Depths {
     #[inline]
     #[target_feature(enable = "avx2")]
     fn stay<const KEEPS: bool>(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
+        let there = first_eight(self.left);
+        let depths = _mm256_and_si256(self.next(), there);
+        stay::<KEEPS>(cells, depths)
+    }
+
+    /// The depths of the next eight pixels.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn next(&mut self) -> __m256i {
         let [z0, z1] = self.z;
-        let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
-        let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-        let are_there = _mm256_cmpgt_epi32(_mm256_set1_epi32(self.left), lanes);
-        let depths = _mm256_and_si256(_mm256_castps_si256(upper), are_there);
-        // SAFETY: eight u32; the load asks for no alignment.
-        let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
-        let after = _mm256_max_epu32(before, depths);
-        if KEEPS {
-            // SAFETY: eight u32; the store asks for no alignment.
-            unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
-        }
         self.z = [_mm256_add_epi64(z0, self.step), _mm256_add_epi64(z1, self.step)];
         self.left -= EIGHT as i32;
-        _mm256_cmpeq_epi32(before, after)
+        let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
+        _mm256_castps_si256(upper)
     }
+}
+
+/// −1 where a depth is not greater than its cell; with `KEEPS` the cells keep the greater one.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn stay<const KEEPS: bool>(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
+    // SAFETY: eight u32; the load asks for no alignment.
+    let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
+    let after = _mm256_max_epu32(before, depths);
+    if KEEPS {
+        // SAFETY: eight u32; the store asks for no alignment.
+        unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
+    }
+    _mm256_cmpeq_epi32(before, after)
+}
+
+/// Lanes of 32 bits, sixteen numbers of 16 bits: 0 to 3 and 8 to 11, 4 to 7 and 12 to 15.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn halves([first, second]: [__m256i; 2]) -> __m256i {
+    _mm256_packs_epi32(first, second)
+}
+
+/// The lower bytes of two vectors of sixteen numbers below 256, arranged as [`halves`] are: in order.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
+    let both = _mm256_packus_epi16(a, b);
+    let (low, high) = (_mm256_castsi256_si128(both), _mm256_extracti128_si256(both, 1));
+    [_mm_unpacklo_epi32(low, high), _mm_unpackhi_epi32(low, high)]
 }
 
 /// −1 where one of up to four pixels stays; with `KEEPS` as [`Depths::stay`].
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: i32) -> __m128i {
-    let lanes = _mm_setr_epi32(0, 1, 2, 3);
     let dz = _mm_set1_epi64x(dz);
     let z0 = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
     let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
-    let are_there = _mm_cmpgt_epi32(_mm_set1_epi32(length), lanes);
-    let depths = _mm_and_si128(_mm_castps_si128(upper), are_there);
+    let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first_eight(length)));
     // SAFETY: four u32; the load asks for no alignment.
     let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
     let after = _mm_max_epu32(before, depths);
@@ -324,6 +378,54 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
         shades = _mm256_add_epi32(shades, next_shade);
     }
     stayed
+}
+
+/// One span of the shades that it names, in turns of sixteen. Returns of each lane the pixels that were not written, as a number
+/// below 0.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
+    let (start, step) = (span.paint as i16, (span.paint >> 16) as i16);
+    let steps = _mm256_set1_epi16(step);
+    // Arranged as `halves` are.
+    let numbers = _mm256_setr_epi16(0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15);
+    let mut shades = _mm256_add_epi16(_mm256_mullo_epi16(steps, numbers), _mm256_set1_epi16(start));
+    let next_shade = _mm256_slli_epi16(steps, 4);
+    // Below 2³¹, as that many pixels are there.
+    let mut depths = Depths::new(depth.z, depth.dz, span.length as i32);
+    let mut stayed = _mm256_setzero_si256();
+    let (pixels, cells) = (row.as_chunks_mut::<SIXTEEN>().0, cells.as_chunks_mut::<SIXTEEN>().0);
+    let mut turns = pixels.iter_mut().zip(cells);
+    let last = turns.next_back();
+    for (pixels, cells) in turns {
+        let depths = [depths.next(), depths.next()];
+        stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
+        shades = _mm256_add_epi16(shades, next_shade);
+    }
+    if let Some((pixels, cells)) = last {
+        let there = [first_eight(depths.left), first_eight(depths.left - EIGHT as i32)];
+        let depths = [_mm256_and_si256(depths.next(), there[0]), _mm256_and_si256(depths.next(), there[1])];
+        stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
+    }
+    stayed
+}
+
+/// Fills sixteen pixels where they are nearer; a pixel of depth 0 stays. The shades are arranged as [`halves`] are. Returns of
+/// each lane the pixels that were not written, as a number below 0.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m256i; 2], shades: __m256i) -> __m256i {
+    let [first, second] = cells.as_chunks_mut::<EIGHT>().0 else { unreachable!("sixteen are twice eight") };
+    let stay = [stay::<true>(first, depths[0]), stay::<true>(second, depths[1])];
+    // 0 or 255.
+    let stays = _mm256_srli_epi16(halves(stay), 8);
+    let [bytes, stays] = bytes_of(_mm256_srli_epi16(shades, 8), stays);
+    // SAFETY: sixteen bytes; the load and the store ask for no alignment.
+    unsafe {
+        let before = _mm_loadu_si128(pixels.as_ptr().cast());
+        _mm_storeu_si128(pixels.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays));
+    }
+    _mm256_add_epi32(stay[0], stay[1])
 }
 
 /// Fills one span of up to four pixels where it is nearer.
