@@ -13,8 +13,9 @@ use mode13h_assets::shipped;
 use crate::support::tried::Tried;
 
 /// The documents that a user reads.
-const DOCUMENTS: [(&str, &str); 6] = [
+const DOCUMENTS: [(&str, &str); 7] = [
     ("README.md", include_str!("../../../../README.md")),
+    ("examples/README.md", include_str!("../../../../examples/README.md")),
     ("docs/program.md", PROGRAM),
     ("docs/budget.md", include_str!("../../../../docs/budget.md")),
     ("docs/measurements.md", include_str!("../../../../docs/measurements.md")),
@@ -88,13 +89,6 @@ fn commands() -> Vec<(String, BTreeSet<String>)> {
         .collect()
 }
 
-/// A document without its section of old names.
-fn without_old_names(text: &str) -> String {
-    let Some((before, renamed)) = text.split_once("\n### Renamed\n") else { return text.to_string() };
-    let after = renamed.split_once("\n## ").map_or("", |(_, after)| after);
-    format!("{before}\n{after}")
-}
-
 /// What stands between two backticks, in all paragraphs that are no block of code.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with("    ")).flat_map(|line| line.split('`').skip(1).step_by(2))
@@ -107,7 +101,7 @@ fn documents_name_options_that_the_program_has() {
     assert!(commands.len() >= 9, "{commands:?}");
     let every: BTreeSet<&str> = commands.iter().flat_map(|(_, options)| options).map(String::as_str).collect();
     for (document, text) in DOCUMENTS {
-        for option in options(&without_old_names(text)) {
+        for option in options(text) {
             let known = every.contains(option) || OTHERS.contains(&option);
             assert!(known, "{document}: {option} is no option of the program");
             tried.add(1);
@@ -135,7 +129,7 @@ fn documents_name_options_that_the_program_has() {
 fn documents_give_options_values_that_they_take() {
     let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
     for (document, text) in DOCUMENTS {
-        for quote in quoted(&without_old_names(text)) {
+        for quote in quoted(text) {
             let words: Vec<&str> = quote.split(' ').collect();
             for pair in words.windows(2) {
                 // A placeholder, or more than one word.
@@ -206,7 +200,7 @@ fn documents_name_what_there_is() {
         word.contains('-') && word.starts_with(|c: char| c.is_ascii_lowercase()) && word.chars().all(legal)
     };
     for (document, text) in DOCUMENTS {
-        for word in quoted(&without_old_names(text)).map(|word| word.trim_matches('"')).filter(is_name) {
+        for word in quoted(text).map(|word| word.trim_matches('"')).filter(is_name) {
             assert!(known.contains(word), "{document}: `{word}` is the name of nothing");
             tried.add(1);
         }
@@ -330,5 +324,4 @@ fn options_and_keys_are_found_in_a_text() {
     assert_eq!(keys_of(keys), BTreeSet::from(["+", "1", "9", "B", "Esc", "H", "[", "]"]));
     assert!(has_heading("# One\n\n## The study's own clock\n", "the-studys-own-clock"));
     assert!(!has_heading("The study's own clock\n", "the-studys-own-clock"));
-    assert_eq!(without_old_names("new\n\n### Renamed\n\nold\n\n## 0.0.1\n\nmore"), "new\n\n0.0.1\n\nmore");
 }
