@@ -160,7 +160,7 @@ impl Film {
         Ok(Figures { line, json })
     }
 
-    /// Writes a stream. That nobody reads on ends it, and is no failure.
+    /// Writes a stream. A closed pipe ends it, and does not count as a failure.
     fn write_stream<Artist: Send>(
         &self,
         progress: &ProgressBar,

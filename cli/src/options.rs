@@ -25,8 +25,8 @@ pub(crate) use shading::{ShadingOptions, pace};
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
-/// What is drawn, and how, but for the shading. The scene decides what is not said here, and the library what the scene
-/// leaves open.
+/// What is drawn, and how, except for the shading. The scene decides what the options leave open, and the library what
+/// the scene does.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "What is drawn")]
 pub(crate) struct Drawing {
@@ -271,7 +271,7 @@ impl Drawing {
         self.pipeline.mapping
     }
 
-    /// A renderer that is set as the command line says, but for the shading.
+    /// A renderer with the settings of the command line, except for the shading.
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
         let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();

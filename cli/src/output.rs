@@ -38,8 +38,8 @@ pub(crate) fn finish_files_when_interrupted() {
     let _ = ctrlc::set_handler(end);
 }
 
-/// Writes a file: the one way to do so, for all commands. What was read, or written by this very command, is not
-/// overwritten, whatever name leads to it. The file is whole even if the program is told to end meanwhile.
+/// Writes a file, for all commands. Never overwrites what this command has read or written, whatever name leads to it.
+/// The file is whole even if the program is interrupted meanwhile.
 pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, Failure> {
     read_files::spare(path)?;
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
@@ -86,7 +86,7 @@ pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// Prints to standard output. That nobody reads on is no failure.
+/// Prints to standard output. A closed pipe does not count as a failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

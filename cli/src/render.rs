@@ -314,7 +314,7 @@ impl Out {
         }
     }
 
-    /// The files that are written, but for records.
+    /// The files that are written, except for records.
     fn files(&self) -> Vec<PathBuf> {
         match self {
             Out::Pictures(names, frames) => (0..*frames).map(|number| names.of(number)).collect(),

@@ -61,9 +61,8 @@ impl Switch {
         if (was, is) == (OFF, OFF) { format!("no {name} here") } else { format!("{name} {is}") }
     }
 
-    /// Switches off what was on in the frame before: images by taking them away, the rest by force. Else leaves it to
-    /// the plan, which has it on if the scene calls for it, and sees to it that the scene does. Dither goes through the
-    /// patterns before it is off.
+    /// Switches off what was on in the last frame: images by taking them away, the rest by force. Otherwise makes the
+    /// scene need it, so that the plan switches it on. Dither goes through its patterns before it is off.
     pub(crate) fn turn(self, stage: &mut Turntable, renderer: &mut Renderer) -> Result<(), RenderError> {
         let was_on = self.state(renderer) != OFF;
         if self == Switch::Dither {

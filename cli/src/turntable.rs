@@ -178,12 +178,12 @@ impl Turntable {
         self.frames_still = true;
     }
 
-    /// Shows it so many times as large.
+    /// Enlarges it by this factor.
     pub(crate) fn set_zoom(&mut self, zoom: f64) {
         self.zoom = zoom;
     }
 
-    /// Looks from another place, which stays, at another, which stays.
+    /// Looks from a fixed point at a fixed point.
     pub(crate) fn set_camera(&mut self, eye: Vec3, target: Vec3) {
         let near = self.camera.near.min(Camera::near_for(eye.distance(target)));
         self.camera = Camera { eye, target, near, ..self.camera };
@@ -205,7 +205,7 @@ impl Turntable {
     }
 
     /// Images on or off. Where there are none, each surface gets a chequered one: by the mesh's texture coordinates, or
-    /// else as what the surface mirrors. A palette that is made for what is seen is made anew.
+    /// else as what the surface mirrors. An automatic palette is made again.
     pub(crate) fn set_images(&mut self, on: bool) -> Result<(), RenderError> {
         self.has_images = on;
         self.automatic = None;

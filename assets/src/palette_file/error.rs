@@ -39,7 +39,7 @@ pub enum PaletteErrorKind {
         /// The text that stands there.
         found: Excerpt,
     },
-    /// The number of colours is no number from 1 to 256.
+    /// The number of colours is not from 1 to 256.
     Count {
         /// The text that stands there.
         found: Excerpt,

@@ -27,7 +27,7 @@ struct Change {
 impl Change {
     const NONE: Self = Self { stretch: Vec3::ONE, repeat: Vec2::ONE };
 
-    /// The key that tells changes apart.
+    /// The bits that distinguish one change from another.
     fn bits(self) -> [u32; 5] {
         let ([x, y, z], [u, v]) = (self.stretch.to_array(), self.repeat.to_array());
         [x, y, z, u, v].map(f32::to_bits)

@@ -2,7 +2,7 @@
 //!
 //! The program is a header of DOS, a stub of 16 bits, a flat image of the engine for a 386, and a film: one round of the
 //! scene in 16.16 ([`player`]), packed ([`unpack`]). Stub and image are at hand as bytes, so that no assembler is needed here; their source is
-//! in `machines/dos`, whose `build` makes the bytes anew.
+//! in `machines/dos`, whose `build` rebuilds the bytes.
 
 mod film;
 mod pack;

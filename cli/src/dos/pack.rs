@@ -171,7 +171,7 @@ mod tests {
         }
     }
 
-    /// What is broken off, or goes on, or has another byte, is refused or something else: never a panic, nor too much.
+    /// Truncated, extended or altered data is refused or unpacks to something else: no panic, and not too many bytes.
     #[test]
     fn what_is_broken_is_refused() {
         for bytes in &cases()[5..] {

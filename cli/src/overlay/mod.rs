@@ -109,7 +109,7 @@ impl Sheet {
         self.things.push(Thing::Picture { area, colors, columns });
     }
 
-    /// A line between two points of the window. What lies beyond it is left out.
+    /// A line between two points of the window. It is clipped to the window.
     pub(crate) fn line(&mut self, from: (i32, i32), to: (i32, i32), color: Rgb, thickness: u32) {
         self.things.push(Thing::Line { from, to, color, thickness });
     }

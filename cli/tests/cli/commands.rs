@@ -789,7 +789,7 @@ fn a_row_that_fails_says_what_was_written() {
     assert_fails(&run(&directory, &words), 3, "; written before that: a0.png to a2.png");
 }
 
-/// A model or a scene comes by a pipe, or packed; all give one picture. What they name is beside them, or here.
+/// A model or scene read from a pipe, or gzipped, gives the same picture. Files it names are found beside it, or here.
 #[test]
 fn input_comes_by_a_pipe_or_packed() {
     use std::io::Write;
@@ -1226,7 +1226,7 @@ fn a_model_with_colours_is_shown_in_them() {
 }
 
 /// A single picture of a model file fills nine tenths of its width or height and is centred, within a pixel, from whatever
-/// side; the frames of a row share one camera. What is asked for goes before what was chosen.
+/// side; the frames of a row share one camera. Options override what is chosen.
 #[test]
 fn a_single_picture_of_a_model_is_framed_as_it_stands() {
     let mut tried = Tried::new("a_single_picture_of_a_model_is_framed_as_it_stands", 12);
@@ -1415,7 +1415,7 @@ fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
     assert_eq!(reader.info().palette.as_deref().map(|palette| palette[3 * 200..3 * 201].to_vec()), Some(vec![r, g, b]));
 }
 
-/// What is asked for on the command line has the last word over what the scene asks for.
+/// Options of the command line override the scene.
 #[test]
 fn words_have_the_last_word_over_a_scene() {
     let directory = directory();

@@ -192,7 +192,7 @@ fn circle(corners: usize, radius: impl Fn(usize) -> f32) -> Vec<(f32, f32)> {
     (0..corners).map(|i| (angle(i).cos() as f32 * radius(i), angle(i).sin() as f32 * radius(i))).collect()
 }
 
-/// What is large but well formed loads, up to limits that are written down.
+/// Large but well-formed files load, up to documented limits.
 #[test]
 fn f1_large_faces_and_long_lines() {
     let mut tried = Tried::new("f1_large_faces_and_long_lines", 11);

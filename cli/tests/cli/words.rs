@@ -182,7 +182,7 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
     }
 }
 
-/// What is asked for by option is what the same key of a scene file asks for.
+/// An option does what the same key of a scene file does.
 #[test]
 fn an_option_does_what_its_key_does() {
     let mut tried = Tried::new("an_option_does_what_its_key_does", 9);

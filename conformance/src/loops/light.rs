@@ -85,7 +85,7 @@ fn shade(k: u16, [a, b, c]: [f32; 3], least: u16, most: u16) -> u16 {
 /// # Errors
 /// The first shade that was wrong.
 pub fn check_curve(cases: Cases, mut curve: impl FnMut(&mut [u16], [f32; 3], u16, u16)) -> Checked {
-    /// What lies behind the shades, and has to stay.
+    /// Fills the memory behind the shades, which must not change.
     const BEHIND: u16 = 0xABCD;
     let mut random = cases.random("curves");
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -0.0, 1e-40, 0.5, 1.5, 65_280.0];

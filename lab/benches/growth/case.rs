@@ -1,4 +1,4 @@
-//! What is timed.
+//! The cases to be timed.
 
 use std::rc::Rc;
 

@@ -30,7 +30,7 @@ pub const ALL: [ErrorLevel; 7] = [
 /// Colour where no error was taken: the background, and pixels that show another face than they should.
 pub const NOT_TAKEN: u32 = 0x8a_9099;
 
-/// Index of an error's level; the number of levels if the error is no number.
+/// The index of an error's level; the number of levels for NaN.
 #[must_use]
 pub fn index_of(error: f32) -> u8 {
     let indices = ALL.iter().zip(0..).find(|(level, _)| error <= level.up_to);

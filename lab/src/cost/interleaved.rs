@@ -1,6 +1,6 @@
-//! Times: all ways to draw side by side, round after round.
+//! Times: all methods side by side, round after round.
 //!
-//! A round draws all frames by every way, in an order that is shuffled anew for each round, so that no way always
+//! A round draws all frames by every method, in an order that each round shuffles again, so that no method always
 //! runs while the processor is warm, or after the same other one. A way that takes more than ten times as long as one
 //! before it sits out rounds, up to three of four: what waits for it would have few rounds. Nothing is subtracted. Every frame is drawn:
 //! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here

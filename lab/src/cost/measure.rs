@@ -29,7 +29,7 @@ pub struct Subject<'a> {
     pub frames: &'a [Scene],
     /// Frames 0.25° of a turn apart, for what swims; there may be none.
     pub steps: &'a [Scene],
-    /// Makes renderers that are set as everything is to be drawn, but for the shading: kernel, vertex path and the like.
+    /// Makes renderers with all settings except for the shading: kernel, vertex path and so on.
     pub renderer: &'a (dyn Fn() -> Renderer + Sync),
 }
 
@@ -384,7 +384,7 @@ pub(super) mod tests {
     const ROUNDS: usize = 232;
 
     /// Compares two shadings, one of which takes `slower` times as long as the other: their ratio, its interval, and
-    /// whether they can be told apart. Each of its rounds is one of those recorded, and in it the shadings take the
+    /// whether they can be distinguished. Each of its rounds is one of those recorded, and in it the shadings take the
     /// times of two of the six, chosen by chance: the noise that there is, and no difference but the planted one.
     fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Random) -> (f64, (f64, f64), bool) {
         let mut times = alloc::vec![Vec::new(), Vec::new()];

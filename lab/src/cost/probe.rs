@@ -189,7 +189,7 @@ impl core::error::Error for ProbeError {}
 #[derive(Debug, Default)]
 struct Numbered {
     meshes: Vec<Shared<Mesh>>,
-    /// Count of numbers that a digit tells apart.
+    /// How many values a digit has.
     base: usize,
     /// Meshes for each digit, the lowest first: every mesh with a surface for each of its own and each value of the
     /// digit. Its own count still, because how a face is split depends on its material.

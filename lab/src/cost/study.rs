@@ -123,7 +123,7 @@ pub struct ShadingRow {
     pub excess: Option<f64>,
     /// Change of errors from a frame to the next, root mean square.
     pub swim: f64,
-    /// True if no other shading is as near to `lit` and faster, as far as times can be told apart.
+    /// True if no other shading is as near to `lit` and measurably faster.
     pub efficient: bool,
     /// Shadings whose time cannot be told from this one's.
     pub as_fast_as: Vec<Shading>,
@@ -181,8 +181,7 @@ pub struct TimeRow {
     /// The least of [`BUDGETS`](super::BUDGETS) whose time for a frame, measured beside the shadings', is within
     /// `max_time`; none may be.
     pub least_that_fits: Option<f64>,
-    /// The largest error of these frames against `lit`, but for pixels where rounded vertices put light at the pixel itself
-    /// off.
+    /// The largest error of these frames against `lit`, except at pixels where rounded vertices shift the light itself.
     pub largest: f64,
 }
 

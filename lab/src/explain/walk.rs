@@ -20,7 +20,7 @@ pub struct Registers {
     pub eax: u32,
     /// The step, which the loop adds to it: BX, or in 16.16 EBX.
     pub ebx: u32,
-    /// Pixels left, this one included. It is 1 at the last one before the loop ends, or is started anew.
+    /// Pixels left, this one included. It is 1 at the last one before the loop ends or is restarted.
     pub cx: u32,
 }
 

@@ -39,9 +39,8 @@ pub struct Comparison {
     pub hidden_surfaces: HiddenSurfaces,
     /// Pixels that differ.
     pub pixels: u64,
-    /// True if they must be none: the methods that compare depths give the same bytes, but for triangles
-    /// without exact cover, which the scan-line method gives it. The others need
-    /// not: their differences are where they are wrong.
+    /// True if there must be none: methods that compare depths give the same bytes, except for triangles without exact
+    /// coverage, which the scan-line method draws exactly. Where the other methods differ, they are wrong.
     pub must_agree: bool,
 }
 

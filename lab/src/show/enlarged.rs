@@ -40,8 +40,7 @@ impl Enlarged {
         fill(&mut frame.clipped(&self.area()), self.corner(x, y), Self::ZOOM, index);
     }
 
-    /// Fills a pixel's cell but for a line at its left and upper side, which has another colour: a pixel that is
-    /// empty.
+    /// Fills the cell of an empty pixel, with lines of another colour along its left and upper sides.
     pub fn empty_cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index, line: Index) {
         self.cell(frame, x, y, line);
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + Point::new(1, 1), Self::ZOOM - 1, index);

@@ -190,7 +190,7 @@ impl Figures {
         self.of_each(self.sum)
     }
 
-    /// The root mean square; 0 if there is no error.
+    /// The root mean square; 0 if nothing was compared.
     #[must_use]
     pub fn rms(&self) -> f64 {
         libm::sqrt(self.of_each(self.squares))

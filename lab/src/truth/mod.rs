@@ -1,7 +1,7 @@
 //! Truth: the right picture of any scene in f64, slow and plain, to measure the engine by.
 //!
-//! It shares nothing with the engine but the scene and its meshes; camera, turning, clipping, cover and light are
-//! written here anew, from their formulas. What "should be" means depends on what one wants to know, so
+//! It shares nothing with the engine but the scene and its meshes; camera, rotation, clipping, coverage and light are
+//! written here a second time, from their formulas. What "should be" means depends on what one wants to know, so
 //! there is a [`Standard`] for each:
 //!
 //! | standard | vertices on the screen | intensity at a pixel | shows the error |

@@ -25,8 +25,8 @@ pub(super) struct Met {
 /// Finds the point where the ray through (`x`, `y`), in pixels from the frame's upper left corner, meets a
 /// triangle; `None` if it does not, or nearer than the near plane.
 ///
-/// Two faces that share an edge work out the same number for it, but for its sign. Where it is 0 the ray goes
-/// to the face whose left or top edge it is: so never to both, nor to neither.
+/// Two faces that share an edge compute the same number for it, with opposite signs. Where it is 0 the ray belongs to
+/// the face whose left or top edge it is, so always to exactly one.
 pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Met> {
     let [a, b, c] = triangle.each_ref().map(|corner| corner.seen);
     let p = [x - eye.centre[0], y - eye.centre[1], 1.0];

@@ -105,7 +105,7 @@ impl Genes {
         self.unit() < share
     }
 
-    /// Some of the numbers anew, or a little otherwise.
+    /// Some of the numbers drawn again, or changed a little.
     fn mutated(&self, random: &mut Random) -> Self {
         let mut genes = Self { values: self.values.clone(), next: 0 };
         for _ in 0..random.within(1, 4) {

@@ -300,8 +300,8 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
     }
 }
 
-/// Every pixel of a long row, in which spans start anew, by every shading; and of two bodies in one place, whose depths are
-/// equal everywhere, by every way to hidden surfaces.
+/// Every pixel of a long row, in which spans are reseeded, by every shading; and of two bodies in one place, whose depths
+/// are equal everywhere, by every hidden-surface method.
 #[test]
 fn every_pixel_of_a_long_row_and_of_equal_depths() {
     let mut scene = square([8.0, 312.0], [40.0, 160.0]);

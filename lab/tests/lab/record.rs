@@ -187,8 +187,7 @@ fn f5_any_text_is_refused_or_read() {
     });
 }
 
-/// What is recorded is what is drawn: replayed, every kernel and every method give the frame that the
-/// renderer gives, and the oracle too.
+/// Replaying a record gives the frame that the renderer gives, by every kernel, every method and the oracle.
 #[test]
 fn d4_recorded_frames_replay() {
     let mut tried = Tried::new("d4_recorded_frames_replay", 7 * 8);

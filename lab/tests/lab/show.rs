@@ -178,7 +178,7 @@ fn show_the_list_of_hard_cases_shows_every_picture_with_its_sentence() {
     }
 }
 
-/// `MODE13H_PICTURES=write` writes them anew, and fails, so that no run that does so passes.
+/// `MODE13H_PICTURES=write` regenerates them and always fails, so that such a run never passes.
 #[test]
 fn show_the_pictures_of_the_list_are_those_that_are_drawn() {
     let mut tried = Tried::new("show_the_pictures_of_the_list_are_those_that_are_drawn", 24);

@@ -143,7 +143,7 @@ struct Exempt {
     narrow: u64,
 }
 
-/// Compares every pixel with the bound itself. What is beyond it for no reason fails.
+/// Compares every pixel with the bound itself. One beyond it without a reason fails.
 fn beyond(what: &str, frame: &TruthFrame, errors: &ErrorMap, bound: f64) -> Exempt {
     let mut exempt = Exempt::default();
     for (place, error) in errors.errors().enumerate() {
@@ -223,9 +223,9 @@ fn linear_shadings_keep_their_bounds_on_random_scenes() {
     check_all_linear(Tried::new("linear_shadings_keep_their_bounds_on_random_scenes", 200_000), scenes);
 }
 
-/// Light at every pixel is right but for the rounding of a shade to 1/256 and to a byte, and for vertices that are
-/// rounded. Those move the point of a face that is seen at a pixel: with the weights λ of its corners there, which are
-/// moved by δ each, what is seen is what should be at p − Σ λδ, no farther from p than a vertex is moved.
+/// Light at every pixel is right except for the rounding of a shade to 1/256 and to a byte, and of vertices. That
+/// moves the point of a face that is seen at a pixel p: with the weights λ of its corners there, which are moved by δ
+/// each, it is the point that should be seen at p − Σ λδ, no farther from p than a vertex is moved.
 fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
     let (truth, shown) = (truth(scene), look(scene, Shading::Phong));
     let frame = truth.draw(Standard::Lit);
@@ -371,7 +371,7 @@ fn shadings_without_a_bound_are_measured() {
             let (rms, count) = rms(shading);
             tried.add(count);
             if shading == Shading::GouraudTessellated {
-                // The split faces' corners are rounded anew, and a byte has its half.
+                // The split faces' corners are rounded again, and a byte has its half.
                 assert!(rms <= reseeded + 0.5, "{name}: {rms} split, {reseeded} not");
                 (split, linear) = (split + rms, linear + reseeded);
             }
@@ -382,7 +382,7 @@ fn shadings_without_a_bound_are_measured() {
 
 // The probe
 
-/// What it says is shown is what is drawn.
+/// The probe reports what the engine draws.
 #[test]
 fn the_probe_shows_what_is_drawn() {
     for (name, scene) in scenes::all() {

@@ -88,7 +88,7 @@ fn commands() -> Vec<(String, BTreeSet<String>)> {
         .collect()
 }
 
-/// What stands between two backticks, in all paragraphs that are no block of code.
+/// Texts between backticks, outside of blocks of code.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with("    ")).flat_map(|line| line.split('`').skip(1).step_by(2))
 }
@@ -206,7 +206,7 @@ fn documents_name_what_there_is() {
     }
 }
 
-/// Capital letters that stand alone, each the name of a key, but for the article A; Esc, Space, digits and signs.
+/// The keys that a text names: single capital letters, except for the article A; Esc, Space, digits and signs.
 fn keys_of(text: &str) -> BTreeSet<&str> {
     let is_key = |word: &&str| {
         let letter = word.len() == 1 && word.chars().all(|c| c.is_ascii_uppercase()) && *word != "A";

@@ -35,7 +35,7 @@ pub(super) struct Sphere {
 pub(super) struct Figures {
     /// Spheres from coarse to fine.
     pub(super) spheres: Vec<Sphere>,
-    /// 8.8, 8.8 started anew, and 16.16, against `gouraud`.
+    /// The errors of 8.8, 8.8 reseeded and 16.16 against `gouraud`.
     pub(super) fixed: [Errors; 3],
     /// Against `gouraud-perspective`.
     pub(super) float: Errors,

@@ -13,7 +13,7 @@ const STYLES: [&str; 3] =
 /// Chart and divider.
 const SCRIPTS: [&str; 2] = [include_str!("shared/chart.js"), include_str!("shared/divider.js")];
 
-/// Draws the chart anew, so that it follows the window and light or dark, and puts a divider over each pair.
+/// Redraws the chart to follow the window and its colour scheme, and puts a divider over each pair.
 const MOUNT: &str = r#"
 for (const chart of document.querySelectorAll("[data-points]")) {
   const points = JSON.parse(chart.dataset.points);

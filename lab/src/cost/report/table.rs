@@ -37,7 +37,7 @@ impl Column {
     }
 }
 
-/// What stands in a row and a column: text, and how the page shows it if that is more than text.
+/// One cell: its text, and how the page shows it if that is more than text.
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
     text: String,

@@ -4,7 +4,7 @@ use super::page::NAMES;
 use super::{budgets, choices, shadings, summary, times};
 use crate::cost::{Claim, Study};
 
-/// The study as text: what the page says, but for its pictures, and of its tables the columns that matter most.
+/// The study as text: the page without its pictures, and the most important columns of its tables.
 #[must_use]
 pub fn text(study: &Study) -> String {
     let Study { input, host, kernel, frames, rounds, .. } = study;

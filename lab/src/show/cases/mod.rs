@@ -73,7 +73,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R8",
         title: "drawing in bands",
-        sentence: "One face drawn in four bands of rows (level lines): cut at the bands and rounded anew, its edges break.",
+        sentence: "One face drawn in four bands of rows (level lines): cut at the bands and rounded again, its edges break.",
         wrong: "the face cut at each band, new corners on whole pixels",
         right: "each band starts from the face as it is",
         build: triangles::r8,

@@ -390,7 +390,7 @@ pub fn words(bytes: &[u8]) {
     }
 }
 
-/// A frame's record. What was read is written, and that is read as the same; a small one is drawn every way there is.
+/// A frame's record. One that was read is written, and reads as the same again; a small one is drawn by every method.
 pub fn record(bytes: &[u8]) {
     match Record::read(bytes) {
         Ok(record) => {

@@ -86,7 +86,7 @@ fn surface(scene: &mut Scene, change: impl FnOnce(&mut Surface)) {
     scene.objects_mut()[0] = Object::new(mesh.with_surfaces(vec![surface], vec![0]).expect("a surface"));
 }
 
-/// What is said of motions: they stay where they begin, as with 0 in place of the number.
+/// The note on motions: they stay where they begin, as with 0 in place of the number.
 const BEGINS: &str = "is drawn as it begins";
 
 const FLOATS: &[Row] = &[
@@ -263,7 +263,7 @@ fn with_a_lamp() -> Scene {
 const NOT_ZERO: [(&str, &str); 2] =
     [("Camera.up", "a direction of any length"), ("Surface.opacity", "without any it is opaque, as files have it")];
 
-/// What is next to nothing is 0 for every float: the same picture in the same colours. It is refused where it is negative,
+/// Every float treats a tiny number as 0: the same picture in the same colours. It is refused where it is negative,
 /// and 0 is refused where a number must be above it.
 pub(crate) fn every_float_near_zero_is_zero(tried: &mut Tried) {
     for (name, i, put, _) in components() {

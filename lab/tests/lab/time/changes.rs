@@ -778,7 +778,7 @@ fn two_mappings(random: &mut Random) -> (Option<Mapping>, Option<Mapping>) {
     }
 }
 
-/// Sees to it that there is a texture on a face that is seen at an angle.
+/// Ensures a texture on a face that is seen at an angle.
 fn textured(world: &mut World, random: &mut Random) {
     let object = one_object(world, random);
     if object.mesh().texcoords().is_none() {
@@ -838,7 +838,7 @@ fn replace_mesh(object: &mut Object, mesh: Mesh) {
     (object.position, object.scale, object.up_axis) = (old.position, old.scale, old.up_axis);
 }
 
-/// A scene gives no object back: one of many begins anew with the last three.
+/// A scene gives no object back: one of many starts again with the last three.
 fn fewer_objects(world: &mut World) {
     let objects = world.scene.objects().to_vec();
     if objects.len() <= 5 {
