@@ -62,7 +62,7 @@ impl Film {
     /// 4:3 in square pixels, as browsers show them.
     const SCALE: Scale = Scale::To { width: 640, height: 480 };
 
-    /// A film of so many frames, or of one.
+    /// A film of `frames` frames, or of one.
     pub(crate) fn new(kind: Kind, out: &Path, frames: Option<u32>, rate: FrameRate, scale: Option<Scale>) -> Film {
         Film {
             kind,
@@ -79,7 +79,7 @@ impl Film {
         (self.kind != Kind::Stream).then_some(&self.out)
     }
 
-    /// Sets the number of frames to as many as so many seconds hold, where nobody gave it.
+    /// Sets the number of frames from a duration, unless it was given.
     pub(crate) fn lasts(&mut self, seconds: f64) {
         if !self.is_told {
             // Saturates.

@@ -36,7 +36,7 @@ impl Names {
         }
     }
 
-    /// A failure if one of the first so many names is that of a file that was read.
+    /// A failure if one of the first `frames` names is that of a file that was read.
     pub(crate) fn spare(&self, frames: u32) -> Result<(), Failure> {
         (0..frames).try_for_each(|number| read_files::spare(&self.of(number)))
     }

@@ -307,7 +307,7 @@ impl Out {
         }
     }
 
-    /// A film of which nobody says how many frames it has lasts so many seconds.
+    /// Sets the duration of a film whose number of frames was not given.
     fn lasts(&mut self, seconds: f64) {
         if let Out::Film(film) = self {
             film.lasts(seconds);

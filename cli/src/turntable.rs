@@ -138,8 +138,8 @@ impl Turntable {
         self.scene.duration
     }
 
-    /// Time and pose for `--turn` by so many degrees at a time. A model is turned. A scene that moves by itself goes
-    /// on, 360 degrees being one round of it; round one that does not, the camera goes.
+    /// Time and pose for `--turn`. A model is turned. In a scene that moves by itself time goes on, 360 degrees being one
+    /// round; round a scene that stands still the camera moves.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {

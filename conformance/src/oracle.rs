@@ -118,8 +118,8 @@ fn is_float(interpolation: Interpolation) -> bool {
     interpolation.name() == "float"
 }
 
-/// How far a byte of a shading may be from its exact shade in a frame of so many columns, in 1/256 shade, as n / d; `None` where
-/// nothing is promised.
+/// How far a byte of a shading may be from its exact shade in a frame of `width` columns, in 1/256 shade, as n / d;
+/// `None` where nothing is promised.
 pub fn bound(interpolation: Interpolation, width: i128) -> Option<(i128, i128)> {
     match interpolation {
         // A half for the byte, and less than 1/256 for the start and for each step.

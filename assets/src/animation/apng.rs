@@ -151,7 +151,7 @@ pub struct ApngFile {
 }
 
 impl ApngFile {
-    /// Begins a film of so many frames, to stand under `path`.
+    /// Begins a film of a given number of frames, in the file `path`.
     ///
     /// # Errors
     ///

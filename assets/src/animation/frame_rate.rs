@@ -9,7 +9,7 @@ use super::error::{AnimationError, AnimationErrorKind, FRAME_RATES};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRate(f64);
 
-/// So many frames a second: 0.1 to 50.
+/// From frames a second, 0.1 to 50.
 impl TryFrom<f64> for FrameRate {
     type Error = AnimationError;
 

@@ -162,7 +162,7 @@ fn verdict(study: &Study) -> Result<(), Failure> {
     }
 }
 
-/// Makes so many frames of what is shown, each turned by so many degrees more than the one before it.
+/// Makes `frames` frames of the scene, each turned by `degrees` more than the one before it.
 fn turned(stage: &mut Turntable, frames: u32, degrees: f64) -> Vec<Scene> {
     let mut scenes = Vec::new();
     for frame in 0..frames {

@@ -159,7 +159,7 @@ fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16
     }
 }
 
-/// Stub, image and packed film, as they are in memory. The film has so many bytes when unpacked.
+/// Stub, image and packed film, as they are in memory. `unpacked` is the film's length in bytes when unpacked.
 fn body(film: &[u8], unpacked: usize, vertices: usize) -> Result<Vec<u8>, Failure> {
     let mut body = PLAYER.to_vec();
     body.resize(body.len().next_multiple_of(16), 0);

@@ -6,7 +6,7 @@ use super::unpack::{Coder, Interval, MIN_REPEAT, Model, Token};
 
 /// The longest repeat.
 const MAX_REPEAT: usize = MIN_REPEAT + 255;
-/// So many places with the same three bytes are tried, from the nearest on.
+/// How many positions with the same three bytes are tried, from the nearest on.
 const MAX_TRIED: usize = 256;
 /// From this length on, no better repeat is looked for one byte later.
 const LONG: usize = 64;

@@ -19,8 +19,8 @@ pub(crate) const MIN_REPEAT: usize = 2;
 
 /// Codes decisions.
 pub(crate) trait Coder {
-    /// Returns a decision, whose probability of being yes is so many 65,536ths. One who writes is told it, and codes that;
-    /// one who reads is not. `None` if there is nothing left to read.
+    /// Returns a decision whose probability of being yes is given in 65,536ths. The packer is told the decision and
+    /// codes it; the unpacker finds it. `None` if there is nothing left to read.
     fn decide(&mut self, probability: u16, yes: bool) -> Option<bool>;
 }
 

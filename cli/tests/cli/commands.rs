@@ -574,8 +574,8 @@ fn hundredths_of(file: &[u8]) -> u64 {
     sum
 }
 
-/// A film of any length takes as much memory as a short one: the frames that wait are as many, 32 a thread, of 64,000 bytes
-/// and as much again in the making. So many frames more as are compared here would take ten times that.
+/// A film of any length takes as much memory as a short one: 32 frames a thread wait, each of 64,000 bytes and as much again
+/// while it is made. Keeping the additional frames compared here would take ten times that.
 #[cfg(target_os = "linux")]
 fn films_of(tried: &mut Tried, frames: u32) {
     const MIB: u64 = 1024;

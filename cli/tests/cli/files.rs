@@ -327,7 +327,7 @@ fn f1_long_time_grows_as_the_file_does() {
 
 // F2
 
-/// A grid of at least so many triangles; if `full`, with texture coordinates and normals. Returns how many.
+/// A grid of at least this many triangles; if `full`, with texture coordinates and normals. Returns how many.
 fn write_grid(path: &Path, faces: usize, full: bool) -> io::Result<usize> {
     let side = (1..).find(|side| side * side * 2 >= faces).unwrap_or(1);
     let mut out = BufWriter::with_capacity(1 << 20, File::create(path)?);
@@ -373,7 +373,7 @@ const CHILD: &str = "MODE13H_F2_FILE";
 #[cfg(target_os = "linux")]
 const BYTES_PER_FACE: u64 = 200;
 
-/// Loads a grid of so many faces in a process of its own: memory in proportion, progress told.
+/// Loads a grid in a process of its own: memory is in proportion to its faces, and progress is shown.
 #[cfg(target_os = "linux")]
 fn load_in_a_child(test: &str, faces: usize, full: bool) {
     if let Some(path) = std::env::var_os(CHILD) {
@@ -481,7 +481,7 @@ const WRITERS: [(&[&str], &str); 5] = [
     (&["palette", "bios", "-o", "x.png"], "x.png"),
 ];
 
-/// The disk is full at any block of the file: the system lets files grow to so many blocks of 512 bytes and no further.
+/// The disk is full at any block of the file: the system limits files to a number of blocks of 512 bytes.
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_no_room_at_any_block() {

@@ -105,7 +105,7 @@ fn thread_time() -> Duration {
     std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
 }
 
-/// 10⁷, or fewer where the memory that is said to be free does not hold so many twice over.
+/// 10⁷, or fewer if free memory does not hold them twice over.
 fn faces_that_fit() -> u64 {
     let free = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
         let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;

@@ -168,7 +168,7 @@ pub enum ProbeError {
     Scene(RenderError),
     /// There is no frame of the screen's size.
     Screen(RasterError),
-    /// An object has so many surfaces that its triangles cannot be numbered.
+    /// An object has too many surfaces for its triangles to be numbered.
     Surfaces(usize),
 }
 

@@ -38,7 +38,7 @@ pub struct Step {
     pub column: usize,
     /// Number of pixels in the row.
     pub columns: usize,
-    /// Column where the loop was last started in this row: its first pixel, or so many times 64 after it.
+    /// Column where the loop was last started in this row: its first pixel, or a multiple of 64 after it.
     pub start: u32,
     /// Its value, the byte among others.
     pub shade_trace: ShadeTrace,

@@ -9,8 +9,7 @@ use embedded_graphics::primitives::{Line, PrimitiveStyle, Rectangle};
 use super::face::Segment;
 use mode13h::raster::{Frame, Index};
 
-/// A part of a frame, so many columns and rows of it, as it stands enlarged on another frame. Nothing is drawn beyond
-/// either.
+/// A part of a frame, shown enlarged on another frame. Nothing is drawn beyond either.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Enlarged {
     /// Place of its upper left corner, in pixels of the frame that is drawn on.

@@ -79,8 +79,8 @@ fn cut(plane: usize, inside: &Kept, outside: &Kept, part: f64) -> Kept {
     }
 }
 
-/// A polygon of so many corners in triangles that turn the way it turns, by the places of their corners, and
-/// twice its area. `area` is twice that of the triangle of three corners, its sign the way it turns.
+/// A polygon cut into triangles that wind as it does, given by the indices of their corners, and twice its area.
+/// `area` returns twice the signed area of the triangle of three corners.
 pub(super) fn fan(corners: usize, area: impl Fn([usize; 3]) -> f64) -> (Vec<[usize; 3]>, f64) {
     let from = |apex: usize| {
         let place = move |i: usize| (apex + i) % corners;

@@ -379,7 +379,7 @@ fn screen(random: &mut Random) -> Screen {
     Screen { width, height, ..Screen::MODE_13H }
 }
 
-/// No pixel of so many scenes of a kind is beyond.
+/// Checks a number of scenes of a kind: no pixel is beyond its budget.
 fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
     let mut broken = 0;
     let mut first = None;

@@ -181,7 +181,7 @@ fn the_head_says_shape_and_rate() {
     }
 }
 
-/// Takes so many bytes, then is full.
+/// Takes a number of bytes, then is full.
 struct Disk {
     room: Rc<Cell<usize>>,
 }

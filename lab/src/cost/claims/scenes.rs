@@ -10,7 +10,7 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::{Camera, Object, Scene};
 
-/// Spheres, from coarse to fine: so many slices, and half as many stacks.
+/// The slices of spheres, from coarse to fine. Each has half as many stacks.
 pub(super) const SLICES: [u32; 6] = [8, 16, 32, 64, 128, 256];
 
 /// Frames of each.

@@ -16,7 +16,7 @@ use mode13h::vga::Vga;
 use crate::support::scenes::framed;
 use crate::support::tried::Tried;
 
-/// Puts a number into a scene, as one of so many components.
+/// Puts a number into a scene, as the component with this index.
 type Put = fn(&mut Scene, f32, usize);
 
 /// A field, its number of components, how a number comes into it, and with what the refusal begins, or [`BEGINS`].
