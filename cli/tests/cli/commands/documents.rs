@@ -13,9 +13,8 @@ use mode13h_assets::shipped;
 use crate::support::tried::Tried;
 
 /// The documents that a user reads.
-const DOCUMENTS: [(&str, &str); 7] = [
+const DOCUMENTS: [(&str, &str); 6] = [
     ("README.md", include_str!("../../../../README.md")),
-    ("examples/README.md", include_str!("../../../../examples/README.md")),
     ("docs/program.md", PROGRAM),
     ("docs/budget.md", include_str!("../../../../docs/budget.md")),
     ("docs/measurements.md", include_str!("../../../../docs/measurements.md")),
@@ -24,15 +23,18 @@ const DOCUMENTS: [(&str, &str); 7] = [
 ];
 
 /// The documents for those who change the engine: their files are checked, their words are not.
-const MORE_DOCUMENTS: [(&str, &str); 10] = [
+const MORE_DOCUMENTS: [(&str, &str); 13] = [
     ("ARCHITECTURE.md", include_str!("../../../../ARCHITECTURE.md")),
     ("CONTRIBUTING.md", include_str!("../../../../CONTRIBUTING.md")),
     ("docs/decisions.md", include_str!("../../../../docs/decisions.md")),
     ("docs/sources.md", include_str!("../../../../docs/sources.md")),
     ("docs/testing.md", include_str!("../../../../docs/testing.md")),
     ("docs/machines.md", include_str!("../../../../docs/machines.md")),
+    ("examples/README.md", include_str!("../../../../examples/README.md")),
+    ("palettes/README.md", include_str!("../../../../palettes/README.md")),
     ("tests/HARD_CASES.md", include_str!("../../../../tests/HARD_CASES.md")),
     ("web/README.md", include_str!("../../../../web/README.md")),
+    ("web/text/README.md", include_str!("../../../../web/text/README.md")),
     ("lab/README.md", include_str!("../../../../lab/README.md")),
     ("cli/README.md", include_str!("../../../README.md")),
 ];
