@@ -35,7 +35,7 @@ use drawing::{Drawing, Material};
 use mode13h::span::Kernel;
 use serde_json::{Value, json};
 use timing::{Median, Times, Turns};
-use whole::Stages;
+use whole::{Shown, Stages};
 use workload::Workload;
 
 pub const WIDTH: usize = 320;
@@ -122,15 +122,19 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     for stages in Stages::ALL.into_iter().filter(|_| options.frames) {
         println!("\nWhole frames, {}: ns a face of the mesh; the peer is {mesa}, one thread", stages.name());
         for workload in &workloads {
-            if let Some(mesh) = &workload.mesh {
-                let whole = whole::measure(mesh, stages, &material, &kernels, options.rounds)?;
-                frames.push(frame(&workload.name, stages, mesh.triangles().len(), &whole)?);
+            let Some(mesh) = &workload.mesh else { continue };
+            let whole = whole::measure((mesh, Shown::One), stages, &material, &kernels, options.rounds)?;
+            frames.push(frame(&workload.name, stages, mesh.triangles().len(), &whole)?);
+            if workload.name == "cube" {
+                let whole = whole::measure((mesh, Shown::Crowd), stages, &material, &kernels, options.rounds)?;
+                frames.push(frame("500 cubes", stages, 500 * mesh.triangles().len(), &whole)?);
             }
         }
     }
     if options.table {
         for kernel in ["simd-avx2", "simd-avx512"] {
             print_table(kernel, &tables);
+            print_frames(kernel, &frames);
         }
     }
     if let Some(path) = &options.json {
@@ -241,6 +245,28 @@ fn print_table(kernel: &str, tables: &[Value]) {
         let cell = |name| ratio(name).map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
         let cells: Vec<String> = names.iter().map(cell).collect();
         println!("| {} | {} |", table["drawing"].as_str().unwrap_or_default(), cells.join(" | "));
+    }
+}
+
+/// Prints how many times as long as ours, with a depth buffer by this kernel, Mesa takes: a row for each drawing of whole
+/// frames, a column for each scene.
+fn print_frames(kernel: &str, frames: &[Value]) {
+    let mut names: Vec<&str> = Vec::new();
+    for name in frames.iter().filter_map(|frame| frame["name"].as_str()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    println!("\n| Mesa ÷ ours, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
+    for stages in Stages::ALL {
+        let cell = |name: &&str| {
+            let frame = frames.iter().find(|frame| frame["name"] == **name && frame["stages"] == stages.name())?;
+            let ours =
+                frame["ours"].as_array()?.iter().find(|ours| ours["name"] == format!("depth buffer, {kernel}"))?;
+            ours["mesa_by_ours"]["median"].as_f64().map(|ratio| format!("{ratio:.2}"))
+        };
+        let cells: Vec<String> = names.iter().map(|name| cell(name).unwrap_or_else(|| "–".to_owned())).collect();
+        println!("| {} | {} |", stages.name(), cells.join(" | "));
     }
 }
 

@@ -67,11 +67,13 @@ void peers_mesa_stages(int both, int textured, float start, float end, float gre
     glFogfv(GL_FOG_COLOR, color);
 }
 
-/* Clear, transform, light, cull, draw; the pixels are there when it returns. */
-void peers_mesa_frame(const float *modelview) {
+/* Clear, then for each object, given its matrix: transform, light, cull, draw. The pixels are there when it returns. */
+void peers_mesa_frame(const float *modelviews, int objects) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glLoadMatrixf(modelview);
-    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, indices);
+    for (int i = 0; i < objects; i++) {
+        glLoadMatrixf(modelviews + 16 * i);
+        glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, indices);
+    }
     glFinish();
 }
 

@@ -37,7 +37,7 @@ unsafe extern "C" {
         count: c_int,
     );
     fn peers_mesa_stages(both: c_int, textured: c_int, start: f32, end: f32, grey: f32);
-    fn peers_mesa_frame(modelview: *const f32);
+    fn peers_mesa_frame(modelviews: *const f32, objects: c_int);
     fn peers_mesa_read(of_pixels: c_int, bytes: *mut u8);
 }
 
@@ -98,7 +98,34 @@ impl Stages {
     }
 }
 
-/// Frames of one mesh that turns.
+/// What a frame shows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Shown {
+    /// One mesh, which fills the frame.
+    One,
+    /// 500 of it, side by side, above and behind each other: what an object costs, however small.
+    Crowd,
+}
+
+impl Shown {
+    /// Objects of a crowd to each side, upwards and backwards.
+    const CROWD: [usize; 3] = [10, 10, 5];
+
+    /// Where the objects are, in radii of what the frame shows, and how large.
+    fn places(self) -> Vec<(Vec3, f32)> {
+        match self {
+            Self::One => vec![(Vec3::ZERO, 1.0)],
+            Self::Crowd => {
+                let [across, up, back] = Self::CROWD;
+                let along = |i: usize, n: usize| (2.0 * i as f32 + 1.0) / n as f32 - 1.0;
+                let all = (0..back).flat_map(|z| (0..up).flat_map(move |y| (0..across).map(move |x| (x, y, z))));
+                all.map(|(x, y, z)| (0.7 * Vec3::new(along(x, across), along(y, up), along(z, back)), 0.05)).collect()
+            }
+        }
+    }
+}
+
+/// Frames of one mesh that turns, or of many.
 pub struct Whole {
     /// The names of ours: the depth buffer by each kernel, and as planned by the fastest.
     pub names: Vec<String>,
@@ -111,7 +138,7 @@ pub struct Whole {
 }
 
 pub fn measure(
-    mesh: &Mesh,
+    (mesh, shown): (&Mesh, Shown),
     stages: Stages,
     material: &Material,
     kernels: &[Kernel],
@@ -134,6 +161,14 @@ pub fn measure(
         let rows: Vec<Rgb> = image.chunks(1 << SIDE_BITS).rev().flatten().copied().collect();
         let texture = Texture::from_rgb(1 << SIDE_BITS, 1 << SIDE_BITS, &rows)?;
         scene.objects_mut()[0].materials[0].texture = Some(texture.into());
+    }
+    let places = shown.places();
+    if shown == Shown::Crowd {
+        let one = scene.objects()[0].clone();
+        scene.remove(scene.object_ids()[0]);
+        for (place, size) in &places {
+            scene.add(one.clone().at(*place * bounds.radius).scaled(*size));
+        }
     }
     let eye = scene.camera.eye.z;
     let (start, end) = (eye - bounds.radius, eye + 2.0 * bounds.radius);
@@ -175,14 +210,18 @@ pub fn measure(
     for round in 0..=rounds {
         // Each renderer sees each pose once, so nothing is kept. The first round warms up.
         let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
-        scene.objects_mut()[0].angles = angles.map(Angle::from_radians);
-        let model = model(scene.objects()[0].rotation(), bounds.centre, scale);
+        for object in scene.objects_mut() {
+            object.angles = angles.map(Angle::from_radians);
+        }
+        let turn = scene.objects()[0].rotation();
+        let of_place = |(place, size): &(Vec3, f32)| model(turn, bounds.centre, (*place * bounds.radius, *size), scale);
+        let models: Vec<[f32; 16]> = places.iter().map(of_place).collect();
         for &which in turns.shuffled() {
             let started = seconds();
             match ours.get_mut(which) {
                 Some((renderer, vga)) => drop(renderer.draw(&scene, vga)?),
-                // SAFETY: a matrix of 16.
-                None => unsafe { peers_mesa_frame(model.as_ptr()) },
+                // SAFETY: as many matrices of 16.
+                None => unsafe { peers_mesa_frame(models.as_flattened().as_ptr(), models.len() as c_int) },
             }
             if round > 0 {
                 times[which].push(seconds() - started);
@@ -196,13 +235,13 @@ pub fn measure(
     Ok(Whole { names, times, pixels, difference })
 }
 
-/// The matrix by which Mesa sees the mesh from the default camera, column-major.
-fn model(turn: Mat3, centre: Vec3, scale: f32) -> [f32; 16] {
+/// The matrix by which Mesa sees the mesh at a place and in a size from the default camera, column-major.
+fn model(turn: Mat3, centre: Vec3, (place, size): (Vec3, f32), scale: f32) -> [f32; 16] {
     let mut model = [0.0_f32; 16];
     for (column, axis) in [turn.x_axis, turn.y_axis, turn.z_axis].into_iter().enumerate() {
-        model[4 * column..4 * column + 3].copy_from_slice(&(axis * scale).to_array());
+        model[4 * column..4 * column + 3].copy_from_slice(&(axis * size * scale).to_array());
     }
-    model[12..15].copy_from_slice(&(turn * -centre * scale).to_array());
+    model[12..15].copy_from_slice(&((place + turn * -centre * size) * scale).to_array());
     model[14] -= Scene::default().camera.eye.z;
     model[15] = 1.0;
     model
