@@ -185,11 +185,11 @@ impl<'a> Shaded8<'a> {
         }
         // Once: what is swapped in memory the compiler stores by `vmaskmovpd`, which takes AMD's processors 20 cycles.
         for corner in 0..3 {
-            for i in 0..3 {
-                s.store_f64(weights[corner][i], &mut self.weights[corner][i]);
+            for (i, to) in self.weights[corner].iter_mut().enumerate() {
+                s.store_f64(weights[corner][i], to);
             }
-            for i in 0..2 {
-                s.store_f64(values[corner][i], &mut self.values[corner][i]);
+            for (i, to) in self.values[corner].iter_mut().enumerate() {
+                s.store_f64(values[corner][i], to);
             }
         }
         let steps = &mut self.listed.steps[self.listed.batches.current()];

@@ -81,7 +81,7 @@ impl<D: Cell> Raster<'_, D> {
             _ if HAS_F64 && fits && kind.is_some() => true,
             _ => {
                 for k in 0..picks.picks.len() {
-                    drawn += self.triangle(&triangles.vertices(&picks, k), interpolation);
+                    drawn += self.triangle_by_rows(&triangles.vertices(&picks, k), interpolation);
                 }
                 return drawn;
             }
@@ -92,7 +92,7 @@ impl<D: Cell> Raster<'_, D> {
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
             if together == 0 {
-                drawn += self.triangle(&triangles.vertices(&picks, first), interpolation);
+                drawn += self.triangle_by_rows(&triangles.vertices(&picks, first), interpolation);
                 first += 1;
                 continue;
             }

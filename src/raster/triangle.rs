@@ -9,6 +9,7 @@ use super::reference::cover::{Row, SortedTriangle};
 use super::reference::depth::DepthPlane;
 use super::vertex::Vertex;
 use super::vintage::VintageTriangle;
+use crate::fixed::HAS_F64;
 use crate::span::Kernel;
 
 /// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
@@ -69,6 +70,10 @@ impl<'a> Raster<'a> {
     }
 }
 
+/// Height of a triangle, in 256ths of a pixel, from which on its rows are worth the eight-lane set-up: 32 pixels. (With AVX2,
+/// of 19 rows 200 ns by rows and 228 ns together, of 100 rows 1,320 and 690.)
+const TALL: i64 = 32 << 8;
+
 impl<'a, D: Cell> Raster<'a, D> {
     /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as
     /// without it.
@@ -106,6 +111,16 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// without area draws nothing.
     #[inline]
     pub fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
+        let [a, b, c] = vertices.map(|vertex| i64::from(vertex.y().to_bits()));
+        if HAS_F64 && a.max(b).max(c) - a.min(b).min(c) >= TALL && interpolation.has_exact_cover() {
+            return self.tall_triangle(vertices, interpolation);
+        }
+        self.triangle_by_rows(vertices, interpolation)
+    }
+
+    /// Draws a triangle row by row, as the definition has it.
+    #[inline]
+    pub(super) fn triangle_by_rows(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         let triangle = SortedTriangle::new(vertices);
         if !interpolation.has_exact_cover() {
             return self.draw_vintage(&triangle);

@@ -71,12 +71,7 @@ impl Batch {
         for (corner, v) in vertices.iter().enumerate() {
             self.at[first + corner] = ScreenPos::of(v);
             self.depth[first + corner] = v.depth();
-            // A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
-            let shade = match interpolation {
-                Interpolation::Flat(index) => U8F8::from(index),
-                _ => v.shade(),
-            };
-            self.shade[first + corner] = [shade; 2];
+            self.shade[first + corner] = [corner_shade(v, interpolation); 2];
         }
         self.interpolation[self.count] = interpolation;
         self.count += 1;
@@ -113,13 +108,27 @@ impl Batch {
     /// The end of the triangles from `first` on that are drawn together, and the shading of all of them: a flat one is like
     /// one whose rows do not start anew.
     fn run(&self, first: usize) -> (usize, Interpolation) {
-        let drawn_by = |at: usize| match self.interpolation[at] {
-            Interpolation::Flat(_) => Interpolation::Gouraud,
-            interpolation => interpolation,
-        };
+        let drawn_by = |at: usize| drawn_by(self.interpolation[at]);
         let of_first = drawn_by(first);
         let end = (first..self.count).find(|at| drawn_by(*at) != of_first).unwrap_or(self.count);
         (end, of_first)
+    }
+}
+
+/// A corner's shade. A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
+#[inline]
+fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
+    match interpolation {
+        Interpolation::Flat(index) => U8F8::from(index),
+        _ => vertex.shade(),
+    }
+}
+
+/// The shading by which a triangle is drawn: a flat one is like one whose rows do not start anew.
+fn drawn_by(interpolation: Interpolation) -> Interpolation {
+    match interpolation {
+        Interpolation::Flat(_) => Interpolation::Gouraud,
+        interpolation => interpolation,
     }
 }
 
@@ -166,6 +175,28 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
+    /// Draws one triangle of many rows, eight of these at a time.
+    #[inline(never)]
+    pub(super) fn tall_triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
+        const INDICES: [[u32; 3]; 1] = [[0, 1, 2]];
+        let at = vertices.each_ref().map(ScreenPos::of);
+        let columns = Columns {
+            at: &at,
+            depth: &vertices.each_ref().map(Vertex::depth),
+            shade: &vertices.each_ref().map(|vertex| [corner_shade(vertex, interpolation); 2]),
+            #[cfg(feature = "alloc")]
+            effects: Default::default(),
+        };
+        let masks = cull(self.kernel.simd_level(), &at, &INDICES, self.clip, false);
+        if masks.covers & 1 == 0 {
+            return DrawStats::default();
+        }
+        let mut list = PickList::<{ 1 + LANES }>::new();
+        pick(self.kernel.simd_level(), &mut list, 0, &masks, 1);
+        let picks = Picks { picks: list.as_slice(), flat: &[] };
+        self.picks(&Triangles { columns, indices: &INDICES }, picks, drawn_by(interpolation))
+    }
+
     internal! {
     /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
     /// [`triangle`](Self::triangle) called for each.
@@ -194,5 +225,69 @@ impl<D: Cell> Raster<'_, D> {
         }
         drawn
     }
+    }
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fixed::I24F8;
+    use crate::raster::depth::DepthBuffer;
+    use crate::raster::frame::{Frame, Rect};
+    use crate::span::Kernel;
+
+    const SIZE: [u32; 2] = [120, 90];
+
+    fn vertex() -> impl Strategy<Value = Vertex> {
+        // Far beyond the frame, too.
+        let at = || -(90 << 8)..200_i32 << 8;
+        (at(), at(), 0..=0xFF00_u16, 0..=1_u32 << 30).prop_map(|(x, y, shade, depth)| {
+            let [x, y] = [x, y].map(I24F8::from_bits);
+            Vertex::new(x, y, U8F8::from_bits(shade), depth).expect("within the guard band")
+        })
+    }
+
+    proptest! {
+        /// The two ways on which [`Raster::triangle`] draws give equal bytes, depths and counts.
+        #[test]
+        fn rows_together_are_rows_by_themselves(
+            triangles in prop::collection::vec([vertex(), vertex(), vertex()], 1..6),
+            clip in [0..120_u32, 0..90, 1..121, 1..91],
+            which in 0..Interpolation::INTERPOLATED.len() + 1,
+            kernel: u8,
+            has_depth: bool,
+        ) {
+            let interpolation = Interpolation::INTERPOLATED.get(which).copied().unwrap_or(Interpolation::Flat(77));
+            prop_assume!(interpolation.has_exact_cover());
+            let kernels: Vec<Kernel> = Kernel::available().collect();
+            let kernel = kernels[usize::from(kernel) % kernels.len()];
+            let [x0, y0, x1, y1] = clip;
+            let draw = |are_together: bool| {
+                let [width, height] = SIZE;
+                let mut bytes = vec![9; (width * height) as usize];
+                let mut cells = vec![0_u32; bytes.len()];
+                let frame = Frame::new(&mut bytes, width, height, width as usize).expect("a legal frame");
+                let depth = DepthBuffer::new(&mut cells, &frame).expect("as long as the frame");
+                let mut raster = Raster::new(frame).with_clip(Rect { x0, y0, x1: x1.max(x0), y1: y1.max(y0) });
+                if has_depth {
+                    raster = raster.with_depth(depth);
+                }
+                let mut raster = raster.with_kernel(kernel);
+                let drawn: Vec<DrawStats> = triangles
+                    .iter()
+                    .map(|vertices| match are_together {
+                        true => raster.tall_triangle(vertices, interpolation),
+                        false => raster.triangle_by_rows(vertices, interpolation),
+                    })
+                    .collect();
+                (drawn, bytes, cells)
+            };
+            prop_assert!(draw(true) == draw(false));
+        }
     }
 }
