@@ -173,8 +173,7 @@ fn copy_four<const KEEPS: bool>(
     z: i64,
     dz: i64,
 ) -> u32 {
-    // At most four.
-    let stay = four_stay::<KEEPS>(cells, z, dz, length as i32);
+    let stay = four_stay::<KEEPS>(cells, z, dz, length);
     // The lowest byte of each, and zeros.
     let stays = _mm_shuffle_epi8(stay, _mm_setr_epi32(0x0C08_0400, -1, -1, -1));
     let before = _mm_cvtsi32_si128(i32::from_le_bytes(*row));
@@ -193,8 +192,7 @@ fn copy_eights<const KEEPS: bool>(
     z: i64,
     dz: i64,
 ) -> u32 {
-    // Below 2³¹, as that many pixels are there.
-    let mut depths = Depths::new(z, dz, length as i32);
+    let mut depths = Depths::new(z, dz, length);
     let mut written = 0;
     let (rows, cells, bytes) =
         (row.as_chunks_mut::<EIGHT>().0, cells.as_chunks_mut::<EIGHT>().0, bytes.as_chunks::<EIGHT>().0);
@@ -230,8 +228,8 @@ static SET_THEN_CLEAR: [i32; 2 * EIGHT] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0,
 /// read, and stores the others by `vpmaskmovd`, which takes AMD's processors 20 cycles.)
 #[inline]
 #[target_feature(enable = "avx2")]
-fn first_eight(count: i32) -> __m256i {
-    let clear = EIGHT - count.clamp(0, EIGHT as i32) as usize;
+fn first_eight(count: usize) -> __m256i {
+    let clear = EIGHT - count.min(EIGHT);
     // SAFETY: eight of the sixteen, from at most the ninth on; the load asks for no alignment.
     unsafe { _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(clear).cast()) }
 }
@@ -243,13 +241,13 @@ struct Depths {
     /// From a turn to the next one.
     step: __m256i,
     /// Pixels from this turn on.
-    left: i32,
+    left: usize,
 }
 
 impl Depths {
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn new(z: i64, dz: i64, length: i32) -> Self {
+    fn new(z: i64, dz: i64, length: usize) -> Self {
         let dz = _mm256_set1_epi64x(dz);
         let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
         let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
@@ -274,7 +272,7 @@ impl Depths {
     fn next(&mut self) -> __m256i {
         let [z0, z1] = self.z;
         self.z = [_mm256_add_epi64(z0, self.step), _mm256_add_epi64(z1, self.step)];
-        self.left -= EIGHT as i32;
+        self.left = self.left.saturating_sub(EIGHT);
         let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
         _mm256_castps_si256(upper)
     }
@@ -313,7 +311,7 @@ fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
 /// −1 where one of up to four pixels stays; with `KEEPS` as [`Depths::stay`].
 #[inline]
 #[target_feature(enable = "avx2")]
-fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: i32) -> __m128i {
+fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i {
     let dz = _mm_set1_epi64x(dz);
     let z0 = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
@@ -334,8 +332,7 @@ fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length
 #[inline]
 #[target_feature(enable = "avx2")]
 fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own<'_>) -> __m256i {
-    // Below 2³¹, as that many pixels are there.
-    let mut depths = Depths::new(depth.z, depth.dz, span.length as i32);
+    let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
     let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     let (mut shades, next_shade) = match own {
         // shade + k·step, of which bits 8 to 15 count, ...
@@ -391,8 +388,7 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
     let numbers = _mm256_setr_epi16(0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15);
     let mut shades = _mm256_add_epi16(_mm256_mullo_epi16(steps, numbers), _mm256_set1_epi16(start));
     let next_shade = _mm256_slli_epi16(steps, 4);
-    // Below 2³¹, as that many pixels are there.
-    let mut depths = Depths::new(depth.z, depth.dz, span.length as i32);
+    let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
     let mut stayed = _mm256_setzero_si256();
     let (pixels, cells) = (row.as_chunks_mut::<SIXTEEN>().0, cells.as_chunks_mut::<SIXTEEN>().0);
     let mut turns = pixels.iter_mut().zip(cells);
@@ -403,7 +399,7 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
         shades = _mm256_add_epi16(shades, next_shade);
     }
     if let Some((pixels, cells)) = last {
-        let there = [first_eight(depths.left), first_eight(depths.left - EIGHT as i32)];
+        let there = [first_eight(depths.left), first_eight(depths.left.saturating_sub(EIGHT))];
         let depths = [_mm256_and_si256(depths.next(), there[0]), _mm256_and_si256(depths.next(), there[1])];
         stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
     }
@@ -432,8 +428,7 @@ fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m2
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own<'_>) -> __m128i {
-    // At most four.
-    let stay = four_stay::<true>(cells, depth.z, depth.dz, span.length as i32);
+    let stay = four_stay::<true>(cells, depth.z, depth.dz, span.length as usize);
     let lanes = _mm_setr_epi32(0, 1, 2, 3);
     let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
     let after = match own {
