@@ -1,0 +1,80 @@
+//! What a library for C needs and an `rlib` does not: an allocator over the caller's memory, and the end of a panic.
+
+#[cfg(feature = "effects")]
+pub(crate) use arena::within;
+
+#[cfg(feature = "effects")]
+mod arena {
+    use core::alloc::{GlobalAlloc, Layout};
+    use core::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Hands out the memory of the context that is being made, and takes nothing back. At any other time there is none: the
+    /// stages have all that they need.
+    struct Arena {
+        /// The first free address and the end; 0 while no context is made.
+        next: AtomicUsize,
+        end: AtomicUsize,
+    }
+
+    #[global_allocator]
+    static ARENA: Arena = Arena { next: AtomicUsize::new(0), end: AtomicUsize::new(0) };
+
+    /// One thread at a time makes a context. On a processor without an exchange in one step there are no threads.
+    #[cfg(target_has_atomic = "8")]
+    static IS_TAKEN: core::sync::atomic::AtomicBool = core::sync::atomic::AtomicBool::new(false);
+
+    /// Runs `make` with memory.
+    pub(crate) fn within(memory: *mut u8, bytes: usize, make: impl FnOnce()) {
+        #[cfg(target_has_atomic = "8")]
+        while IS_TAKEN.swap(true, Ordering::Acquire) {
+            core::hint::spin_loop();
+        }
+        let start = memory.expose_provenance();
+        ARENA.next.store(start, Ordering::Relaxed);
+        ARENA.end.store(start + bytes, Ordering::Relaxed);
+        make();
+        ARENA.next.store(0, Ordering::Relaxed);
+        ARENA.end.store(0, Ordering::Relaxed);
+        #[cfg(target_has_atomic = "8")]
+        IS_TAKEN.store(false, Ordering::Release);
+    }
+
+    // SAFETY: what is handed out lies within the memory, is aligned, and is handed out once.
+    unsafe impl GlobalAlloc for Arena {
+        unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+            let next = self.next.load(Ordering::Relaxed);
+            let first = next.checked_next_multiple_of(layout.align());
+            if next > 0
+                && let Some(first) = first
+                && let Some(end) = first.checked_add(layout.size())
+                && end <= self.end.load(Ordering::Relaxed)
+            {
+                self.next.store(end, Ordering::Relaxed);
+                return core::ptr::with_exposed_provenance_mut(first);
+            }
+            #[cfg(feature = "std")]
+            // SAFETY: by the caller.
+            return unsafe { std::alloc::System.alloc(layout) };
+            #[cfg(not(feature = "std"))]
+            core::ptr::null_mut()
+        }
+
+        /// Takes nothing back, as the stages give nothing back.
+        unsafe fn dealloc(&self, _: *mut u8, _: Layout) {}
+    }
+}
+
+/// Nothing panics, for all arguments are checked. If something did, the program would end here.
+#[cfg(not(feature = "std"))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    // SAFETY: an instruction that is none, which ends the program.
+    unsafe {
+        core::arch::asm!("ud2", options(noreturn, nomem, nostack));
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    loop {
+        core::hint::spin_loop();
+    }
+}
