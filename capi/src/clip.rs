@@ -3,7 +3,7 @@
 //! Planes come in one order, and each new point is computed from the end of its edge that is inside. So two triangles that
 //! share an edge cut it in one point, to the bit, and leave no crack.
 
-use crate::corner::{Door, Ready, Wide};
+use crate::corner::{Door, Kept, Wide};
 
 /// The near plane, then left, right, top and bottom of the guard band.
 const PLANES: usize = 5;
@@ -20,7 +20,7 @@ pub(crate) struct Progress {
     pub(crate) texture_on_face: bool,
 }
 
-fn distance<D: Door>(plane: usize, corner: &Wide<D::Wide>, near: Option<D::Wide>) -> D::Wide {
+fn distance<D: Door, K: Kept>(plane: usize, corner: &Wide<D::Wide, K>, near: Option<D::Wide>) -> D::Wide {
     let zero = D::Wide::default();
     let distance = match (plane, near) {
         (0, None) => zero,
@@ -32,13 +32,13 @@ fn distance<D: Door>(plane: usize, corner: &Wide<D::Wide>, near: Option<D::Wide>
     if corner.ready.is_some() && distance < zero { zero } else { distance }
 }
 
-fn cut<D: Door>(
+fn cut<D: Door, K: Kept>(
     plane: usize,
     near: Option<D::Wide>,
     progress: Progress,
-    [a, b]: [&Wide<D::Wide>; 2],
+    [a, b]: [&Wide<D::Wide, K>; 2],
     [inside, outside]: [D::Wide; 2],
-) -> Wide<D::Wide> {
+) -> Wide<D::Wide, K> {
     let zero = D::Wide::default();
     let between = |a, b| D::between(a, b, inside, outside, None);
     let w = match (plane, near) {
@@ -63,11 +63,12 @@ fn cut<D: Door>(
 }
 
 /// Clips a triangle, and hands on the triangles of what is left. A mesh with w has a near plane.
-pub(crate) fn clip<D: Door>(
-    corners: [Wide<D::Wide>; 3],
+#[inline(never)]
+pub(crate) fn clip<D: Door, K: Kept>(
+    corners: [Wide<D::Wide, K>; 3],
     near: Option<D::Wide>,
     progress: Progress,
-    mut triangle: impl FnMut([Ready; 3]),
+    triangle: &mut dyn FnMut([K; 3]),
 ) {
     let zero = D::Wide::default();
     let [a, b, c] = corners;
@@ -81,13 +82,13 @@ pub(crate) fn clip<D: Door>(
             }
         };
         let Some(mut previous) = count.checked_sub(1).and_then(|last: usize| polygon.get(last)) else { return };
-        let mut d_previous = distance::<D>(plane, previous, near);
+        let mut d_previous = distance::<D, K>(plane, previous, near);
         for corner in polygon.iter().take(count) {
-            let d = distance::<D>(plane, corner, near);
+            let d = distance::<D, K>(plane, corner, near);
             if d_previous >= zero && d < zero {
-                keep(cut::<D>(plane, near, progress, [previous, corner], [d_previous, d]));
+                keep(cut::<D, K>(plane, near, progress, [previous, corner], [d_previous, d]));
             } else if d_previous < zero && d >= zero {
-                keep(cut::<D>(plane, near, progress, [corner, previous], [d, d_previous]));
+                keep(cut::<D, K>(plane, near, progress, [corner, previous], [d, d_previous]));
             }
             if d >= zero {
                 keep(*corner);
@@ -99,27 +100,27 @@ pub(crate) fn clip<D: Door>(
             return;
         }
     }
-    let mut ready = [Ready::default(); MOST];
+    let mut ready = [K::default(); MOST];
     for (to, corner) in ready.iter_mut().zip(&polygon).take(count) {
-        match corner.ready.or_else(|| D::project(corner, near)) {
+        match corner.ready.or_else(|| corner.project::<D>(near)) {
             Some(corner) => *to = corner,
             None => return,
         }
     }
-    fan(&ready, count, &mut triangle);
+    fan(&ready, count, triangle);
 }
 
 /// Twice the area on the screen, positive if clockwise as one sees it (y runs down).
 #[inline]
-pub(crate) fn doubled_area([a, b, c]: &[Ready; 3]) -> i64 {
-    let at = |corner: &Ready| (i64::from(corner.vertex.x().to_bits()), i64::from(corner.vertex.y().to_bits()));
+pub(crate) fn doubled_area<K: Kept>([a, b, c]: &[K; 3]) -> i64 {
+    let at = |corner: &K| (i64::from(corner.vertex().x().to_bits()), i64::from(corner.vertex().y().to_bits()));
     let ((ax, ay), (bx, by), (cx, cy)) = (at(a), at(b), at(c));
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
 /// The triangles of a convex polygon that turn as the whole does. Rounding may dent it where a cut lies near a corner: a fan
 /// from the dent covers nothing twice, and such a fan is looked for.
-fn fan(corners: &[Ready; MOST], count: usize, triangle: &mut impl FnMut([Ready; 3])) {
+fn fan<K: Kept>(corners: &[K; MOST], count: usize, triangle: &mut dyn FnMut([K; 3])) {
     let part = |apex: usize, i: usize| [apex, apex + i - 1, apex + i].map(|i| corners[i % count % MOST]);
     let sign = (2..count).map(|i| doubled_area(&part(0, i))).sum::<i64>().signum();
     let is_whole = |apex: &usize| (2..count).all(|i| doubled_area(&part(*apex, i)).signum() * sign >= 0);

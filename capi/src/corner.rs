@@ -35,17 +35,58 @@ pub(crate) struct Attributes {
     pub(crate) slope: [u16; 2],
 }
 
-/// A corner that the raster takes.
-#[cfg_attr(not(feature = "effects"), allow(dead_code, reason = "nothing reads its attributes"))]
+/// A corner as a list keeps it: a vertex, or with effects one with its attributes.
+pub(crate) trait Kept: Copy + Default {
+    /// Attributes are read.
+    const HAS_ATTRIBUTES: bool;
+
+    /// Made of both; without effects attributes are left out.
+    fn new(vertex: Vertex, attributes: Attributes) -> Self;
+
+    /// The vertex.
+    fn vertex(&self) -> &Vertex;
+}
+
+impl Kept for Vertex {
+    const HAS_ATTRIBUTES: bool = false;
+
+    #[inline(always)]
+    fn new(vertex: Vertex, _: Attributes) -> Self {
+        vertex
+    }
+
+    #[inline(always)]
+    fn vertex(&self) -> &Vertex {
+        self
+    }
+}
+
+/// A vertex with its attributes.
+#[cfg(feature = "effects")]
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Ready {
     pub(crate) vertex: Vertex,
     pub(crate) attributes: Attributes,
 }
 
+#[cfg(feature = "effects")]
+impl Kept for Ready {
+    const HAS_ATTRIBUTES: bool = true;
+
+    #[inline(always)]
+    fn new(vertex: Vertex, attributes: Attributes) -> Self {
+        Self { vertex, attributes }
+    }
+
+    #[inline(always)]
+    fn vertex(&self) -> &Vertex {
+        &self.vertex
+    }
+}
+
 /// A corner before its division, in numbers wide enough to be clipped.
 #[derive(Clone, Copy)]
-pub(crate) struct Wide<N> {
+pub(crate) struct Wide<N, K> {
     pub(crate) x: N,
     pub(crate) y: N,
     pub(crate) w: N,
@@ -53,13 +94,12 @@ pub(crate) struct Wide<N> {
     pub(crate) depth: N,
     pub(crate) values: Values<N>,
     /// The corner that needs no clipping. It stays as it is, because a neighbour that needs none either draws with it.
-    pub(crate) ready: Option<Ready>,
+    pub(crate) ready: Option<K>,
 }
 
-/// Coordinates that need no clipping: up to a quarter of a pixel beyond where the guard band is cut, because rounding may
-/// take a cut point off it. In pixels, and in 1/256 pixel.
+/// Pixels from the frame's corner to where triangles are cut. The guard band reaches one farther, so that rounding cannot
+/// take a cut point beyond it.
 pub(crate) const LIMIT: i32 = 4_095;
-const REACH: i32 = LIMIT * 256 + 64;
 
 /// A door: how vertices are read, projected and cut.
 pub(crate) trait Door {
@@ -76,8 +116,10 @@ pub(crate) trait Door {
     fn depth(bits: u32) -> Option<Self::Wide>;
     /// The w of a mesh whose vertices have none: 1.
     fn one() -> Self::Wide;
-    /// The corner as the raster takes it; `None` if it must be clipped. `near` is that of a mesh that has w.
-    fn project(corner: &Wide<Self::Wide>, near: Option<Self::Wide>) -> Option<Ready>;
+    /// The vertex of x, y, w, depth and shade; `None` if it must be clipped. `near` is that of a mesh that has w.
+    fn vertex(numbers: [Self::Wide; 5], near: Option<Self::Wide>) -> Option<Vertex>;
+    /// The attributes of values.
+    fn attributes(values: &Values<Self::Wide>) -> Attributes;
     /// The distance of a point from a plane of the guard band: `LIMIT·w ± c`.
     fn distance(w: Self::Wide, c: Self::Wide, positive: bool) -> Self::Wide;
     /// The difference of two numbers.
@@ -116,14 +158,10 @@ fn byte_of_fixed(x: i64) -> u16 {
     ((x.clamp(0, 255 << 16) + 128) >> 8) as u16
 }
 
-/// A corner of coordinates in 1/256 pixel; `None` if it must be clipped.
-fn ready(x: I24F8, y: I24F8, shade: u16, depth: u32, attributes: Attributes) -> Option<Ready> {
-    let inside = |c: I24F8| (-REACH..=REACH).contains(&c.to_bits());
-    if !inside(x) || !inside(y) {
-        return None;
-    }
-    let vertex = Vertex::new(x, y, U8F8::from_bits(shade), depth).ok()?;
-    Some(Ready { vertex, attributes })
+/// The vertex at coordinates in 1/256 pixel; `None` if it must be clipped.
+#[inline(always)]
+fn vertex(x: I24F8, y: I24F8, shade: u16, depth: u32) -> Option<Vertex> {
+    Vertex::new(x, y, U8F8::from_bits(shade), depth).ok()
 }
 
 impl Door for Floats {
@@ -149,23 +187,25 @@ impl Door for Floats {
         1.0
     }
 
-    #[inline]
-    fn project(corner: &Wide<f64>, near: Option<f64>) -> Option<Ready> {
-        let Wide { x, y, w, depth, values, .. } = corner;
+    #[inline(always)]
+    fn vertex([x, y, w, depth, shade]: [f64; 5], near: Option<f64>) -> Option<Vertex> {
         let (x, y, depth) = match near {
-            None => (*x, *y, *depth),
-            Some(near) if *w >= near => (x / w, y / w, (near / w).min(1.0)),
+            None => (x, y, depth),
+            Some(near) if w >= near => (x / w, y / w, (near / w).min(1.0)),
             Some(_) => return None,
         };
-        let attributes = Attributes {
+        // At most 2³⁰.
+        let depth = (depth * 1_073_741_824.0 + 0.5) as u32;
+        vertex(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, byte_of_float(shade), depth)
+    }
+
+    fn attributes(values: &Values<f64>) -> Attributes {
+        Attributes {
             // What is too large wraps, as the texture does.
             texture: values.texture.map(|c| floor(c * 65_536.0 + 0.5) as i32),
             fog: byte_of_float(values.fog),
             slope: values.slope.map(byte_of_float),
-        };
-        // At most 2³⁰.
-        let depth = (depth * 1_073_741_824.0 + 0.5) as u32;
-        ready(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, byte_of_float(values.shade), depth, attributes)
+        }
     }
 
     fn distance(w: f64, c: f64, positive: bool) -> f64 {
@@ -216,32 +256,34 @@ impl Door for Fixed {
         1 << 16
     }
 
-    #[inline]
-    fn project(corner: &Wide<i64>, near: Option<i64>) -> Option<Ready> {
-        let Wide { x, y, w, depth, values, .. } = corner;
-        let attributes = Attributes {
-            texture: values.texture.map(|c| c as i32),
-            fog: byte_of_fixed(values.fog),
-            slope: values.slope.map(byte_of_fixed),
-        };
+    #[inline(always)]
+    fn vertex([x, y, w, depth, shade]: [i64; 5], near: Option<i64>) -> Option<Vertex> {
         let (x, y, depth) = match near {
             // Those of a mesh are 32 bits; of a cut, between two that are.
             None => {
                 let pixels = |c: i64| I24F8::round_from_i16f16(I16F16::from_bits(c as i32));
-                (pixels(*x), pixels(*y), *depth as u32)
+                (pixels(x), pixels(y), depth as u32)
             }
-            Some(near) if *w >= near => {
+            Some(near) if w >= near => {
                 // floor(256·x/w + ½); i32 after the check.
                 let pixels = |c: i64| {
                     let c = (512 * c + w).div_euclid(2 * w);
                     i32::try_from(c).ok().map(I24F8::from_bits)
                 };
                 // nearest(2³⁰·near/w), at most 2³⁰.
-                (pixels(*x)?, pixels(*y)?, (((near << 31) + w) / (2 * w)) as u32)
+                (pixels(x)?, pixels(y)?, (((near << 31) + w) / (2 * w)) as u32)
             }
             Some(_) => return None,
         };
-        ready(x, y, byte_of_fixed(values.shade), depth, attributes)
+        vertex(x, y, byte_of_fixed(shade), depth)
+    }
+
+    fn attributes(values: &Values<i64>) -> Attributes {
+        Attributes {
+            texture: values.texture.map(|c| c as i32),
+            fog: byte_of_fixed(values.fog),
+            slope: values.slope.map(byte_of_fixed),
+        }
     }
 
     fn distance(w: i64, c: i64, positive: bool) -> i64 {
@@ -277,8 +319,6 @@ impl Door for Fixed {
 /// A mesh whose arrays have been checked.
 pub(crate) struct Source {
     mesh: Mesh,
-    /// The values that the material reads.
-    wants_effects: bool,
 }
 
 /// Bytes of a mesh's parts.
@@ -289,7 +329,7 @@ pub(crate) struct Parts {
 
 impl Source {
     /// Checks all of a mesh but its indices' values.
-    pub(crate) fn new(mesh: Mesh, has_shade: bool, wants_effects: bool) -> Outcome<(Self, Parts)> {
+    pub(crate) fn new(mesh: Mesh, has_shade: bool) -> Outcome<(Self, Parts)> {
         let Mesh { stride, position, depth, shade, texture, fog, slope, .. } = mesh;
         if mesh.homogeneous > 1 {
             return Err(Refusal::Value);
@@ -324,7 +364,7 @@ impl Source {
                 bytes(mesh.index_count, mesh.index_bits / 8).map_err(|_| Refusal::Short)?
             },
         };
-        Ok((Self { mesh, wants_effects }, parts))
+        Ok((Self { mesh }, parts))
     }
 
     /// The number of its triangles.
@@ -332,21 +372,21 @@ impl Source {
         if self.mesh.indices.is_null() { self.mesh.vertex_count / 3 } else { self.mesh.index_count / 3 }
     }
 
-    /// Index `i`, which is below the number of indices.
+    /// The indices of triangle `i`, which is below their number.
     ///
     /// # Safety
     /// The mesh holds as many indices as it says.
-    #[inline]
-    pub(crate) unsafe fn index(&self, i: u32) -> u32 {
+    #[inline(always)]
+    pub(crate) unsafe fn indices(&self, i: u32) -> [u32; 3] {
         let Mesh { indices, index_bits, .. } = self.mesh;
-        let i = i as usize;
+        let at = i as usize;
         // SAFETY: the bytes of the indices are there, and no more than half of memory.
         unsafe {
             match index_bits {
-                _ if indices.is_null() => i as u32,
-                8 => indices.cast::<u8>().add(i).read().into(),
-                16 => indices.cast::<u16>().add(i).read_unaligned().into(),
-                _ => indices.cast::<u32>().add(i).read_unaligned(),
+                _ if indices.is_null() => [3 * i, 3 * i + 1, 3 * i + 2],
+                8 => indices.cast::<[u8; 3]>().add(at).read().map(u32::from),
+                16 => indices.cast::<[u16; 3]>().add(at).read_unaligned().map(u32::from),
+                _ => indices.cast::<[u32; 3]>().add(at).read_unaligned(),
             }
         }
     }
@@ -356,48 +396,128 @@ impl Source {
     /// # Safety
     /// The mesh holds as many indices as it says.
     pub(crate) unsafe fn check_indices(&self) -> Outcome {
-        let mut most = 0;
-        for i in 0..3 * self.triangles() {
-            // SAFETY: by the caller.
-            most = most.max(unsafe { self.index(i) });
+        let Mesh { indices, index_bits, vertex_count, .. } = self.mesh;
+        let count = 3 * self.triangles() as usize;
+        macro_rules! most {
+            ($index:ty) => {
+                // SAFETY: below the number of indices.
+                (0..count).map(|i| unsafe { indices.cast::<$index>().add(i).read_unaligned() }).max().map(u64::from)
+            };
         }
+        let most = match index_bits {
+            _ if indices.is_null() => return Ok(()),
+            8 => most!(u8),
+            16 => most!(u16),
+            _ => most!(u32),
+        };
         // An empty list has none.
-        if self.triangles() > 0 && most >= self.mesh.vertex_count { Err(Refusal::Index) } else { Ok(()) }
+        if most.is_some_and(|most| most >= u64::from(vertex_count)) { Err(Refusal::Index) } else { Ok(()) }
     }
 
-    /// Vertex `i`; `None` if one of its numbers is none, or out of range.
+    /// Returns whether vertices are named by indices, so that several triangles may share one.
+    pub(crate) fn is_indexed(&self) -> bool {
+        !self.mesh.indices.is_null()
+    }
+
+    /// A number of a vertex, 0 where vertices have none; `None` if it is no number.
+    ///
+    /// # Safety
+    /// `vertex` is one of the mesh, and the offset one that was checked.
+    #[inline(always)]
+    unsafe fn number<D: Door>(vertex: *const u8, offset: u32) -> Option<D::Wide> {
+        if offset == ABSENT {
+            return Some(D::Wide::default());
+        }
+        // SAFETY: the number ends within the stride.
+        D::widen(unsafe { vertex.add(offset as usize).cast::<D::Raw>().read_unaligned() })
+    }
+
+    /// x, y, w, depth and shade of vertex `i`, and where it is; `None` if one of them is none, or out of range.
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.
-    #[inline]
-    pub(crate) unsafe fn corner<D: Door>(&self, i: u32, near: Option<D::Wide>) -> Option<Wide<D::Wide>> {
-        let Mesh { vertices, stride, position, depth, shade, texture, fog, slope, .. } = self.mesh;
-        // SAFETY: the bytes of the vertices are there, and no more than half of memory.
-        let vertex = unsafe { vertices.cast::<u8>().add(i as usize * stride as usize) };
-        let number = |offset: u32| {
-            // SAFETY: the number ends within the stride.
-            D::widen(unsafe { vertex.add(offset as usize).cast::<D::Raw>().read_unaligned() })
-        };
-        let optional = |offset: u32| if offset == ABSENT { Some(D::Wide::default()) } else { number(offset) };
-        let two = |offset: u32| match offset {
-            ABSENT => Some([D::Wide::default(); 2]),
-            _ => Some([number(offset)?, number(offset + 4)?]),
-        };
-        let [x, y] = two(position)?;
-        let values = if self.wants_effects {
-            Values { shade: optional(shade)?, texture: two(texture)?, fog: optional(fog)?, slope: two(slope)? }
+    #[inline(always)]
+    unsafe fn numbers<D: Door>(&self, i: u32, has_w: bool) -> Option<([D::Wide; 5], *const u8)> {
+        let Mesh { vertices, stride, position, depth, shade, .. } = self.mesh;
+        // SAFETY: the bytes of the vertices are there, and no more than half of memory; each number ends within the stride.
+        unsafe {
+            let vertex = vertices.cast::<u8>().add(i as usize * stride as usize);
+            let (x, y) = (Self::number::<D>(vertex, position)?, Self::number::<D>(vertex, position + 4)?);
+            let w = if has_w { Self::number::<D>(vertex, position + 8)? } else { D::one() };
+            let depth = if depth == ABSENT || has_w {
+                D::Wide::default()
+            } else {
+                D::depth(vertex.add(depth as usize).cast::<u32>().read_unaligned())?
+            };
+            Some(([x, y, w, depth, Self::number::<D>(vertex, shade)?], vertex))
+        }
+    }
+
+    /// The values of a vertex beside its numbers.
+    ///
+    /// # Safety
+    /// `vertex` is one of the mesh.
+    #[inline(always)]
+    unsafe fn values<D: Door>(&self, vertex: *const u8, shade: D::Wide) -> Option<Values<D::Wide>> {
+        let Mesh { texture, fog, slope, .. } = self.mesh;
+        // SAFETY: offsets have been checked.
+        let number = |offset: u32| unsafe { Self::number::<D>(vertex, offset) };
+        // The second of two that are not there is not, either.
+        let two = |offset: u32| Some([number(offset)?, number(if offset == ABSENT { ABSENT } else { offset + 4 })?]);
+        Some(Values { shade, texture: two(texture)?, fog: number(fog)?, slope: two(slope)? })
+    }
+
+    /// Writes vertex `i` as the raster takes it to two places. Returns false if it must be clipped, or has a number that is
+    /// none or out of range. (Copied from the first place, it would be read in one piece just after it was written in four.)
+    ///
+    /// # Safety
+    /// It is below the number of vertices, and the mesh holds as many as it says.
+    #[inline(never)]
+    pub(crate) unsafe fn corner<D: Door, K: Kept>(
+        &self,
+        i: u32,
+        near: Option<D::Wide>,
+        to: &mut K,
+        and_to: &mut K,
+    ) -> bool {
+        // SAFETY: by the caller.
+        let Some((numbers, vertex)) = (unsafe { self.numbers::<D>(i, near.is_some()) }) else { return false };
+        let mut attributes = Attributes::default();
+        if K::HAS_ATTRIBUTES {
+            // SAFETY: a vertex of the mesh.
+            let Some(values) = (unsafe { self.values::<D>(vertex, numbers[4]) }) else { return false };
+            attributes = D::attributes(&values);
+        }
+        let Some(vertex) = D::vertex(numbers, near) else { return false };
+        *to = K::new(vertex, attributes);
+        *and_to = K::new(vertex, attributes);
+        true
+    }
+
+    /// Vertex `i`, to be clipped; `None` if it has a number that is none or out of range.
+    ///
+    /// # Safety
+    /// It is below the number of vertices, and the mesh holds as many as it says.
+    pub(crate) unsafe fn wide<D: Door, K: Kept>(&self, i: u32, near: Option<D::Wide>) -> Option<Wide<D::Wide, K>> {
+        // SAFETY: by the caller.
+        let ([x, y, w, depth, shade], vertex) = unsafe { self.numbers::<D>(i, near.is_some()) }?;
+        let values = if K::HAS_ATTRIBUTES {
+            // SAFETY: a vertex of the mesh.
+            unsafe { self.values::<D>(vertex, shade) }?
         } else {
-            Values { shade: optional(shade)?, ..Values::default() }
-        };
-        let w = if near.is_some() { number(position + 8)? } else { D::one() };
-        let depth = if depth == ABSENT || near.is_some() {
-            D::Wide::default()
-        } else {
-            // SAFETY: the number ends within the stride.
-            D::depth(unsafe { vertex.add(depth as usize).cast::<u32>().read_unaligned() })?
+            Values { shade, ..Values::default() }
         };
         let mut corner = Wide { x, y, w, depth, values, ready: None };
-        corner.ready = D::project(&corner, near);
+        corner.ready = corner.project::<D>(near);
         Some(corner)
+    }
+}
+
+impl<N: Copy, K: Kept> Wide<N, K> {
+    /// The corner as the raster takes it; `None` if it must be clipped.
+    pub(crate) fn project<D: Door<Wide = N>>(&self, near: Option<N>) -> Option<K> {
+        let Self { x, y, w, depth, values, .. } = self;
+        let attributes = if K::HAS_ATTRIBUTES { D::attributes(values) } else { Attributes::default() };
+        Some(K::new(D::vertex([*x, *y, *w, *depth, values.shade], near)?, attributes))
     }
 }

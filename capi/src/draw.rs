@@ -2,11 +2,13 @@
 
 use core::ffi::{c_int, c_void};
 
-use mode13h::raster::{Interpolation, Raster};
+use mode13h::raster::{DrawStats, Interpolation, Raster};
 
 use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal, Sized32, Stats, Target, Vertex, VertexX, code, read};
 use crate::clip::{Progress, clip, doubled_area};
-use crate::corner::{Door, Fixed, Floats, Ready, Source};
+#[cfg(feature = "effects")]
+use crate::corner::Ready;
+use crate::corner::{Door, Fixed, Floats, Kept, Source};
 use crate::target::{Bytes, Checked, Depth, check};
 
 #[cfg(feature = "effects")]
@@ -15,8 +17,24 @@ use crate::effects::{Context, Effects};
 #[cfg(not(feature = "effects"))]
 enum Context {}
 
-/// Triangles that are drawn together.
-const TOGETHER: usize = 128;
+/// Where doubles are fast, the raster sets triangles up eight at a time. Elsewhere it walks down each, whichever way it is
+/// called, and the code for lists is left out.
+const IS_BATCHED: bool = cfg!(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    target_arch = "wasm32",
+    all(target_arch = "x86", target_feature = "sse2")
+));
+
+/// A list of fewer triangles is drawn one by one: to clear the memory for many would take longer.
+const FEW: u32 = 12;
+
+/// Triangles that are drawn together, and vertices that are remembered: for many and for few. A machine that is slow has
+/// little room on its stack, too.
+const MANY_TOGETHER: usize = 128;
+const MANY_REMEMBERED: usize = 512;
+const FEW_TOGETHER: usize = 4;
+const FEW_REMEMBERED: usize = 16;
 
 /// The shading of a material: its interpolation.
 fn interpolation(material: &Material) -> Outcome<Interpolation> {
@@ -31,56 +49,139 @@ fn interpolation(material: &Material) -> Outcome<Interpolation> {
 }
 
 /// What triangles are handed to when there are enough.
-pub(crate) type Flush<'f> = dyn FnMut(&[[Ready; 3]]) -> [u32; 3] + 'f;
+type Flush<'f, K> = dyn FnMut(&[[K; 3]]) -> [u32; 3] + 'f;
+
+/// Triangles that wait until there are enough, and the counts of those that were drawn.
+struct Waiting<'f, K, const TOGETHER: usize> {
+    triangles: [[K; 3]; TOGETHER],
+    count: usize,
+    cull: u32,
+    handed_on: u32,
+    drawn: [u32; 3],
+    flush: &'f mut Flush<'f, K>,
+}
+
+impl<K: Kept, const TOGETHER: usize> Waiting<'_, K, TOGETHER> {
+    fn push(&mut self, corners: &[K; 3]) {
+        self.triangles[self.count % TOGETHER] = *corners;
+        self.take();
+    }
+
+    /// Takes the triangle behind the last one.
+    #[inline(always)]
+    fn take(&mut self) {
+        if self.cull > 0 {
+            let area = doubled_area(&self.triangles[self.count % TOGETHER]);
+            if (self.cull == 1 && area <= 0) || (self.cull == 2 && area >= 0) {
+                return;
+            }
+        }
+        self.handed_on = self.handed_on.wrapping_add(1);
+        self.count += 1;
+        if self.count == TOGETHER {
+            self.flush();
+        }
+    }
+
+    #[inline(never)]
+    fn flush(&mut self) {
+        let drawn = (self.flush)(&self.triangles[..self.count.min(TOGETHER)]);
+        for (sum, more) in self.drawn.iter_mut().zip(drawn) {
+            *sum = sum.wrapping_add(more);
+        }
+        self.count = 0;
+    }
+}
+
+/// `gather` with memory for so many.
+///
+/// # Safety
+/// That of `gather`.
+unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: usize>(
+    source: &Source,
+    near: Option<D::Wide>,
+    progress: Progress,
+    cull: u32,
+    flush: &mut Flush<'_, K>,
+) -> [u32; 5] {
+    let mut waiting =
+        Waiting { triangles: [[K::default(); 3]; TOGETHER], count: 0, cull, handed_on: 0, drawn: [0; 3], flush };
+    // Vertices that were made, by their index. No index is the greatest u32, as all are below a count of 32 bits.
+    let (mut names, mut made) = ([u32::MAX; REMEMBERED], [K::default(); REMEMBERED]);
+    let (is_indexed, mut refused) = (source.is_indexed(), 0);
+    for i in 0..source.triangles() {
+        // SAFETY: below the number of triangles.
+        let [a, b, c] = unsafe { source.indices(i) };
+        let mut put = |index: u32, corner: &mut K| {
+            let slot = index as usize % REMEMBERED;
+            if is_indexed && names[slot] == index {
+                *corner = made[slot];
+                return true;
+            }
+            // Until it is made there is none.
+            names[slot] = u32::MAX;
+            // SAFETY: indices have been checked.
+            let is_made = unsafe { source.corner::<D, K>(index, near, corner, &mut made[slot]) };
+            if is_made {
+                names[slot] = index;
+            }
+            is_made
+        };
+        // Straight to where it waits: no copy, and no load of what was stored in parts just before.
+        let [to_a, to_b, to_c] = &mut waiting.triangles[waiting.count % TOGETHER];
+        if put(a, to_a) && put(b, to_b) && put(c, to_c) {
+            waiting.take();
+        } else {
+            // SAFETY: as above.
+            refused += u32::from(!unsafe { clipped::<D, K, TOGETHER>(source, i, near, progress, &mut waiting) });
+        }
+    }
+    waiting.flush();
+    let [spans, covered, pixels] = waiting.drawn;
+    [waiting.handed_on, refused, spans, covered, pixels]
+}
 
 /// Reads, clips and culls the triangles of a list, and hands them on.
 ///
 /// # Safety
 /// The mesh holds what it says, and its indices have been checked.
-unsafe fn gather<D: Door>(
+unsafe fn gather<D: Door, K: Kept>(
     source: &Source,
     near: Option<D::Wide>,
     progress: Progress,
     cull: u32,
-    flush: &mut Flush<'_>,
+    flush: &mut Flush<'_, K>,
 ) -> [u32; 5] {
-    let mut waiting = [[Ready::default(); 3]; TOGETHER];
-    let (mut count, mut triangles, mut refused, mut drawn) = (0, 0_u32, 0, [0_u32; 3]);
-    let mut hand_on = |part: [Ready; 3]| {
-        let area = if cull == 0 { 0 } else { doubled_area(&part) };
-        if (cull == 1 && area <= 0) || (cull == 2 && area >= 0) {
-            return;
-        }
-        triangles = triangles.wrapping_add(1);
-        waiting[count % TOGETHER] = part;
-        count += 1;
-        if count == TOGETHER {
-            add(&mut drawn, flush(&waiting));
-            count = 0;
-        }
-    };
-    for i in 0..source.triangles() {
-        // SAFETY: below the number of indices, and each below that of the vertices.
-        let corners = [0, 1, 2].map(|k| unsafe { source.corner::<D>(source.index(3 * i + k), near) });
-        let [Some(a), Some(b), Some(c)] = corners else {
-            refused += 1;
-            continue;
-        };
-        match [a.ready, b.ready, c.ready] {
-            [Some(a), Some(b), Some(c)] => hand_on([a, b, c]),
-            _ => clip::<D>([a, b, c], near, progress, &mut hand_on),
+    // SAFETY: by the caller.
+    unsafe {
+        if IS_BATCHED && source.triangles() >= FEW {
+            gather_by::<D, K, MANY_TOGETHER, MANY_REMEMBERED>(source, near, progress, cull, flush)
+        } else {
+            gather_by::<D, K, FEW_TOGETHER, FEW_REMEMBERED>(source, near, progress, cull, flush)
         }
     }
-    add(&mut drawn, flush(&waiting[..count % TOGETHER]));
-    let [spans, covered, pixels] = drawn;
-    [triangles, refused, spans, covered, pixels]
 }
 
-/// Counts wrap at 2³².
-fn add(sum: &mut [u32; 3], more: [u32; 3]) {
-    for (sum, more) in sum.iter_mut().zip(more) {
-        *sum = sum.wrapping_add(more);
-    }
+/// Clips triangle `i`. Returns false if one of its numbers is none, or out of range.
+///
+/// # Safety
+/// Its indices have been checked.
+#[cold]
+#[inline(never)]
+unsafe fn clipped<D: Door, K: Kept, const TOGETHER: usize>(
+    source: &Source,
+    i: u32,
+    near: Option<D::Wide>,
+    progress: Progress,
+    waiting: &mut Waiting<'_, K, TOGETHER>,
+) -> bool {
+    // SAFETY: by the caller.
+    let corners = unsafe { source.indices(i).map(|index| source.wide::<D, K>(index, near)) };
+    let [Some(a), Some(b), Some(c)] = corners else {
+        return false;
+    };
+    clip::<D, K>([a, b, c], near, progress, &mut |part| waiting.push(&part));
+    true
 }
 
 /// Calls `$with` with a raster over a checked target, whatever its depth buffer.
@@ -130,7 +231,7 @@ unsafe fn draw<D: Door>(
     let wants_effects =
         pointers.iter().any(|table| !table.is_null()) || material.dither > 0 || material.keep_depth == 0;
     let has_shade = !matches!(interpolation, Interpolation::Flat(_)) && material.slope_table.is_null();
-    let (source, parts) = Source::new(mesh, has_shade, wants_effects)?;
+    let (source, parts) = Source::new(mesh, has_shade)?;
     for (pointer, length) in [(mesh.vertices, parts.vertices), (mesh.indices, parts.indices)] {
         if length > 0 {
             checked.apart_from(Bytes::new(pointer, length)?)?;
@@ -150,22 +251,25 @@ unsafe fn draw<D: Door>(
             with_raster!(checked, |raster| {
                 // SAFETY: the bytes of vertices and indices are there, and indices have been checked.
                 unsafe {
-                    gather::<D>(&source, near, progress, material.cull, &mut |all| effects.draw(&mut raster, all))
+                    gather::<D, Ready>(&source, near, progress, material.cull, &mut |all| {
+                        effects.draw(&mut raster, all)
+                    })
                 }
             })
         }
     } else {
         with_raster!(checked, |raster| {
-            let mut flush = |all: &[[Ready; 3]]| {
-                let mut corners = [[mode13h::raster::Vertex::default(); 3]; TOGETHER];
-                for (to, from) in corners.iter_mut().zip(all) {
-                    *to = from.each_ref().map(|corner| corner.vertex);
+            let mut flush = |all: &[[mode13h::raster::Vertex; 3]]| {
+                let mut drawn = DrawStats::default();
+                if IS_BATCHED && all.len() > FEW_TOGETHER {
+                    drawn = raster.triangles(all.iter().map(|corners| (corners, interpolation)));
+                } else {
+                    all.iter().for_each(|corners| drawn += raster.triangle(corners, interpolation));
                 }
-                let drawn = raster.triangles(corners[..all.len()].iter().map(|corners| (corners, interpolation)));
                 [drawn.spans, drawn.covered, drawn.pixels]
             };
             // SAFETY: as above.
-            unsafe { gather::<D>(&source, near, progress, material.cull, &mut flush) }
+            unsafe { gather::<D, _>(&source, near, progress, material.cull, &mut flush) }
         })
     };
     let _ = context;

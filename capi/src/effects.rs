@@ -13,7 +13,7 @@ use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
 /// What the stages take when they draw for the first time, and no more later.
-const HEAP: usize = 0x2_8000;
+const HEAP: usize = 0x1_C000;
 
 /// The bytes of a context, wherever memory begins that is aligned to 16.
 pub(crate) const BYTES: usize = size_of::<Context>() + HEAP;

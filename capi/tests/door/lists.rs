@@ -1,0 +1,312 @@
+//! Random triangles through the C door, beside the engine's own functions.
+
+use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h_capi::abi::{OK, Stats, Target};
+use mode13h_capi::draw::{m13_draw, m13_draw_x, m13_triangle, m13_triangle_x};
+use mode13h_capi::target::{m13_clear, m13_clear_depth, m13_target_clip};
+use mode13h_conformance::random::Random;
+
+use crate::{material, mesh, target};
+
+const SHADINGS: [Interpolation; 5] = [
+    Interpolation::Flat(77),
+    Interpolation::GouraudReseeded,
+    Interpolation::Gouraud,
+    Interpolation::Gouraud1616,
+    Interpolation::GouraudHyperbolic,
+];
+
+/// A frame and its depths, which are checked to their last byte.
+#[derive(Clone, PartialEq)]
+struct Canvas {
+    pixels: Vec<u8>,
+    wide: Vec<u32>,
+    narrow: Vec<u16>,
+}
+
+/// A vertex of this program, with something before, between and behind what is read.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct Own {
+    name: u8,
+    shade: f32,
+    x: f32,
+    y: f32,
+    w: f32,
+    depth: f32,
+    more: u16,
+}
+
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct OwnX {
+    depth: u32,
+    more: [u8; 3],
+    x: i32,
+    y: i32,
+    shade: i32,
+}
+
+/// Draws by the engine.
+fn by_engine(
+    canvas: &mut Canvas,
+    [width, height, pitch]: [u32; 3],
+    bits: u32,
+    clip: Rect,
+    triangles: &[[Vertex; 3]],
+    shading: usize,
+) {
+    let frame = Frame::new(&mut canvas.pixels, width, height, pitch as usize).expect("a frame");
+    let list = triangles.iter().map(|corners| (corners, SHADINGS[shading]));
+    match bits {
+        0 => Raster::new(frame).with_clip(clip).triangles(list),
+        16 => {
+            let depth = DepthBuffer::new(&mut canvas.narrow, &frame).expect("depths");
+            Raster::new(frame).with_depth(depth).with_clip(clip).triangles(list)
+        }
+        _ => {
+            let depth = DepthBuffer::new(&mut canvas.wide, &frame).expect("depths");
+            Raster::new(frame).with_depth(depth).with_clip(clip).triangles(list)
+        }
+    };
+}
+
+fn canvas_target(canvas: &mut Canvas, [width, height, pitch]: [u32; 3], bits: u32, clip: Rect) -> Target {
+    let mut made = target(&mut canvas.pixels, width, height, pitch as usize);
+    made.depth_bits = bits;
+    (made.depth, made.depth_bytes) = match bits {
+        16 => (canvas.narrow.as_mut_ptr().cast(), 2 * canvas.narrow.len()),
+        _ => (canvas.wide.as_mut_ptr().cast(), 4 * canvas.wide.len()),
+    };
+    let [x0, y0, x1, y1] = [clip.x0, clip.y0, clip.x1, clip.y1].map(|edge| edge as i32);
+    // SAFETY: a target.
+    assert_eq!(unsafe { m13_target_clip(&raw mut made, x0, y0, x1, y1) }, OK);
+    made
+}
+
+#[test]
+fn lists_have_the_bytes_of_the_engine() {
+    let mut random = Random::named("lists of C");
+    let mut drawn = 0_u64;
+    for round in 0..600 {
+        let size = [1 + random.below(330) as u32, 1 + random.below(210) as u32];
+        let shape = [size[0], size[1], size[0] + random.below(9) as u32];
+        let (bits, shading) = (random.one_of(&[0, 16, 32]), random.below(5));
+        let cells = (shape[0] * shape[1]) as usize;
+        let pixels = (shape[2] * (shape[1] - 1) + shape[0]) as usize;
+        let mut canvas = Canvas { pixels: vec![3; pixels], wide: vec![0; cells], narrow: vec![0; cells] };
+        for cell in 0..cells {
+            canvas.wide[cell] = random.below(1 << 29) as u32;
+            canvas.narrow[cell] = random.below(1 << 15) as u16;
+        }
+        let clip = if random.below(3) == 0 {
+            let x0 = random.below(size[0] as usize + 1) as u32;
+            Rect {
+                x0,
+                y0: random.below(9) as u32,
+                x1: size[0] - random.below(4).min(size[0] as usize) as u32,
+                y1: size[1],
+            }
+        } else {
+            Rect { x0: 0, y0: 0, x1: size[0], y1: size[1] }
+        };
+        let count = random.log_uniform(9) + 3;
+        // Most triangles are small.
+        let spread = random.one_of(&[6.0, 40.0, 300.0]);
+        let (mut own, mut own_x) = (Vec::new(), Vec::new());
+        let mut centre = [0.0; 2];
+        for i in 0..count {
+            if i % 3 == 0 {
+                centre = [random.unit() * f64::from(size[0]), random.unit() * f64::from(size[1])];
+            }
+            let [x, y] = centre.map(|c| (c + random.around_zero(spread)) as f32);
+            // Some numbers with few bits, so that vertices lie on centres and corners of pixels.
+            let [x, y] = if random.below(2) == 0 { [x, y] } else { [(x * 2.0).round() / 2.0, (y * 2.0).round() / 2.0] };
+            let (depth, shade) = (random.unit() as f32, (random.unit() * 300.0 - 20.0) as f32);
+            own.push(Own { name: 9, shade, x, y, w: f32::NAN, depth, more: 7 });
+            let [x, y, shade] = [x, y, shade].map(|c| (f64::from(c) * 65_536.0) as i32);
+            own_x.push(OwnX { depth: random.next_u64() as u32, more: [1; 3], x, y, shade });
+        }
+        let vertices: Vec<Vertex> = own
+            .iter()
+            .map(|v| Vertex::at(v.x, v.y, v.shade).with_depth((f64::from(v.depth) * f64::from(1 << 30) + 0.5) as u32))
+            .collect();
+        let vertices_x: Vec<Vertex> = own_x
+            .iter()
+            .map(|v| {
+                // Rounded to the nearest 1/256, halves upward, by another way than the door's.
+                let nearest = |c: i32| ((f64::from(c) / 256.0 + 0.5).floor()) as i32;
+                let shade = (f64::from(v.shade) / 256.0 + 0.5).floor().clamp(0.0, 65_280.0) as u16;
+                let at = mode13h::fixed::I24F8::from_bits;
+                let shade = mode13h::fixed::U8F8::from_bits(shade);
+                Vertex::new(at(nearest(v.x)), at(nearest(v.y)), shade, v.depth).expect("near the frame")
+            })
+            .collect();
+        let indices: Vec<u32> = (0..3 * (count / 2)).map(|_| random.below(count) as u32).collect();
+        let narrow: Vec<u16> = indices.iter().map(|i| *i as u16).collect();
+        let is_indexed = round % 3 > 0;
+        let triangles = |vertices: &[Vertex]| -> Vec<[Vertex; 3]> {
+            if is_indexed {
+                indices.as_chunks::<3>().0.iter().map(|corners| corners.map(|i| vertices[i as usize])).collect()
+            } else {
+                vertices.as_chunks::<3>().0.to_vec()
+            }
+        };
+        for is_fixed in [false, true] {
+            let (mut should, mut is) = (canvas.clone(), canvas.clone());
+            let list = triangles(if is_fixed { &vertices_x } else { &vertices });
+            by_engine(&mut should, shape, bits, clip, &list, shading);
+            let mut made = if is_fixed {
+                let mut made = mesh(&own_x);
+                (made.depth, made.position, made.shade) = (0, core::mem::offset_of!(OwnX, x) as u32, 16);
+                made
+            } else {
+                let mut made = mesh(&own);
+                (made.shade, made.position, made.depth) = (4, 8, 20);
+                made
+            };
+            if is_indexed {
+                (made.index_bits, made.index_count) = (if round % 2 == 0 { 16 } else { 32 }, indices.len() as u32);
+                made.indices = if round % 2 == 0 { narrow.as_ptr().cast() } else { indices.as_ptr().cast() };
+            } else {
+                made.vertex_count -= made.vertex_count % 3;
+            }
+            let mut of = material(shading as u32);
+            of.color = 77;
+            let made_target = canvas_target(&mut is, shape, bits, clip);
+            let mut stats = Stats { size: 24, triangles: 0, refused: 0, spans: 0, covered: 0, pixels: 0 };
+            let draw = if is_fixed { m13_draw_x } else { m13_draw };
+            // SAFETY: all of it is there.
+            let code = unsafe { draw(&made_target, &made, &of, core::ptr::null_mut(), &mut stats) };
+            assert_eq!((code, stats.refused), (OK, 0));
+            assert_eq!(stats.triangles as usize, list.len());
+            drawn += u64::from(stats.pixels);
+            assert!(is == should, "round {round}, {shape:?}, {bits} bits, {:?}", SHADINGS[shading]);
+        }
+    }
+    println!("{drawn} pixels");
+    assert!(drawn > 1_000_000);
+}
+
+#[test]
+fn a_triangle_is_a_list_of_one() {
+    let mut random = Random::named("triangles of C");
+    for _ in 0..400 {
+        let mut canvas = Canvas { pixels: vec![3; 64 * 40], wide: vec![0; 64 * 40], narrow: Vec::new() };
+        let everything = Rect { x0: 0, y0: 0, x1: 64, y1: 40 };
+        let (shape, shading) = ([64, 40, 64], random.below(5));
+        let corners: [mode13h_capi::abi::Vertex; 3] = core::array::from_fn(|_| mode13h_capi::abi::Vertex {
+            x: (random.unit() * 80.0 - 8.0) as f32,
+            y: (random.unit() * 60.0 - 8.0) as f32,
+            depth: random.unit() as f32,
+            shade: (random.unit() * 255.0) as f32,
+        });
+        let corners_x = corners.map(|c| mode13h_capi::abi::VertexX {
+            x: (c.x * 65_536.0) as i32,
+            y: (c.y * 65_536.0) as i32,
+            depth: (f64::from(c.depth) * f64::from(1 << 30) + 0.5) as u32,
+            shade: (c.shade * 65_536.0) as i32,
+        });
+        let vertices = corners
+            .map(|c| Vertex::at(c.x, c.y, c.shade).with_depth((f64::from(c.depth) * f64::from(1 << 30) + 0.5) as u32));
+        let mut should = canvas.clone();
+        by_engine(&mut should, shape, 32, everything, &[vertices], shading);
+        let made = canvas_target(&mut canvas, shape, 32, everything);
+        // SAFETY: three corners.
+        assert_eq!(unsafe { m13_triangle(&made, corners.as_ptr(), shading as u32, 77) }, OK);
+        assert!(canvas == should);
+        // Cleared, and once more. Where truncation to 16.16 lost nothing it is the same.
+        let made = canvas_target(&mut canvas, shape, 32, everything);
+        // SAFETY: as above.
+        unsafe {
+            assert_eq!(m13_clear(&made, 3), OK);
+            assert_eq!(m13_clear_depth(&made), OK);
+            assert_eq!(m13_triangle_x(&made, corners_x.as_ptr(), shading as u32, 77), OK);
+        }
+        if corners.iter().all(|c| [c.x, c.y, c.shade].iter().all(|c| (c * 65_536.0).fract() == 0.0)) {
+            assert!(canvas == should);
+        }
+    }
+}
+
+/// A tessellated sheet through the near plane and far beyond the frame: each pixel is drawn once, as a blend that counts
+/// would show, and no matter how it is cut up none is left out that the whole covers.
+#[test]
+fn clipped_neighbours_leave_no_hole() {
+    #[derive(Clone, Copy)]
+    #[repr(C)]
+    struct At {
+        x: f32,
+        y: f32,
+        w: f32,
+    }
+    #[repr(C)]
+    struct AtX {
+        x: i32,
+        y: i32,
+        w: i32,
+    }
+    let memory = crate::Memory::new();
+    // Each pixel that is drawn over another becomes one more.
+    let counts: Vec<u8> = (0..65_536).map(|i| ((i & 255) as u8).saturating_add(1)).collect();
+    let mut random = Random::named("clipped in C");
+    let (mut drawn, mut clipped) = (0, 0);
+    for _ in 0..60 {
+        // A grid on a plane in space: X, Y and w linear in both directions, so some of it is behind the eye.
+        let of = |most: f64, random: &mut Random| [0; 3].map(|_| random.around_zero(most));
+        let (x, y, w) = (of(3_000.0, &mut random), of(2_000.0, &mut random), of(12.0, &mut random));
+        let n = 1 + random.below(14);
+        let linear = |[a, b, c]: [f64; 3], i: usize, j: usize| {
+            // Whole numbers of 1/65,536, so that both doors see the same.
+            let value = a + b * (i as f64 / n as f64 * 2.0 - 1.0) + c * (j as f64 / n as f64 * 2.0 - 1.0);
+            ((value * 16.0).round() / 16.0) as f32
+        };
+        let mut grid = Vec::new();
+        for j in 0..=n {
+            for i in 0..=n {
+                grid.push(At { x: linear(x, i, j), y: linear(y, i, j), w: linear([w[0] + 4.0, w[1], w[2]], i, j) });
+            }
+        }
+        let mut indices: Vec<u16> = Vec::new();
+        for j in 0..n {
+            for i in 0..n {
+                let [a, b, c, d] =
+                    [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| (j * (n + 1) + i) as u16);
+                indices.extend([a, b, c, a, c, d]);
+            }
+        }
+        let grid_x: Vec<AtX> = grid
+            .iter()
+            .map(|at| {
+                let [x, y, w] = [at.x, at.y, at.w].map(|c| (f64::from(c) * 65_536.0) as i32);
+                AtX { x, y, w }
+            })
+            .collect();
+        for is_fixed in [false, true] {
+            let mut pixels = vec![0_u8; 320 * 200];
+            let canvas = target(&mut pixels, 320, 200, 320);
+            let mut made = if is_fixed { mesh(&grid_x) } else { mesh(&grid) };
+            (made.homogeneous, made.near_w, made.near_w_x) = (1, 0.5, 0x8000);
+            (made.indices, made.index_count) = (indices.as_ptr().cast(), indices.len() as u32);
+            let mut of = material(0);
+            of.blend_table = counts.as_ptr();
+            let mut stats = Stats { size: 24, triangles: 0, refused: 0, spans: 0, covered: 0, pixels: 0 };
+            let draw = if is_fixed { m13_draw_x } else { m13_draw };
+            // SAFETY: all of it is there.
+            assert_eq!(unsafe { draw(&canvas, &made, &of, memory.context, &mut stats) }, OK);
+            drawn += stats.pixels;
+            clipped += usize::from(stats.triangles as usize != indices.len() / 3);
+            let is_double = pixels.iter().filter(|count| **count > 1).count();
+            assert_eq!(is_double, 0, "{is_fixed}: pixels drawn twice");
+            // Between two that are drawn in a row, all are: what is in front of the near plane is convex.
+            for row in pixels.chunks(320) {
+                let first = row.iter().position(|count| *count > 0).unwrap_or(0);
+                let last = row.iter().rposition(|count| *count > 0).unwrap_or(0);
+                let holes = row[first..last.max(first)].iter().filter(|count| **count == 0).count();
+                assert_eq!(holes, 0, "{is_fixed}: holes");
+            }
+        }
+    }
+    println!("{drawn} pixels, {clipped} sheets clipped");
+    assert!(drawn > 100_000 && clipped > 20);
+}
