@@ -7,13 +7,11 @@
 #include <time.h>
 
 #include "mode13h.h"
-
 enum { WIDTH = 320, HEIGHT = 200, AROUND = 48, ACROSS = 24, ROUNDS = 300 };
 
 static uint8_t texels[64 * 64], shades[65536], palette[768];
 static uint32_t context_memory[64 * 1024];
 static m13_context *context;
-
 static struct { fixed x, y, u, v, shade; } list[4096];
 static uint32_t listed;
 static struct { BITMAP *bitmap, *texture; int type; } of;
@@ -25,8 +23,7 @@ static void flush(void)
     m13_mesh mesh;
     m13_material material;
     BITMAP *to = of.bitmap;
-    if (listed == 0)
-        return;
+    if (listed == 0) return;
     m13_target_init(&target, to->line[0], (size_t)(to->w * to->h), (uint32_t)to->w, (uint32_t)to->h, (size_t)to->w);
     m13_target_clip(&target, to->cl, to->ct, to->cr, to->cb);
     m13_mesh_init(&mesh, list, listed, sizeof list[0]);
@@ -60,14 +57,12 @@ static void corner(V3D *to, int i, int j)
 {
     double a = i * 6.2831853 / AROUND, b = j * 6.2831853 / ACROSS, r = 1.0 + 0.4 * cos(b);
     double x = r * cos(a), y = r * sin(a) * 0.8 + 0.24 * sin(b), z = 2.6 - r * sin(a) * 0.6 + 0.32 * sin(b);
-    double light = 0.5 + 0.5 * (0.5 * cos(b) * cos(a) - 0.6 * sin(b) - 0.5 * sin(a) * cos(b));
     to->x = ftofix(WIDTH / 4 + 135 * x / z), to->y = ftofix(HEIGHT / 2 + 113 * y / z), to->z = ftofix(z);
     to->u = itofix(i * 8), to->v = itofix(j * 8);
-    to->c = (int)(250 * light);
+    to->c = (int)(125 + 125 * (0.5 * cos(b) * cos(a) - 0.6 * sin(b) - 0.5 * sin(a) * cos(b)));
 }
 
 typedef void painter(BITMAP *, int, BITMAP *, int, V3D **);
-
 static double draw(BITMAP *bitmap, BITMAP *texture, int type, painter *paint)
 {
     static V3D grid[AROUND + 1][ACROSS + 1];
@@ -76,15 +71,13 @@ static double draw(BITMAP *bitmap, BITMAP *texture, int type, painter *paint)
     for (i = 0; i <= AROUND; i++)
         for (j = 0; j <= ACROSS; j++)
             corner(&grid[i][j], i, j);
-    then = clock();
-    for (round = 0; round < ROUNDS; round++)
+    for (then = clock(), round = 0; round < ROUNDS; round++)
         for (i = 0; i < AROUND; i++)
             for (j = 0; j < ACROSS; j++) {
                 V3D *quad[4] = { &grid[i][j], &grid[i + 1][j], &grid[i + 1][j + 1], &grid[i][j + 1] };
                 fixed area = fixmul(quad[1]->x - quad[0]->x, quad[2]->y - quad[0]->y) -
                              fixmul(quad[2]->x - quad[0]->x, quad[1]->y - quad[0]->y);
-                if (area < 0)
-                    paint(bitmap, type, texture, 4, quad);
+                if (area < 0) paint(bitmap, type, texture, 4, quad);
             }
     flush();
     return (double)(clock() - then) / CLOCKS_PER_SEC * 1e9 / ROUNDS / (AROUND * ACROSS / 2);
@@ -99,8 +92,7 @@ int main(void)
     static const char *names[] = { "flat", "shaded", "textured", "textured, lit" };
     static const int types[] = { POLYTYPE_FLAT, POLYTYPE_GCOL, POLYTYPE_ATEX, POLYTYPE_ATEX_LIT };
     int i;
-    if (install_allegro(SYSTEM_NONE, &errno, NULL) != 0 || m13_init(aligned, m13_size(), &context) != M13_OK)
-        return 1;
+    if (install_allegro(SYSTEM_NONE, &errno, NULL) != 0 || m13_init(aligned, m13_size(), &context) != M13_OK) return 1;
     set_color_depth(8);
     screen_of_both = create_bitmap(WIDTH, 4 * HEIGHT), left = create_bitmap(WIDTH / 2, HEIGHT);
     right = create_bitmap(WIDTH / 2, HEIGHT), texture = create_bitmap(64, 64);
