@@ -52,6 +52,12 @@ unsafe fn write(to: *mut u8, colors: &[Rgb; 256], of: impl Fn(Rgb) -> [u8; 3]) -
     Ok(())
 }
 
+/// The colour `0xRRGGBB`. By shifts: the engine's own way is one of big-endian bytes, for which compilers take an
+/// instruction that a 386 lacks.
+fn color(rgb: u32) -> Rgb {
+    Rgb::new((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
+}
+
 fn bytes(Rgb { r, g, b }: Rgb) -> [u8; 3] {
     [r, g, b]
 }
@@ -108,7 +114,7 @@ pub unsafe extern "C" fn m13_palette_ramp(to: *mut u8, first: u32, entries: u32,
         u8::try_from(first).ok().zip(u16::try_from(entries).ok()).and_then(|(f, n)| mode13h::palette::Ramp::new(f, n));
     // SAFETY: by the caller.
     code(unsafe { colors(to) }.and_then(|mut all| {
-        let keys = [gradient::Stop::new(0, from_rgb), gradient::Stop::new(255, to_rgb)];
+        let keys = [gradient::Stop { at: 0, color: color(from_rgb) }, gradient::Stop { at: 255, color: color(to_rgb) }];
         gradient::fill(&mut all, ramp.ok_or(Refusal::Value)?, &keys);
         // SAFETY: by the caller.
         unsafe { write(to, &all, bytes) }
@@ -123,7 +129,7 @@ pub unsafe extern "C" fn m13_palette_ramp(to: *mut u8, first: u32, entries: u32,
 pub unsafe extern "C" fn m13_palette_nearest(from: *const u8, rgb: u32) -> c_int {
     // SAFETY: by the caller.
     match unsafe { palette(from) } {
-        Ok(palette) => palette.nearest(Rgb::from(rgb)).into(),
+        Ok(palette) => palette.nearest(color(rgb)).into(),
         Err(refusal) => refusal as c_int,
     }
 }
@@ -286,7 +292,7 @@ pub unsafe extern "C" fn m13_table_fog(from: *const u8, rgb: u32, table: *mut u8
     code(unsafe { searched(from) }.and_then(|(_, shown, search)| {
         let byte = |level: u8, byte: u8| match level {
             0 => byte,
-            _ => search.nearest(shown[byte].mix(Rgb::from(rgb), level)),
+            _ => search.nearest(shown[byte].mix(color(rgb), level)),
         };
         // SAFETY: as above.
         unsafe { fill(table, byte) }
@@ -382,7 +388,9 @@ pub unsafe extern "C" fn m13_show_32(
     pitch: usize,
 ) -> c_int {
     // SAFETY: by the caller.
-    code(unsafe { show(target, from, out, bytes, pitch, u32::from) })
+    code(unsafe {
+        show(target, from, out, bytes, pitch, |Rgb { r, g, b }| u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b))
+    })
 }
 
 /// Shows a frame as 5, 6 and 5 bits.
