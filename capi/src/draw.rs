@@ -430,9 +430,10 @@ pub unsafe extern "C" fn m13_material_init(material: *mut Material, shading: u32
         return Refusal::Null as c_int;
     }
     let made = Material { shading, ..Material::NONE };
-    // SAFETY: not null; by the caller there is room.
-    unsafe { material.write_unaligned(made) };
-    code(interpolation(&made).map(|_| ()))
+    code(interpolation(&made).map(|_| {
+        // SAFETY: not null; by the caller there is room.
+        unsafe { material.write_unaligned(made) };
+    }))
 }
 
 /// The bytes that a context takes.

@@ -175,7 +175,7 @@ pub unsafe extern "C" fn m13_target_init(
         depth_bytes: 0,
     };
     // SAFETY: by the caller.
-    code(unsafe { put(target, made).and_then(|()| check(target).map(|_| ())) })
+    code(unsafe { check(&raw const made).and_then(|_| put(target, made)) })
 }
 
 /// Gives a target a depth buffer, or with 0 bits takes it away.

@@ -342,7 +342,10 @@ static void fuzz(m13_context *context, int rounds)
         m13_mesh mesh;
         m13_material material;
         m13_stats stats = { sizeof stats, 0, 0, 0, 0, 0 };
-        m13_target_init(&t, pixels, bytes, width, height, below(8) ? width + below(5) : odd_number(100));
+        m13_target_init(&t, table, 1, 1, 1, 1); /* and by hand, so that nothing is checked yet */
+        t.pixels = pixels, t.pixel_bytes = bytes, t.width = width, t.height = t.rows = height;
+        t.clip_x1 = width, t.clip_y1 = height;
+        t.pitch = below(8) ? (size_t)width + below(5) : odd_number(100);
         if (below(2))
             m13_target_depth(&t, depth + below(2) * 2, depth_bytes < 2 ? 0 : depth_bytes - 2, below(9) ? 16u << below(2) : odd_number(40));
         if (below(2))
@@ -380,7 +383,8 @@ static void fuzz(m13_context *context, int rounds)
         mesh.homogeneous = below(20) ? below(2) : odd_number(3);
         mesh.near_w = below(4) ? 0.5f : odd_float(2.0f);
         mesh.near_w_x = below(4) ? 0x8000 : (int32_t)odd_number(0xFFFFFFFEu);
-        m13_material_init(&material, below(20) ? below(5) : odd_number(9));
+        m13_material_init(&material, M13_FLAT);
+        material.shading = below(20) ? below(5) : odd_number(9);
         material.color = below(20) ? below(256) : odd_number(300);
         material.cull = below(20) ? below(3) : odd_number(3);
         material.mapping = below(20) ? below(3) : odd_number(3);
