@@ -1,4 +1,18 @@
+// @ts-check
 // The slider: how wrong a pixel may be. Its figures and the error map.
+import { element, make, setText, keyed, keyItem } from "./elements.js";
+import { clamp, group } from "./common.js";
+import { PalettedCanvas } from "./picture.js";
+import {
+  budgetText, CHEAPEST, errorText, fullName, LAST_STOP, MARKS, OCTAVES, plainName, settingAt, settingName, shadesText, stopOf, techniqueColor,
+} from "./stops.js";
+import { CLOCK_STEP, KEPT_LAPS, msText, Stopwatch } from "./stopwatch.js";
+import { timeOf } from "./versus.js";
+
+/**
+ * @import { Page } from "./page.js"
+ * @import { Counts, Errors, Level, Mark, Picture, Question, Setting } from "./types.d.ts"
+ */
 
 /** The value of the choice that leaves shadings to the slider. */
 const SLIDER = "slider";
@@ -6,7 +20,10 @@ const SLIDER = "slider";
 /** Milliseconds from one telling of the figures to the next: the eye cannot read them all. */
 const TELLING = 250;
 
-/** What is asked for, in a sentence's words. */
+/**
+ * What is asked for, in a sentence's words.
+ * @param {Setting} setting
+ */
 function wishText({ maxError, shading }) {
   if (maxError) return `at most ${shadesText(maxError)} of 255 shades`;
   if (shading === CHEAPEST) return "cheapest: one shade a face";
@@ -19,7 +36,10 @@ const EDGE_ON = "#3f9ea8";
 /** What a byte is off by at most where light is computed at the pixel: no budget is kept more closely. */
 const LIT = 0.52;
 
-/** Whether the promise is kept, in words: what is beyond it is never left without them. */
+/**
+ * Whether the promise is kept, in words: what is beyond it is never left without them.
+ * @param {Errors} errors
+ */
 function promiseText({ max, maxError, beyond, edgeOn }) {
   if (!maxError) return "No limit is promised: the largest error is what it happens to be.";
   if (beyond) return `The promise is broken at ${group(beyond)} pixels, by up to ${errorText(max)} shades: please report this.`;
@@ -29,11 +49,17 @@ function promiseText({ max, maxError, beyond, edgeOn }) {
   return `${kept}. Apart from ${faces} seen edge on, up to ${errorText(Math.ceil(100 * edgeOn.max) / 100)}: rounding corners to 1/256 pixel moves their light that far.`;
 }
 
-/** Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks. */
-function whyText(state, marks) {
-  if (marks.some((mark) => !mark)) return "";
+/**
+ * Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks.
+ * @param {Setting} state
+ * @param {(Mark | undefined)[]} found
+ */
+function whyText(state, found) {
+  const marks = found.filter((mark) => mark !== undefined);
+  if (marks.length < MARKS.length) return "";
   const [cheapest, ...budgets] = marks;
-  const finest = budgets.at(-1);
+  const finest = marks[marks.length - 1];
+  /** @param {Mark} mark */
   const isFinest = (mark) => Math.abs(mark.rms - finest.rms) < 0.005 && Math.abs(mark.max - finest.max) < 0.05;
   // The first mark from which on nothing changes.
   const from = marks.findIndex((_, at) => marks.slice(at).every(isFinest));
@@ -44,23 +70,29 @@ function whyText(state, marks) {
   }
   if (!state.maxError) return "";
   if (from < budgets.length && state.maxError <= OCTAVES[from - 1]) return `Already as exact as it gets: from ${budgetText(OCTAVES[from - 1])} on the slider changes nothing.`;
-  const here = budgets[clamp(Math.round((stopOf(state) - stopOf(MARKS[1])) / 4), 0, budgets.length - 1)];
-  const isDearer = here.isRedrawn && here.ms > DEARER * finest.ms;
+  const here = budgets[clamp(Math.round(Math.log2(OCTAVES[0] / state.maxError)), 0, budgets.length - 1)];
+  const isDearer = here.isRedrawn && (here.ms ?? 0) > DEARER * (finest.ms ?? Infinity);
   return isDearer ? "Dearer than ½ shade here: proving how far off a blend may be takes longer than lighting its pixels." : "";
 }
 
 /** How much longer a coarser picture must take for the page to say why. */
 const DEARER = 1.08;
 
-const group = (number) => number.toLocaleString("en");
-
-class Accuracy {
-  /** The errors of the frame that was judged last. */
+export class Accuracy {
+  /**
+   * The errors of the frame that was judged last.
+   * @type {Errors | null}
+   */
   judged = null;
+  /**
+   * The levels of its pixels, and what was asked.
+   * @type {{ map: Uint8Array, asked: Question } | undefined}
+   */
+  lastMap;
   #told = 0;
   #isAsking = false;
 
-  /** `page` has state, engine, scene, the stopwatch of the picture, question() and ask(). */
+  /** @param {Page} page */
   constructor(page) {
     this.page = page;
     this.#offerStops();
@@ -68,7 +100,7 @@ class Accuracy {
     const methods = page.engine.shadings.map((name) => new Option(fullName(name), name));
     shadings.replaceChildren(new Option("as the slider says", SLIDER), new Option("as the scene asks", ""), ...methods);
     shadings.addEventListener("change", () => {
-      if (shadings.value === SLIDER) page.choose(settingAt(Number(element("accuracy").value)));
+      if (shadings.value === SLIDER) page.choose(settingAt(page.state.stop));
       else page.choose({ maxError: null, shading: shadings.value });
     });
     element("within").addEventListener("submit", (event) => {
@@ -83,37 +115,41 @@ class Accuracy {
 
   #offerStops() {
     const slider = element("accuracy");
-    slider.max = LAST_STOP;
-    const marks = [["cheapest", 0], ...OCTAVES.map((budget) => [shadesText(budget), stopOf({ maxError: budget })])];
-    element("octaves").replaceChildren(...marks.map(([label, stop]) => new Option(label, stop)));
-    document.querySelector(".scale").replaceChildren(...marks.map(([label, stop]) => {
+    slider.max = `${LAST_STOP}`;
+    const marks = MARKS.map((mark) => ({ label: mark.maxError ? shadesText(mark.maxError) : "cheapest", stop: stopOf(mark) ?? 0 }));
+    element("octaves").replaceChildren(...marks.map(({ label, stop }) => new Option(label, `${stop}`)));
+    const scale = /** @type {HTMLElement} */ (document.querySelector(".scale"));
+    scale.replaceChildren(...marks.map(({ label, stop }) => {
       const mark = make("span", {}, label);
-      mark.style.setProperty("--stop", stop / LAST_STOP);
+      mark.style.setProperty("--stop", `${stop / LAST_STOP}`);
       return mark;
     }));
     const choose = () => this.page.choose(settingAt(Number(slider.value)));
     slider.addEventListener("input", choose);
     // A shading that is not on the slider leaves the thumb where it was: any key or touch takes the slider up again, even
     // at its ends, where there is no input.
-    for (const touched of ["keydown", "pointerdown"]) {
-      slider.addEventListener(touched, ({ key }) => key !== "Tab" && key !== "Shift" && stopOf(this.page.state) === null && choose());
-    }
+    const takeUp = () => stopOf(this.page.state) === null && choose();
+    slider.addEventListener("keydown", ({ key }) => key !== "Tab" && key !== "Shift" && takeUp());
+    slider.addEventListener("pointerdown", takeUp);
   }
 
   /** Shows what is set. The thumb stays where it is if that is no stop of the slider. */
   follow() {
     const { state } = this.page;
     const slider = element("accuracy");
-    const stop = stopOf(state);
-    if (stop !== null) slider.value = stop;
-    slider.classList.toggle("aside", stop === null);
+    const isAside = stopOf(state) === null;
+    slider.value = `${state.stop}`;
+    slider.classList.toggle("aside", isAside);
     const wish = wishText(state);
     setText(element("wish"), wish);
     slider.setAttribute("aria-valuetext", wish);
-    element("shading").value = stop === null ? state.shading : SLIDER;
+    element("shading").value = isAside ? state.shading : SLIDER;
   }
 
-  /** Tells the time that the picture takes. */
+  /**
+   * Tells the time that the picture takes.
+   * @param {number} now
+   */
   tell(now) {
     if (now - this.#told < TELLING) return;
     this.#told = now;
@@ -130,18 +166,24 @@ class Accuracy {
     setText(element("why"), whyText(this.page.state, marks));
   }
 
-  /** Tells what the engine counted of a frame. */
+  /**
+   * Tells what the engine counted of a frame.
+   * @param {Counts} counts
+   */
   counts({ shares, shading, lit, pixels }) {
     const all = shares.reduce((sum, [, faces]) => sum + faces, 0) || 1;
+    /** @param {string} name */
     const colored = (name) => {
       const part = make("i");
       part.style.background = techniqueColor(name);
       return part;
     };
-    const words = shares.map(([name, faces]) => [name, `${plainName(name)} ${faces * 200 < all ? "under 1" : Math.round((100 * faces) / all)} %`]);
-    keyed(element("shares"), shares, ([name]) => name, ([name]) => colored(name), (part, [, faces]) => (part.style.flex = faces));
-    keyed(element("shares-key"), words, ([name]) => name, ([name]) => keyItem(techniqueColor(name), ""), (item, [, text]) => setText(item.lastElementChild, text));
-    element("shares").setAttribute("aria-label", `Share of faces by technique: ${words.map(([, text]) => text).join(", ") || shading}`);
+    /** @param {[string, number]} share */
+    const words = ([name, faces]) => `${plainName(name)} ${faces * 200 < all ? "under 1" : Math.round((100 * faces) / all)} %`;
+    keyed(element("shares"), shares, ([name]) => name, ([name]) => colored(name), (part, [, faces]) => (part.style.flex = `${faces}`));
+    keyed(element("shares-key"), shares, ([name]) => name, ([name]) => keyItem(techniqueColor(name), ""),
+      (item, share) => setText(/** @type {Element} */ (item.lastElementChild), words(share)));
+    element("shares").setAttribute("aria-label", `Share of faces by technique: ${shares.map(words).join(", ") || shading}`);
     setText(element("lit"), `Light computed ${group(lit)} times for ${group(pixels)} pixels drawn.`);
   }
 
@@ -171,7 +213,10 @@ class Accuracy {
     this.judged = null;
   }
 
-  /** The smallest error whose frame takes no longer: the slider's stops, halved again and again. */
+  /**
+   * The smallest error whose frame takes no longer: the slider's stops, halved again and again.
+   * @param {number} limit
+   */
   async within(limit) {
     if (!(limit > 0)) return;
     const { engine, state } = this.page;
@@ -179,7 +224,9 @@ class Accuracy {
     setText(element("found"), "Measuring …");
     // A scene of its own, so that the picture goes on.
     const scene = engine.open(toml);
+    /** @type {Map<number, number | null>} */
     const times = new Map();
+    /** @param {number} stop */
     const takes = async (stop) => {
       scene.set({ ...this.page.settings(), ...settingAt(stop) });
       const watch = new Stopwatch();
@@ -191,13 +238,13 @@ class Accuracy {
     while (beyond - fits > 1) {
       const middle = (fits + beyond) >> 1;
       await takes(middle);
-      if (times.get(middle) <= limit) fits = middle;
+      if ((times.get(middle) ?? Infinity) <= limit) fits = middle;
       else beyond = middle;
     }
     scene.free();
     if (toml !== state.toml) return setText(element("found"), "");
     const stop = Math.max(fits, 0);
-    const took = msText(times.get(stop));
+    const took = msText(times.get(stop) ?? 0);
     setText(element("found"), fits < 0 ? `Not here: the cheapest takes ${took}.` : `${settingName(settingAt(stop))}, in ${took}.`);
     this.page.choose(settingAt(stop));
   }
@@ -206,8 +253,13 @@ class Accuracy {
 /** Laps of each stop that a search looks at. */
 const LAPS_OF_SEARCH = 16;
 
-/** An error map in the colours of its levels. */
-function mapPicture(map, { levels, notTaken }) {
+/**
+ * An error map in the colours of its levels.
+ * @param {Uint8Array} map
+ * @param {{ levels: Level[], notTaken: string }} engine
+ * @returns {Picture}
+ */
+export function mapPicture(map, { levels, notTaken }) {
   const colors = [...levels.map((level) => level.color), notTaken, EDGE_ON].map((color) => [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16)));
   const palette = new Uint8Array(768);
   colors.forEach((color, at) => palette.set(color, 3 * at));

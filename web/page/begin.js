@@ -1,38 +1,31 @@
+// @ts-check
 // The beginning: unpacks what is packed, and runs it.
 
-/** Bytes of letters, 13 bits in two of them. */
-function bytesOf(text, letters) {
-  const values = new Uint8Array(128);
-  [...letters].forEach((letter, value) => (values[letter.charCodeAt(0)] = value));
-  const bytes = new Uint8Array(Math.floor((text.length / 2) * 13 / 8));
-  let [bits, count, at] = [0, 0, 0];
-  for (let i = 0; i + 1 < text.length; i += 2) {
-    bits |= (values[text.charCodeAt(i)] + 91 * values[text.charCodeAt(i + 1)]) << count;
-    for (count += 13; count >= 8; count -= 8) {
-      bytes[at++] = bits;
-      bits >>>= 8;
-    }
-  }
-  return bytes;
-}
-
-/** The parts that are packed in this page: the engine as bytes, the rest as text. */
-function unpackParts() {
-  const { textContent, dataset } = document.getElementById("packed");
-  const all = unpackLzma(bytesOf(textContent.trim(), LETTERS));
+/** The parts that are packed in this page. */
+async function unpack() {
+  const packed = /** @type {HTMLElement} */ (document.getElementById("packed"));
+  const { body } = await fetch(`data:application/gzip;base64,${(packed.textContent ?? "").trim()}`);
+  const unpacked = /** @type {ReadableStream<Uint8Array<ArrayBuffer>>} */ (body).pipeThrough(new DecompressionStream("gzip"));
+  const bytes = new Uint8Array(await new Response(unpacked).arrayBuffer());
+  /** @type {Record<string, number>} */
+  const lengths = JSON.parse(packed.dataset.parts ?? "{}");
   let at = 0;
-  const next = (length) => all.subarray(at, (at += length));
-  const parts = Object.entries(JSON.parse(dataset.parts)).map(([name, length]) => [name, next(length)]);
-  return Object.fromEntries(parts.map(([name, bytes]) => [name, name === "wasm" ? bytes : new TextDecoder().decode(bytes)]));
+  /** @param {string} name */
+  const next = (name) => bytes.subarray(at, (at += lengths[name]));
+  return Object.fromEntries(Object.keys(lengths).map((name) => [name, next(name)]));
 }
 
-function run(script) {
-  document.head.append(Object.assign(document.createElement("script"), { textContent: script }));
+try {
+  const { wasm, ...texts } = await unpack();
+  const [style, text, worker, page] = ["style", "text", "worker", "page"].map((name) => new TextDecoder().decode(texts[name]));
+  document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
+  /** @type {HTMLElement} */ (document.getElementById("text")).innerHTML = text;
+  const address = URL.createObjectURL(new Blob([page], { type: "text/javascript" }));
+  const { begin } = await import(address);
+  URL.revokeObjectURL(address);
+  await begin({ wasm, worker });
+} catch (error) {
+  const trouble = /** @type {HTMLElement} */ (document.getElementById("trouble"));
+  /** @type {HTMLElement} */ (trouble.firstElementChild).textContent = `The page could not be started: ${error instanceof Error ? error.message : error}`;
+  trouble.hidden = false;
 }
-
-const PARTS = unpackParts();
-document.head.append(Object.assign(document.createElement("style"), { textContent: PARTS.style }));
-document.getElementById("text").innerHTML = PARTS.text;
-run(PARTS.engine);
-run(PARTS.figures);
-run(PARTS.page);

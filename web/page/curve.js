@@ -1,4 +1,16 @@
+// @ts-check
 // The chart: what settings take and how far off they are, and where the present one is among them.
+import { drawChart, markEfficient } from "../../lab/src/cost/report/shared/chart.js";
+import { element, setText } from "./elements.js";
+import { settingLines } from "./engine.js";
+import { CHEAPEST, MARKS, fullName, settingName, settingOf, shadesText, stopOf } from "./stops.js";
+import { Stopwatch, msText } from "./stopwatch.js";
+
+/**
+ * @import { Page } from "./page.js"
+ * @import { Point } from "../../lab/src/cost/report/shared/chart.js"
+ * @import { Mark, Setting } from "./types.d.ts"
+ */
 
 /** Laps of a setting in each turn, and turns of all settings: enough for the first, while the browser still compiles, to leave. */
 const LAPS_A_TURN = 5;
@@ -6,16 +18,17 @@ const TURNS = 12;
 /** Milliseconds after which a new scene's curve is measured: first its picture. */
 const SETTLING = 400;
 
-/** The slider's marks, from the cheapest to half a shade. */
-const MARKS = [0, ...OCTAVES.map((maxError) => stopOf({ maxError }))].map(settingAt);
-
-class Curve {
-  /** By their lines: settings, their stopwatch, and their errors and counts once judged. */
+export class Curve {
+  /**
+   * By their lines: settings, their stopwatch, and their errors and counts once judged.
+   * @type {Map<string, { settings: Setting, watch: Stopwatch, judged?: Omit<Mark, "ms" | "isRedrawn"> }>}
+   */
   #points = new Map();
   /** Counts the measurements: an older one ends when a newer begins. */
   #number = 0;
   #timer = 0;
 
+  /** @param {Page} page */
   constructor(page) {
     this.page = page;
     element("measure").addEventListener("click", () => this.#measureAll());
@@ -31,7 +44,11 @@ class Curve {
     this.draw();
   }
 
-  /** What is known of a setting: milliseconds, errors, counts; undefined as long as nothing is. */
+  /**
+   * What is known of a setting: milliseconds, errors, counts; undefined as long as nothing is.
+   * @param {Setting} settings
+   * @returns {Mark | undefined}
+   */
   at(settings) {
     const point = this.#points.get(settingLines(settings));
     return point?.judged && { ...point.judged, ms: point.watch.ms, isRedrawn: point.watch.isRedrawn };
@@ -46,7 +63,11 @@ class Curve {
     setText(button, "Measure all methods again");
   }
 
-  /** Measures settings in turn, so that what else the machine does meets all of them. */
+  /**
+   * Measures settings in turn, so that what else the machine does meets all of them.
+   * @param {Setting[]} settings
+   * @param {(part: number) => void} onProgress
+   */
   async #measure(settings, onProgress = () => {}) {
     const number = ++this.#number;
     const question = this.page.question();
@@ -71,8 +92,10 @@ class Curve {
   /** Draws the chart. What is not redrawn takes no time, and is not on it. */
   draw() {
     const { state, left, accuracy } = this.page;
-    const now = left?.isRedrawn && left.ms && accuracy?.judged;
-    const present = settingLines({ maxError: state.maxError, shading: state.shading });
+    const judged = left?.isRedrawn ? accuracy?.judged : null;
+    const now = judged && left.ms ? { ms: left.ms, error: judged.rms } : null;
+    const present = settingLines(settingOf(state));
+    /** @type {Point[]} */
     const points = [];
     for (const [lines, { settings, watch, judged }] of this.#points) {
       if (!watch.isRedrawn || !watch.ms || !judged) continue;
@@ -80,15 +103,23 @@ class Curve {
       // The name of the present setting stands at the present point.
       points.push(now && lines === present ? { ...point, name: "" } : point);
     }
-    if (now) points.push({ ms: left.ms, error: accuracy.judged.rms, kind: "now", name: `${this.#name(state)}, now` });
+    if (now) points.push({ ...now, kind: "now", name: `${this.#name(state)}, now` });
     element("still").hidden = left?.isRedrawn !== false;
-    drawChart(element("chart"), markEfficient(points), { height: 250, time: (ms) => `${Number(ms.toPrecision(3))} ms` });
+    drawChart(element("chart"), markEfficient(points), { height: 250, time: (/** @type {number} */ ms) => `${Number(ms.toPrecision(3))} ms` });
   }
 
+  /** @param {Setting} setting */
   #name({ maxError, shading }) {
-    return maxError ? `≤ ${shadesText(maxError)}` : settingName({ shading });
+    return maxError ? `≤ ${shadesText(maxError)}` : settingName({ maxError, shading });
   }
 
+  /**
+   * @param {string} key
+   * @param {Setting} settings
+   * @param {number} ms
+   * @param {number} error
+   * @returns {Point}
+   */
   #point(key, settings, ms, error) {
     const stop = stopOf(settings);
     return {

@@ -1,26 +1,38 @@
+// @ts-check
 // The link: what stands behind # holds scene, moment, pose, shading, budget, effects and what is beside.
+import { WIDTH, HEIGHT } from "./engine.js";
 
-/** Packs a text for a link. */
+/** @import { Shipped, State } from "./types.d.ts" */
+
+/**
+ * Packs a text for a link.
+ * @param {string} text
+ */
 async function pack(text) {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
+/** @param {string} packed */
 async function unpackText(packed) {
   const bytes = Uint8Array.from(atob(packed.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();
 }
 
-/** The link of a state. Texts of scenes that are not shipped go with it; files do not. */
-async function linkOf(state, shipped) {
+/**
+ * The link of a state. Texts of scenes that are not shipped go with it; files do not.
+ * @param {State} state
+ * @param {Shipped[]} shipped
+ */
+export async function linkOf(state, shipped) {
   const link = new URLSearchParams();
   link.set("scene", state.name);
   if (shipped.find(({ name }) => name === state.name)?.toml !== state.toml) link.set("toml", await pack(state.toml));
   link.set("t", state.seconds.toFixed(4));
-  for (const key of ["turn", "tilt"]) if (state.pose[key]) link.set(key, state.pose[key].toFixed(4));
+  for (const key of /** @type {const} */ (["turn", "tilt"])) if (state.pose[key]) link.set(key, state.pose[key].toFixed(4));
   if (state.pose.zoom !== 1) link.set("zoom", state.pose.zoom.toFixed(4));
-  if (state.maxError) link.set("max-error", state.maxError);
+  if (state.maxError) link.set("max-error", `${state.maxError}`);
   else link.set("shading", state.shading);
   if (state.beside) link.set("beside", state.beside);
   if (state.beside) link.set("at", state.divider.toFixed(3));
@@ -29,16 +41,29 @@ async function linkOf(state, shipped) {
   return `#${link}`;
 }
 
-/** The state that a link holds; null where it is no link of this kind. Numbers out of range are left out. */
-async function stateOf(hash, shipped) {
+/**
+ * The state that a link holds; null where it is no link of this kind. Numbers out of range are left out.
+ * @param {string} hash
+ * @param {Shipped[]} shipped
+ * @returns {Promise<Partial<State> & { name: string, toml: string } | null>}
+ */
+export async function stateOf(hash, shipped) {
   const link = new URLSearchParams(hash.slice(1));
   if (!link.has("scene")) return null;
+  /**
+   * @template Otherwise
+   * @param {string} key
+   * @param {number} low
+   * @param {number} high
+   * @param {Otherwise} otherwise
+   */
   const number = (key, low, high, otherwise) => {
-    const value = Number.parseFloat(link.get(key));
+    const value = Number.parseFloat(link.get(key) ?? "");
     return value >= low && value <= high ? value : otherwise;
   };
-  const name = link.get("scene");
-  const toml = link.has("toml") ? await unpackText(link.get("toml")) : shipped.find((scene) => scene.name === name)?.toml;
+  const name = link.get("scene") ?? "";
+  const edited = link.get("toml");
+  const toml = edited !== null ? await unpackText(edited) : shipped.find((scene) => scene.name === name)?.toml;
   if (toml === undefined) throw new Error(`The link names the scene ${name}, which is not shipped.`);
   const [x, y] = (link.get("pixel") ?? "").split(",").map(Number);
   const isPixel = link.has("pixel") && Number.isInteger(x) && Number.isInteger(y) && x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT;

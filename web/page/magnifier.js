@@ -1,25 +1,39 @@
+// @ts-check
 // The magnifier: the pixels about the chosen one, and the account that it gives of itself.
+import { element, make, setText } from "./elements.js";
+import { HEIGHT, WIDTH } from "./engine.js";
+import { ARROWS } from "./picture.js";
+
+/**
+ * @import { Scene } from "./engine.js"
+ * @import { Page } from "./page.js"
+ * @import { Account, Picture, Pixel, Registers } from "./types.d.ts"
+ */
 
 const LENS = { columns: 21, rows: 13, zoom: 20 };
 
-class Magnifier {
+export class Magnifier {
   #parts;
   #isSeen = false;
-  /** Where it is before a pixel is chosen. */
+  /**
+   * Where it is before a pixel is chosen.
+   * @type {Pixel}
+   */
   #start = { x: WIDTH / 2, y: HEIGHT / 2 };
 
+  /** @param {Page} page */
   constructor(page) {
     this.page = page;
     this.#parts = this.#build();
     this.canvas = element("lens");
-    this.context = this.canvas.getContext("2d");
+    this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     this.canvas.width = LENS.columns * LENS.zoom;
     this.canvas.height = LENS.rows * LENS.zoom;
     this.canvas.addEventListener("keydown", (event) => {
-      const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-      if (!arrows[event.key]) return;
+      const arrow = ARROWS[event.key];
+      if (!arrow) return;
       event.preventDefault();
-      page.movePixel(...arrows[event.key]);
+      page.movePixel(...arrow);
     });
     new IntersectionObserver(([{ isIntersecting }]) => {
       this.#isSeen = isIntersecting;
@@ -33,32 +47,49 @@ class Magnifier {
     });
   }
 
-  /** Follows the picture while it is in the window. */
+  /**
+   * Follows the picture while it is in the window.
+   * @param {Scene} scene
+   * @param {Picture} frame
+   */
   follow(scene, frame) {
     if (!this.#isSeen) return;
     const { x, y } = this.at;
     this.show({ x, y }, frame, scene.explain(x, y));
   }
 
-  /** The chosen pixel or, before one is chosen, the nearest to the middle that shows an object. */
+  /**
+   * The chosen pixel or, before one is chosen, the nearest to the middle that shows an object.
+   * @returns {Pixel}
+   */
   get at() {
     return this.page.state.pixel ?? this.#first();
   }
 
+  /** @returns {Pixel} */
   #first() {
     const { engine, accuracy } = this.page;
     const map = accuracy.lastMap?.map;
     // Levels of errors come first; where there are none, no object is seen.
-    const shows = ({ x, y }) => map?.[y * WIDTH + x] < engine.levels.length;
-    if (!map || shows(this.#start)) return this.#start;
-    const far = ({ x, y }) => Math.hypot(x - WIDTH / 2, y - HEIGHT / 2);
-    let nearest = null;
+    if (!map) return this.#start;
+    /** @param {Pixel} pixel */
+    const shows = ({ x, y }) => map[y * WIDTH + x] < engine.levels.length;
+    if (shows(this.#start)) return this.#start;
+    let nearest = { pixel: this.#start, far: Infinity };
     for (let y = 0; y < HEIGHT; y++) {
-      for (let x = 0; x < WIDTH; x++) if (shows({ x, y }) && !(nearest && far(nearest) <= far({ x, y }))) nearest = { x, y };
+      for (let x = 0; x < WIDTH; x++) {
+        const far = Math.hypot(x - WIDTH / 2, y - HEIGHT / 2);
+        if (far < nearest.far && shows({ x, y })) nearest = { pixel: { x, y }, far };
+      }
     }
-    return (this.#start = nearest ?? this.#start);
+    return (this.#start = nearest.pixel);
   }
 
+  /**
+   * @param {Pixel} pixel
+   * @param {Picture} frame
+   * @param {Account} account
+   */
   show(pixel, frame, account) {
     // While the picture moves there would be no end to what is announced.
     this.#parts.head.setAttribute("aria-live", this.page.state.playing ? "off" : "polite");
@@ -66,6 +97,11 @@ class Magnifier {
     this.#say(account);
   }
 
+  /**
+   * @param {Pixel} pixel
+   * @param {Picture} frame
+   * @param {Account} account
+   */
   #draw({ x, y }, { bytes, palette }, { corners }) {
     const { columns, rows, zoom } = LENS;
     const { context } = this;
@@ -102,28 +138,36 @@ class Magnifier {
 
   /** The account's elements. They are made once, so that what is open stays open, and what has the focus keeps it. */
   #build() {
+    /** @param {string} name */
     const register = (name) => {
       const box = make("div", { className: "register" });
-      box.append(make("dt", {}, name), make("dd", { className: "mono" }));
-      return box;
+      const cell = { box, name: make("dt", {}, name), value: make("dd", { className: "mono" }) };
+      box.append(cell.name, cell.value);
+      return cell;
     };
+    const cells = ["AX, the shade", "BX, the step", "CX, pixels left", "EDI, the address"].map(register);
     const parts = {
       head: make("h3"), swatch: make("i", { className: "swatch" }), name: make("span", {}, " Pixel"), color: make("span", { className: "mono muted" }),
       face: make("p"), registers: make("dl", { className: "registers" }), exact: make("p"), off: make("p"),
-      text: make("pre", { className: "mono", tabIndex: 0 }),
+      text: make("pre", { className: "mono", tabIndex: 0 }), cells,
     };
     const all = make("details");
     parts.head.append(parts.swatch, parts.name, parts.color);
-    parts.registers.append(register("AX, the shade"), register("BX, the step"), register("CX, pixels left"), register("EDI, the address"));
+    parts.registers.append(...cells.map(({ box }) => box));
     all.append(make("summary", {}, "Full details"), parts.text);
     // What opens stands above what comes and goes with the pixel, so that it does not move under a press.
     element("account").replaceChildren(parts.head, parts.face, all, parts.off, parts.exact, parts.registers);
     return parts;
   }
 
+  /** @param {Account} account */
   #say(account) {
     const { x, y, byte, color, registers, exact, against = [], object, triangle } = account;
     const parts = this.#parts;
+    /**
+     * @param {number} number
+     * @param {number} digits
+     */
     const hex = (number, digits) => number.toString(16).toUpperCase().padStart(digits, "0");
     parts.swatch.style.background = color;
     setText(parts.name, ` Pixel ${x}, ${y}: byte ${byte} `);
@@ -138,18 +182,22 @@ class Magnifier {
     setText(parts.text, account.text.trim());
   }
 
+  /**
+   * @param {Registers} registers
+   * @param {(number: number, digits: number) => string} hex
+   */
   #sayRegisters({ eax, ebx, cx, edi }, hex) {
     const isWide = eax > 0xffff || ebx > 0xffff;
     const digits = isWide ? 8 : 4;
     const ax = hex(eax, digits);
     // The byte is AH, or in 16.16 the third of EAX.
     const at = isWide ? 2 : 0;
-    const [shade, step, left, place] = this.#parts.registers.children;
-    setText(shade.firstElementChild, isWide ? "EAX, the shade" : "AX, the shade");
-    setText(step.firstElementChild, isWide ? "EBX, the step" : "BX, the step");
-    shade.lastElementChild.replaceChildren(ax.slice(0, at), make("b", {}, ax.slice(at, at + 2)), ax.slice(at + 2));
-    setText(step.lastElementChild, hex(ebx, digits));
-    setText(left.lastElementChild, hex(cx, 4));
-    setText(place.lastElementChild, hex(0xa0000 + edi, 5));
+    const [shade, step, left, place] = this.#parts.cells;
+    setText(shade.name, isWide ? "EAX, the shade" : "AX, the shade");
+    setText(step.name, isWide ? "EBX, the step" : "BX, the step");
+    shade.value.replaceChildren(ax.slice(0, at), make("b", {}, ax.slice(at, at + 2)), ax.slice(at + 2));
+    setText(step.value, hex(ebx, digits));
+    setText(left.value, hex(cx, 4));
+    setText(place.value, hex(0xa0000 + edi, 5));
   }
 }

@@ -1,11 +1,16 @@
+// @ts-check
 // A small picture in the corner: there while the large one is out of the window, and something that acts on it is in it.
+import { element } from "./elements.js";
 
 /** What acts on the picture. */
 const ACTS = "#panel, #pixel, #scenes, #plan";
 
-class MiniPicture {
+export class MiniPicture {
   #isOut = false;
-  /** The parts that act on the picture and are in the window. */
+  /**
+   * The parts that act on the picture and are in the window.
+   * @type {Set<Element>}
+   */
   #acting = new Set();
 
   constructor() {

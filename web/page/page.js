@@ -1,43 +1,94 @@
-// The page: its state, and the loop that draws it.
+// @ts-check
+// The page: what its views show, and the loop that draws it.
 
-/** The scene of the first screen: one in which it is seen what accuracy is for. */
-const FIRST_SCENE = "phong";
+import "../text/figures/all.js";
+import { divide } from "../../lab/src/cost/report/shared/divider.js";
+import { mountFigures } from "../text/figures/00-shared.js";
+import { Accuracy, mapPicture } from "./accuracy.js";
+import { Background } from "./background.js";
+import { clamp, messageOf } from "./common.js";
+import { Curve } from "./curve.js";
+import { element, isStill, showTrouble } from "./elements.js";
+import { Engine, EngineStopped, FIRST_POSE, HEIGHT, settingLines, WIDTH } from "./engine.js";
+import { linkOf, stateOf } from "./link.js";
+import { Magnifier } from "./magnifier.js";
+import { MiniPicture } from "./mini.js";
+import { handle, PalettedCanvas } from "./picture.js";
+import { PlanTable } from "./plan.js";
+import { offerFiles } from "./save.js";
+import { Scenes } from "./scenes.js";
+import { FIRST_SCENE, FIRST_STATE, Store } from "./state.js";
+import { budgetText, fullName, OCTAVES, settingOf } from "./stops.js";
+import { Stopwatch } from "./stopwatch.js";
+import { besideSetting, Versus } from "./versus.js";
+
+/**
+ * @import { Scene } from "./engine.js"
+ * @import { Frame, Parts, Pixel, Question, Settings, State } from "./types.d.ts"
+ */
 
 /** Milliseconds in which the divider moves by itself. */
 const SWEEP = 4500;
 
-class Page {
-  state = {
-    name: "", toml: "", seconds: 0, playing: !isStill(), pose: { ...FIRST_POSE }, ...settingAt(0), effects: {},
-    beside: "max-error 0.5", divider: 0.5, pixel: null,
-  };
-  /** The scene under the divider, if there is one. */
+export class Page {
+  #store = new Store({ ...FIRST_STATE, playing: !isStill() });
+  /** @type {Scene} */
+  scene;
+  /**
+   * The scene under the divider, if there is one.
+   * @type {Scene | null}
+   */
   other = null;
   /** The times of the picture, and of the one under the divider. */
   left = new Stopwatch();
   right = new Stopwatch();
+  /** @type {Scenes | undefined} */
+  scenes;
+  /** Counts the changes of the files that scenes may name. */
+  version = 0;
+  /**
+   * The link that was written last.
+   * @type {string | undefined}
+   */
+  written;
+  /** @type {Map<string, Uint8Array>} */
   #files = new Map();
   #last = 0;
   #told = 0;
   #stops = 0;
-  #linkTimer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #linkTimer;
   #turn = 0;
-  /** What is wrong, by its cause. */
+  /**
+   * What is wrong, by its cause.
+   * @type {Map<string, string>}
+   */
   #troubles = new Map();
+  /** @type {{ key: string, frame: Frame } | null} */
   #exact = null;
+  #isAskingExact = false;
   #isStale = true;
-  /** When the divider began to move by itself; null once it has, or where nothing should move. */
+  /**
+   * When the divider began to move by itself; null once it has, or where nothing should move.
+   * @type {number | null}
+   */
   #swept = isStill() ? null : 0;
   /** While the error map covers the picture. */
   #showsErrors = false;
   /** Whether the last picture could be drawn: only then is it timed. */
   #isDrawn = false;
 
+  /**
+   * @param {Engine} engine
+   * @param {Background} background
+   */
   constructor(engine, background) {
     this.engine = engine;
     this.background = background;
+    const first = engine.shipped.find(({ name }) => name === FIRST_SCENE) ?? engine.shipped[0];
+    this.scene = engine.open(first.toml);
     this.canvas = new PalettedCanvas(element("picture"));
-    this.overlay = element("overlay").getContext("2d");
+    this.overlay = /** @type {CanvasRenderingContext2D} */ (element("overlay").getContext("2d"));
     Object.assign(element("overlay"), { width: WIDTH, height: HEIGHT });
     this.accuracy = new Accuracy(this);
     this.curve = new Curve(this);
@@ -45,34 +96,48 @@ class Page {
     this.plan = new PlanTable(this);
     this.magnifier = new Magnifier(this);
     this.mini = new MiniPicture();
+    this.moveDivider = divide(element("screen"), "How much of the picture is the left one", (divider) => this.choose({ divider }));
     this.#handle();
+    this.#store.listen((state, before) => this.#follow(state, before));
     offerFiles(this);
+    this.open(first.toml, first.name);
+  }
+
+  get state() {
+    return this.#store.state;
+  }
+
+  /**
+   * Changes the state, which shows it.
+   * @param {Partial<State>} change
+   */
+  choose(change) {
+    this.#store.choose(change);
   }
 
   #handle() {
-    const { state } = this;
+    /** @param {Partial<import("./types.d.ts").Pose>} change */
+    const pose = (change) => this.choose({ pose: { ...this.state.pose, ...change } });
+    const play = () => this.choose({ playing: !this.state.playing });
     handle(this.canvas, {
-      turn: (turn, tilt) => this.choose({ pose: { ...state.pose, turn: state.pose.turn + turn, tilt: state.pose.tilt + tilt } }),
-      zoom: (factor) => this.choose({ pose: { ...state.pose, zoom: clamp(state.pose.zoom * factor, 0.05, 20) } }),
+      turn: (turn, tilt) => pose({ turn: this.state.pose.turn + turn, tilt: this.state.pose.tilt + tilt }),
+      zoom: (factor) => pose({ zoom: clamp(this.state.pose.zoom * factor, 0.05, 20) }),
       choose: (pixel) => this.#choosePixel(pixel ?? this.magnifier.at),
       move: (dx, dy) => this.movePixel(dx, dy),
-      play: () => this.choose({ playing: !state.playing }),
+      play,
     });
-    element("play").addEventListener("click", () => this.choose({ playing: !state.playing }));
-    element("time").addEventListener("input", ({ target }) => this.choose({ seconds: Number(target.value), playing: false }));
+    element("play").addEventListener("click", play);
+    const time = element("time");
+    time.addEventListener("input", () => this.choose({ seconds: Number(time.value), playing: false }));
     const beside = element("beside");
     const budgets = OCTAVES.map((budget) => [`max-error ${budget}`, `at most ${budgetText(budget)}`]);
     const shadings = this.engine.shadings.map((name) => [`shading ${name}`, fullName(name)]);
     beside.append(new Option("exact (64-bit)", "truth"), ...[...budgets, ...shadings].map(([value, text]) => new Option(text, value)));
     beside.addEventListener("change", () => this.choose({ beside: beside.value }));
-    this.moveDivider = divide(element("screen"), "How much of the picture is the left one", (place) => {
-      this.state.divider = place;
-      this.#isStale = true;
-    });
     for (const touched of ["pointerdown", "keydown"]) element("screen").addEventListener(touched, () => (this.#swept = null), { capture: true });
     this.#offerErrors();
     element("trouble-close").addEventListener("click", () => this.#forgetTroubles());
-    element("first-pose").addEventListener("click", () => this.choose({ pose: { ...FIRST_POSE } }));
+    element("first-pose").addEventListener("click", () => this.choose({ pose: FIRST_POSE }));
     this.#offerTheme();
   }
 
@@ -81,13 +146,14 @@ class Page {
     const root = document.documentElement;
     const button = element("theme");
     const isDark = () => (root.dataset.theme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
-    const tell = () => button.setAttribute("aria-pressed", isDark());
+    const tell = () => button.setAttribute("aria-pressed", `${isDark()}`);
     button.addEventListener("click", () => {
-      root.dataset.theme = isDark() ? "light" : "dark";
+      const theme = isDark() ? "light" : "dark";
+      root.dataset.theme = theme;
       tell();
       this.redraw();
       try {
-        localStorage.setItem("theme", root.dataset.theme);
+        localStorage.setItem("theme", theme);
       } catch {
         // A page from a disk may have no storage: then the choice lasts as long as the page.
       }
@@ -98,6 +164,7 @@ class Page {
   /** Lays the error map over the picture while a button is held. */
   #offerErrors() {
     const button = element("show-errors");
+    /** @param {boolean} isHeld */
     const show = (isHeld) => {
       this.#showsErrors = isHeld;
       button.classList.toggle("held", isHeld);
@@ -108,42 +175,45 @@ class Page {
       show(true);
     });
     for (const end of ["pointerup", "pointercancel", "blur"]) button.addEventListener(end, () => show(false));
+    /** @param {KeyboardEvent} event */
     const isKey = ({ key }) => key === " " || key === "Enter";
     button.addEventListener("keydown", (event) => isKey(event) && show(true));
     button.addEventListener("keyup", (event) => isKey(event) && show(false));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
-  /** How the picture on the left is drawn. */
+  /**
+   * How the picture on the left is drawn.
+   * @returns {Settings}
+   */
   settings() {
-    const { maxError, shading, effects } = this.state;
-    return { maxError, shading, effects };
-  }
-
-  #besideSettings() {
-    return { ...besideSetting(this.state.beside), effects: this.state.effects };
+    return { ...settingOf(this.state), effects: this.state.effects };
   }
 
   /** What the worker has to know of the present frame. */
   question() {
     const { toml, seconds, pose } = this.state;
-    return { toml, version: this.version, seconds, pose: { ...pose }, settings: this.settings() };
+    return { toml, version: this.version, seconds, pose, settings: this.settings() };
   }
 
-  /** Asks the worker; what goes wrong is said, unless another scene has been opened since. */
+  /**
+   * Asks the worker; what goes wrong is said, unless another scene has been opened since.
+   * @param {string} kind
+   * @param {Question} question
+   * @param {(part: number) => void} [onProgress]
+   */
   async ask(kind, question, onProgress) {
     try {
       const answer = await this.background.ask(kind, question, onProgress);
       this.trouble(kind);
       return answer;
     } catch (error) {
-      if (question.toml === this.state.toml) this.trouble(kind, error.message);
+      if (question.toml === this.state.toml) this.trouble(kind, messageOf(error));
       return null;
     }
   }
 
-  version = 0;
-
+  /** @param {Map<string, Uint8Array>} files */
   setFiles(files) {
     this.#files = files;
     this.version++;
@@ -156,50 +226,63 @@ class Page {
     return [...this.#files.keys()].filter((name) => this.state.toml.includes(name));
   }
 
-  /** Opens a scene; an error leaves the one that is shown. */
+  /**
+   * Opens a scene; an error leaves the one that is shown.
+   * @param {string} toml
+   * @param {string} name
+   * @param {boolean} keepsMoment
+   */
   open(toml, name, keepsMoment = false) {
     const scene = this.engine.open(toml);
-    this.scene?.free();
+    this.scene.free();
     this.other?.free();
     this.scene = scene;
     this.other = null;
-    Object.assign(this.state, { toml, name });
-    if (!keepsMoment) Object.assign(this.state, { seconds: isStill() ? scene.about.picture : 0, pose: { ...FIRST_POSE }, pixel: null, effects: {} });
+    const start = { seconds: isStill() ? scene.about.picture : 0, pose: FIRST_POSE, pixel: null, effects: {} };
     this.accuracy.forget();
     this.plan.forget();
-    this.curve.forget();
     this.#forgetTroubles();
     this.left.reset();
     this.right.reset();
-    element("time").max = scene.about.duration;
+    element("time").max = `${scene.about.duration}`;
+    this.choose({ toml, name, ...(keepsMoment ? {} : start) });
+    this.curve.forget();
     this.scenes?.follow();
-    this.choose({});
   }
 
-  /** Changes the state, and shows that. */
-  choose(change) {
-    const { state } = this;
-    const settings = () => [this.settings(), this.#besideSettings()].map(settingLines);
-    const before = settings();
-    Object.assign(state, change);
-    settings().forEach((lines, side) => lines !== before[side] && [this.left, this.right][side].reset());
-    if ("seconds" in change || "pose" in change) for (const watch of [this.left, this.right]) watch.renew();
+  /**
+   * Shows the state after a change.
+   * @param {State} state
+   * @param {State} before
+   */
+  #follow(state, before) {
+    /** @param {State} of */
+    const lines = (of) => [settingOf(of), besideSetting(of.beside)].map((setting) => settingLines({ ...setting, effects: of.effects }));
+    const [now, then] = [lines(state), lines(before)];
+    for (const [side, watch] of [this.left, this.right].entries()) {
+      if (now[side] !== then[side]) watch.reset();
+      if (state.seconds !== before.seconds || state.pose !== before.pose) watch.renew();
+    }
     this.accuracy.follow();
     const play = element("play");
     play.textContent = state.playing ? "❚❚" : "▶";
     play.setAttribute("aria-label", state.playing ? "Pause" : "Play");
-    element("first-pose").hidden = Object.keys(FIRST_POSE).every((axis) => state.pose[axis] === FIRST_POSE[axis]);
+    const { turn, tilt, zoom } = state.pose;
+    element("first-pose").hidden = turn === FIRST_POSE.turn && tilt === FIRST_POSE.tilt && zoom === FIRST_POSE.zoom;
     element("beside").value = state.beside;
     element("screen").classList.toggle("divided", Boolean(state.beside));
     // At once: what is told with the times waits for them.
     this.versus.compare();
-    if ("divider" in change) this.moveDivider(state.divider);
+    this.moveDivider(state.divider);
     this.#isStale = true;
     clearTimeout(this.#linkTimer);
     this.#linkTimer = setTimeout(() => this.link(), 400);
   }
 
-  /** Stops at a pixel, and shows its account beside the picture. */
+  /**
+   * Stops at a pixel, and shows its account beside the picture.
+   * @param {Pixel} pixel
+   */
   #choosePixel(pixel) {
     this.choose({ pixel, playing: false });
     // Beside the picture no farther than it must be, so that the picture stays whole; under it from its beginning.
@@ -212,6 +295,10 @@ class Page {
     this.#isStale = true;
   }
 
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
   movePixel(dx, dy) {
     const { x, y } = this.magnifier.at;
     this.choose({ pixel: { x: clamp(x + dx, 0, WIDTH - 1), y: clamp(y + dy, 0, HEIGHT - 1) }, playing: false });
@@ -228,7 +315,10 @@ class Page {
     }
   }
 
-  /** Takes on the state of a link. */
+  /**
+   * Takes on the state of a link.
+   * @param {string} hash
+   */
   async follow(hash) {
     if (hash === this.written) return;
     const linked = await stateOf(hash, this.engine.shipped);
@@ -239,7 +329,11 @@ class Page {
     this.choose({ ...rest, playing: false });
   }
 
-  /** Says what is wrong, of one cause; without a message that cause is gone. The last one is shown. */
+  /**
+   * Says what is wrong, of one cause; without a message that cause is gone. The last one is shown.
+   * @param {string} cause
+   * @param {string} message
+   */
   trouble(cause, message = "") {
     this.#troubles.delete(cause);
     if (message) this.#troubles.set(cause, message);
@@ -258,7 +352,10 @@ class Page {
     this.scene.draw();
   }
 
-  /** Draws a frame of the page. */
+  /**
+   * Draws a frame of the page.
+   * @param {number} now
+   */
   frame(now) {
     const { state } = this;
     const step = Math.min(now - this.#last, 100) / 1000;
@@ -266,7 +363,7 @@ class Page {
     try {
       this.#sweep(now);
       const { isSeen } = this.mini;
-      if (state.playing && isSeen) state.seconds = (state.seconds + step) % this.scene.about.duration;
+      if (state.playing && isSeen) this.#store.pass((state.seconds + step) % this.scene.about.duration);
       // Nobody looks at what is out of the window; a change is drawn there as well.
       if ((state.playing && isSeen) || this.#isStale) this.#show(now);
       if (this.#isDrawn && isSeen) this.#time();
@@ -276,21 +373,25 @@ class Page {
       this.#isDrawn = false;
       // One stop may be chance; a scene that stops the engine again is left.
       if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
-      this.trouble("picture", error.message);
-      if (!(error instanceof EngineStopped)) state.playing = false;
+      this.trouble("picture", messageOf(error));
+      if (!(error instanceof EngineStopped)) this.choose({ playing: false });
     }
     requestAnimationFrame((next) => this.frame(next));
   }
 
-  /** Moves the divider to and fro once, so that nobody misses it. */
+  /**
+   * Moves the divider to and fro once, so that nobody misses it.
+   * @param {number} now
+   */
   #sweep(now) {
     if (this.#swept === null) return;
     this.#swept ||= now;
     const part = (now - this.#swept) / SWEEP;
     if (part >= 1) this.#swept = null;
-    this.moveDivider(0.5 - 0.34 * Math.sin(2 * Math.PI * Math.min(part, 1)));
+    this.choose({ divider: 0.5 - 0.34 * Math.sin(2 * Math.PI * Math.min(part, 1)) });
   }
 
+  /** @param {number} now */
   #show(now) {
     const { state } = this;
     const wasStale = this.#isStale;
@@ -303,7 +404,7 @@ class Page {
     if (state.beside) this.#showBeside(edge);
     if (this.#showsErrors && this.accuracy.lastMap) this.canvas.show(mapPicture(this.accuracy.lastMap.map, this.engine));
     this.#mark();
-    element("time").value = state.seconds;
+    element("time").value = `${state.seconds}`;
     element("seconds").textContent = `${state.seconds.toFixed(2)} s`;
     if (wasStale || now - this.#told > 250) {
       this.#told = now;
@@ -318,17 +419,17 @@ class Page {
   /** Takes laps of what is shown: of one picture in each frame while they move, and until they are settled where they stand. */
   #time() {
     const { seconds, pose, playing } = this.state;
-    const sides = [[this.left, this.scene]];
-    if (this.#isBesideDrawn()) sides.push([this.right, this.other]);
+    const sides = [{ watch: this.left, scene: this.scene }];
+    if (this.other && this.#isBesideDrawn()) sides.push({ watch: this.right, scene: this.other });
     this.#turn = (this.#turn + 1) % sides.length;
-    for (const [watch, scene] of playing ? [sides[this.#turn]] : sides) {
+    for (const { watch, scene } of playing ? [sides[this.#turn]] : sides) {
       if (playing || !watch.isSettled) watch.add(Stopwatch.lap(scene, seconds, pose));
     }
   }
 
   /** Whether the engine draws what is beside the picture. */
   #isBesideDrawn() {
-    return this.other && this.state.beside && this.state.beside !== "truth";
+    return this.state.beside && this.state.beside !== "truth";
   }
 
   /** Has the frame compared with the truth. Of a picture that stands the last word is its own. */
@@ -337,6 +438,7 @@ class Page {
     if (asked && JSON.stringify(asked) !== JSON.stringify(this.question()) && !this.state.playing) this.#isStale = true;
   }
 
+  /** @param {number} edge */
   #showBeside(edge) {
     const { state } = this;
     if (state.beside === "truth") {
@@ -346,17 +448,18 @@ class Page {
       return;
     }
     this.other ??= this.engine.open(state.toml);
-    this.other.set(this.#besideSettings());
+    this.other.set({ ...besideSetting(state.beside), effects: state.effects });
     this.other.show(state.seconds, state.pose);
     this.other.draw();
     this.canvas.show(this.other.frame(), edge);
   }
 
+  /** @param {string} key */
   async #askExact(key) {
-    if (this.askingExact) return;
-    this.askingExact = true;
+    if (this.#isAskingExact) return;
+    this.#isAskingExact = true;
     const frame = await this.ask("exact", this.question());
-    this.askingExact = false;
+    this.#isAskingExact = false;
     if (!frame) return;
     this.#exact = { key, frame };
     this.#isStale = true;
@@ -372,22 +475,21 @@ class Page {
   }
 }
 
-async function begin() {
-  const { wasm, engine: engineScript, worker } = PARTS;
+/**
+ * Begins, with what is packed in the page.
+ * @param {Parts} parts
+ */
+export async function begin({ wasm, worker }) {
   if (!WebAssembly.validate(wasm)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
   const engine = new Engine(await WebAssembly.compile(wasm));
-  const page = new Page(engine, new Background([engineScript, "\n", worker], wasm));
+  const page = new Page(engine, new Background(worker, wasm));
   globalThis.page = page;
-  const first = engine.shipped.find(({ name }) => name === FIRST_SCENE) ?? engine.shipped[0];
-  page.open(first.toml, first.name);
-  const follow = () => page.follow(location.hash).catch((error) => page.trouble("link", error.message));
+  const follow = () => page.follow(location.hash).catch((error) => page.trouble("link", messageOf(error)));
   await follow();
   addEventListener("hashchange", follow);
   requestAnimationFrame((now) => page.frame(now));
   page.scenes = new Scenes(page);
   page.scenes.follow();
-  for (const part of document.querySelectorAll("[data-needs-text]")) part.hidden = !element("text").firstElementChild;
-  globalThis.mountFigures?.(engine);
+  for (const part of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-needs-text]"))) part.hidden = !element("text").firstElementChild;
+  mountFigures(engine);
 }
-
-begin().catch((error) => showTrouble(`The engine could not be started: ${error.message}`));

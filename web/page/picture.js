@@ -1,19 +1,30 @@
+// @ts-check
 // A canvas that shows bytes by a palette, and what hands do with the picture: turn, tilt, enlarge, choose a pixel.
+import { WIDTH, HEIGHT, PIXELS } from "./engine.js";
+import { clamp } from "./common.js";
+
+/** @import { Picture, Pixel } from "./types.d.ts" */
 
 /** Shows bytes in the colours of a palette of 768 bytes. */
-class PalettedCanvas {
+export class PalettedCanvas {
   #colors = new Uint32Array(256);
 
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     canvas.width = WIDTH;
     canvas.height = HEIGHT;
     this.canvas = canvas;
-    this.context = canvas.getContext("2d", { alpha: false });
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
     this.image = this.context.createImageData(WIDTH, HEIGHT);
     this.words = new Uint32Array(this.image.data.buffer);
   }
 
-  /** Shows columns `from` to `to` of a frame. */
+  /**
+   * Shows columns `from` to `to` of a frame.
+   * @param {Picture} picture
+   * @param {number} from
+   * @param {number} to
+   */
   show({ bytes, palette }, from = 0, to = WIDTH) {
     const colors = this.#colors;
     for (let i = 0; i < 256; i++) {
@@ -25,7 +36,10 @@ class PalettedCanvas {
     this.context.putImageData(this.image, 0, 0, from, 0, to - from, HEIGHT);
   }
 
-  /** The pixel under a pointer. */
+  /**
+   * The pixel under a pointer.
+   * @param {{ clientX: number, clientY: number }} event
+   */
   pixelAt(event) {
     const box = this.canvas.getBoundingClientRect();
     const x = Math.floor(((event.clientX - box.left) / box.width) * WIDTH);
@@ -34,23 +48,44 @@ class PalettedCanvas {
   }
 }
 
-const clamp = (number, low, high) => Math.min(Math.max(number, low), high);
-
 /** Pixels of the screen that a pointer may move and still choose a pixel. */
 const STILL = 5;
 /** Radians for a pixel of the screen, and for a key. */
 const TURN = 0.008;
 const KEY_TURN = Math.PI / 24;
 
+/**
+ * Where arrow keys lead.
+ * @type {Record<string, [number, number]>}
+ */
+export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
 /** Enlargement for a step of the wheel. */
 const WHEEL = 0.0015;
 
-/** What hands do with the picture. `on` has turn(turn, tilt), zoom(factor), choose(pixel?), move(dx, dy), play(). */
-function handle(canvas, on) {
+/**
+ * What is called for what hands do.
+ * @typedef {object} Hands
+ * @property {(turn: number, tilt: number) => void} turn
+ * @property {(factor: number) => void} zoom
+ * @property {(pixel?: Pixel) => void} choose
+ * @property {(dx: number, dy: number) => void} move
+ * @property {() => void} play
+ */
+
+/**
+ * What hands do with the picture.
+ * @param {PalettedCanvas} canvas
+ * @param {Hands} on
+ */
+export function handle(canvas, on) {
   const element = canvas.canvas;
-  /** Pointers that are down, by their numbers: where they were last. */
+  /**
+   * Pointers that are down, by their numbers: where they were last.
+   * @type {Map<number, { x: number, y: number }>}
+   */
   const down = new Map();
-  let from = null;
+  let from = { x: 0, y: 0, moved: false };
   const spread = () => {
     const [a, b] = [...down.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
@@ -85,10 +120,10 @@ function handle(canvas, on) {
     on.zoom(Math.exp(-event.deltaY * WHEEL * (event.ctrlKey ? 4 : 1)));
   }, { passive: false });
   element.addEventListener("keydown", (event) => {
-    const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (arrows[event.key]) {
-      const [dx, dy] = arrows[event.key];
+    const arrow = ARROWS[event.key];
+    if (arrow) {
+      const [dx, dy] = arrow;
       if (event.shiftKey) on.move(dx, dy);
       else on.turn(dx * KEY_TURN, dy * KEY_TURN);
     } else if (event.key === " ") on.play();

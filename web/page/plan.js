@@ -1,4 +1,14 @@
+// @ts-check
 // The plan: which effects the scene calls for, why, and what each costs here.
+import { element, make, setText, keyed } from "./elements.js";
+import { group } from "./common.js";
+import { Stopwatch, msText, median } from "./stopwatch.js";
+
+/**
+ * @import { Scene } from "./engine.js"
+ * @import { Page } from "./page.js"
+ * @import { PlanRow, Settings } from "./types.d.ts"
+ */
 
 /** Effects that are chosen by another setting, or that keep triangles inside what the raster can draw. */
 const FIXED = ["transform", "hidden-surfaces", "near-clipping", "screen-clipping"];
@@ -14,7 +24,10 @@ const WHY = new Map([
   ["phong", "no proof, so lit at every pixel"],
 ]);
 
-/** A reason in plain words: where the engine counts faces by technique, a sentence for each. */
+/**
+ * A reason in plain words: where the engine counts faces by technique, a sentence for each.
+ * @param {string} reason
+ */
 function plainReason(reason) {
   const counted = /: ((?:\d+ [\w.-]+ \([^)]*\), )+)(\d+) not drawn$/.exec(reason);
   if (!counted) return reason;
@@ -26,12 +39,16 @@ function plainReason(reason) {
 /** How often each effect's frames are timed. */
 const ROUNDS_OF_PRICE = 15;
 
-class PlanTable {
+export class PlanTable {
+  /** @type {Map<string, number | null>} */
   #prices = new Map();
+  /** @type {PlanRow[]} */
+  rows = [];
 
+  /** @param {Page} page */
   constructor(page) {
     this.page = page;
-    this.body = document.querySelector("#effects tbody");
+    this.body = /** @type {HTMLElement} */ (document.querySelector("#effects tbody"));
     element("object").addEventListener("change", () => this.show(this.rows));
     element("unused").addEventListener("click", () => {
       this.body.classList.toggle("all");
@@ -45,6 +62,7 @@ class PlanTable {
     this.#prices.clear();
   }
 
+  /** @param {PlanRow[]} rows */
   show(rows) {
     this.rows = rows;
     const objects = [...new Map(rows.map((row) => [row.place, row.object])).entries()];
@@ -52,17 +70,18 @@ class PlanTable {
     const names = objects.map(([place, name]) => `${place}: ${name}`).join("\n");
     if (chosen.dataset.names !== names) {
       chosen.dataset.names = names;
-      chosen.replaceChildren(...objects.map(([place, name]) => new Option(objects.length > 1 ? `${place + 1}. ${name}` : name, place)));
+      chosen.replaceChildren(...objects.map(([place, name]) => new Option(objects.length > 1 ? `${place + 1}. ${name}` : name, `${place}`)));
       for (const part of [chosen, element("object-label")]) part.hidden = objects.length < 2;
     }
     const shown = rows.filter((row) => row.place === Number(chosen.value || 0));
-    keyed(this.body, shown, ({ effect }) => effect, (row) => this.#make(row), (made, row) => this.#update(made, row));
+    keyed(this.body, shown, ({ effect }) => effect, (row) => this.#make(row), (line, row) => this.#update(line, row));
     const unused = this.body.querySelectorAll(".unused").length;
     element("unused").hidden = !unused;
     setText(element("unused"), this.body.classList.contains("all") ? "Hide what no material has" : `Show ${unused} more, which no material has`);
     element("as-planned").hidden = Object.keys(this.page.state.effects).length === 0;
   }
 
+  /** @param {PlanRow} row */
   #make({ effect }) {
     const row = make("tr");
     const box = make("input", { type: "checkbox", id: `effect-${effect}`, disabled: FIXED.includes(effect), ariaLabel: effect });
@@ -74,18 +93,26 @@ class PlanTable {
     return row;
   }
 
-  #update(row, { effect, on, choice, reason }) {
-    const [name, switched, cost, why] = row.children;
-    const box = switched.firstElementChild;
-    row.classList.toggle("on", on);
-    row.classList.toggle("unused", !on && reason === "no material has it");
+  /**
+   * @param {HTMLTableRowElement} line
+   * @param {PlanRow} row
+   */
+  #update(line, { effect, on, choice, reason }) {
+    const [name, switched, cost, why] = line.cells;
+    const box = /** @type {HTMLInputElement} */ (switched.firstElementChild);
+    line.classList.toggle("on", on);
+    line.classList.toggle("unused", !on && reason === "no material has it");
     if (box.checked !== on) box.checked = on;
-    setText(name.firstElementChild, choice && on ? `${effect}: ${choice}` : effect);
+    setText(/** @type {Element} */ (name.firstElementChild), choice && on ? `${effect}: ${choice}` : effect);
     setText(cost, this.#priceText(this.#prices.get(effect), on));
     setText(why, plainReason(reason));
   }
 
-  /** A price in words: null for what cannot be switched, 0 for what is within the noise. */
+  /**
+   * A price in words: null for what cannot be switched, 0 for what is within the noise.
+   * @param {number | null | undefined} price
+   * @param {boolean} on
+   */
   #priceText(price, on) {
     if (!price) return price === undefined ? "" : price === null ? "–" : "0";
     return on ? msText(price) : `(${msText(price)})`;
@@ -112,11 +139,18 @@ class PlanTable {
     button.textContent = "Measure again";
   }
 
+  /**
+   * @param {Scene} scene
+   * @param {string} effect
+   * @param {boolean} on
+   */
   #price(scene, effect, on) {
     const { seconds, pose } = this.page.state;
     const usual = this.page.settings();
     const switched = { ...usual, effects: { ...usual.effects, [effect]: !on } };
+    /** @type {number[]} */
     const differences = [];
+    /** @param {Settings} settings */
     const lap = (settings) => {
       scene.set(settings);
       return Stopwatch.lap(scene, seconds, pose).ms;

@@ -1,23 +1,34 @@
+// @ts-check
 // What is taken away: the picture, the film of one round, the scene's file.
+import { element, make, setText } from "./elements.js";
+import { group } from "./common.js";
 
+/** @import { Page } from "./page.js" */
+
+/**
+ * @param {string} name
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ * @param {string} type
+ */
 function save(name, bytes, type) {
   const address = URL.createObjectURL(new Blob([bytes], { type }));
   make("a", { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
-  element("saved").textContent = `${name}, ${bytes.length.toLocaleString("en")} bytes`;
+  setText(element("saved"), `${name}, ${group(bytes.length)} bytes`);
 }
 
-function offerFiles(page) {
+/** @param {Page} page */
+export function offerFiles(page) {
   element("save-png").addEventListener("click", () => {
     page.drawLeft();
     save(`${page.state.name}.png`, page.scene.png(), "image/png");
   });
   element("save-toml").addEventListener("click", () => save(`${page.state.name}.toml`, new TextEncoder().encode(page.state.toml), "application/toml"));
-  element("save-gif").addEventListener("click", async ({ target }) => {
-    target.disabled = true;
-    const onProgress = (part) => (element("saved").textContent = `GIF: ${Math.round(100 * part)} %`);
-    const film = await page.ask("film", page.question(), onProgress);
-    target.disabled = false;
+  const gif = element("save-gif");
+  gif.addEventListener("click", async () => {
+    gif.disabled = true;
+    const film = await page.ask("film", page.question(), (part) => setText(element("saved"), `GIF: ${Math.round(100 * part)} %`));
+    gif.disabled = false;
     if (film) save(`${page.state.name}.gif`, film.file, "image/gif");
   });
   element("copy-link").addEventListener("click", async () => {
@@ -26,9 +37,9 @@ function offerFiles(page) {
     const without = files.length ? ` It cannot carry ${files.join(", ")}: whoever opens it has to drop the files, too.` : "";
     try {
       await navigator.clipboard.writeText(location.href);
-      element("saved").textContent = `The link is copied.${without}`;
+      setText(element("saved"), `The link is copied.${without}`);
     } catch {
-      element("saved").textContent = `The link is in the address bar.${without}`;
+      setText(element("saved"), `The link is in the address bar.${without}`);
     }
   });
 }

@@ -1,4 +1,13 @@
+// @ts-check
 // Scenes: a picture of each that is shipped, the editor, and models that are dropped.
+import { element, make, isStill } from "./elements.js";
+import { group, messageOf } from "./common.js";
+import { PalettedCanvas } from "./picture.js";
+
+/**
+ * @import { Page } from "./page.js"
+ * @import { SceneAbout } from "./types.d.ts"
+ */
 
 /** Milliseconds without a key before the text is tried. */
 const PAUSE = 300;
@@ -6,10 +15,12 @@ const PAUSE = 300;
 /** What files may be dropped. */
 const TAKEN = [".obj", ".mtl", ".png", ".toml"];
 
-class Scenes {
+export class Scenes {
   #timer = 0;
+  /** @type {Map<string, Uint8Array>} */
   #files = new Map();
 
+  /** @param {Page} page */
   constructor(page) {
     this.page = page;
     this.text = element("toml");
@@ -25,15 +36,17 @@ class Scenes {
       event.preventDefault();
       drop.classList.add("over");
     });
-    addEventListener("dragleave", (event) => event.relatedTarget ?? drop.classList.remove("over"));
+    addEventListener("dragleave", ({ relatedTarget }) => relatedTarget ?? drop.classList.remove("over"));
     addEventListener("drop", (event) => {
       event.preventDefault();
       drop.classList.remove("over");
-      if (event.dataTransfer.files.length) this.take([...event.dataTransfer.files]);
+      const files = [...(event.dataTransfer?.files ?? [])];
+      if (files.length) this.take(files);
     });
-    element("files").addEventListener("change", ({ target }) => {
-      this.take([...target.files]);
-      target.value = "";
+    const chosen = element("files");
+    chosen.addEventListener("change", () => {
+      this.take([...(chosen.files ?? [])]);
+      chosen.value = "";
     });
     this.#gallery();
   }
@@ -52,10 +65,12 @@ class Scenes {
     });
     element("gallery").replaceChildren(...cards.map(({ card }) => card));
     // One at a time, whenever the page has nothing else to do.
-    const idle = globalThis.requestIdleCallback ?? ((work) => setTimeout(work, 50));
+    /** @param {() => void} work */
+    const idle = (work) => ("requestIdleCallback" in globalThis ? requestIdleCallback(work) : setTimeout(work, 50));
     const next = () => {
-      const { canvas, toml } = cards.shift() ?? {};
-      if (!canvas) return;
+      const card = cards.shift();
+      if (!card) return;
+      const { canvas, toml } = card;
       const scene = this.page.engine.open(toml);
       scene.show(scene.about.picture);
       scene.draw();
@@ -70,11 +85,12 @@ class Scenes {
   follow() {
     const { toml, name } = this.page.state;
     if (this.text.value !== toml) this.text.value = toml;
-    for (const card of element("gallery").children) card.setAttribute("aria-current", card.dataset.scene === name);
+    for (const card of element("gallery").querySelectorAll("button")) card.setAttribute("aria-current", `${card.dataset.scene === name}`);
     this.#number();
     this.verdict(this.page.scene.about);
   }
 
+  /** @param {number} [wrong] */
   #number(wrong = 0) {
     const count = this.text.value.split("\n").length;
     const lines = Array.from({ length: count }, (_, at) => [make(at + 1 === wrong ? "b" : "span", {}, at + 1), "\n"]);
@@ -86,7 +102,7 @@ class Scenes {
     try {
       this.page.open(this.text.value, this.#nameOf(this.text.value), true);
     } catch (error) {
-      const { line, column, message } = error;
+      const { line, column, message } = /** @type {Error & { line?: number, column?: number }} */ (error);
       element("verdict").className = "wrong";
       element("verdict").textContent = line ? `Line ${line}, column ${column}: ${message}` : message;
       this.text.setAttribute("aria-invalid", "true");
@@ -94,20 +110,27 @@ class Scenes {
     }
   }
 
-  /** The name of a scene that was edited: its own, unless the text is that of a shipped one. */
+  /**
+   * The name of a scene that was edited: its own, unless the text is that of a shipped one.
+   * @param {string} toml
+   */
   #nameOf(toml) {
     const shipped = this.page.engine.shipped.find((scene) => scene.toml === toml);
     return shipped?.name ?? `${this.page.state.name.replace(/-edited$/, "")}-edited`;
   }
 
+  /** @param {SceneAbout} about */
   verdict({ faces, objects, warnings }) {
-    const counts = `${objects} ${objects === 1 ? "object" : "objects"}, ${faces.toLocaleString("en")} faces.`;
+    const counts = `${objects} ${objects === 1 ? "object" : "objects"}, ${group(faces)} faces.`;
     element("verdict").className = warnings.length ? "warned" : "";
     element("verdict").textContent = [counts, ...warnings].join(" ");
     this.text.removeAttribute("aria-invalid");
   }
 
-  /** Takes files: a scene, or a model with what it names. */
+  /**
+   * Takes files: a scene, or a model with what it names.
+   * @param {File[]} dropped
+   */
   async take(dropped) {
     const files = dropped.filter(({ name }) => TAKEN.some((extension) => name.toLowerCase().endsWith(extension)));
     const others = dropped.filter((file) => !files.includes(file)).map(({ name }) => name);
@@ -115,14 +138,16 @@ class Scenes {
       if (files.length) await this.#open(files);
       if (others.length) this.page.trouble("files", `${others.join(", ")}: not read. This page takes OBJ, MTL, PNG and TOML.`);
     } catch (error) {
-      this.page.trouble("files", `${files.map((file) => file.name).join(", ")}: ${error.message}`);
+      this.page.trouble("files", `${files.map((file) => file.name).join(", ")}: ${messageOf(error)}`);
     }
   }
 
+  /** @param {File[]} files */
   async #open(files) {
     for (const file of files) this.#files.set(file.name, new Uint8Array(await file.arrayBuffer()));
     this.page.setFiles(this.#files);
     element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${group(bytes.length)} bytes`)));
+    /** @param {string} extension */
     const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
     const [scene, model] = [find(".toml"), find(".obj")];
     if (scene) this.page.open(await scene.text(), scene.name.replace(/\.toml$/i, ""));
@@ -131,7 +156,10 @@ class Scenes {
     element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
   }
 
-  /** The scene of a model that turns; in colours of its own where its materials have any. */
+  /**
+   * The scene of a model that turns; in colours of its own where its materials have any.
+   * @param {string} name
+   */
   #showing(name) {
     const materials = [...this.#files].filter(([file]) => file.toLowerCase().endsWith(".mtl"));
     const texts = materials.map(([, bytes]) => new TextDecoder().decode(bytes)).join("\n");

@@ -1,7 +1,13 @@
+// @ts-check
 // The stopwatch: every time on the page, and in its worker, is taken by it.
 
+/**
+ * @import { Scene } from "./engine.js"
+ * @import { Lap, Pose } from "./types.d.ts"
+ */
+
 /** The clock's step in milliseconds, which browsers make coarse: the least difference that it shows. */
-const CLOCK_STEP = (() => {
+export const CLOCK_STEP = (() => {
   let [step, changes, before] = [Infinity, 0, performance.now()];
   const end = before + 20;
   while (changes < 8 && before < end) {
@@ -17,7 +23,7 @@ const CLOCK_STEP = (() => {
 /** Milliseconds of a lap at least: the clock's step is at most a fortieth of them. */
 const LAP = Math.max(2, 40 * CLOCK_STEP);
 /** Laps that are kept, so 50 frames or more; and how many there must be before a time is shown. */
-const KEPT_LAPS = 50;
+export const KEPT_LAPS = 50;
 const FIRST_LAPS = 5;
 /** From a moment to the next, in seconds: what moves is computed again in every frame of a lap. */
 const NEXT_MOMENT = 1 / 70;
@@ -25,15 +31,24 @@ const NEXT_MOMENT = 1 / 70;
 const STEADY = 0.04;
 const PATIENCE = 250;
 
-/** A time in the page's one unit. */
-const msText = (ms) => `${ms.toFixed(ms < 0.0995 ? 3 : ms < 9.995 ? 2 : ms < 99.95 ? 1 : 0)} ms`;
+/**
+ * A time in the page's one unit.
+ * @param {number} ms
+ */
+export const msText = (ms) => `${ms.toFixed(ms < 0.0995 ? 3 : ms < 9.995 ? 2 : ms < 99.95 ? 1 : 0)} ms`;
 
+/** @param {number[]} numbers */
 const ascending = (numbers) => [...numbers].sort((a, b) => a - b);
-const median = (numbers) => ascending(numbers)[numbers.length >> 1];
-/** What the rest of the machine adds is on top: a quarter of the laps had little of it. */
+/** @param {number[]} numbers */
+export const median = (numbers) => ascending(numbers)[numbers.length >> 1];
+/**
+ * What the rest of the machine adds is on top: a quarter of the laps had little of it.
+ * @param {number[]} numbers
+ */
 const lowerQuartile = (numbers) => ascending(numbers)[numbers.length >> 2];
 
-class Stopwatch {
+export class Stopwatch {
+  /** @type {number[]} */
   #laps = [];
   /** Laps since the picture changed. */
   #fresh = 0;
@@ -43,6 +58,10 @@ class Stopwatch {
   /**
    * Draws a scene again and again, about a moment and at last in it. Returns milliseconds a frame, and whether the scene
    * is redrawn from one moment to the next without being asked for it.
+   * @param {Scene} scene
+   * @param {number} seconds
+   * @param {Pose} pose
+   * @returns {Lap}
    */
   static lap(scene, seconds, pose) {
     scene.show(seconds + NEXT_MOMENT, pose);
@@ -59,12 +78,19 @@ class Stopwatch {
     return { ms: took / frames, isRedrawn };
   }
 
-  /** Laps of a scene, after one that warms up. */
+  /**
+   * Laps of a scene, after one that warms up.
+   * @param {Scene} scene
+   * @param {number} seconds
+   * @param {Pose} pose
+   * @param {number} count
+   */
   static laps(scene, seconds, pose, count) {
     Stopwatch.lap(scene, seconds, pose);
     return Array.from({ length: count }, () => Stopwatch.lap(scene, seconds, pose));
   }
 
+  /** @param {Lap[]} laps */
   add(...laps) {
     for (const { ms, isRedrawn } of laps) {
       this.#laps.push(ms);
@@ -96,6 +122,6 @@ class Stopwatch {
     if (this.#fresh < KEPT_LAPS) return false;
     const half = KEPT_LAPS / 2;
     const [before, after] = [this.#laps.slice(0, half), this.#laps.slice(half)].map(lowerQuartile);
-    return Math.abs(after - before) <= STEADY * this.ms || this.#fresh >= PATIENCE;
+    return Math.abs(after - before) <= STEADY * (this.ms ?? 0) || this.#fresh >= PATIENCE;
   }
 }

@@ -1,21 +1,45 @@
+// @ts-check
 // The worker: what takes longer than a frame. It has an engine of its own, and answers one question at a time.
+import { messageOf } from "./common.js";
+import { Engine, RATE } from "./engine.js";
+import { Stopwatch } from "./stopwatch.js";
+
+/**
+ * @import { Scene } from "./engine.js"
+ * @import { MeasureQuestion, Question } from "./types.d.ts"
+ */
+
+/** @type {Engine} */
 let engine;
-/** What came before the engine was there waits for it. */
+/**
+ * What comes before the engine is there waits for it.
+ * @type {Promise<unknown>}
+ */
 let ready;
-/** The scene that was asked about last. */
+/**
+ * The scene that was asked about last.
+ * @type {{ key: string, scene: Scene | null }}
+ */
 let known = { key: "", scene: null };
 
+/** @param {Question} question */
 function sceneOf({ toml, version }) {
   const key = `${version}\n${toml}`;
   if (known.key !== key) {
     known.scene?.free();
     known = { key: "", scene: null };
-    known = { key, scene: engine.open(toml) };
+    const scene = engine.open(toml);
+    known = { key, scene };
+    return scene;
   }
-  return known.scene;
+  return /** @type {Scene} */ (known.scene);
 }
 
-/** How far a frame is from the truth, and what was counted of it. */
+/**
+ * How far a frame is from the truth, and what was counted of it.
+ * @param {Scene} scene
+ * @param {Question} question
+ */
 function judge(scene, { seconds, pose, settings }) {
   scene.set(settings);
   scene.show(seconds, pose);
@@ -23,21 +47,34 @@ function judge(scene, { seconds, pose, settings }) {
   return { ...scene.judge(), counts: scene.counts() };
 }
 
+/** @type {Record<string, (question: any, say: (part: number) => void) => unknown>} */
 const questions = {
+  /** @param {Question} question */
   judge: (question) => judge(sceneOf(question), question),
-  /** Laps of one setting and, if they are asked for, its errors and counts. */
+  /**
+   * Laps of one setting and, if they are asked for, its errors and counts.
+   * @param {MeasureQuestion} question
+   */
   measure(question) {
     const scene = sceneOf(question);
-    const { map, counts, ...errors } = question.judges ? judge(scene, question) : {};
+    let judged;
+    if (question.judges) {
+      const { map, counts, ...errors } = judge(scene, question);
+      judged = { ...errors, lit: counts.lit, pixels: counts.pixels };
+    }
     scene.set(question.settings);
-    const judged = counts && { ...errors, lit: counts.lit, pixels: counts.pixels };
     return { laps: Stopwatch.laps(scene, question.seconds, question.pose, question.laps), judged };
   },
+  /** @param {Question} question */
   exact(question) {
     const scene = sceneOf(question);
     scene.show(question.seconds, question.pose);
     return scene.truth();
   },
+  /**
+   * @param {Question} question
+   * @param {(part: number) => void} say
+   */
   film(question, say) {
     const scene = sceneOf(question);
     scene.set(question.settings);
@@ -67,6 +104,6 @@ onmessage = async ({ data }) => {
     const answer = questions[kind](data, (progress) => postMessage({ number, progress }));
     postMessage({ number, answer });
   } catch (error) {
-    postMessage({ number, error: error.message });
+    postMessage({ number, error: messageOf(error) });
   }
 };

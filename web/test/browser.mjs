@@ -2,184 +2,160 @@
 //
 // MODE13H is the program: the picture that the page saves must be the file that it writes. Screenshots go to FOLDER.
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { Browser } from "./devtools.mjs";
-import { openScene } from "./suite.mjs";
+import { join } from "node:path";
+import { box, click, drag, frames, openScene, Suite, until } from "./suite.mjs";
 
 const [page, program, folder = "target/web/screenshots"] = process.argv.slice(2);
-const address = pathToFileURL(resolve(page)).href;
 const scratch = mkdtempSync(join(tmpdir(), "mode13h-saved-"));
 mkdirSync(folder, { recursive: true });
-let failures = 0;
+process.on("exit", () => rmSync(scratch, { recursive: true, force: true }));
 
-function check(what, holds, found = "") {
-  if (!holds) failures++;
-  console.log(`${holds ? "ok  " : "FAIL"}  ${what}${holds ? "" : `: ${found}`}`);
+const suite = new Suite(page);
+const check = suite.check.bind(suite);
+const text = (tab, id) => tab.locator(`#${id}`).textContent();
+const HASH = "page.canvas.words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, 7)";
+const hash = (tab) => tab.evaluate(HASH);
+const screenshot = (tab, name) => tab.screenshot({ path: join(folder, name) });
+
+/** The file that a button of the page saves. */
+async function saved(tab, button) {
+  const [download] = await Promise.all([tab.waitForEvent("download"), tab.evaluate(`element(${JSON.stringify(button)}).click()`)]);
+  return readFileSync(await download.path());
 }
 
-process.on("uncaughtException", async (error) => {
-  console.log(`FAIL  ${error.message}`);
-  await browser.close();
-  process.exit(1);
-});
-const browser = await Browser.launch();
-const text = (tab, id) => tab.value(`element(${JSON.stringify(id)}).textContent`);
-const hash = (tab) => tab.value("page.canvas.words.reduce((sum, word) => (Math.imul(sum, 31) + word) | 0, 7)");
-
-async function open(width, height, isDark, link = "") {
-  const tab = await browser.page();
-  await tab.size(width, height, isDark);
-  const begun = performance.now();
-  await tab.open(address + link);
-  await tab.until("globalThis.page?.scenes && page.accuracy.lastMap !== undefined");
-  tab.began = performance.now() - begun;
-  return tab;
-}
-
-/** Waits for a file that the page saves. */
-async function saved(name) {
-  const file = join(scratch, name);
-  for (let waited = 0; waited < 400 && !existsSync(file); waited++) await new Promise((resolve) => setTimeout(resolve, 50));
-  return readFileSync(file);
-}
-
-try {
-  await browser.ask("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: scratch });
-  const tab = await open(1280, 800, false);
-  check("the picture, the slider and the errors are there within three seconds", tab.began < 3000, `${tab.began} ms`);
-
+await suite.run(async () => {
+  const tab = await suite.open();
   const first = await hash(tab);
-  await new Promise((resolve) => setTimeout(resolve, 300));
-  check("the picture turns", (await hash(tab)) !== first);
-  await tab.until("/^[\\d.]+ ×$/.test(element('times').textContent)");
+  await until(tab, `${HASH} !== ${first}`);
+  check("the picture turns", true);
+  await until(tab, "/^[\\d.]+ ×$/.test(element('times').textContent)");
   check("the first screen says how many times the time accuracy takes", (await text(tab, "times-words")) === "the time →" && (await text(tab, "left-name")) === "cheapest", await text(tab, "versus"));
-  await tab.until("page.curve.at({ maxError: 0.5 }) && document.querySelectorAll('#chart .chart-point.budget').length >= 5");
+  await until(tab, "page.curve.at({ maxError: 0.5 }) && document.querySelectorAll('#chart .chart-point.budget').length >= 5");
   check("the curve is measured without being asked for", true);
   await openScene(tab, "torus");
 
   // The slider, by pointer and by key.
-  await tab.drag("#accuracy", [0.48, 0.5], [0.97, 0.5]);
-  check("dragged to its right end the slider allows half a shade", (await tab.value("page.state.maxError")) === 0.5, await tab.value("page.state.maxError"));
-  await tab.until("page.accuracy.lastMap.asked.settings.maxError === 0.5");
-  const fine = await tab.value("Number(element('worst').textContent)");
+  await drag(tab, "#accuracy", [0.48, 0.5], [0.97, 0.5]);
+  check("dragged to its right end the slider allows half a shade", (await tab.evaluate("page.state.maxError")) === 0.5, await tab.evaluate("page.state.maxError"));
+  await until(tab, "page.accuracy.lastMap.asked.settings.maxError === 0.5");
+  const fine = await tab.evaluate("Number(element('worst').textContent)");
   // Half a shade, and half a shade of rounding; single pixels of faces that are seen edge on may be beyond.
-  const rms = await tab.value("Number(element('rms').textContent)");
+  const rms = await tab.evaluate("Number(element('rms').textContent)");
   check("and pixels are off by no more than that and rounding, r.m.s.", rms > 0 && rms <= 1, rms);
   check("the share of each technique is shown", /lit at every pixel \d+ %/.test(await text(tab, "shares-key")), await text(tab, "shares-key"));
-  await tab.value("element('accuracy').focus()");
-  await tab.key("Home");
-  check("its left end is the cheapest", await tab.value("page.state.maxError === null && page.state.shading === 'flat'"));
-  await tab.until("page.accuracy.lastMap.asked.settings.shading === 'flat' && page.accuracy.lastMap.asked.settings.maxError === null");
-  const coarse = await tab.value("Number(element('worst').textContent)");
+  await tab.evaluate("element('accuracy').focus()");
+  await tab.keyboard.press("Home");
+  check("its left end is the cheapest", await tab.evaluate("page.state.maxError === null && page.state.shading === 'flat'"));
+  await until(tab, "page.accuracy.lastMap.asked.settings.shading === 'flat' && page.accuracy.lastMap.asked.settings.maxError === null");
+  const coarse = await tab.evaluate("Number(element('worst').textContent)");
   check("a flat picture is farther off", coarse > 4 * fine, `${coarse} against ${fine}`);
-  await tab.until("document.querySelectorAll('#chart .chart-point.now').length === 1");
+  await until(tab, "document.querySelectorAll('#chart .chart-point.now').length === 1");
   check("the chart shows where it is", true);
 
   // All shadings, measured on the spot.
-  await tab.click("#measure");
-  await tab.until("!element('measure').disabled", 60);
-  const points = await tab.value("document.querySelectorAll('#chart .chart-point.shading').length");
-  check("every shading is a point of the chart", points === (await tab.value("page.engine.shadings.length - 1")), points); // Flat is the budgets' left end.
+  await click(tab, "#measure");
+  await until(tab, "!element('measure').disabled");
+  const points = await tab.evaluate("document.querySelectorAll('#chart .chart-point.shading').length");
+  check("every shading is a point of the chart", points === (await tab.evaluate("page.engine.shadings.length - 1")), points); // Flat is the budgets' left end.
 
   // The best picture in so many milliseconds.
-  await tab.value("element('limit').value = 1000");
-  await tab.click("#within button");
-  await tab.until("element('found').textContent.includes(', in ')");
-  check("in a second the best picture is the finest", (await tab.value("page.state.maxError")) === 0.5, await text(tab, "found"));
-  await tab.value("element('limit').value = 0.0001");
-  await tab.value("page.accuracy.within(0.0001)");
+  await tab.evaluate("element('limit').value = 1000");
+  await click(tab, "#within button");
+  await until(tab, "element('found').textContent.includes(', in ')");
+  check("in a second the best picture is the finest", (await tab.evaluate("page.state.maxError")) === 0.5, await text(tab, "found"));
+  await tab.evaluate("element('limit').value = 0.0001");
+  await tab.evaluate("page.accuracy.within(0.0001)");
   check("in no time there is none, and it says so", (await text(tab, "found")).startsWith("Not here"), await text(tab, "found"));
 
   // The divider.
-  await tab.value("page.choose({ beside: 'shading flat', maxError: 0.5, playing: false, seconds: 0.5 })");
-  await new Promise((resolve) => setTimeout(resolve, 300));
+  await tab.evaluate("page.choose({ beside: 'shading flat', maxError: 0.5, playing: false, seconds: 0.5 })");
+  await frames(tab);
   const half = await hash(tab);
-  await tab.drag("#screen .divider", [0.5, 0.5], [0.2, 0.5], "#screen");
-  const place = await tab.value("page.state.divider");
+  await drag(tab, "#screen .divider", [0.5, 0.5], [0.2, 0.5], "#screen");
+  const place = await tab.evaluate("page.state.divider");
   check("the divider follows the pointer", Math.abs(place - 0.2) < 0.02, place);
-  await new Promise((resolve) => setTimeout(resolve, 200));
+  await frames(tab);
   check("and the picture right of it is another", (await hash(tab)) !== half);
-  await tab.value("document.querySelector('#screen .divider').focus()");
-  await tab.key("ArrowRight");
-  check("and it follows keys", (await tab.value("page.state.divider")) > place);
-  writeFileSync(join(folder, "divided.png"), await tab.screenshot());
-  await tab.value("page.choose({ beside: 'truth' })");
-  await tab.until("element('right-name').textContent.includes('64-bit')");
+  await tab.evaluate("document.querySelector('#screen .divider').focus()");
+  await tab.keyboard.press("ArrowRight");
+  check("and it follows keys", (await tab.evaluate("page.state.divider")) > place);
+  await screenshot(tab, "divided.png");
+  await tab.evaluate("page.choose({ beside: 'truth' })");
+  await until(tab, "element('right-name').textContent.includes('64-bit')");
 
   // The magnifier: its byte is the frame's.
-  await tab.value("page.choose({ beside: '', maxError: null, shading: 'gouraud-8.8' })");
-  await tab.click("#picture", 0.3, 0.5);
-  check("a click chooses a pixel", await tab.value("page.state.pixel !== null && !page.state.playing"));
-  await tab.box("#pixel");
-  await tab.until("element('account').textContent.includes(`Pixel ${page.state.pixel.x}, ${page.state.pixel.y}:`) && document.querySelector('.register b')");
-  const [byte, shown] = await tab.value("(() => { const { x, y } = page.state.pixel; return [Number(/byte (\\d+)/.exec(element('account').textContent)[1]), page.scene.frame().bytes[y * 320 + x]]; })()");
+  await tab.evaluate("page.choose({ beside: '', maxError: null, shading: 'gouraud-8.8' })");
+  await click(tab, "#picture", 0.3, 0.5);
+  check("a click chooses a pixel", await tab.evaluate("page.state.pixel !== null && !page.state.playing"));
+  await box(tab, "#pixel");
+  await until(tab, "element('account').textContent.includes(`Pixel ${page.state.pixel.x}, ${page.state.pixel.y}:`) && document.querySelector('.register b')");
+  const [byte, shown] = await tab.evaluate("(() => { const { x, y } = page.state.pixel; return [Number(/byte (\\d+)/.exec(element('account').textContent)[1]), page.scene.frame().bytes[y * 320 + x]]; })()");
   check("the pixel's byte is the frame's", byte === shown, `${byte}, ${shown}`);
-  const ah = await tab.value("parseInt(document.querySelector('.register b').textContent, 16)");
+  const ah = await tab.evaluate("parseInt(document.querySelector('.register b').textContent, 16)");
   check("and it is what AH holds", ah === byte, `${ah}, ${byte}`);
-  const before = await tab.value("page.state.pixel.x");
-  await tab.value("element('lens').focus()");
-  await tab.key("ArrowRight");
-  check("an arrow goes to the next pixel", (await tab.value("page.state.pixel.x")) === before + 1);
-  writeFileSync(join(folder, "pixel.png"), await tab.screenshot());
+  const before = await tab.evaluate("page.state.pixel.x");
+  await tab.evaluate("element('lens').focus()");
+  await tab.keyboard.press("ArrowRight");
+  check("an arrow goes to the next pixel", (await tab.evaluate("page.state.pixel.x")) === before + 1);
+  await screenshot(tab, "pixel.png");
 
   // The plan.
-  await tab.value("[...document.querySelectorAll('#effects input')].find((box) => box.ariaLabel === 'lighting').click()");
-  await tab.until("page.scene.plan().find((row) => row.effect === 'lighting').on === false");
+  await tab.evaluate("[...document.querySelectorAll('#effects input')].find((box) => box.ariaLabel === 'lighting').click()");
+  await until(tab, "page.scene.plan().find((row) => row.effect === 'lighting').on === false");
   check("lighting is switched off in the plan", true);
-  await tab.click("#as-planned");
-  await tab.until("page.scene.plan().find((row) => row.effect === 'lighting').on");
-  await tab.click("#price");
-  await tab.until("!element('price').disabled", 60);
-  check("effects have prices", (await tab.value("[...document.querySelectorAll('#effects td.number')].filter((cell) => /s\\)?$/.test(cell.textContent)).length")) > 0);
+  await click(tab, "#as-planned");
+  await until(tab, "page.scene.plan().find((row) => row.effect === 'lighting').on");
+  await click(tab, "#price");
+  await until(tab, "!element('price').disabled");
+  check("effects have prices", (await tab.evaluate("[...document.querySelectorAll('#effects td.number')].filter((cell) => /s\\)?$/.test(cell.textContent)).length")) > 0);
 
   // The editor.
-  await tab.value("(() => { const area = element('toml'); area.value = area.value.replace('spin', 'spim'); area.dispatchEvent(new Event('input')); })()");
-  await tab.until("element('verdict').classList.contains('wrong')");
+  await tab.evaluate("(() => { const area = element('toml'); area.value = area.value.replace('spin', 'spim'); area.dispatchEvent(new Event('input')); })()");
+  await until(tab, "element('verdict').classList.contains('wrong')");
   const verdict = await text(tab, "verdict");
   check("an error stands with its line and column", /^Line 10, column 1: key `objects\[0\]\.spim`: unknown key; known are /.test(verdict), verdict);
-  check("and the line is marked", (await tab.value("document.querySelector('#lines b')?.textContent.trim()")) === "10");
-  await tab.value("element('verdict').scrollIntoView({ block: 'center' })");
-  writeFileSync(join(folder, "error.png"), await tab.screenshot());
-  await tab.value("(() => { const area = element('toml'); area.value = area.value.replace('spim', 'spin').replace('torus', 'ball').replace('shape = \"torus\"', 'shape = \"sphere\"'); area.dispatchEvent(new Event('input')); })()");
-  await tab.until("!element('verdict').classList.contains('wrong') && page.state.toml.includes('sphere')");
+  check("and the line is marked", (await tab.evaluate("document.querySelector('#lines b')?.textContent.trim()")) === "10");
+  await tab.evaluate("element('verdict').scrollIntoView({ block: 'center' })");
+  await screenshot(tab, "error.png");
+  await tab.evaluate("(() => { const area = element('toml'); area.value = area.value.replace('spim', 'spin').replace('torus', 'ball').replace('shape = \"torus\"', 'shape = \"sphere\"'); area.dispatchEvent(new Event('input')); })()");
+  await until(tab, "!element('verdict').classList.contains('wrong') && page.state.toml.includes('sphere')");
   check("and once it is mended the picture follows", true);
 
   // The link: another tab shows the same bytes.
-  await tab.value("page.choose({ seconds: 1.25, pose: { turn: 0.5, tilt: 0.25, zoom: 1.1 }, maxError: 2, beside: 'shading flat', divider: 0.4 })");
-  await tab.value("page.link()");
-  await new Promise((resolve) => setTimeout(resolve, 300));
-  const link = await tab.value("location.hash");
-  const other = await open(1280, 800, false, link);
+  await tab.evaluate("page.choose({ seconds: 1.25, pose: { turn: 0.5, tilt: 0.25, zoom: 1.1 }, maxError: 2, beside: 'shading flat', divider: 0.4 })");
+  await tab.evaluate("page.link()");
+  await frames(tab);
+  const link = await tab.evaluate("location.hash");
+  const other = await suite.open({ link });
+  await frames(other);
   check("a link shows the same picture", (await hash(other)) === (await hash(tab)), link);
-  check("and has the same budget", (await other.value("page.state.maxError")) === 2);
+  check("and has the same budget", (await other.evaluate("page.state.maxError")) === 2);
   check("a link has nothing to say", other.said.length === 0, other.said.join("; "));
-  await tab.front();
 
   // A dropped model: OBJ, MTL and PNG together.
-  const texture = await tab.value("(async () => { const c = new OffscreenCanvas(8, 8); const x = c.getContext('2d'); x.fillStyle = '#c04020'; x.fillRect(0, 0, 8, 8); x.fillStyle = '#20a060'; x.fillRect(0, 0, 4, 4); x.fillRect(4, 4, 4, 4); return [...new Uint8Array(await (await c.convertToBlob()).arrayBuffer())]; })()");
+  const texture = await tab.evaluate("(async () => { const c = new OffscreenCanvas(8, 8); const x = c.getContext('2d'); x.fillStyle = '#c04020'; x.fillRect(0, 0, 8, 8); x.fillStyle = '#20a060'; x.fillRect(0, 0, 4, 4); x.fillRect(4, 4, 4, 4); return [...new Uint8Array(await (await c.convertToBlob()).arrayBuffer())]; })()");
   const model = {
     "tile.obj": "mtllib tile.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl tile\nf 1/1 2/2 3/3 4/4\n",
     "tile.mtl": "newmtl tile\nKd 1 1 1\nmap_Kd textures\\tile.png\n",
   };
-  await tab.value(`(() => { const data = new DataTransfer(); for (const [name, text] of Object.entries(${JSON.stringify(model)})) data.items.add(new File([text], name)); data.items.add(new File([new Uint8Array(${JSON.stringify(texture)})], "tile.png")); element("drop").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: data })); })()`);
-  await tab.until("page.state.name === 'tile'");
-  check("a dropped model is shown", (await tab.value("page.scene.about.faces")) === 2 && (await tab.value("page.scene.about.warnings.length")) === 0, await tab.value("page.scene.about.warnings.join()"));
-  check("with its texture", await tab.value("page.scene.show(0), page.scene.draw(), page.scene.plan().find((row) => row.effect === 'texture').on"));
-  await tab.value("page.choose({ beside: '' })");
-  await tab.until("page.accuracy.lastMap.asked.toml === page.state.toml");
-  check("a file that is missing is named", /is not on the page/.test(await tab.value("(() => { try { page.engine.open('objects = [{ model = \"none.obj\" }]'); } catch (error) { return error.message; } })()")));
+  await tab.evaluate(`(() => { const data = new DataTransfer(); for (const [name, text] of Object.entries(${JSON.stringify(model)})) data.items.add(new File([text], name)); data.items.add(new File([new Uint8Array(${JSON.stringify(texture)})], "tile.png")); element("drop").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: data })); })()`);
+  await until(tab, "page.state.name === 'tile'");
+  check("a dropped model is shown", (await tab.evaluate("page.scene.about.faces")) === 2 && (await tab.evaluate("page.scene.about.warnings.length")) === 0, await tab.evaluate("page.scene.about.warnings.join()"));
+  check("with its texture", await tab.evaluate("page.scene.show(0), page.scene.draw(), page.scene.plan().find((row) => row.effect === 'texture').on"));
+  await tab.evaluate("page.choose({ beside: '' })");
+  await until(tab, "page.accuracy.lastMap.asked.toml === page.state.toml");
+  check("a file that is missing is named", /is not on the page/.test(await tab.evaluate("(() => { try { page.engine.open('objects = [{ model = \"none.obj\" }]'); } catch (error) { return error.message; } })()")));
 
   // A trap: the page says so, and goes on.
-  const trapped = await tab.value("(() => { try { page.engine.call('room', 4294967295); } catch (error) { return error.message; } })()");
+  const trapped = await tab.evaluate("(() => { try { page.engine.call('room', 4294967295); } catch (error) { return error.message; } })()");
   check("a trap says why, and that another engine was started", /^The engine stopped at room: .*capacity overflow.* Another one was started\.$/s.test(trapped), trapped);
-  await tab.value("page.choose({ seconds: 0.4 })");
+  await tab.evaluate("page.choose({ seconds: 0.4 })");
   const after = await hash(tab);
-  await tab.value("page.choose({ seconds: 1.1 })");
-  await new Promise((resolve) => setTimeout(resolve, 400));
-  check("and the page goes on", (await hash(tab)) !== after && (await tab.value("page.engine.generation")) === 2);
+  await tab.evaluate("page.choose({ seconds: 1.1 })");
+  await until(tab, `${HASH} !== ${after}`);
+  check("and the page goes on", (await tab.evaluate("page.engine.generation")) === 2);
 
   // Saved files, against the program's.
   for (const [name, seconds, settings, options] of [
@@ -188,47 +164,38 @@ try {
     ["still", 0, { maxError: null, shading: "phong" }, ["--shading", "phong"]],
     ["cycle", 1, { maxError: null, shading: "" }, []],
   ]) {
-    await tab.value(`page.open(page.engine.shipped.find(({ name }) => name === "${name}").toml, "${name}")`);
-    await tab.value(`page.choose(${JSON.stringify({ ...settings, seconds, playing: false, beside: "" })})`);
-    await tab.value("element('save-png').click()");
-    const file = await saved(`${name}.png`);
+    await tab.evaluate(`page.open(page.engine.shipped.find(({ name }) => name === "${name}").toml, "${name}")`);
+    await tab.evaluate(`page.choose(${JSON.stringify({ ...settings, seconds, playing: false, beside: "" })})`);
+    const file = await saved(tab, "save-png");
     const wanted = join(scratch, `program-${name}.png`);
     execFileSync(program, ["render", name, "--time", `${seconds}`, ...options, "-o", wanted]);
     check(`the saved PNG of ${name} is the file that the program writes`, file.equals(readFileSync(wanted)), `${file.length} bytes, ${readFileSync(wanted).length}`);
   }
-  await tab.value("page.open(page.engine.shipped.find(({ name }) => name === 'cube').toml, 'cube'), page.choose({ maxError: null, shading: '' })");
-  await tab.value("element('save-gif').click()");
-  const film = await saved("cube.gif");
+  await tab.evaluate("page.open(page.engine.shipped.find(({ name }) => name === 'cube').toml, 'cube'), page.choose({ maxError: null, shading: '' })");
+  const film = await saved(tab, "save-gif");
   execFileSync(program, ["render", "cube", "-o", join(scratch, "program.gif")]);
   check("the saved GIF is the file that the program writes", film.equals(readFileSync(join(scratch, "program.gif"))), `${film.length} bytes`);
   check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 
   // 60 frames a second with the teapot lit at every pixel.
-  await tab.value("page.open(page.engine.shipped.find(({ name }) => name === 'teapot').toml, 'teapot'), page.choose({ maxError: null, shading: 'phong', playing: true })");
-  await new Promise((resolve) => setTimeout(resolve, 3000));
+  await tab.evaluate("page.open(page.engine.shipped.find(({ name }) => name === 'teapot').toml, 'teapot'), page.choose({ maxError: null, shading: 'phong', playing: true })");
+  await until(tab, "page.left.isSettled && !element('ms').classList.contains('settling')");
   console.log(`      the teapot lit at every pixel: ${await text(tab, "ms")} each`);
 
   // As it looks: two sizes, light and dark.
   for (const [width, height] of [[1280, 800], [390, 844], [360, 640]]) {
     for (const isDark of [false, true]) {
-      const look = await open(width, height, isDark);
-      const wide = await look.value("document.documentElement.scrollWidth");
+      const look = await suite.open({ width, height, isDark });
+      const wide = await look.evaluate("document.documentElement.scrollWidth");
       check(`${width} × ${height}${isDark ? ", dark" : ""}: nothing sticks out`, wide <= width, `${wide} wide`);
-      const slider = await look.value("element('accuracy').getBoundingClientRect().bottom");
+      const slider = await look.evaluate("element('accuracy').getBoundingClientRect().bottom");
       check(`${width} × ${height}${isDark ? ", dark" : ""}: the slider is on the first screen`, slider < height, slider);
       check(`${width} × ${height}${isDark ? ", dark" : ""}: no message on the console`, look.said.length === 0, look.said.join("; "));
-      writeFileSync(join(folder, `${width}${isDark ? "-dark" : ""}.png`), await look.screenshot());
+      await screenshot(look, `${width}${isDark ? "-dark" : ""}.png`);
+      await look.context().close();
     }
   }
-  const still = await browser.page();
-  await still.front();
-  await still.size(1280, 800, false, true);
-  await still.open(address);
-  await still.until("globalThis.page?.scenes");
-  check("who asks for less motion gets a picture that stands", (await still.value("page.state.playing")) === false);
-} finally {
-  await browser.close();
-  rmSync(scratch, { recursive: true, force: true });
-}
-console.log(`${failures} failures; screenshots in ${folder}: ${readdirSync(folder).join(", ")}`);
-process.exit(failures ? 1 : 0);
+  const still = await suite.open({ isStill: true });
+  check("who asks for less motion gets a picture that stands", (await still.evaluate("page.state.playing")) === false);
+  console.log(`screenshots in ${folder}: ${readdirSync(folder).join(", ")}`);
+});

@@ -6,10 +6,9 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { Engine } from "../page/engine.js";
 
 const [file, program] = process.argv.slice(2);
-const source = readFileSync(new URL("../page/engine.js", import.meta.url), "utf8");
-const { Engine } = new Function(`${source}; return { Engine };`)();
 const engine = new Engine(await WebAssembly.compile(readFileSync(file)));
 const scratch = mkdtempSync(join(tmpdir(), "mode13h-frames-"));
 let [same, all] = [0, 0];

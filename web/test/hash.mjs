@@ -5,11 +5,10 @@
 // FRAMES.wasm is machines/frames, built for WebAssembly. A BROWSER is a program such as chromium or firefox-esr. It opens
 // a page of this computer, which draws the frames and says what came of it.
 import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
-import { removeProfile } from "./devtools.mjs";
 
 const [file, ...browsers] = process.argv.slice(2);
 const page = `<!doctype html><title>frames</title><script type="module">
@@ -24,6 +23,15 @@ memory = instance.exports.memory;
 const status = instance.exports.start();
 await fetch("/said", { method: "POST", body: said + "status " + status });
 </script>`;
+
+/** Removes a browser's folder. Its last processes may still write there: then it stays in the system's temporary folder. */
+function removeProfile(profile) {
+  try {
+    rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
+  } catch (error) {
+    console.log(`${profile} stays: ${error.code}`);
+  }
+}
 
 function ask(program) {
   return new Promise((resolve) => {

@@ -2,7 +2,7 @@
 //
 // The time that is shown against one that is taken here in place, by other means, on five scenes in three states; scenes
 // in which nothing is redrawn have none. Over all shipped scenes no error is beyond the budget without its words.
-import { openScene, Suite, wait } from "./suite.mjs";
+import { frames, openScene, Suite, until } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
 
@@ -13,6 +13,9 @@ const TRIES = 6;
 const SETTINGS = [{ maxError: null, shading: "flat" }, { maxError: 4 }, { maxError: 0.5 }];
 const SCENES = [["torus", 1.2], ["teapot", 0.5], ["cone", 1.2], ["phong", 1.5], ["rgb", 1.5]];
 
+/** Waits until the panel shows a settled time. */
+const untilSettled = (tab) => until(tab, "!element('ms').classList.contains('settling')");
+
 suite.run(async () => {
   await times();
   await search();
@@ -21,10 +24,10 @@ suite.run(async () => {
 });
 
 /**
- * Milliseconds of a redraw of the picture that is shown, taken in place: the lower quartile of 40 batches, spread over a
- * second as the page's own laps are. Every batch redraws two moments in turn, as an animation does.
+ * Milliseconds of a redraw of the picture that is shown, taken in place: the lower quartile of 40 batches, spread over
+ * frames as the page's own laps are. Every batch redraws two moments in turn, as an animation does.
  */
-const inPlace = (tab) => tab.value(`(async () => {
+const inPlace = (tab) => tab.evaluate(`(async () => {
   const { scene, state } = page;
   const batches = [];
   for (let batch = 0; batch < 40; batch++) {
@@ -38,12 +41,12 @@ const inPlace = (tab) => tab.value(`(async () => {
       }
     } while (performance.now() - begun < 5);
     batches.push((performance.now() - begun) / frames);
-    await new Promise((later) => setTimeout(later, 20));
+    await new Promise((next) => requestAnimationFrame(next));
   }
   return batches.sort((a, b) => a - b)[10];
 })()`);
 
-const shown = (tab) => tab.value("Number(/^([\\d.]+) ms$/.exec(element('ms').textContent)?.[1])");
+const shown = (tab) => tab.evaluate("Number(/^([\\d.]+) ms$/.exec(element('ms').textContent)?.[1])");
 
 async function times() {
   for (const [state, isStill] of [["turning", false], ["a link", false], ["less motion", true]]) {
@@ -56,16 +59,16 @@ async function times() {
         const tab = await suite.open({ isStill, link: state === "a link" ? `#scene=${name}&t=${seconds}&${accuracy}` : "" });
         if (state !== "a link") {
           await openScene(tab, name);
-          await tab.value(`page.choose(${JSON.stringify({ ...setting, beside: "" })})`);
+          await tab.evaluate(`page.choose(${JSON.stringify({ ...setting, beside: "" })})`);
         }
-        await tab.until("page.left.isSettled", 60);
-        await wait(300);
+        await until(tab, "page.left.isSettled");
+        await untilSettled(tab);
         // What turns is told all the time, so what is told last was taken together with what is taken here.
         const before = await shown(tab);
         const taken = await inPlace(tab);
         const told = state === "turning" ? await shown(tab) : before;
         found.push({ told, taken, isNear: Math.abs(told - taken) <= NEAR * taken, said: tab.said });
-        await tab.close();
+        await tab.context().close();
       }
       const { told, taken, isNear, said } = found.at(-1);
       suite.check(`${name}, ${accuracy}, ${state}: ${told} ms shown, ${taken.toFixed(3)} in place`, isNear, JSON.stringify(found));
@@ -79,27 +82,27 @@ async function search() {
   const tab = await suite.open({ link: "#scene=phong&t=1.5&max-error=4" });
   const found = [];
   for (let i = 0; i < TRIES && !found.at(-1)?.isNear; i++) {
-    await tab.value("page.choose({ maxError: 4 }), page.accuracy.within(1000)");
-    const said = Number(/in ([\d.]+) ms/.exec(await tab.value("element('found').textContent"))[1]);
-    await tab.until("page.left.isSettled", 60);
-    await wait(300);
+    await tab.evaluate("page.choose({ maxError: 4 }), page.accuracy.within(1000)");
+    const said = Number(/in ([\d.]+) ms/.exec(await tab.evaluate("element('found').textContent"))[1]);
+    await until(tab, "page.left.isSettled");
+    await untilSettled(tab);
     const told = await shown(tab);
     found.push({ said, told, isNear: Math.abs(said - told) <= NEAR * told });
   }
   const { said, told, isNear } = found.at(-1);
   suite.check(`"Find it" says ${said} ms, and the panel ${told}`, isNear, JSON.stringify(found));
-  await tab.close();
+  await tab.context().close();
 }
 
 async function notRedrawn() {
   const tab = await suite.open();
   for (const name of ["still", "fade", "cycle"]) {
     await openScene(tab, name);
-    await tab.value("page.choose({ maxError: 4, playing: true })");
-    await tab.until("element('ms').textContent === 'not redrawn'");
-    await tab.until("page.curve.at({ maxError: 0.5 })");
-    await wait(1500);
-    const points = await tab.value("document.querySelectorAll('#chart .chart-point').length");
+    await tab.evaluate("page.choose({ maxError: 4, playing: true })");
+    await until(tab, "element('ms').textContent === 'not redrawn'");
+    await until(tab, "page.curve.at({ maxError: 0.5 })");
+    await frames(tab);
+    const points = await tab.evaluate("document.querySelectorAll('#chart .chart-point').length");
     suite.check(`${name}: says that it is not redrawn, and has no point on the chart`, points === 0, points);
   }
 }
@@ -109,14 +112,14 @@ async function promise() {
   const tab = await suite.open();
   const wrong = [];
   let edgeOn = 0;
-  const scenes = await tab.value("page.engine.shipped.map(({ name }) => name)");
+  const scenes = await tab.evaluate("page.engine.shipped.map(({ name }) => name)");
   for (const name of scenes) {
     await openScene(tab, name);
-    const duration = await tab.value("page.scene.about.duration");
+    const duration = await tab.evaluate("page.scene.about.duration");
     for (const [at, maxError] of [0.5, 4, 0.5, 1, 0.5, 16].entries()) {
-      await tab.value(`page.choose(${JSON.stringify({ maxError, seconds: (duration * (at + 0.4)) / 6, playing: false, beside: "" })})`);
-      await tab.until("JSON.stringify(page.accuracy.lastMap.asked) === JSON.stringify(page.question())", 60);
-      const [worst, words, { pixels }] = await tab.value("[Number(element('worst').textContent), element('promise').textContent, page.accuracy.judged.edgeOn]");
+      await tab.evaluate(`page.choose(${JSON.stringify({ maxError, seconds: (duration * (at + 0.4)) / 6, playing: false, beside: "" })})`);
+      await until(tab, "JSON.stringify(page.accuracy.lastMap.asked) === JSON.stringify(page.question())");
+      const [worst, words, { pixels }] = await tab.evaluate("[Number(element('worst').textContent), element('promise').textContent, page.accuracy.judged.edgeOn]");
       const holds = worst <= Math.max(maxError, 0.52) && words.startsWith("Kept") && (pixels === 0) !== words.includes("edge on");
       if (!holds) wrong.push(`${name}, ${maxError}, moment ${at}: ${worst}: ${words}`);
       edgeOn += pixels;

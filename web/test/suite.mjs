@@ -1,10 +1,12 @@
-// What the tests in a browser share: checks that are counted, and the page in a tab.
+// What the tests in a browser share: Debian's Chromium, driven by Playwright, and checks that are counted.
+import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { Browser } from "./devtools.mjs";
+import { chromium } from "playwright-core";
 
-export const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const program = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
 
+/** A browser that shows a page of this disk, each time in a tab of its own that shares nothing with the others. */
 export class Suite {
   failures = 0;
 
@@ -19,7 +21,7 @@ export class Suite {
 
   /** Runs the tests in a browser, and ends with 1 if any failed. */
   async run(tests) {
-    this.browser = await Browser.launch();
+    this.browser = await chromium.launch({ executablePath: program, args: ["--no-sandbox", "--disable-gpu"] });
     try {
       await tests(this);
     } catch (error) {
@@ -31,16 +33,83 @@ export class Suite {
     process.exit(this.failures ? 1 : 0);
   }
 
+  /** A tab whose console is kept in `said`. Tests name elements as the page does, by `element(id)`. */
+  async tab({ width = 1280, height = 800, isDark = false, isStill = false, hasTouch = width < 500 } = {}) {
+    const context = await this.browser.newContext({
+      viewport: { width, height }, isMobile: width < 500, hasTouch,
+      colorScheme: isDark ? "dark" : "light", reducedMotion: isStill ? "reduce" : "no-preference",
+    });
+    context.setDefaultTimeout(60_000);
+    await context.addInitScript("globalThis.element = (id) => document.getElementById(id)");
+    const tab = await context.newPage();
+    tab.said = [];
+    tab.on("console", (message) => tab.said.push(message.text()));
+    tab.on("pageerror", (error) => tab.said.push(error.stack));
+    return tab;
+  }
+
   /** A tab with the page, once its errors are there. */
-  async open({ width = 1280, height = 800, isDark = false, isStill = false, link = "" } = {}) {
-    const tab = await this.browser.page();
-    await tab.front();
-    await tab.size(width, height, isDark, isStill);
-    await tab.open(this.address + link);
-    await tab.until("globalThis.page?.scenes && page.accuracy.lastMap !== undefined");
+  async open({ link = "", ...window } = {}) {
+    const tab = await this.tab(window);
+    await tab.goto(this.address + link);
+    await until(tab, "globalThis.page?.scenes && page.accuracy.lastMap !== undefined");
     return tab;
   }
 }
 
+/** Waits until an expression is true in a tab. */
+export async function until(tab, expression) {
+  try {
+    await tab.waitForFunction(expression);
+  } catch (error) {
+    const trouble = await tab.evaluate("element('trouble')?.textContent");
+    throw new Error(`never: ${expression}; trouble: ${trouble}; said: ${tab.said.join("; ")}`, { cause: error });
+  }
+}
+
+/** Waits until a tab has drawn so many frames. */
+export const frames = (tab, count = 2) =>
+  tab.evaluate((count) => new Promise((done) => {
+    const next = () => (count-- > 0 ? requestAnimationFrame(next) : done());
+    next();
+  }), count);
+
+/** Waits until a tab does not scroll any more: its place is the same in ten frames. */
+export const scrolled = (tab) =>
+  tab.evaluate(() => new Promise((done) => {
+    let [place, frames] = [NaN, 0];
+    const next = () => {
+      frames = scrollY === place ? frames + 1 : 0;
+      place = scrollY;
+      if (frames < 10) requestAnimationFrame(next);
+      else done();
+    };
+    next();
+  }));
+
+/** Where an element is, from the window's upper left corner; it is scrolled to the window's middle. */
+export const box = (tab, selector) =>
+  tab.locator(selector).first().evaluate((element) => {
+    element.scrollIntoView({ block: "center", behavior: "instant" });
+    const { x, y, width, height } = element.getBoundingClientRect();
+    return { x, y, width, height };
+  });
+
+/** Clicks at a part of an element. */
+export async function click(tab, selector, across = 0.5, down = 0.5) {
+  const { x, y, width, height } = await box(tab, selector);
+  await tab.mouse.click(x + across * width, y + down * height);
+}
+
+/** Drags from one part of an element to another, in six steps. */
+export async function drag(tab, selector, from, to, within = selector) {
+  const start = await box(tab, selector);
+  const area = await box(tab, within);
+  await tab.mouse.move(start.x + from[0] * start.width, start.y + from[1] * start.height);
+  await tab.mouse.down();
+  await tab.mouse.move(area.x + to[0] * area.width, area.y + to[1] * area.height, { steps: 6 });
+  await tab.mouse.up();
+}
+
 /** Opens a shipped scene in a tab. */
-export const openScene = (tab, name) => tab.value(`page.open(page.engine.shipped.find(({ name }) => name === ${JSON.stringify(name)}).toml, ${JSON.stringify(name)})`);
+export const openScene = (tab, name) => tab.evaluate(`page.open(page.engine.shipped.find(({ name }) => name === ${JSON.stringify(name)}).toml, ${JSON.stringify(name)})`);

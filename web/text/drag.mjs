@@ -4,32 +4,28 @@
 //   web/text/preview && node web/text/drag.mjs target/preview.html [DIR for a picture of each figure]
 //
 // It tries the page itself as well: web/build && node web/text/drag.mjs target/web/mode13h.html
-import { writeFileSync } from "node:fs";
-import { resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { Browser } from "../test/devtools.mjs";
+import { Suite, until } from "../test/suite.mjs";
 
 const [file, pictures] = process.argv.slice(2);
-const browser = await Browser.launch();
+const suite = new Suite(file);
 const faults = [];
 let compared = 0;
 const counts = { figures: 0, handles: 0, sliders: 0, choices: 0, buttons: 0 };
-try {
-  const page = await browser.page();
-  await page.size(1280, 900, false, true);
-  await page.open(pathToFileURL(resolve(file)).href);
-  await page.until('document.querySelectorAll("[data-figure]").length === 12 && document.readyState === "complete"');
+await suite.run(async () => {
+  const page = await suite.tab({ height: 900, isStill: true });
+  await page.goto(suite.address);
+  await until(page, 'document.querySelectorAll("[data-figure]").length === 12 && document.readyState === "complete"');
   // Two frames: one to draw what was asked for, one more to have drawn it.
-  await page.value("globalThis.settled = () => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))); 0");
-  for (const name of await page.value('[...document.querySelectorAll("[data-figure]")].map((f) => f.dataset.figure)')) {
+  await page.evaluate("globalThis.settled = () => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))); 0");
+  for (const name of await page.evaluate('[...document.querySelectorAll("[data-figure]")].map((f) => f.dataset.figure)')) {
     const figure = `document.querySelector('[data-figure="${name}"]')`;
-    await page.value(`${figure}.scrollIntoView({ behavior: "instant" }); settled().then(settled)`);
-    await page.until(`!!${figure}.querySelector("canvas")`);
-    const count = (selector) => page.value(`${figure}.querySelectorAll('${selector}').length`);
+    await page.evaluate(`${figure}.scrollIntoView({ behavior: "instant" }); settled().then(settled)`);
+    await until(page, `!!${figure}.querySelector("canvas")`);
+    const count = (selector) => page.evaluate(`${figure}.querySelectorAll('${selector}').length`);
     const nth = (selector, i) => `${figure}.querySelectorAll('${selector}')[${i}]`;
     // What the figure says and shows: its words, its pictures, the words for those who do not see.
     const state = async () => {
-      const shown = await page.value(`settled().then(() => ${figure}.innerText
+      const shown = await page.evaluate(`settled().then(() => ${figure}.innerText
         + [...${figure}.querySelectorAll("canvas")].map((c) => c.toDataURL()).join()
         + [...${figure}.querySelectorAll("[aria-label]")].map((e) => e.ariaLabel).join())`);
       for (const [words] of shown.matchAll(/The engine \w+ other \w+/g)) faults.push(`${name}: ${words}`);
@@ -49,20 +45,19 @@ try {
       }
       faults.push(`${name}: ${what} changes nothing`);
     };
-    const middle = (element) => page.value(`(() => { ${element}.scrollIntoView({ block: "center", behavior: "instant" });
+    const middle = (element) => page.evaluate(`(() => { ${element}.scrollIntoView({ block: "center", behavior: "instant" });
       const b = ${element}.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()`);
     const keys = (element, key, times) => async () => {
-      await page.value(`${element}.focus()`);
-      for (let i = 0; i < times; i++) await page.key(key);
+      await page.evaluate(`${element}.focus()`);
+      for (let i = 0; i < times; i++) await page.keyboard.press(key);
     };
     counts.figures++;
     for (let i = 0; i < await count("input[type=radio]"); i++) {
       const radio = nth("input[type=radio]", i);
-      if (await page.value(`${radio}.checked`)) continue;
+      if (await page.evaluate(`${radio}.checked`)) continue;
       await changes(`choice ${i}`, async () => {
         const at = await middle(radio);
-        await page.mouse("mousePressed", ...at);
-        await page.mouse("mouseReleased", ...at);
+        await page.mouse.click(...at);
       });
       counts.choices++;
     }
@@ -70,17 +65,17 @@ try {
       const handle = nth(".fig-handle", i);
       await changes(`dragging handle ${i}`, async () => {
         const [x, y] = await middle(handle);
-        await page.mouse("mousePressed", x, y);
-        for (let k = 1; k <= 4; k++) await page.mouse("mouseMoved", x - 9 * k, y - 6 * k);
-        await page.mouse("mouseReleased", x - 36, y - 24);
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        await page.mouse.move(x - 36, y - 24, { steps: 4 });
+        await page.mouse.up();
       });
       await changes(`handle ${i} by arrow keys`, keys(handle, "ArrowRight", 2), keys(handle, "ArrowDown", 2), keys(handle, "ArrowLeft", 2));
-      if (await page.value(`${handle}.classList.contains("anywhere")`)) {
+      if (await page.evaluate(`${handle}.classList.contains("anywhere")`)) {
         await changes(`a press beside handle ${i}`, async () => {
           await middle(handle);
-          const [x, y] = await page.value(`(() => { const b = ${handle}.parentElement.getBoundingClientRect(); return [b.x + .31 * b.width, b.y + .42 * b.height]; })()`);
-          await page.mouse("mousePressed", x, y);
-          await page.mouse("mouseReleased", x, y);
+          const [x, y] = await page.evaluate(`(() => { const b = ${handle}.parentElement.getBoundingClientRect(); return [b.x + .31 * b.width, b.y + .42 * b.height]; })()`);
+          await page.mouse.click(x, y);
         });
       }
       counts.handles++;
@@ -93,8 +88,8 @@ try {
     const buttons = await count(".fig-button");
     if (buttons) {
       const press = (i) => async () => {
-        await page.value(`${nth(".fig-button", i)}.focus()`);
-        await page.key("Enter", "Enter", "\r");
+        await page.evaluate(`${nth(".fig-button", i)}.focus()`);
+        await page.keyboard.press("Enter");
       };
       for (let i = 0; i < buttons; i++) {
         // One may find its work done by the one before, which it takes back.
@@ -102,29 +97,23 @@ try {
         counts.buttons++;
       }
     }
-    const silent = await page.value(`[...${figure}.querySelectorAll("canvas, .fig-handle")].filter((e) => !e.ariaLabel).length`);
+    const silent = await page.evaluate(`[...${figure}.querySelectorAll("canvas, .fig-handle")].filter((e) => !e.ariaLabel).length`);
     if (silent) faults.push(`${name}: ${silent} pictures or handles have no words`);
     if (pictures) {
-      await page.value(`${figure}.scrollIntoView({ behavior: "instant" }); settled()`);
-      writeFileSync(`${pictures}/${name}.png`, await page.screenshot());
+      await page.evaluate(`${figure}.scrollIntoView({ behavior: "instant" }); settled()`);
+      await page.screenshot({ path: `${pictures}/${name}.png` });
     }
   }
-  const first = () => page.value('settled().then(() => document.querySelector("[data-figure] canvas").toDataURL())');
+  const first = () => page.evaluate('settled().then(() => document.querySelector("[data-figure] canvas").toDataURL())');
   const light = await first();
-  await page.value('document.documentElement.dataset.theme = "dark"; 0');
+  await page.evaluate('document.documentElement.dataset.theme = "dark"; 0');
   if (light === await first()) faults.push("the dark theme changes no canvas");
   for (const width of [1280, 768, 390, 360]) {
-    await page.size(width, 800);
-    const over = await page.value("settled().then(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)");
+    await page.setViewportSize({ width, height: 800 });
+    const over = await page.evaluate("settled().then(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)");
     if (over > 0) faults.push(`${width} pixels wide: ${over} pixels too many`);
   }
-  if (await page.value('!!document.querySelector("[data-figure=budget] .fig-pair")') && compared < 10) faults.push(`the promise was compared ${compared} times`);
+  if (await page.evaluate('!!document.querySelector("[data-figure=budget] .fig-pair")') && compared < 10) faults.push(`the promise was compared ${compared} times`);
   faults.push(...page.said.map((words) => `console: ${words}`));
-} catch (error) {
-  faults.push(String(error.stack));
-} finally {
-  await browser.close();
-}
-console.log(Object.entries(counts).map(([name, n]) => `${n} ${name}`).join(", "));
-for (const fault of faults) console.log(`FAULT  ${fault}`);
-process.exit(faults.length ? 1 : 0);
+  suite.check(Object.entries(counts).map(([name, n]) => `${n} ${name}`).join(", "), faults.length === 0, faults.join("\n"));
+});

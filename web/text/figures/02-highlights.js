@@ -1,118 +1,116 @@
 // A lamp before a wall: light at corners beside light at each pixel.
-(() => {
-  const M = mode13hFigures;
-  const [WIDTH, HEIGHT] = [144, 90];
+import * as M from "./00-shared.js";
 
-  // Light, 0 to 1, at a point of the wall (pixels) from a lamp at (lx, ly), `near` pixels before it.
-  // Body and highlight, with the engine's fall-off; the eye is far in front of the middle.
-  function wallLight(x, y, lx, ly, near = 26) {
-    const [dx, dy] = [lx - x, ly - y];
-    const d2 = dx * dx + dy * dy + near * near;
-    const d = Math.sqrt(d2);
-    const range = 110;
-    const fall = d < range ? (1 - d2 / (range * range)) ** 2 : 0;
-    const [vx, vy, vz] = [WIDTH / 2 - x, HEIGHT / 2 - y, 220];
-    const v = Math.hypot(vx, vy, vz);
-    // The reflected ray: the light's direction with the part along the wall turned round.
-    const along = (-dx * vx - dy * vy + near * vz) / (d * v);
-    return Math.min(1, .07 + fall * (.55 * near / d + .4 * Math.max(0, along) ** 12));
-  }
+const [WIDTH, HEIGHT] = [144, 90];
 
-  const shade = (light) => Math.floor(light * 65280 + .5);
+// Light, 0 to 1, at a point of the wall (pixels) from a lamp at (lx, ly), `near` pixels before it.
+// Body and highlight, with the engine's fall-off; the eye is far in front of the middle.
+export function wallLight(x, y, lx, ly, near = 26) {
+  const [dx, dy] = [lx - x, ly - y];
+  const d2 = dx * dx + dy * dy + near * near;
+  const d = Math.sqrt(d2);
+  const range = 110;
+  const fall = d < range ? (1 - d2 / (range * range)) ** 2 : 0;
+  const [vx, vy, vz] = [WIDTH / 2 - x, HEIGHT / 2 - y, 220];
+  const v = Math.hypot(vx, vy, vz);
+  // The reflected ray: the light's direction with the part along the wall turned round.
+  const along = (-dx * vx - dy * vy + near * vz) / (d * v);
+  return Math.min(1, .07 + fall * (.55 * near / d + .4 * Math.max(0, along) ** 12));
+}
 
-  // Bytes of the wall cut into n × n squares of two triangles, lit at their corners.
-  function wallGouraud(n, lx, ly) {
-    const bytes = new Uint8Array(WIDTH * HEIGHT);
-    const at = (i, j) => {
-      const [x, y] = [i * WIDTH / n, j * HEIGHT / n];
-      return [Math.floor(x * 256 + .5), Math.floor(y * 256 + .5), shade(wallLight(x, y, lx, ly))];
-    };
-    const triangles = [];
-    for (let j = 0; j < n; j++) {
-      for (let i = 0; i < n; i++) {
-        const [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        triangles.push([a, b, c], [a, c, d]);
-      }
+const shade = (light) => Math.floor(light * 65280 + .5);
+
+// Bytes of the wall cut into n × n squares of two triangles, lit at their corners.
+export function wallGouraud(n, lx, ly) {
+  const bytes = new Uint8Array(WIDTH * HEIGHT);
+  const at = (i, j) => {
+    const [x, y] = [i * WIDTH / n, j * HEIGHT / n];
+    return [Math.floor(x * 256 + .5), Math.floor(y * 256 + .5), shade(wallLight(x, y, lx, ly))];
+  };
+  const triangles = [];
+  for (let j = 0; j < n; j++) {
+    for (let i = 0; i < n; i++) {
+      const [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+      triangles.push([a, b, c], [a, c, d]);
     }
-    for (const t of triangles) M.drawTriangle(t, WIDTH, HEIGHT, bytes, WIDTH);
-    return { bytes, triangles };
   }
+  for (const t of triangles) M.drawTriangle(t, WIDTH, HEIGHT, bytes, WIDTH);
+  return { bytes, triangles };
+}
 
-  // Light at every pixel's centre, not rounded to a byte.
-  function wallExact(lx, ly) {
-    return Float64Array.from({ length: WIDTH * HEIGHT }, (_, i) =>
-      255 * wallLight(i % WIDTH + .5, Math.floor(i / WIDTH) + .5, lx, ly));
-  }
-  Object.assign(M, { wallLight, wallGouraud, wallExact });
+// Light at every pixel's centre, not rounded to a byte.
+export function wallExact(lx, ly) {
+  return Float64Array.from({ length: WIDTH * HEIGHT }, (_, i) =>
+    255 * wallLight(i % WIDTH + .5, Math.floor(i / WIDTH) + .5, lx, ly));
+}
 
-  figure("highlights", (stage, engine) => {
-    let [lx, ly, power] = [62, 48, 0];
-    const CUTS = [1, 2, 4, 8, 16, 32];
-    const pair = M.make("div", "fig-pair", stage);
-    let drawn = null;
-    const copper = (b) => (Math.min(255, b * 5 >> 2) << 16) | (Math.min(255, b * 200 >> 8) << 8) | (b * 128 >> 8);
-    const boards = ["Light at the corners", "Light at each pixel"].map((title, k) => {
-      const side = M.make("div", "", pair);
-      M.make("p", "fig-name", side, title);
-      const board = M.board(side, {
-        height: (w) => w * HEIGHT / WIDTH,
-        paint(c, w, h) {
-          M.pixels(c, drawn[k], WIDTH, HEIGHT, 0, 0, w, h, copper);
-          if (k) return;
-          const n = CUTS[power];
-          if (n > 8) return;
-          c.globalAlpha = .45;
-          for (let i = 0; i <= n; i++) {
-            M.line(c, [[i * w / n, 0], [i * w / n, h]], "#ffffff", 1);
-            M.line(c, [[0, i * h / n], [w, i * h / n]], "#ffffff", 1);
-            for (let j = 0; j < n && i < n; j++) M.line(c, [[i * w / n, j * h / n], [(i + 1) * w / n, (j + 1) * h / n]], "#ffffff", 1);
-          }
-          c.globalAlpha = 1;
-        },
-      });
-      M.handle(board, {
-        label: "Lamp", anywhere: true,
-        at: () => [lx / WIDTH * board.width, ly / HEIGHT * board.height],
-        move: (x, y) => put(x / board.width * WIDTH, y / board.height * HEIGHT),
-        nudge: (dx, dy) => put(lx + 2 * dx, ly + 2 * dy),
-        say: () => `column ${Math.round(lx)}, row ${Math.round(ly)}`,
-      });
-      return board;
+M.figure("highlights", (stage, engine) => {
+  let [lx, ly, power] = [62, 48, 0];
+  const CUTS = [1, 2, 4, 8, 16, 32];
+  const pair = M.make("div", "fig-pair", stage);
+  let drawn = null;
+  const copper = (b) => (Math.min(255, b * 5 >> 2) << 16) | (Math.min(255, b * 200 >> 8) << 8) | (b * 128 >> 8);
+  const boards = ["Light at the corners", "Light at each pixel"].map((title, k) => {
+    const side = M.make("div", "", pair);
+    M.make("p", "fig-name", side, title);
+    const board = M.board(side, {
+      height: (w) => w * HEIGHT / WIDTH,
+      paint(c, w, h) {
+        M.pixels(c, drawn[k], WIDTH, HEIGHT, 0, 0, w, h, copper);
+        if (k) return;
+        const n = CUTS[power];
+        if (n > 8) return;
+        c.globalAlpha = .45;
+        for (let i = 0; i <= n; i++) {
+          M.line(c, [[i * w / n, 0], [i * w / n, h]], "#ffffff", 1);
+          M.line(c, [[0, i * h / n], [w, i * h / n]], "#ffffff", 1);
+          for (let j = 0; j < n && i < n; j++) M.line(c, [[i * w / n, j * h / n], [(i + 1) * w / n, (j + 1) * h / n]], "#ffffff", 1);
+        }
+        c.globalAlpha = 1;
+      },
     });
-    const put = (x, y) => {
-      [lx, ly] = [M.clamp(x, 0, WIDTH), M.clamp(y, 0, HEIGHT)];
-      show();
-    };
-    const say = M.readout(stage);
-    const bar = M.controls(stage);
-    M.slider(bar, {
-      label: "Cut the wall", min: 0, max: CUTS.length - 1, value: power,
-      format: (v) => `${CUTS[v]} × ${CUTS[v]}, ${M.group(2 * CUTS[v] ** 2)} triangles`,
-      input: (v) => ((power = v), show()),
+    M.handle(board, {
+      label: "Lamp", anywhere: true,
+      at: () => [lx / WIDTH * board.width, ly / HEIGHT * board.height],
+      move: (x, y) => put(x / board.width * WIDTH, y / board.height * HEIGHT),
+      nudge: (dx, dy) => put(lx + 2 * dx, ly + 2 * dy),
+      say: () => `column ${Math.round(lx)}, row ${Math.round(ly)}`,
     });
-    function show() {
-      const n = CUTS[power];
-      const exact = wallExact(lx, ly);
-      const gouraud = wallGouraud(n, lx, ly);
-      drawn = [gouraud.bytes, Uint8Array.from(exact, (v) => Math.floor(v + .5))];
-      let [worst, sum] = [0, 0];
-      exact.forEach((v, i) => {
-        const off = Math.abs(gouraud.bytes[i] - v);
-        worst = Math.max(worst, off);
-        sum += off;
-      });
-      boards[0].describe(`The wall lit at ${(n + 1) ** 2} corners; worst error ${worst.toFixed(1)} shades`);
-      boards[1].describe("The wall lit at each pixel");
-      const parts = ["Light is computed ", { b: `${M.group((n + 1) ** 2)} times` }, ` at corners, and ${M.group(WIDTH * HEIGHT)} times at pixels. `,
-        "Worst pixel of the first: ", { b: `${worst.toFixed(1)} shades`, warn: worst > 8 }, ` off; mean ${(sum / exact.length).toFixed(1)}.`];
-      if (engine) {
-        const bytes = engine.triangles(Float64Array.from(gouraud.triangles.flatMap((t) => t.flatMap(([x, y, s]) => [x / 256, y / 256, s / 256]))));
-        const same = gouraud.bytes.every((byte, i) => byte === bytes[Math.floor(i / WIDTH) * 320 + i % WIDTH]);
-        parts.push(same ? " The engine draws the first picture to the byte." : { b: " The engine draws other bytes.", warn: true });
-      }
-      say(...parts);
-      boards.forEach((b) => b.repaint());
-    }
+    return board;
+  });
+  const put = (x, y) => {
+    [lx, ly] = [M.clamp(x, 0, WIDTH), M.clamp(y, 0, HEIGHT)];
     show();
-  }, true);
-})();
+  };
+  const say = M.readout(stage);
+  const bar = M.controls(stage);
+  M.slider(bar, {
+    label: "Cut the wall", min: 0, max: CUTS.length - 1, value: power,
+    format: (v) => `${CUTS[v]} × ${CUTS[v]}, ${M.group(2 * CUTS[v] ** 2)} triangles`,
+    input: (v) => ((power = v), show()),
+  });
+  function show() {
+    const n = CUTS[power];
+    const exact = wallExact(lx, ly);
+    const gouraud = wallGouraud(n, lx, ly);
+    drawn = [gouraud.bytes, Uint8Array.from(exact, (v) => Math.floor(v + .5))];
+    let [worst, sum] = [0, 0];
+    exact.forEach((v, i) => {
+      const off = Math.abs(gouraud.bytes[i] - v);
+      worst = Math.max(worst, off);
+      sum += off;
+    });
+    boards[0].describe(`The wall lit at ${(n + 1) ** 2} corners; worst error ${worst.toFixed(1)} shades`);
+    boards[1].describe("The wall lit at each pixel");
+    const parts = ["Light is computed ", { b: `${M.group((n + 1) ** 2)} times` }, ` at corners, and ${M.group(WIDTH * HEIGHT)} times at pixels. `,
+      "Worst pixel of the first: ", { b: `${worst.toFixed(1)} shades`, warn: worst > 8 }, ` off; mean ${(sum / exact.length).toFixed(1)}.`];
+    if (engine) {
+      const bytes = engine.triangles(Float64Array.from(gouraud.triangles.flatMap((t) => t.flatMap(([x, y, s]) => [x / 256, y / 256, s / 256]))));
+      const same = gouraud.bytes.every((byte, i) => byte === bytes[Math.floor(i / WIDTH) * 320 + i % WIDTH]);
+      parts.push(same ? " The engine draws the first picture to the byte." : { b: " The engine draws other bytes.", warn: true });
+    }
+    say(...parts);
+    boards.forEach((b) => b.repaint());
+  }
+  show();
+}, true);

@@ -64,7 +64,7 @@ pub fn html(study: &Study) -> String {
                     (choices::claims(study))
                     (method::section(study))
                 }
-                script { @for script in SCRIPTS { (PreEscaped(script)) } (PreEscaped(MOUNT)) }
+                script type="module" { @for script in SCRIPTS { (PreEscaped(script)) } (PreEscaped(MOUNT)) }
             }
         }
     };

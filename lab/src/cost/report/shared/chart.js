@@ -1,19 +1,25 @@
+// @ts-check
 // The chart of error against time, both logarithmic: one for the page and for the report of `mode13h cost`.
-"use strict";
-
 /** Errors below are drawn here: a logarithmic axis has no 0. */
 const ERROR_FLOOR = 0.01;
 
 /** Room for the name of a tick, in pixels. */
 const TICK_NAME = 46;
 
-/** A time with its unit, in three digits: `412 µs`. */
+/**
+ * A time with its unit, in three digits: `412 µs`.
+ * @param {number} ms
+ */
 function timeText(ms) {
   const [number, unit] = ms >= 1000 ? [ms / 1000, "s"] : ms >= 1 ? [ms, "ms"] : ms >= 1e-3 ? [ms * 1e3, "µs"] : [ms * 1e6, "ns"];
   return `${Number(number.toPrecision(3))} ${unit}`;
 }
 
-/** Ticks of a logarithmic axis: 1, 2 and 5 of each power of ten; of many powers the powers alone. */
+/**
+ * Ticks of a logarithmic axis: 1, 2 and 5 of each power of ten; of many powers the powers alone.
+ * @param {number} low
+ * @param {number} high
+ */
 function logTicks(low, high) {
   const steps = high / low > 1e3 ? [1] : [1, 2, 5];
   const ticks = [];
@@ -23,7 +29,11 @@ function logTicks(low, high) {
   return ticks.filter((tick) => tick >= low && tick <= high);
 }
 
-/** The span of an axis: all numbers, with room on either side, and a power of ten at least. */
+/**
+ * The span of an axis: all numbers, with room on either side, and a power of ten at least.
+ * @param {number[]} numbers
+ * @returns {[number, number]}
+ */
 function logSpan(numbers) {
   const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
   if (!(low <= high)) return [0.1, 10];
@@ -32,27 +42,60 @@ function logSpan(numbers) {
 }
 
 /**
+ * A point of the chart.
+ * @typedef {object} Point
+ * @property {number} ms
+ * @property {number} error
+ * @property {string} name
+ * @property {"shading" | "budget" | "now" | "second"} kind
+ * @property {boolean} [efficient]
+ * @property {number} [budget]
+ * @property {string} [title]
+ * @property {string} [key]
+ * @property {() => void} [choose]
+ */
+
+/**
+ * What the chart is like: `across` and `down` name the axes, `time` words a time.
+ * @typedef {{ height?: number, description?: string, across?: string, down?: string, time?: (ms: number) => string }} Options
+ */
+
+/**
  * Draws the chart into an element, at its width.
  *
- * A point is { ms, error, name, kind, efficient, budget, title }: `kind` is "shading", "budget", "now" or "second".
  * Efficient shadings are joined, and so are budgets, in the order of `budget`. A press of a point that has `choose` calls
  * it, by pointer or by key; its `key` is its own, so that a chart that is drawn again under a press or the focus keeps them.
- * `across` and `down` name the axes, `time` words a time.
+ * @param {HTMLElement} element
+ * @param {Point[]} given
+ * @param {Options} options
  */
-function drawChart(element, points, { height = 260, description = "Error against time", across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s.", time = timeText } = {}) {
-  const SVG = "http://www.w3.org/2000/svg";
+export function drawChart(element, given, options = {}) {
+  const { height = 260, description = "Error against time", time = timeText } = options;
+  const { across: acrossName = "time for a frame", down: downName = "error in shades, r.m.s." } = options;
+  /**
+   * @param {string} name
+   * @param {Record<string, string | number>} attributes
+   * @param {Element} [parent]
+   * @param {string} [text]
+   */
   const make = (name, attributes, parent, text) => {
-    const made = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, `${value}`);
     if (text !== undefined) made.textContent = text;
     parent?.append(made);
     return made;
   };
-  points = points.filter(({ ms, error }) => ms > 0 && Number.isFinite(ms) && Number.isFinite(error));
-  points = points.map((point) => ({ ...point, error: Math.max(point.error, ERROR_FLOOR) }));
+  const known = given.filter(({ ms, error }) => ms > 0 && Number.isFinite(ms) && Number.isFinite(error));
+  const points = known.map((point) => ({ ...point, error: Math.max(point.error, ERROR_FLOOR) }));
   const width = Math.max(element.clientWidth, 260);
   const [left, right, top, bottom] = [46, width - 10, 10, height - 38];
   const [across, down] = [logSpan(points.map((point) => point.ms)), logSpan(points.map((point) => point.error))];
+  /**
+   * @param {[number, number]} span
+   * @param {number} from
+   * @param {number} to
+   * @returns {(value: number) => number}
+   */
   const on = ([low, high], from, to) => (value) => from + (Math.log(value / low) / Math.log(high / low)) * (to - from);
   const [x, y] = [on(across, left, right), on(down, bottom, top)];
 
@@ -75,8 +118,16 @@ function drawChart(element, points, { height = 260, description = "Error against
 
   make("text", { class: "chart-name", x: left, y: height - 6 }, svg, "↙ better: down and left");
 
+  /**
+   * @typedef {{ x0: number, x1: number, y0: number, y1: number, isName?: boolean }} Box
+   * @type {(cx: number, cy: number, size: number) => Box}
+   */
   const around = (cx, cy, size) => ({ x0: cx - size, x1: cx + size, y0: cy - size, y1: cy + size });
   const taken = points.map((point) => around(x(point.ms), y(point.error), 5));
+  /**
+   * @param {Point[]} joined
+   * @param {string} name
+   */
   const path = (joined, name) => {
     const corners = joined.map((point) => [x(point.ms), y(point.error)]);
     if (corners.length > 1) make("polyline", { class: name, points: corners.join(" ") }, svg);
@@ -87,11 +138,13 @@ function drawChart(element, points, { height = 260, description = "Error against
       for (let i = 1; i < steps; i++) taken.push(around(startX + ((endX - startX) * i) / steps, startY + ((endY - startY) * i) / steps, 1));
     });
   };
-  path(points.filter((point) => point.kind === "budget").sort((a, b) => b.budget - a.budget), "chart-budgets");
+  path(points.filter((point) => point.kind === "budget").sort((a, b) => (b.budget ?? 0) - (a.budget ?? 0)), "chart-budgets");
   path(points.filter((point) => point.kind === "shading" && point.efficient).sort((a, b) => a.ms - b.ms), "chart-shadings");
 
   // A name over a name is worst, over a point bad.
+  /** @param {Box} box */
   const cost = ({ isName, x0, x1 }) => (isName ? 100 : x1 - x0 > 2 ? 10 : 1);
+  /** @type {(a: Box, b: Box) => boolean} */
   const meets = (a, b) => a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
   const order = { now: 3, second: 2, shading: 1, budget: 0 };
   for (const point of [...points].sort((a, b) => order[a.kind] - order[b.kind])) {
@@ -103,10 +156,11 @@ function drawChart(element, points, { height = 260, description = "Error against
     else make("circle", { cx: at.x, cy: at.y, r: point.kind === "shading" ? 4.5 : 7 }, group);
     if (point.choose) {
       group.classList.add("chosen-by-click");
-      for (const [key, value] of Object.entries({ tabindex: 0, role: "button", "data-key": point.key, "aria-label": title })) group.setAttribute(key, value);
+      for (const [key, value] of Object.entries({ tabindex: "0", role: "button", "data-key": point.key ?? "", "aria-label": title })) group.setAttribute(key, value);
     }
   }
   // Every point has a name. Budgets at one place share it.
+  /** @type {{ x: number, y: number, kind: string, name: string }[]} */
   const named = [];
   for (const point of [...points].sort((a, b) => order[b.kind] - order[a.kind] || Number(b.efficient ?? false) - Number(a.efficient ?? false))) {
     if (!point.name) continue;
@@ -118,6 +172,7 @@ function drawChart(element, points, { height = 260, description = "Error against
   for (const point of named) {
     const size = 6.4 * point.name.length;
     // Beside the point, and farther and farther off.
+    /** @type {[number, number, "start" | "middle" | "end"][]} */
     const places = [[9, 4, "start"], [-9, 4, "end"], [0, -10, "middle"], [0, 19, "middle"], [8, -7, "start"], [8, 15, "start"], [-8, -7, "end"], [-8, 15, "end"]];
     for (let far = 24; far <= 240; far += 12) {
       for (let turn = 0; turn < 16; turn++) {
@@ -125,6 +180,7 @@ function drawChart(element, points, { height = 260, description = "Error against
         places.push([dx, dy + 4, Math.abs(dx) < 1 ? "middle" : dx > 0 ? "start" : "end"]);
       }
     }
+    /** @type {{ covered: number, box: Box, dx: number, dy: number, anchor: string } | undefined} */
     let best;
     for (const [dx, dy, anchor] of places) {
       const start = point.x + dx - { start: 0, middle: size / 2, end: size }[anchor];
@@ -143,24 +199,31 @@ function drawChart(element, points, { height = 260, description = "Error against
     taken.push({ ...box, isName: true });
     make("text", { class: `chart-label ${point.kind}`, x: point.x + dx, y: point.y + dy, "text-anchor": anchor }, svg, point.name);
   }
-  const focused = element.querySelector(":focus")?.dataset.key;
+  const focused = /** @type {SVGElement | null} */ (element.querySelector(":focus"))?.dataset.key;
   element.replaceChildren(svg);
-  const keyOf = (target) => target.closest?.(".chosen-by-click")?.dataset.key;
-  const choose = (key) => points.find((point) => point.choose && point.key === key)?.choose();
-  if (focused !== undefined) [...svg.querySelectorAll("[data-key]")].find((group) => group.dataset.key === focused)?.focus({ preventScroll: true });
+  /** @param {EventTarget | null} target */
+  const keyOf = (target) => (target instanceof Element && target.closest(".chosen-by-click")?.getAttribute("data-key")) || "";
+  /** @param {string} key */
+  const choose = (key) => points.find((point) => point.choose && point.key === key)?.choose?.();
+  const groups = /** @type {NodeListOf<SVGElement>} */ (svg.querySelectorAll("[data-key]"));
+  if (focused !== undefined) [...groups].find((group) => group.dataset.key === focused)?.focus({ preventScroll: true });
   // Not by `click`: between a press and its release another chart may have come.
-  element.onpointerdown = ({ target }) => (element.dataset.pressed = keyOf(target) ?? "");
-  element.onpointerup = ({ target }) => keyOf(target) !== undefined && keyOf(target) === element.dataset.pressed && choose(keyOf(target));
+  element.onpointerdown = ({ target }) => (element.dataset.pressed = keyOf(target));
+  element.onpointerup = ({ target }) => keyOf(target) && keyOf(target) === element.dataset.pressed && choose(keyOf(target));
   element.onkeydown = (event) => {
-    if ((event.key !== "Enter" && event.key !== " ") || keyOf(event.target) === undefined) return;
+    if ((event.key !== "Enter" && event.key !== " ") || !keyOf(event.target)) return;
     event.preventDefault();
     choose(keyOf(event.target));
   };
 }
 
-/** Marks the shadings that no other is both nearer and faster than. */
-function markEfficient(points) {
+/**
+ * Marks the shadings that no other is both nearer and faster than.
+ * @param {Point[]} points
+ */
+export function markEfficient(points) {
   const shadings = points.filter((point) => point.kind === "shading");
+  /** @type {(a: Point, b: Point) => boolean} */
   const beats = (a, b) => a.ms <= b.ms && a.error <= b.error && (a.ms < b.ms || a.error < b.error);
   for (const point of shadings) point.efficient = !shadings.some((other) => beats(other, point));
   return points;

@@ -1,0 +1,11 @@
+// The text and its figures without the page around them.
+import "./figures/all.js";
+import { Engine } from "../page/engine.js";
+import { mountFigures } from "./figures/00-shared.js";
+
+mountFigures();
+
+/** Mounts anew what uses the engine. */
+export async function begin(wasm) {
+  mountFigures(new Engine(await WebAssembly.compile(wasm)));
+}
