@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Puts the page together: assemble.py OUT MODULE.wasm
+"""Puts the page together: assemble.py OUT MODULE.wasm FIRST
 
+FIRST is the folder with the first picture, left.png and right.png.
 With PAGE_ADDRESS in the environment links to the page have a picture: page.png, beside the page.
 One HTML file that needs nothing else. The engine, the scripts and what the first screen does not need are packed, the rest
 stands as it is. Prints what takes the room.
@@ -16,6 +17,7 @@ import sys
 
 from bundle import COMMENT, bundle
 
+
 def read(*paths):
     return "\n".join(path.read_text().strip() for path in paths if path.exists())
 
@@ -23,6 +25,10 @@ def read(*paths):
 def pack(data):
     """Bytes as browsers unpack them: gzip, in base64."""
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
+
+
+def data_address(picture):
+    return f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}"
 
 
 def address_tags(address):
@@ -34,7 +40,7 @@ def address_tags(address):
 
 web = pathlib.Path(__file__).parent
 page, text, shared = web / "page", web / "text", web.parent / "lab/src/cost/report/shared"
-out, module = map(pathlib.Path, sys.argv[1:])
+out, module, first = map(pathlib.Path, sys.argv[1:])
 packed = {
     "wasm": module.read_bytes(),
     "worker": bundle(page / "worker.js").encode(),
@@ -48,6 +54,7 @@ parts = {
     "parts": json.dumps({name: len(part) for name, part in packed.items()}),
     "begin": COMMENT.sub("", read(page / "begin.js")),
     "packed": pack(b"".join(packed.values())),
+    **{side: data_address(first / f"{side}.png") for side in ("left", "right")},
 }
 address = os.environ.get("PAGE_ADDRESS")
 parts["address"] = address_tags(address) if address else ""
@@ -61,6 +68,6 @@ size = len(whole.encode())
 print(f"{'bytes':>9}  {'packed':>9}")
 for name, part in packed.items():
     print(f"{len(part):9,}  {len(pack(part)):9,}  {name}")
-for name in ("style", "begin"):
+for name in ("style", "begin", "left", "right"):
     print(f"{len(parts[name].encode()):9,}  {'':9}  {name}")
 print(f"{size:9,}  {'':9}  {out}")

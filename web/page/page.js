@@ -238,7 +238,8 @@ export class Page {
     this.other?.free();
     this.scene = scene;
     this.other = null;
-    const start = { seconds: isStill() ? scene.about.picture : 0, pose: FIRST_POSE, pixel: null, effects: {} };
+    // It begins where the scene shows what it is about.
+    const start = { seconds: scene.about.picture, pose: FIRST_POSE, pixel: null, effects: {} };
     this.accuracy.forget();
     this.plan.forget();
     this.#forgetTroubles();

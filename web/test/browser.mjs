@@ -197,5 +197,20 @@ await suite.run(async () => {
   }
   const still = await suite.open({ isStill: true });
   check("who asks for less motion gets a picture that stands", (await still.evaluate("page.state.playing")) === false);
+  await frames(still);
+  const wrong = await still.evaluate(() => {
+    const under = new OffscreenCanvas(320, 200).getContext("2d");
+    const [left, right] = document.querySelectorAll(".ready");
+    under.drawImage(left, 0, 0);
+    under.drawImage(right, 160, 0, 160, 200, 160, 0, 160, 200);
+    const [ready, drawn] = [under, page.canvas.context].map((context) => new Uint32Array(context.getImageData(0, 0, 320, 200).data.buffer));
+    return ready.filter((pixel, at) => pixel !== drawn[at]).length;
+  });
+  check("the picture that is there before the engine is the engine's first", wrong === 0, `${wrong} pixels differ`);
+  const early = await suite.tab({ javaScriptEnabled: false });
+  await early.goto(suite.address);
+  check("it is there without any script", await early.locator(".ready").first().isVisible());
+  const linked = await suite.open({ link: "#scene=torus&t=1" });
+  check("and never under a link to another scene", !(await linked.locator(".ready").first().isVisible()));
   console.log(`screenshots in ${folder}: ${readdirSync(folder).join(", ")}`);
 });

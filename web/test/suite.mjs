@@ -34,9 +34,9 @@ export class Suite {
   }
 
   /** A tab whose console is kept in `said`. Tests name elements as the page does, by `element(id)`. */
-  async tab({ width = 1280, height = 800, isDark = false, isStill = false, hasTouch = width < 500 } = {}) {
+  async tab({ width = 1280, height = 800, isDark = false, isStill = false, javaScriptEnabled = true } = {}) {
     const context = await this.browser.newContext({
-      viewport: { width, height }, isMobile: width < 500, hasTouch,
+      viewport: { width, height }, isMobile: width < 500, hasTouch: width < 500, javaScriptEnabled,
       colorScheme: isDark ? "dark" : "light", reducedMotion: isStill ? "reduce" : "no-preference",
     });
     context.setDefaultTimeout(60_000);

@@ -109,7 +109,7 @@ fn whole() -> Study {
 
 /// Takes the one script out of a page. Returns the page without it, and the script.
 fn apart(page: &str) -> (String, &str) {
-    let (before, rest) = page.split_once("<script>").expect("a script");
+    let (before, rest) = page.split_once("<script type=\"module\">").expect("a script");
     let (script, after) = rest.split_once("</script>").expect("an end of the script");
     (format!("{before}{after}"), script)
 }
