@@ -25,6 +25,27 @@ async function saved(tab, button) {
   return readFileSync(await download.path());
 }
 
+/** How the page looks to somebody: nothing sticks out, and what matters is on the first screen. */
+async function looks(width, height, { isDark = false, isStill = false }) {
+  const who = `${width} × ${height}${isDark ? ", dark" : ""}${isStill ? ", less motion" : ""}`;
+  const tab = await suite.open({ width, height, isDark, isStill });
+  const wide = await tab.evaluate("document.documentElement.scrollWidth");
+  check(`${who}: nothing sticks out`, wide <= width, `${wide} wide`);
+  const bottoms = await tab.evaluate("['versus', 'accuracy'].map((id) => element(id).getBoundingClientRect().bottom)");
+  check(`${who}: the pictures, their ratio and the slider are on the first screen`, Math.max(...bottoms) < height, bottoms.join());
+  await until(tab, "/^[\\d.]+ ×$/.test(element('times').textContent)");
+  check(`${who}: the ratio is told`, true);
+  const paper = await tab.evaluate("getComputedStyle(document.body).backgroundColor");
+  const [red] = paper.match(/\d+/g).map(Number);
+  check(`${who}: the paper is ${isDark ? "dark" : "light"}`, isDark ? red < 64 : red > 192, paper);
+  const seconds = await tab.evaluate("page.state.seconds");
+  await frames(tab, 30);
+  check(`${who}: the picture ${isStill ? "stands" : "moves"}`, ((await tab.evaluate("page.state.seconds")) === seconds) === isStill);
+  check(`${who}: no message on the console`, tab.said.length === 0, tab.said.join("; "));
+  await screenshot(tab, `${width}${isDark ? "-dark" : ""}${isStill ? "-still" : ""}.png`);
+  await tab.context().close();
+}
+
 await suite.run(async () => {
   const tab = await suite.open();
   const first = await hash(tab);
@@ -182,17 +203,10 @@ await suite.run(async () => {
   await until(tab, "page.left.isSettled && !element('ms').classList.contains('settling')");
   console.log(`      the teapot lit at every pixel: ${await text(tab, "ms")} each`);
 
-  // As it looks: two sizes, light and dark.
+  // As it looks: three sizes, light, dark, with less motion.
   for (const [width, height] of [[1280, 800], [390, 844], [360, 640]]) {
-    for (const isDark of [false, true]) {
-      const look = await suite.open({ width, height, isDark });
-      const wide = await look.evaluate("document.documentElement.scrollWidth");
-      check(`${width} × ${height}${isDark ? ", dark" : ""}: nothing sticks out`, wide <= width, `${wide} wide`);
-      const slider = await look.evaluate("element('accuracy').getBoundingClientRect().bottom");
-      check(`${width} × ${height}${isDark ? ", dark" : ""}: the slider is on the first screen`, slider < height, slider);
-      check(`${width} × ${height}${isDark ? ", dark" : ""}: no message on the console`, look.said.length === 0, look.said.join("; "));
-      await screenshot(look, `${width}${isDark ? "-dark" : ""}.png`);
-      await look.context().close();
+    for (const look of [{}, { isDark: true }, { isStill: true }]) {
+      await looks(width, height, look);
     }
   }
   const still = await suite.open({ isStill: true });

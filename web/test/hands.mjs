@@ -16,6 +16,7 @@ suite.run(async () => {
   await words(tab);
   await banner(tab);
   await pose(tab);
+  await pinch();
   await names(tab);
   await account();
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
@@ -159,6 +160,16 @@ async function pose(tab) {
   await tab.mouse.wheel(0, -200);
   await until(tab, "page.state.pose.zoom > 1.05");
   suite.check("the wheel zooms the picture that has the focus", true);
+  await tab.evaluate("document.activeElement.blur(), page.choose({ pose: { turn: 0, tilt: 0, zoom: 1 } })");
+  await tab.keyboard.down("Control");
+  await tab.mouse.wheel(0, -50);
+  await tab.keyboard.up("Control");
+  await until(tab, "page.state.pose.zoom > 1.05");
+  suite.check("a pinch on a touchpad, which is a wheel with Control, zooms it without the focus", true);
+  const zoom = await tab.evaluate("page.state.pose.zoom");
+  await tab.mouse.wheel(0, 200);
+  await until(tab, "scrollY > 0");
+  suite.check("and the wheel alone then scrolls the page", (await tab.evaluate("page.state.pose.zoom")) === zoom);
   await click(tab, "#first-pose");
   suite.check("a button leads back to the first pose", await tab.evaluate("page.state.pose.zoom === 1 && element('first-pose').hidden"));
   await click(tab, "#theme");
@@ -167,6 +178,46 @@ async function pose(tab) {
   await until(tab, "globalThis.page?.scenes");
   suite.check("the theme is kept", (await tab.evaluate("document.documentElement.dataset.theme")) === theme && theme !== "", theme);
   await tab.evaluate("localStorage.removeItem('theme')");
+}
+
+/** Two fingers zoom the picture by as much as they part, and do nothing else; one finger up and down scrolls the page. */
+async function pinch() {
+  const tab = await suite.open({ width: 390, height: 844 });
+  await openScene(tab, "torus");
+  await tab.evaluate("page.choose({ beside: '', playing: false })");
+  const { x, y, width, height } = await box(tab, "#picture");
+  const place = await tab.evaluate("scrollY");
+  const middle = [x + width / 2, y + height / 2];
+  const client = await tab.context().newCDPSession(tab);
+  const touch = (type, ...points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  /** Puts two fingers on either side of the middle, and moves them from one distance to another. */
+  const part = async ([dx, dy], from, to) => {
+    const points = (far) => [-1, 1].map((side) => [middle[0] + side * far * dx, middle[1] + side * far * dy]);
+    await touch("touchStart", ...points(from));
+    for (let step = 1; step <= 8; step++) await touch("touchMove", ...points(from + ((to - from) * step) / 8));
+    await touch("touchEnd");
+    return tab.evaluate("page.state.pose.zoom");
+  };
+  const isNear = (zoom, wanted) => Math.abs(zoom / wanted - 1) < 0.001;
+  const wider = await part([1, 0], 20, 60);
+  suite.check("two fingers three times as far apart enlarge the picture three times", isNear(wider, 3), wider);
+  const back = await part([1, 0], 60, 20);
+  suite.check("and as near again they make it as small as it was", isNear(back, 1), back);
+  const slanting = await part([0.8, 0.6], 25, 50);
+  suite.check("on a slant, too", isNear(slanting, 2), slanting);
+  const rest = await tab.evaluate("[page.state.pixel, page.state.pose.turn, page.state.pose.tilt, visualViewport.scale, scrollY]");
+  suite.check("nothing else comes of it: no pixel, no turn, no zoom or scroll of the page", JSON.stringify(rest) === JSON.stringify([null, 0, 0, 1, place]), rest.join());
+  await touch("touchStart", middle);
+  for (let step = 1; step <= 8; step++) await touch("touchMove", [middle[0], middle[1] - 15 * step]);
+  await touch("touchEnd");
+  await scrolled(tab);
+  suite.check("one finger upward scrolls the page, and leaves the pose", await tab.evaluate("scrollY > 50 && page.state.pose.turn === 0 && page.state.pose.tilt === 0"));
+  await tab.evaluate("scrollTo({ top: 0, behavior: 'instant' })");
+  await touch("touchStart", middle);
+  for (let step = 1; step <= 8; step++) await touch("touchMove", [middle[0] + 10 * step, middle[1]]);
+  await touch("touchEnd");
+  suite.check("one finger to the right rotates it", await tab.evaluate("page.state.pose.turn > 0.1"));
+  await tab.context().close();
 }
 
 /** What an edited scene is called, what a link cannot carry, and what cannot be read. */
