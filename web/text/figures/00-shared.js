@@ -70,6 +70,10 @@ const INK = ["paper", "ink", "muted", "line", "accent", "second", "warn", "panel
 
 // A canvas as wide as its place. `paint(context, width, height, ink)` draws in CSS pixels;
 // `height(width)` says how high it is.
+/**
+ * @param {HTMLElement} parent
+ * @param {{ height: (width: number) => number, paint: Function, label?: string, className?: string }} options
+ */
 export function board(parent, { height, paint, label, className = "" }) {
   const wrap = make("div", `fig-board ${className}`, parent);
   const canvas = make("canvas", "", wrap);
@@ -168,6 +172,10 @@ export function handle(on, { label, at, move, nudge, say, kind = "", anywhere = 
 // A place for sliders, choices and buttons.
 export const controls = (parent) => make("div", "fig-controls", parent);
 
+/**
+ * @param {HTMLElement} parent
+ * @param {{ label: string, min: number, max: number, step?: number, value: number, format?: (value: number) => string, input: (value: number) => void }} options
+ */
 export function slider(parent, { label, min, max, step = 1, value, format = String, input }) {
   const wrap = make("label", "fig-slider", parent);
   const head = make("span", "fig-slider-head", wrap);
@@ -250,7 +258,9 @@ export function fillTable(table, head, rows) {
 export const grey = (s) => `rgb(${s},${s},${s})`;
 
 // Draws bytes as greys, `scale` CSS pixels a byte; `color(byte, index)` → 0xRRGGBB if given.
-const spare = () => (spare.canvas ??= document.createElement("canvas"));
+/** @type {HTMLCanvasElement | undefined} */
+let spareCanvas;
+const spare = () => (spareCanvas ??= document.createElement("canvas"));
 export function pixels(context, bytes, w, h, x, y, toWidth, toHeight, color) {
   const canvas = spare();
   [canvas.width, canvas.height] = [w, h];
@@ -281,6 +291,14 @@ export function frame(parent, title, get, color) {
   });
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {string} string
+ * @param {number} x
+ * @param {number} y
+ * @param {string} color
+ * @param {{ align?: CanvasTextAlign, font?: string }} options
+ */
 export function text(context, string, x, y, color, { align = "left", font } = {}) {
   context.save();
   context.fillStyle = color;
@@ -332,6 +350,7 @@ export function spanBytes(ax, bx, cx) {
 export const firstCentre = (u) => (u + 127) >> 8;
 
 // Three corners [x, y, …] in 1/256 pixel by (y, x), with twice the signed area.
+/** @param {number[][]} corners */
 export function sorted(corners) {
   const v = [...corners].sort((a, b) => a[1] - b[1] || a[0] - b[0]);
   const [[x0, y0], [x1, y1], [x2, y2]] = v;
@@ -339,6 +358,11 @@ export function sorted(corners) {
 }
 
 // First pixel of a row whose centre lies on the edge from a down to b, or right of it: exact.
+/**
+ * @param {number[]} a
+ * @param {number[]} b
+ * @param {number} row
+ */
 export function edgeAt(a, b, row) {
   const dy = b[1] - a[1];
   return ceilDiv((a[0] - 128) * dy + (b[0] - a[0]) * (row * 256 + 128 - a[1]), dy * 256);
@@ -368,6 +392,12 @@ export function coverExact(corners, width, height, into = new Uint8Array(width *
 
 // Bytes of a triangle [x, y, shade] in 1/256 pixel and 1/256 shade, as the engine draws it: one
 // step toward zero, exact starts every `reseed` pixels. Exact for coordinates on a small screen.
+/**
+ * @param {number[][]} corners
+ * @param {number} width
+ * @param {number} height
+ * @param {Uint8Array} bytes
+ */
 export function drawTriangle(corners, width, height, bytes, reseed = 64) {
   const { v, area: signedArea } = sorted(corners);
   const area = Math.abs(signedArea);

@@ -17,6 +17,11 @@ function blur(values, radius) {
 
 // Brightness, 0 to 1, along n places: level up to (x1, y1), straight to (x2, y2), level from there.
 // `soft` rounds the bends.
+/**
+ * @param {number[]} left
+ * @param {number[]} right
+ * @param {number} n
+ */
 export function machProfile([x1, y1], [x2, y2], n, soft = false) {
   const sharp = Float64Array.from({ length: n }, (_, i) => {
     const x = i / (n - 1);
@@ -42,7 +47,7 @@ M.figure("mach", (stage, engine) => {
   const board = M.board(stage, {
     height: () => STRIP + 150,
     paint(c, width, h, ink) {
-      const profile = machProfile(...knees, n, soft);
+      const profile = machProfile(knees[0], knees[1], n, soft);
       M.pixels(c, profile.map((v) => Math.round(v * 255)), n, 1, 0, 0, width, STRIP);
       const y = (v) => STRIP + PAD + (1 - v) * (h - STRIP - 2 * PAD);
       const curve = (values) => [...values].map((v, i) => [i / (n - 1) * width, y(v)]);
@@ -71,7 +76,7 @@ M.figure("mach", (stage, engine) => {
   });
   const say = M.readout(stage);
   function show() {
-    const profile = machProfile(...knees, n, soft);
+    const profile = machProfile(knees[0], knees[1], n, soft);
     const seen = machSeen(profile);
     const over = Math.max(...seen.map((v, i) => Math.abs(v - profile[i]))) * 255;
     board.describe(`A strip of brightness with two bends; the model sees lines of ${Math.round(over)} shades there`);

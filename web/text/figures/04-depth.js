@@ -5,6 +5,11 @@ const [WIDTH, HEIGHT] = [160, 100];
 const COLORS = [0x15181d, 0xe8924a, 0x4a9cc4];
 
 // Depth of a triangle [x, y, z] in pixels at a point.
+/**
+ * @param {number[][]} corners
+ * @param {number} x
+ * @param {number} y
+ */
 export function depthAt([[x0, y0, z0], [x1, y1, z1], [x2, y2, z2]], x, y) {
   const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
   const gx = ((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0)) / area;
@@ -116,7 +121,7 @@ M.figure("depth", (stage) => {
   });
   function show() {
     const [painter, buffer] = ["painter", "buffer"].map((m) => hidden(scene(), m));
-    const wrong = painter.shown.reduce((n, s, i) => n + (s !== buffer.shown[i]), 0);
+    const wrong = painter.shown.reduce((n, s, i) => n + Number(s !== buffer.shown[i]), 0);
     boards[0].describe(`Painter's order: ${wrong} pixels show the wrong triangle`);
     boards[1].describe("Depth buffer: the nearer at every pixel");
     cut.describe(`Cut along row ${row}, seen from above`);

@@ -6,12 +6,17 @@ const [WIDTH, HEIGHT] = [320, 128];
 const TEXELS = 256;
 
 // Plane through three values at three points: [at the origin, per column, per row].
+/**
+ * @param {number[][]} points
+ * @param {number[]} values
+ */
 function plane([[x0, y0], [x1, y1], [x2, y2]], [v0, v1, v2]) {
   const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
   const gx = ((v1 - v0) * (y2 - y0) - (v2 - v0) * (y1 - y0)) / area;
   const gy = ((v2 - v0) * (x1 - x0) - (v1 - v0) * (x2 - x0)) / area;
   return [v0 - gx * x0 - gy * y0, gx, gy];
 }
+/** @type {(plane: number[], x: number, y: number) => number} */
 const on = ([at, gx, gy], x, y) => at + gx * x + gy * y;
 
 // Texture coordinates of the wall at every pixel: u and v in texels, NaN beside the wall. `ratio`
@@ -37,6 +42,7 @@ export function wallTexels(ratio, mapping) {
         const z = 1 / on(iw, x + .5, y + .5);
         return [on(uw, x + .5, y + .5) * z, on(vw, x + .5, y + .5) * z];
       };
+      /** @type {(x: number, texel: number[]) => unknown} */
       const put = (x, [s, t]) => ([us[y * WIDTH + x], vs[y * WIDTH + x]] = [s, t]);
       if (mapping === "affine") for (let x = x0; x < x1; x++) put(x, [on(u, x + .5, y + .5), on(v, x + .5, y + .5)]);
       else if (mapping === "exact") for (let x = x0; x < x1; x++) put(x, exact(x));

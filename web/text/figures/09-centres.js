@@ -67,6 +67,12 @@ export function grid(columns, rows) {
 }
 
 // A handle for a point [x, y] in 1/256 pixel of a grid.
+/**
+ * @param {ReturnType<typeof M.board>} board
+ * @param {ReturnType<typeof grid>} on
+ * @param {number[]} point
+ * @param {{ label: string, changed: () => void, limit: number[], snap?: number, kind?: string }} options
+ */
 export function gridHandle(board, on, point, { label, changed, limit, snap = 16, kind }) {
   M.handle(board, {
     label, kind,
@@ -144,8 +150,8 @@ M.figure("centres", (stage, engine) => {
     const exact = M.coverExact(corners, COLUMNS, ROWS);
     const period = coverVintage(corners, COLUMNS, ROWS);
     const sum = (a) => a.reduce((n, b) => n + (b ? 1 : 0), 0);
-    const extra = sum(period.map((b, i) => b && !exact[i]));
-    const missing = sum(exact.map((b, i) => b && !period[i]));
+    const extra = sum(period.map((b, i) => Number(b && !exact[i])));
+    const missing = sum(exact.map((b, i) => Number(b && !period[i])));
     let [kept, left] = [0, 0];
     exact.forEach((b, i) => {
       if (whereIsCentre(corners, i % COLUMNS, Math.floor(i / COLUMNS)) === 0) b ? kept++ : left++;

@@ -10,7 +10,7 @@ export function rowSums(a, b, w, mode) {
   const drift = Array.from({ length: w }, (_, k) => k * step - (w > 1 ? (b - a) * k / (w - 1) : 0));
   const bytes = M.spanBytes((a + 128) & 0xFFFF, step & 0xFFFF, w);
   const [low, high] = [(Math.min(a, b) + 128) >> 8, (Math.max(a, b) + 128) >> 8];
-  const outside = bytes.reduce((n, byte) => n + (byte < low || byte > high), 0);
+  const outside = bytes.reduce((n, byte) => n + Number(byte < low || byte > high), 0);
   return { step, drift, bytes, low, high, outside };
 }
 

@@ -87,7 +87,7 @@ M.figure("fixed", (stage) => {
       tr.firstChild.style.paddingLeft = "12px";
       if (i) tr.firstChild.style.boxShadow = `inset 4px 0 var(--${all[i - 1].color})`;
     });
-    const wrong = all.map((way) => way.bytes.reduce((n, byte, k) => n + (byte !== Math.floor(exact(k) + .5)), 0));
+    const wrong = all.map((way) => way.bytes.reduce((n, byte, k) => n + Number(byte !== Math.floor(exact(k) + .5)), 0));
     const worst = all.map((way) => Math.max(...way.lag));
     board.describe(`Greatest lag: ${all.map((way, i) => `${way.name} ${worst[i].toFixed(3)} shades`).join(", ")}`);
     say(`Greatest lag along the row: ${worst[0].toFixed(2)}, ${worst[1].toFixed(2)} and ${worst[2].toFixed(4)} shades. `,
