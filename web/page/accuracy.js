@@ -1,7 +1,8 @@
 // @ts-check
 // The slider: how wrong a pixel may be. Its figures and the error map.
-import { element, make, setText, keyed, keyItem } from "./elements.js";
+
 import { clamp, group } from "./common.js";
+import { element, keyed, keyItem, make, setText } from "./elements.js";
 import { PalettedCanvas } from "./picture.js";
 import {
   budgetText, CHEAPEST, errorText, fullName, LAST_STOP, MARKS, OCTAVES, plainName, settingAt, settingName, shadesText, stopOf, techniqueColor,

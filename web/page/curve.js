@@ -1,10 +1,11 @@
 // @ts-check
 // The chart: what settings take and how far off they are, and where the present one is among them.
+
 import { drawChart, markEfficient } from "../../lab/src/cost/report/shared/chart.js";
 import { element, setText } from "./elements.js";
 import { settingLines } from "./engine.js";
-import { CHEAPEST, MARKS, fullName, settingName, settingOf, shadesText, stopOf } from "./stops.js";
-import { Stopwatch, msText } from "./stopwatch.js";
+import { CHEAPEST, fullName, MARKS, settingName, settingOf, shadesText, stopOf } from "./stops.js";
+import { msText, Stopwatch } from "./stopwatch.js";
 
 /**
  * @import { Page } from "./page.js"

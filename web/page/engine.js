@@ -17,8 +17,10 @@ export const FIRST_POSE = Object.freeze(/** @type {Pose} */ ({ turn: 0, tilt: 0,
 export class EngineStopped extends Error {}
 
 export class Engine {
-  /** Files that scenes may name.
-   * @type {Map<string, Uint8Array>} */
+  /**
+   * Files that scenes may name.
+   * @type {Map<string, Uint8Array>}
+   */
   #files = new Map();
   /** @type {Exports} */
   #exports = /** @type {any} */ (null);
@@ -41,7 +43,7 @@ export class Engine {
   #restart() {
     this.#exports = /** @type {any} */ (new WebAssembly.Instance(this.module).exports);
     this.generation++;
-    this.call("start");
+    this.#exports.start();
     for (const [name, bytes] of this.#files) this.#keep(name, bytes);
   }
 

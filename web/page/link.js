@@ -1,6 +1,7 @@
 // @ts-check
 // The link: what stands behind # holds scene, moment, pose, shading, budget, effects and what is beside.
-import { WIDTH, HEIGHT } from "./engine.js";
+
+import { HEIGHT, WIDTH } from "./engine.js";
 
 /** @import { Shipped, State } from "./types.d.ts" */
 

@@ -1,5 +1,6 @@
 // @ts-check
 // The magnifier: the pixels about the chosen one, and the account that it gives of itself.
+
 import { element, make, setText } from "./elements.js";
 import { HEIGHT, WIDTH } from "./engine.js";
 import { ARROWS } from "./picture.js";

@@ -1,5 +1,6 @@
 // @ts-check
 // A small picture in the corner: there while the large one is out of the window, and something that acts on it is in it.
+
 import { element } from "./elements.js";
 
 /** What acts on the picture. */

@@ -1,7 +1,8 @@
 // @ts-check
 // A canvas that shows bytes by a palette, and what hands do with the picture: turn, tilt, enlarge, choose a pixel.
-import { WIDTH, HEIGHT, PIXELS } from "./engine.js";
+
 import { clamp } from "./common.js";
+import { HEIGHT, PIXELS, WIDTH } from "./engine.js";
 
 /** @import { Picture, Pixel } from "./types.d.ts" */
 

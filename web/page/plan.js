@@ -1,8 +1,9 @@
 // @ts-check
 // The plan: which effects the scene calls for, why, and what each costs here.
-import { element, make, setText, keyed } from "./elements.js";
+
 import { group } from "./common.js";
-import { Stopwatch, msText, median } from "./stopwatch.js";
+import { element, keyed, make, setText } from "./elements.js";
+import { median, msText, Stopwatch } from "./stopwatch.js";
 
 /**
  * @import { Scene } from "./engine.js"

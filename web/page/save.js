@@ -1,7 +1,8 @@
 // @ts-check
 // What is taken away: the picture, the film of one round, the scene's file.
-import { element, make, setText } from "./elements.js";
+
 import { group } from "./common.js";
+import { element, make, setText } from "./elements.js";
 
 /** @import { Page } from "./page.js" */
 

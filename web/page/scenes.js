@@ -1,7 +1,8 @@
 // @ts-check
 // Scenes: a picture of each that is shipped, the editor, and models that are dropped.
-import { element, make, isStill } from "./elements.js";
+
 import { group, messageOf } from "./common.js";
+import { element, isStill, make } from "./elements.js";
 import { PalettedCanvas } from "./picture.js";
 
 /**

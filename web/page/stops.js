@@ -1,5 +1,6 @@
 // @ts-check
 // The slider's stops, and the names of what they stand for.
+
 import { clamp } from "./common.js";
 
 /** @import { Setting } from "./types.d.ts" */

@@ -70,6 +70,7 @@ export interface Mark extends Errors { lit: number; pixels: number; ms: number |
 /** The engine's exports, over linear memory. */
 export interface Exports {
   memory: WebAssembly.Memory;
+  start(): number;
   answer(): number;
   answer_length(): number;
   [name: string]: WebAssembly.Memory | ((...numbers: number[]) => number);

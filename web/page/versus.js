@@ -1,5 +1,6 @@
 // @ts-check
 // What accuracy costs, at a glance: the times of the two pictures and their ratio, and two bars, time and error.
+
 import { element, setText } from "./elements.js";
 import { settingLines } from "./engine.js";
 import { settingName, settingOf } from "./stops.js";

@@ -1,5 +1,6 @@
 // @ts-check
 // The worker: what takes longer than a frame. It has an engine of its own, and answers one question at a time.
+
 import { messageOf } from "./common.js";
 import { Engine, RATE } from "./engine.js";
 import { Stopwatch } from "./stopwatch.js";

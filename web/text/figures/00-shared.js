@@ -68,9 +68,9 @@ function watchTheme() {
 
 const INK = ["paper", "ink", "muted", "line", "accent", "second", "warn", "panel", "mono", "sans"];
 
-// A canvas as wide as its place. `paint(context, width, height, ink)` draws in CSS pixels;
-// `height(width)` says how high it is.
 /**
+ * A canvas as wide as its place. `paint(context, width, height, ink)` draws in CSS pixels;
+ * `height(width)` says how high it is.
  * @param {HTMLElement} parent
  * @param {{ height: (width: number) => number, paint: Function, label?: string, className?: string }} options
  */
@@ -257,10 +257,11 @@ export function fillTable(table, head, rows) {
 
 export const grey = (s) => `rgb(${s},${s},${s})`;
 
-// Draws bytes as greys, `scale` CSS pixels a byte; `color(byte, index)` → 0xRRGGBB if given.
 /** @type {HTMLCanvasElement | undefined} */
 let spareCanvas;
 const spare = () => (spareCanvas ??= document.createElement("canvas"));
+
+// Draws bytes as greys, `scale` CSS pixels a byte; `color(byte, index)` → 0xRRGGBB if given.
 export function pixels(context, bytes, w, h, x, y, toWidth, toHeight, color) {
   const canvas = spare();
   [canvas.width, canvas.height] = [w, h];
@@ -349,16 +350,18 @@ export function spanBytes(ax, bx, cx) {
 // First pixel whose centre lies at or right of (below) u, in 1/256 pixel.
 export const firstCentre = (u) => (u + 127) >> 8;
 
-// Three corners [x, y, …] in 1/256 pixel by (y, x), with twice the signed area.
-/** @param {number[][]} corners */
+/**
+ * Three corners [x, y, …] in 1/256 pixel by (y, x), with twice the signed area.
+ * @param {number[][]} corners
+ */
 export function sorted(corners) {
   const v = [...corners].sort((a, b) => a[1] - b[1] || a[0] - b[0]);
   const [[x0, y0], [x1, y1], [x2, y2]] = v;
   return { v, area: (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0) };
 }
 
-// First pixel of a row whose centre lies on the edge from a down to b, or right of it: exact.
 /**
+ * First pixel of a row whose centre lies on the edge from a down to b, or right of it: exact.
  * @param {number[]} a
  * @param {number[]} b
  * @param {number} row
@@ -390,9 +393,9 @@ export function coverExact(corners, width, height, into = new Uint8Array(width *
   return into;
 }
 
-// Bytes of a triangle [x, y, shade] in 1/256 pixel and 1/256 shade, as the engine draws it: one
-// step toward zero, exact starts every `reseed` pixels. Exact for coordinates on a small screen.
 /**
+ * Bytes of a triangle [x, y, shade] in 1/256 pixel and 1/256 shade, as the engine draws it: one
+ * step toward zero, exact starts every `reseed` pixels. Exact for coordinates on a small screen.
  * @param {number[][]} corners
  * @param {number} width
  * @param {number} height

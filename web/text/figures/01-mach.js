@@ -15,9 +15,9 @@ function blur(values, radius) {
   return out;
 }
 
-// Brightness, 0 to 1, along n places: level up to (x1, y1), straight to (x2, y2), level from there.
-// `soft` rounds the bends.
 /**
+ * Brightness, 0 to 1, along n places: level up to (x1, y1), straight to (x2, y2), level from there.
+ * `soft` rounds the bends.
  * @param {number[]} left
  * @param {number[]} right
  * @param {number} n

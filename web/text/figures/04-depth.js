@@ -4,8 +4,8 @@ import * as M from "./00-shared.js";
 const [WIDTH, HEIGHT] = [160, 100];
 const COLORS = [0x15181d, 0xe8924a, 0x4a9cc4];
 
-// Depth of a triangle [x, y, z] in pixels at a point.
 /**
+ * Depth of a triangle [x, y, z] in pixels at a point.
  * @param {number[][]} corners
  * @param {number} x
  * @param {number} y

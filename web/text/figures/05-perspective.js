@@ -5,8 +5,8 @@ import * as M from "./00-shared.js";
 const [WIDTH, HEIGHT] = [320, 128];
 const TEXELS = 256;
 
-// Plane through three values at three points: [at the origin, per column, per row].
 /**
+ * Plane through three values at three points: [at the origin, per column, per row].
  * @param {number[][]} points
  * @param {number[]} values
  */

@@ -66,8 +66,8 @@ export function grid(columns, rows) {
   return self;
 }
 
-// A handle for a point [x, y] in 1/256 pixel of a grid.
 /**
+ * A handle for a point [x, y] in 1/256 pixel of a grid.
  * @param {ReturnType<typeof M.board>} board
  * @param {ReturnType<typeof grid>} on
  * @param {number[]} point
