@@ -39,7 +39,8 @@ export class Suite {
       viewport: { width, height }, isMobile: width < 500, hasTouch: width < 500, javaScriptEnabled,
       colorScheme: isDark ? "dark" : "light", reducedMotion: isStill ? "reduce" : "no-preference",
     });
-    context.setDefaultTimeout(60_000);
+    // A bound for what hangs; a busy machine takes its time.
+    context.setDefaultTimeout(180_000);
     await context.addInitScript("globalThis.element = (id) => document.getElementById(id)");
     const tab = await context.newPage();
     tab.said = [];
