@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `first` | the first screen: two pictures, how many times the time, the curve |
 //! | `summary` | two sentences |
 //! | `text` | the study in a terminal |
 //! | `table` | a table, for the page and for a terminal |
@@ -16,6 +17,7 @@ mod budgets;
 mod chart;
 mod choices;
 mod figures;
+mod first;
 mod labels;
 mod method;
 mod page;

@@ -3,12 +3,15 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::chart::{budget_points_json, points_json, time_points_json};
-use super::{budget_svg, budgets, chart_svg, choices, method, shadings, summary, time_svg, times};
+use super::{budget_svg, budgets, chart_svg, choices, first, method, shadings, summary, time_svg, times};
 use crate::cost::Study;
 
 /// The report's own style, and what it shares with the page in the browser: colours, chart and divider.
 const STYLES: [&str; 3] =
     [include_str!("shared/tokens.css"), include_str!("style.css"), include_str!("shared/figures.css")];
+
+const WITHOUT_SCRIPTS: &str = ".pair{display:grid;grid-template-columns:1fr 1fr}.pair img{position:static;clip-path:none}\
+    .first{grid-template-columns:minmax(0,1fr)}.chart>svg{min-width:640px}";
 
 /// Chart and divider.
 const SCRIPTS: [&str; 2] = [include_str!("shared/chart.js"), include_str!("shared/divider.js")];
@@ -31,7 +34,7 @@ pub(super) const NAMES: &str = "The old loop done right is gouraud-8.8-reseeded,
 #[must_use]
 pub fn html(study: &Study) -> String {
     let title = format!("What accuracy costs: {}", study.input);
-    let [first, second] = summary(study);
+    let [arithmetic, model] = summary(study);
     let page = markup! {
         (DOCTYPE)
         html lang="en" {
@@ -41,20 +44,20 @@ pub fn html(study: &Study) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 @for style in STYLES { style { (PreEscaped(style)) } }
-                // Without scripts nothing moves the divider, so both pictures stand side by side.
-                noscript { style { ".pair{display:grid;grid-template-columns:1fr 1fr}.pair img{position:static;clip-path:none}" } }
+                // Without scripts nothing moves the divider, so both pictures stand side by side, and charts keep their size.
+                noscript { style { (PreEscaped(WITHOUT_SCRIPTS)) } }
             }
             body {
                 main {
                     header {
                         p.kicker { "mode13h cost" }
                         h1 { (title) }
-                        p.summary { (first) " " (second) }
-                        p.unit { (NAMES) }
                     }
+                    (first::screen(study, &error_chart(study)))
                     section {
-                        h2 { "Error against time" }
-                        (error_chart(study))
+                        h2 { "In two sentences" }
+                        p { (arithmetic) " " (model) }
+                        p.unit { (NAMES) }
                     }
                     (shadings::tables(study))
                     (shadings::pictures(study))

@@ -92,7 +92,7 @@ fn of_others(study: &Study) -> [String; 2] {
 }
 
 /// Ratio of the time of `row` to that of `other`; `None` if the difference is not measurable.
-fn times(row: &ShadingRow, other: &ShadingRow) -> Option<f64> {
+pub(super) fn times(row: &ShadingRow, other: &ShadingRow) -> Option<f64> {
     let tied = row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading);
     (!tied).then_some(row.ratio / other.ratio)
 }
@@ -116,7 +116,7 @@ fn slowness(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
 }
 
 /// A ratio without zeros at its end.
-fn brief(times: f64) -> String {
+pub(super) fn brief(times: f64) -> String {
     let text = ratio(times);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }

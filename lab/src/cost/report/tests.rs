@@ -389,3 +389,50 @@ fn a_summary_is_true_of_any_figures() {
         assert_eq!(summary(&study(shadings)).join(" "), text);
     }
 }
+
+#[test]
+fn the_first_screen_says_what_accuracy_costs() {
+    use Shading::{Flat, Gouraud88, Phong};
+    let tied = |mut row: ShadingRow, with: Shading| {
+        row.as_fast_as = vec![with];
+        row
+    };
+    let cases = [
+        // The left one is flat although another is faster.
+        (
+            vec![shading(Flat, 1.0, 9.0, 28.0), shading(Gouraud88, 0.5, 0.6, 14.6), shading(Phong, 5.8, 0.0, 0.5)],
+            Some((
+                "On torus, light at every pixel takes 5.8 times as long as one shade a face; no pixel is then off by \
+                 more than 0.5 of 255 shades, instead of 28.",
+                "<b>5.8 ×</b> <span>the time →</span>",
+            )),
+        ),
+        (
+            vec![shading(Phong, 3.0, 0.0, 0.5), shading(Gouraud88, 1.0, 0.6, 0.5)],
+            // Equal errors: the faster one is both ends.
+            None,
+        ),
+        (
+            vec![tied(shading(Phong, 1.01, 0.0, 0.5), Gouraud88), shading(Gouraud88, 1.0, 0.6, 14.6)],
+            Some((
+                "On torus, light at every pixel takes as long, as far as can be told, as a straight blend in 8.8; no \
+                 pixel is then off by more than 0.5 of 255 shades, instead of 14.6.",
+                "<b>the same time</b> <span>as far as can be told</span>",
+            )),
+        ),
+        (vec![shading(Phong, 3.0, 0.0, 0.5)], None),
+        (vec![shading(Flat, 1.0, 0.0, f64::NAN), shading(Phong, f64::NAN, 0.0, 0.5)], None),
+        (Vec::new(), None),
+    ];
+    for (shadings, expected) in cases {
+        let page = html(&study(shadings));
+        let Some((sentence, ratio)) = expected else {
+            assert!(!page.contains("bezel\""), "nothing to compare");
+            continue;
+        };
+        let [sentence_at, ratio_at, chart_at, tables_at] = [sentence, ratio, "data-points", "The shadings"]
+            .map(|part| page.find(part).unwrap_or_else(|| panic!("no {part}")));
+        assert!(sentence_at < ratio_at && ratio_at < chart_at && chart_at < tables_at);
+        assert_eq!(page[sentence_at..chart_at].matches("src=\"data:image/png;base64,").count(), 2);
+    }
+}
