@@ -334,8 +334,16 @@ pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
 }
 
 /// The product of two matrices by rows, each sum in the order of its terms.
+///
+/// (By index: `map` of arrays in arrays becomes calls, a twelfth of the time of 500 small objects.)
 pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    a.map(|[x, y, z]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j] + z * b[2][j]))
+    let mut product = [[0.0; 3]; 3];
+    for (to, [x, y, z]) in product.iter_mut().zip(a) {
+        for (j, to) in to.iter_mut().enumerate() {
+            *to = x * b[0][j] + y * b[1][j] + z * b[2][j];
+        }
+    }
+    product
 }
 
 #[cfg(test)]
