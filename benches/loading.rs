@@ -29,8 +29,8 @@ type Loader = (&'static str, fn(&Path));
 const LOADERS: [Loader; 4] = [
     ("tobj, as it is fastest", |path| by_tobj(path, &tobj::LoadOptions::default())),
     ("tobj, for drawing", |path| by_tobj(path, &tobj::GPU_LOAD_OPTIONS)),
-    ("obj::load", |path| drop(black_box(load(path)))),
-    ("obj::load and the first frame", |path| {
+    ("model_file::load", |path| drop(black_box(load(path)))),
+    ("model_file::load and the first frame", |path| {
         let scene = Scene::showing(load(path));
         let mut vga = Vga::new();
         Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
@@ -43,7 +43,7 @@ fn by_tobj(path: &Path, options: &tobj::LoadOptions) {
 }
 
 fn load(path: &Path) -> mode13h::mesh::Mesh {
-    obj::load(path).expect("it is read").mesh
+    model_file::load(path).expect("it is read").mesh
 }
 
 fn main() {

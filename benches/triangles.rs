@@ -78,7 +78,7 @@ fn triangles(criterion: &mut Criterion) {
         }
     }
     if let Ok(path) = std::env::var("MODE13H_MODEL") {
-        let mesh = mode13h_assets::obj::load(&path).expect("MODE13H_MODEL names a model").mesh;
+        let mesh = mode13h_assets::model_file::load(&path).expect("MODE13H_MODEL names a model").mesh;
         workloads.push((format!("{path}/{}", Shading::default()), of_mesh(mesh, Shading::default())));
     }
     if let Some(paths) = std::env::var_os("MODE13H_TRI") {

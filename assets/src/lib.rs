@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`scene_file`] | scenes in TOML: camera, shapes, models, materials, lights, fog, motion |
 //! | [`shipped`] | the scenes that are compiled in |
-//! | [`obj`] | meshes from OBJ files with MTL |
+//! | [`model_file`] | meshes from files in any of the formats |
+//! | [`obj`], [`stl`], [`ply`] | the formats of models |
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
 //! | [`texture`] | textures from pictures: PNG, and by the feature `images` JPEG, TGA, BMP, GIF and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
@@ -27,15 +28,21 @@ mod errors;
 #[cfg(feature = "std")]
 pub mod model;
 #[cfg(feature = "std")]
+pub mod model_file;
+#[cfg(feature = "std")]
 pub mod obj;
 #[cfg(feature = "std")]
 pub mod palette_file;
+#[cfg(feature = "std")]
+pub mod ply;
 #[cfg(feature = "std")]
 mod scene_ext;
 #[cfg(feature = "std")]
 pub mod scene_file;
 #[cfg(feature = "std")]
 pub mod shipped;
+#[cfg(feature = "std")]
+pub mod stl;
 #[cfg(feature = "std")]
 pub mod texture;
 #[cfg(feature = "std")]

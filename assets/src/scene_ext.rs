@@ -7,7 +7,7 @@ use mode13h::scene::Scene;
 
 use crate::auto_palette;
 use crate::model::{self, Model, ModelError, studio};
-use crate::obj;
+use crate::model_file::Options;
 use crate::scene_file::{self, Loaded, SceneError};
 
 /// Scenes from files: methods of [`Scene`].
@@ -19,7 +19,7 @@ pub trait SceneExt: Sized {
     /// The model brings no light and no background. It is lit by a key light, a weaker fill from the other side and
     /// ambient light, which are full light together: a face towards the eye shows 93 % of its Kd, or of its image,
     /// beside which a grey Kd does not count. The background is the darkest grey, or else a blue, that stands out from
-    /// all that is seen over a turn. y points up, but z does for a sheet that looks along z. A low model is tilted until
+    /// all that is seen over a turn. y points up, but z does in an STL file and for a sheet that looks along z. A low model is tilted until
     /// it fills the picture's height as well as its width.
     ///
     /// The second value are the warnings, one line each: parts of the model that were left out or mended, and textures that
@@ -69,9 +69,9 @@ pub trait SceneExt: Sized {
 
 impl SceneExt for Scene {
     fn from_model(path: impl AsRef<Path>) -> Result<(Self, Vec<String>), ModelError> {
-        let Model { object, warnings } = model::load(path, &obj::Options::default()).map_err(ModelError::Obj)?;
+        let Model { object, warnings, up, .. } = model::load(path, &Options::default()).map_err(ModelError::File)?;
         let has_colors = object.has_colors();
-        let mut scene = studio(object, None).map_err(ModelError::Scene)?;
+        let mut scene = studio(object, up).map_err(ModelError::Scene)?;
         if has_colors {
             auto_palette::of_scene(&scene).map_err(ModelError::Scene)?.apply(&mut scene);
         }

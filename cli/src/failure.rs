@@ -7,7 +7,7 @@ use mode13h::export::{ExportError, PictureError};
 use mode13h::render::RenderError;
 use mode13h::window::WindowError;
 use mode13h_assets::animation::AnimationError;
-use mode13h_assets::obj::{ObjError, ObjErrorKind};
+use mode13h_assets::model_file::{ModelFileError, ModelFileErrorKind};
 use mode13h_assets::scene_file::{SceneError, SceneErrorKind};
 use mode13h_assets::texture::LoadErrorKind;
 use mode13h_lab::cost::CostError;
@@ -93,8 +93,8 @@ failures! {
     serde_json::Error => file,
 }
 
-impl From<ObjError> for Failure {
-    fn from(error: ObjError) -> Failure {
+impl From<ModelFileError> for Failure {
+    fn from(error: ModelFileError) -> Failure {
         if is_unreadable(&error.kind) { Failure::file(error) } else { Failure::words(error) }
     }
 }
@@ -111,8 +111,8 @@ impl From<SceneError> for Failure {
     }
 }
 
-fn is_unreadable(kind: &ObjErrorKind) -> bool {
-    matches!(kind, ObjErrorKind::Read(_) | ObjErrorKind::Directory)
+fn is_unreadable(kind: &ModelFileErrorKind) -> bool {
+    matches!(kind, ModelFileErrorKind::Read(_) | ModelFileErrorKind::Directory)
 }
 
 /// A text without line ends and other control characters. File names and the contents of files may hold them; an error

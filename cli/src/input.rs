@@ -11,14 +11,13 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use flate2::bufread::MultiGzDecoder;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mode13h::mesh::{Mesh, Weight, shapes};
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::{Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 use mode13h_assets::model;
-use mode13h_assets::obj;
+use mode13h_assets::model_file::{self, Embedded, Format, ModelFileError, Options};
 use mode13h_assets::palette_file::{self, LoadErrorKind};
 use mode13h_assets::shipped::Shipped;
 use mode13h_assets::{SceneExt, scene_file};
@@ -31,6 +30,10 @@ use crate::{read_files, typo};
 pub(crate) struct Model {
     pub(crate) name: String,
     pub(crate) mesh: Mesh,
+    /// The textures that its file brings.
+    textures: Embedded,
+    /// The axis that points up, if its file says so.
+    up: Option<UpAxis>,
     /// One of the engine's shapes, not from a file.
     pub(crate) is_shape: bool,
 }
@@ -41,8 +44,8 @@ impl Model {
         if self.is_shape {
             return Ok(Turntable::of_shape(self.mesh, up));
         }
-        let textures = textures(&self.mesh);
-        Turntable::of_model(self.mesh, up, &textures).map_err(Failure::from)
+        let textures = textures(&self.mesh, &self.textures);
+        Turntable::of_model(self.mesh, up.or(self.up), &textures).map_err(Failure::from)
     }
 }
 
@@ -64,7 +67,7 @@ impl Input {
 
 /// Meaning of INPUT, for the help.
 pub(crate) const HELP: &str =
-    "A scene (.toml), a model (.obj), - for either on standard input, or the name of a scene or a shape";
+    "A scene (.toml), a model (.obj, .stl, .ply), - for either on standard input, or the name of a scene or a shape";
 
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {
@@ -93,17 +96,13 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     } else {
         return Ok(None);
     };
-    let mut bytes = unpacked(bytes).map_err(failed)?;
-    let is_scene = match has_extension(&name, "toml") || has_extension(&name, "obj") {
+    let mut bytes = model_file::unpacked(bytes).map_err(failed)?;
+    let is_scene = match has_extension(&name, "toml") || Format::of_path(&name).is_some() {
         true => has_extension(&name, "toml"),
         false => {
-            // A scene has a list of objects, and a line of a model begins with a word and a number.
             let mut all = Vec::new();
             bytes.read_to_end(&mut all).map_err(failed)?;
-            let is_scene = String::from_utf8_lossy(&all).lines().any(|line| {
-                let line = line.trim_start();
-                line.starts_with("[[objects]]") || line.starts_with("objects")
-            });
+            let is_scene = is_scene(&all);
             bytes = Box::new(io::Cursor::new(all));
             is_scene
         }
@@ -112,6 +111,15 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
         read_files::add(path);
     }
     Ok(Some(Stream { bytes, path: name, is_scene }))
+}
+
+/// Whether bytes are a scene and no model: text with a list of objects.
+fn is_scene(bytes: &[u8]) -> bool {
+    let has_objects = |text: &str| {
+        let mut lines = text.lines().map(str::trim_start);
+        lines.any(|line| line.starts_with("[[objects]]") || line.starts_with("objects"))
+    };
+    str::from_utf8(bytes).is_ok_and(has_objects)
 }
 
 /// All of standard input, which is read when first asked for: a pipe gives its bytes once.
@@ -125,12 +133,6 @@ fn standard_input() -> io::Result<&'static [u8]> {
         BYTES.get_or_init(|| bytes);
     }
     Ok(BYTES.get().map(Vec::as_slice).unwrap_or_default())
-}
-
-/// The bytes themselves, or what they hold if they begin as a packed file does.
-fn unpacked(mut bytes: Box<dyn BufRead>) -> io::Result<Box<dyn BufRead>> {
-    let is_packed = bytes.fill_buf()?.starts_with(&[0x1F, 0x8B]);
-    Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(bytes))) } else { bytes })
 }
 
 /// Opens a file that a scene or a model on a stream names. Only ordinary files are accepted.
@@ -153,7 +155,7 @@ pub(crate) fn name_of(words: &OsStr) -> String {
 
 /// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
 /// line each.
-pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Failure> {
+pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> {
     let stream = stream(words)?;
     let loaded = if let Some(Stream { mut bytes, path, is_scene: true }) = stream {
         let mut text = Vec::new();
@@ -168,7 +170,7 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
         scene_file::load(words)
     } else {
         let known = || typo::no_input(&words.to_string_lossy());
-        return model_or(words, options, "models are .obj files, scenes .toml", &known)
+        return model_or(words, options, &format!("models are {} files, scenes .toml", Format::extensions()), &known)
             .map(|model| Input::Model(Box::new(model)));
     };
     let scene_file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
@@ -183,17 +185,21 @@ pub(crate) fn input(words: &OsStr, options: &obj::Options) -> Result<Input, Fail
 const LONGEST_SCENE: u64 = 1 << 25;
 
 /// The model of a stream. Warnings go to standard error, a line each.
-fn model_of(stream: Stream, options: &obj::Options) -> Result<Model, Failure> {
+fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
     let library = |path: &Path| {
         let mut bytes = Vec::new();
         ordinary(path)?.read_to_end(&mut bytes).map(|_| bytes)
     };
-    let loaded = obj::parse_with(stream.bytes, &stream.path, library, options).map_err(Failure::from)?;
-    read_files::add_all(&loaded.files);
-    for warning in loaded.warnings {
-        warn(warning);
-    }
-    Ok(Model { name: name_of(stream.path.as_os_str()), mesh: loaded.mesh, is_shape: false })
+    let loaded = model_file::parse(stream.bytes, &stream.path, library, options).map_err(Failure::from)?;
+    Ok(of_file(name_of(stream.path.as_os_str()), loaded))
+}
+
+/// The model of a file that was read. Warnings go to standard error, a line each.
+fn of_file(name: String, loaded: model_file::Loaded) -> Model {
+    let model_file::Loaded { mesh, textures, up, warnings, files, .. } = loaded;
+    read_files::add_all(&files);
+    warnings.iter().for_each(warn);
+    Model { name, mesh, textures, up, is_shape: false }
 }
 
 /// Says a line on standard error.
@@ -202,52 +208,54 @@ fn warn(warning: impl Display) {
 }
 
 /// The model of a file or the shape of a name. Warnings go to standard error, a line each.
-pub(crate) fn model(words: &OsStr, options: &obj::Options) -> Result<Model, Failure> {
-    model_or(words, options, "models are .obj files", &|| {
+pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> {
+    model_or(words, options, &format!("models are {} files", Format::extensions()), &|| {
         format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
     })
 }
 
 /// A model; `kinds` says what files there are, `known` what names, where it is none of them.
-fn model_or(words: &OsStr, options: &obj::Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
+fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     if let Some(stream) = stream(words)?.filter(|stream| !stream.is_scene) {
         return model_of(stream, options);
     }
     let path = Path::new(words);
-    let (name, mesh, is_shape) = if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
+    if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
         if options.crease.is_some() {
             mesh.smooth(Weight::Angle, options.crease);
         }
-        (words.to_string_lossy().into_owned(), mesh, true)
-    } else if has_extension(path, "obj") {
-        let loaded = load(path, options).map_err(Failure::from)?;
-        read_files::add_all(&loaded.files);
-        for warning in loaded.warnings {
-            warn(warning);
-        }
-        (name_of(words), loaded.mesh, false)
+        let name = words.to_string_lossy().into_owned();
+        Ok(Model { name, mesh, textures: Embedded::new(), up: None, is_shape: true })
+    } else if Format::of_path(path).is_some() || (path.extension().is_none() && format_of_contents(path).is_some()) {
+        load(path, options).map(|loaded| of_file(name_of(words), loaded)).map_err(Failure::from)
     } else {
         let shown = path.display();
-        return Err(match path.metadata() {
+        Err(match path.metadata() {
             Ok(metadata) if metadata.is_dir() => Failure::file(format!("{shown}: is a directory, not a model")),
             Ok(_) => Failure::words(format!("{shown}: nothing that can be read: {kinds}")),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Failure::words(format!("{shown}: {}", known())),
             Err(error) => Failure::file(format!("{shown}: {error}")),
-        });
-    };
-    Ok(Model { name, mesh, is_shape })
+        })
+    }
+}
+
+/// The format of a file by its contents; `None` if it is in none, or cannot be read.
+fn format_of_contents(path: &Path) -> Option<Format> {
+    let mut bytes = Vec::new();
+    model_file::unpacked(ordinary(path).ok()?).ok()?.read_to_end(&mut bytes).ok()?;
+    Format::of_bytes(&bytes)
 }
 
 /// Reads the texture of each surface of a model, if it names one that can be read and the model says where it lies.
 /// Warnings go to standard error, a line each. Files named by several surfaces are read once.
-fn textures(mesh: &Mesh) -> Vec<Option<Shared<Texture>>> {
-    let (textures, warnings) = model::textures(mesh);
+fn textures(mesh: &Mesh, embedded: &Embedded) -> Vec<Option<Shared<Texture>>> {
+    let (textures, warnings) = model::textures(mesh, embedded);
     warnings.iter().for_each(warn);
     textures
 }
 
 /// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
-fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjError> {
+fn load(path: &Path, options: &Options) -> Result<model_file::Loaded, ModelFileError> {
     const MOMENT: Duration = Duration::from_millis(300);
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(reading());
     let (done, waits) = mpsc::channel::<()>();
@@ -260,7 +268,7 @@ fn load(path: &Path, options: &obj::Options) -> Result<obj::Loaded, obj::ObjErro
                 bar.enable_steady_tick(Duration::from_millis(100));
             }
         });
-        let loaded = obj::load_with(path, options, |read, total| {
+        let loaded = model_file::load_with(path, options, |read, total| {
             PERCENT
                 .store((100 * read).checked_div(total).map_or(UNKNOWN, |percent| percent.min(100)), Ordering::Relaxed);
             bar.set_length(total);

@@ -15,7 +15,7 @@ use mode13h::scene::{Scene, UpAxis};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{HiddenSurfaces, Mapping, VertexPath};
 use mode13h::span::Kernel;
-use mode13h_assets::obj;
+use mode13h_assets::model_file::Options;
 
 use crate::failure::Failure;
 use crate::input::{self, Input};
@@ -188,7 +188,7 @@ impl Drawing {
 
     /// Reads INPUT as was asked for.
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
-        let input = input::input(words, &obj::Options { crease: self.crease })?;
+        let input = input::input(words, &Options { crease: self.crease })?;
         if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
             return Err(Failure::words("--crease is for models: a scene says itself what each of its models has"));
         }

@@ -10,7 +10,7 @@ use mode13h::palette::builtin::Builtin;
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::UpAxis;
 use mode13h_assets::auto_palette::Entries;
-use mode13h_assets::obj;
+use mode13h_assets::model_file;
 use mode13h_assets::palette_file::Format;
 use serde_json::{Value, json};
 
@@ -140,7 +140,7 @@ fn make(
     crease: Option<Angle>,
     out: Option<&Path>,
 ) -> Result<(String, Palette, Vec<Made>), Failure> {
-    let model = input::model(model, &obj::Options { crease })?;
+    let model = input::model(model, &model_file::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let name = model.name.clone();
     let mut stage = model.stage(up.map(UpAxis::from))?;

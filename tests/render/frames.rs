@@ -123,7 +123,7 @@ fn a_model_of_your_own() {
         return;
     };
     let mut tried = Tried::new("a_model_of_your_own", 4);
-    let mesh = mode13h_assets::obj::load(&path).expect("a model").mesh;
+    let mesh = mode13h_assets::model_file::load(&path).expect("a model").mesh;
     for quarter in 0..4 {
         let pixels = check(&turned(mesh.clone(), f64::from(quarter) * 90.0), Shading::Gouraud88Reseeded);
         assert!(pixels > 1000, "{path} is in the picture: {pixels} pixels");

@@ -65,7 +65,7 @@ fn golden_frames_of_a_house() {
     use mode13h_assets::obj;
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
-    let loaded = obj::load(crate::support::workspace::root().join("tests/data/house.obj")).expect("a model");
+    let loaded = model_file::load(crate::support::workspace::root().join("tests/data/house.obj")).expect("a model");
     let mut object = Object::new(loaded.mesh).centred();
     let surfaces = object.mesh().surfaces().to_vec();
     for (material, surface) in object.materials.iter_mut().zip(surfaces) {

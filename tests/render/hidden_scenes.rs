@@ -233,7 +233,7 @@ fn a_model_of_your_own() {
     };
     {
         let mut tried = Tried::new("hidden_a_model_of_your_own", 360);
-        let mut scene = crate::support::scenes::framed(mode13h_assets::obj::load(&path).expect("a model").mesh);
+        let mut scene = crate::support::scenes::framed(mode13h_assets::model_file::load(&path).expect("a model").mesh);
         for degrees in 0..360 {
             scene.objects_mut()[0].angles = [0.2, f64::from(degrees).to_radians(), 0.0].map(Angle::from_radians);
             assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");

@@ -14,6 +14,7 @@ mod mesh_normals;
 mod mesh_parts;
 #[cfg(feature = "alloc")]
 mod mesh_shapes;
+mod model_files;
 mod models;
 mod obj_files;
 #[cfg(feature = "alloc")]

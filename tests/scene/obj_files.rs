@@ -11,7 +11,8 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
-use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
+use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
+use mode13h_assets::obj;
 use proptest::prelude::*;
 
 use crate::support::property::property;
@@ -22,7 +23,7 @@ fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ObjError> {
+fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_ref(), "model.obj", no_library)
 }
 
@@ -45,7 +46,7 @@ const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 #[test]
 fn a_file_with_materials() {
-    let Loaded { mesh, warnings, .. } = obj::load(data("chest.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = model_file::load(data("chest.obj")).unwrap();
     let place = data("chest.mtl");
     assert_eq!(warnings, [format!("{}:6: options of map_Kd (-s, -o, -clamp) left out", place.display())]);
     assert_eq!(mesh.triangles().len(), 12);
@@ -75,7 +76,7 @@ fn a_file_with_materials() {
 #[test]
 fn f1_broken_files() {
     let mut tried = Tried::new("f1_broken_files", 7);
-    let message = |name: &str| obj::load(data(name)).unwrap_err().to_string();
+    let message = |name: &str| model_file::load(data(name)).unwrap_err().to_string();
     let ends = |name: &str, end: &str| {
         let message = message(name);
         assert!(message.ends_with(end) && message.lines().count() == 1, "{message}");
@@ -89,14 +90,14 @@ fn f1_broken_files() {
     ends("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)");
     tried.add(1);
     assert!(matches!(
-        obj::load(data("nowhere.obj")).unwrap_err(),
-        ObjError { line: None, kind: ObjErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
+        model_file::load(data("nowhere.obj")).unwrap_err(),
+        ModelFileError { place: None, kind: ModelFileErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
     ));
     tried.add(1);
     assert!(message("nowhere.obj").contains("nowhere.obj: "));
     tried.add(1);
-    let folder = obj::load(data("")).unwrap_err();
-    assert!(matches!(folder.kind, ObjErrorKind::Directory), "{folder}");
+    let folder = model_file::load(data("")).unwrap_err();
+    assert!(matches!(folder.kind, ModelFileErrorKind::Directory), "{folder}");
     tried.add(1);
 }
 
@@ -339,7 +340,7 @@ fn with_crease(text: &str, crease: Option<f32>) -> Mesh {
         text.as_bytes(),
         "model.obj",
         no_library,
-        &obj::Options { crease: crease.map(|degrees| Angle::from_degrees(degrees.into())) },
+        &Options { crease: crease.map(|degrees| Angle::from_degrees(degrees.into())) },
     )
     .expect("a model")
     .mesh
@@ -438,7 +439,7 @@ fn creases_are_what_the_naive_oracle_says() {
         let mut text = String::new();
         corners.iter().for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").unwrap());
         faces.iter().for_each(|[a, b, c]| writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap());
-        let options = obj::Options { crease: Some(Angle::from_degrees(crease.into())) };
+        let options = Options { crease: Some(Angle::from_degrees(crease.into())) };
         let Ok(Loaded { mesh, warnings, .. }) = obj::parse_with(text.as_bytes(), "model.obj", no_library, &options)
         else {
             return Ok(());
@@ -641,12 +642,12 @@ fn faces_without_area_are_kept() {
 
 #[test]
 fn missing_files_are_one_warning() {
-    let Loaded { mesh, warnings, .. } = obj::load(data("missing_library.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = model_file::load(data("missing_library.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("missing_library.obj:1: cannot read nowhere.mtl"), "{warnings:?}");
     assert_eq!((mesh.surfaces()[0].name.as_str(), mesh.surfaces()[0].diffuse), ("gold", [1.0; 3]));
 
-    let Loaded { mesh, warnings, .. } = obj::load(data("missing_texture.obj")).unwrap();
+    let Loaded { mesh, warnings, .. } = model_file::load(data("missing_texture.obj")).unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("nowhere.png: no such texture"), "{warnings:?}");
     assert_eq!(mesh.surfaces()[0].texture, None);
@@ -910,7 +911,7 @@ proptest! {
         }
         let (ours, warnings) = match parse(&text) {
             Ok(Loaded { mesh, warnings, .. }) => (mesh, warnings),
-            Err(ObjError { kind: ObjErrorKind::NoArea, .. }) => return Ok(()),
+            Err(ModelFileError { kind: ModelFileErrorKind::NoArea, .. }) => return Ok(()),
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
         };
         // Of what tobj does not mend.

@@ -522,7 +522,7 @@ fn p2_no_pixel_has_an_index_of_another_ramp() {
 #[test]
 fn the_house_has_two_ramps_and_bricks() {
     let folder = crate::support::workspace::root().join("tests/data");
-    let house = mode13h_assets::obj::load(folder.join("house.obj")).expect("a model");
+    let house = mode13h_assets::model_file::load(folder.join("house.obj")).expect("a model");
     assert!(house.warnings.is_empty(), "{:?}", house.warnings);
     let surfaces = house.mesh.surfaces().to_vec();
     let names: Vec<&str> = surfaces.iter().map(|surface| &*surface.name).collect();

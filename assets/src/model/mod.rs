@@ -7,11 +7,11 @@ use core::fmt;
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::obj::{self, ObjError};
+use crate::model_file::{self, Embedded, ModelFileError, Options};
 use crate::texture;
 use mode13h::mesh::Mesh;
 use mode13h::render::RenderError;
-use mode13h::scene::{Object, Shared};
+use mode13h::scene::{Object, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 pub use studio::studio;
@@ -20,7 +20,7 @@ pub use studio::studio;
 #[non_exhaustive]
 pub enum ModelError {
     /// The file cannot be read, or holds no model.
-    Obj(ObjError),
+    File(ModelFileError),
     /// The model cannot be drawn.
     Scene(RenderError),
 }
@@ -28,7 +28,7 @@ pub enum ModelError {
 impl fmt::Display for ModelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Obj(error) => error.fmt(f),
+            Self::File(error) => error.fmt(f),
             Self::Scene(error) => error.fmt(f),
         }
     }
@@ -39,7 +39,7 @@ crate::errors::debug_as_display!(ModelError);
 impl Error for ModelError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
-            Self::Obj(error) => Some(error),
+            Self::File(error) => Some(error),
             Self::Scene(error) => Some(error),
         }
     }
@@ -53,33 +53,38 @@ pub struct Model {
     pub object: Object,
     /// The parts that were left out or mended, one line each; a texture that cannot be read is left out.
     pub warnings: Vec<String>,
+    /// The axis that points up, if the format says so.
+    pub up: Option<UpAxis>,
 }
 
-/// Reads an OBJ file, its MTL files and its textures.
+/// Reads a model's file, those that it names and its textures.
 ///
 /// # Errors
 ///
-/// [`ObjError`] with the file and the line.
-pub fn load(path: impl AsRef<Path>, options: &obj::Options) -> Result<Model, ObjError> {
+/// [`ModelFileError`] with the file and the place in it.
+pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Model, ModelFileError> {
     let path = path.as_ref();
-    let loaded = obj::load_with(path, options, |_, _| {})?;
-    let (textures, of_textures) = textures(&loaded.mesh);
+    let loaded = model_file::load_with(path, options, |_, _| {})?;
+    let (textures, of_textures) = textures(&loaded.mesh, &loaded.textures);
     let mut warnings = loaded.warnings;
     warnings.extend(of_textures);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let object = with_textures(Object::new(loaded.mesh).named(name.to_string()), &textures);
-    Ok(Model { object, warnings })
+    Ok(Model { object, warnings, up: loaded.up })
 }
 
-/// Reads the texture of each surface of a mesh, if the surface names one that can be read and the mesh has texture
-/// coordinates. Returns warnings, one line each: of files that cannot be read, and of what is left out of others. A file
+/// The texture of each surface of a mesh: one of those that its file brings, or a file, if the surface names one that
+/// can be read and the mesh has texture coordinates. Returns warnings, one line each: of files that cannot be read, and of what is left out of others. A file
 /// that several surfaces name is read once.
 #[must_use]
-pub fn textures(mesh: &Mesh) -> (Vec<Option<Shared<Texture>>>, Vec<String>) {
+pub fn textures(mesh: &Mesh, embedded: &Embedded) -> (Vec<Option<Shared<Texture>>>, Vec<String>) {
     let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
     let mut warnings = Vec::new();
     let textures = mesh.surfaces().iter().map(|surface| {
         let path = surface.texture.as_deref().filter(|_| mesh.texcoords().is_some())?;
+        if let Some(texture) = embedded.get(path) {
+            return Some(Shared::clone(texture));
+        }
         let texture = read.entry(path).or_insert_with(|| match texture::load_decoded(path.as_ref()) {
             Ok(decoded) => {
                 warnings.extend(decoded.warning(path.as_ref()));

@@ -4,10 +4,10 @@ use core::mem;
 use core::str::FromStr;
 use std::io::{self, BufRead};
 
-use super::ObjErrorKind;
+use crate::model_file::ModelFileErrorKind;
 
 /// Lines, with those joined that end in a backslash. LF, CR LF and CR end a line. One buffer serves them all.
-pub(super) struct Lines<R> {
+pub(crate) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
     /// The number of the line that was read last, from 1. Joined lines have the number of the first.
@@ -19,12 +19,12 @@ pub(super) struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    pub(super) fn new(reader: R) -> Self {
+    pub(crate) fn new(reader: R) -> Self {
         Self { reader, buffer: Vec::new(), number: 0, read: 0, after_cr: false }
     }
 
     /// The next line's number and its text without the end-of-line; `None` at the end.
-    pub(super) fn next(&mut self) -> io::Result<Option<(u64, &[u8])>> {
+    pub(crate) fn next(&mut self) -> io::Result<Option<(u64, &[u8])>> {
         self.buffer.clear();
         self.number = self.read + 1;
         // Where the first word begins, as far as lines were joined: what stands before it is looked at once, or a
@@ -82,63 +82,66 @@ impl<R: BufRead> Lines<R> {
 }
 
 /// The first word and the rest.
-pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
+pub(crate) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii_start();
     let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
     line.split_at(end)
 }
 
 /// The words, up to a comment.
-pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
     rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take_while(|word| word[0] != b'#')
 }
 
 /// A name or a path: the rest of the line, which may hold blanks.
-pub(super) fn name(rest: &[u8]) -> String {
+pub(crate) fn name(rest: &[u8]) -> String {
     String::from_utf8_lossy(rest.trim_ascii()).into_owned()
 }
 
 /// The next word as a finite number, or `None` at the end of the line.
-pub(super) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ObjErrorKind> {
+pub(crate) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ModelFileErrorKind> {
     let Some(word) = words.next() else { return Ok(None) };
     parsed(word, f32::is_finite)
 }
 
-fn parsed<T: FromStr + Copy>(word: &[u8], is_finite: fn(T) -> bool) -> Result<Option<T>, ObjErrorKind> {
+pub(crate) fn parsed<T: FromStr + Copy>(
+    word: &[u8],
+    is_finite: fn(T) -> bool,
+) -> Result<Option<T>, ModelFileErrorKind> {
     match str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
-        None => Err(ObjErrorKind::NotNumber(shown(word))),
-        Some(value) if !is_finite(value) => Err(ObjErrorKind::NotFinite(shown(word))),
+        None => Err(ModelFileErrorKind::NotNumber(shown(word))),
+        Some(value) if !is_finite(value) => Err(ModelFileErrorKind::NotFinite(shown(word))),
         value => Ok(value),
     }
 }
 
 /// Reads the `N` numbers that the statement needs in f64; all are within the range of f32.
-pub(super) fn wide_numbers<'a, const N: usize>(
+pub(crate) fn wide_numbers<'a, const N: usize>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &'static str,
-) -> Result<[f64; N], ObjErrorKind> {
+) -> Result<[f64; N], ModelFileErrorKind> {
     let mut values = [0.0; N];
     for value in &mut values {
-        let word = words.next().ok_or(ObjErrorKind::Missing(what))?;
-        *value = parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ObjErrorKind::Missing(what))?;
+        let word = words.next().ok_or(ModelFileErrorKind::Missing(what))?;
+        *value = parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ModelFileErrorKind::Missing(what))?;
     }
     Ok(values)
 }
 
 /// Reads the `N` numbers that the statement needs.
-pub(super) fn numbers<'a, const N: usize>(
+pub(crate) fn numbers<'a, const N: usize>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &'static str,
-) -> Result<[f32; N], ObjErrorKind> {
+) -> Result<[f32; N], ModelFileErrorKind> {
     let mut values = [0.0; N];
     for value in &mut values {
-        *value = number(words)?.ok_or(ObjErrorKind::Missing(what))?;
+        *value = number(words)?.ok_or(ModelFileErrorKind::Missing(what))?;
     }
     Ok(values)
 }
 
 /// A word as an error shows it: on one line, and short, for words may be a megabyte long.
-pub(super) fn shown(word: &[u8]) -> String {
+pub(crate) fn shown(word: &[u8]) -> String {
     const MAX: usize = 40;
     let text = String::from_utf8_lossy(&word[..word.len().min(MAX)]);
     let mut shown = text.replace(char::is_control, "\u{FFFD}");

@@ -8,17 +8,17 @@ use std::path::{Path, PathBuf};
 use mode13h::mesh::Surface;
 
 use super::line::{Lines, keyword, name, number, words};
-use super::statement::Model;
-use super::warnings::{LeftOut, Warnings};
-use super::{ObjError, ObjErrorKind};
+use super::statement::Statements;
+use crate::model_file::warnings::{LeftOut, Warnings};
+use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
 /// The surfaces for `model.names`, in their order.
 pub(super) fn surfaces(
-    model: &Model,
+    model: &Statements,
     path: &Path,
     library: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     warnings: &mut Warnings,
-) -> Result<Vec<Surface>, ObjError> {
+) -> Result<Vec<Surface>, ModelFileError> {
     let mut known = HashMap::new();
     let mut all_read = true;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -108,11 +108,13 @@ fn read(
     path: &Path,
     known: &mut HashMap<String, Surface>,
     warnings: &mut Warnings,
-) -> Result<(), ObjError> {
+) -> Result<(), ModelFileError> {
     let mut lines = Lines::new(bytes);
     let mut current: Option<Surface> = None;
     let (mut has_d, mut left_out) = (false, LeftOut::default());
-    while let Some((line, text)) = lines.next().map_err(|error| ObjError::of_file(path, ObjErrorKind::Read(error)))? {
+    while let Some((line, text)) =
+        lines.next().map_err(|error| ModelFileError::of_file(path, ModelFileErrorKind::Read(error)))?
+    {
         let (word, rest) = keyword(text);
         if word == b"newmtl" {
             let new = Surface { name: name(rest), ..Surface::default() };
@@ -129,7 +131,7 @@ fn read(
                     surface.shininess = exponent.max(0.0);
                     Ok(())
                 }
-                Ok(None) => Err(ObjErrorKind::Missing("an exponent (1)")),
+                Ok(None) => Err(ModelFileErrorKind::Missing("an exponent (1)")),
                 Err(kind) => Err(kind),
             },
             b"map_Kd" => {
@@ -155,7 +157,7 @@ fn read(
             }
             _ => Ok(()),
         };
-        result.map_err(|kind| ObjError::of_line(path, line, kind))?;
+        result.map_err(|kind| ModelFileError::of_line(path, line, kind))?;
     }
     known.extend(current.map(|done| (done.name.clone(), done)));
     left_out.warn(path, warnings);
@@ -163,22 +165,22 @@ fn read(
 }
 
 /// `d` or `Tr`, which may stand behind `-halo`.
-fn opacity(rest: &[u8]) -> Result<f32, ObjErrorKind> {
+fn opacity(rest: &[u8]) -> Result<f32, ModelFileErrorKind> {
     let mut words = words(rest).filter(|word| *word != b"-halo");
-    Ok(number(&mut words)?.ok_or(ObjErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
+    Ok(number(&mut words)?.ok_or(ModelFileErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
 }
 
 /// Red, green and blue; one number stands for all three. `None` for a spectral file or CIE XYZ, which
 /// nothing writes.
-fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ObjErrorKind> {
+fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ModelFileErrorKind> {
     const WHAT: &str = "a colour (1 or 3)";
     let mut words = words(rest).peekable();
     if words.next_if(|word| matches!(*word, b"spectral" | b"xyz")).is_some() {
         return Ok(None);
     }
-    let red = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    let red = number(&mut words)?.ok_or(ModelFileErrorKind::Missing(WHAT))?;
     let Some(green) = number(&mut words)? else { return Ok(Some([red; 3])) };
-    let blue = number(&mut words)?.ok_or(ObjErrorKind::Missing(WHAT))?;
+    let blue = number(&mut words)?.ok_or(ModelFileErrorKind::Missing(WHAT))?;
     Ok(Some([red, green, blue]))
 }
 

@@ -7,7 +7,7 @@ use std::{error, fmt, io};
 
 use super::place::{Place, key_at};
 use super::renamed;
-use crate::obj::ObjError;
+use crate::model_file::ModelFileError;
 use crate::palette_file::PaletteError;
 use crate::texture::LoadError;
 
@@ -64,7 +64,7 @@ pub enum SceneErrorKind {
         error: io::Error,
     },
     /// A model that the scene names is broken.
-    Model(ObjError),
+    Model(ModelFileError),
     /// A palette file that the scene names is broken.
     Palette {
         /// Its path.

@@ -7,29 +7,36 @@ use std::path::{Path, PathBuf};
 use mode13h::Angle;
 use mode13h::mesh::Mesh;
 use mode13h::palette::{Palette, builtin};
-use mode13h::scene::Shared;
+use mode13h::scene::{Shared, UpAxis};
 use mode13h::texture::Texture;
 use toml::Spanned;
 
 use super::error::Fault;
 use super::value::FileName;
 use super::{LONGEST, SceneErrorKind};
-use crate::obj;
+use crate::model_file::{self, Format, Options};
 use crate::palette_file;
 use crate::texture::{self, LoadError, LoadErrorKind};
 
 /// The caller's function that opens a file.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
 
-/// A model's mesh, and the point of its file that lies at 0 in it.
-type Placed = (Shared<Mesh>, [f64; 3]);
+/// A model as a scene needs it.
+#[derive(Clone)]
+pub(super) struct NamedModel {
+    pub(super) mesh: Shared<Mesh>,
+    /// The point of its file that lies at 0 in the mesh.
+    pub(super) origin: [f64; 3],
+    /// The axis that points up, if its format says so.
+    pub(super) up: Option<UpAxis>,
+}
 
 /// The files that a scene names, found from its folder.
 pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
-    /// The models and their origins, by the file and the bits of the requested crease angle.
-    models: BTreeMap<(PathBuf, Option<u64>), Placed>,
+    /// The models, by the file and the bits of the requested crease angle.
+    models: BTreeMap<(PathBuf, Option<u64>), NamedModel>,
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
@@ -46,19 +53,16 @@ impl<'a> Named<'a> {
         Self { folder, open, models: BTreeMap::new(), textures: BTreeMap::new(), warnings: Vec::new() }
     }
 
-    /// Loads a model, with a crease angle if one is requested. Returns it and the point of its file that is 0 in it.
-    pub(super) fn model(
-        &mut self,
-        name: &Spanned<FileName>,
-        crease: Option<Angle>,
-    ) -> Result<(Shared<Mesh>, [f64; 3]), Fault> {
+    /// Loads a model, with a crease angle if one is requested.
+    pub(super) fn model(&mut self, name: &Spanned<FileName>, crease: Option<Angle>) -> Result<NamedModel, Fault> {
         let path = self.folder.join(&name.get_ref().0);
         let key = (path.clone(), crease.map(|crease| crease.to_radians().to_bits()));
         if let Some(known) = self.models.get(&key) {
             return Ok(known.clone());
         }
-        if !has_extension(&path, "obj") {
-            return Err(Fault::value(name.span(), "no model that can be read: models are .obj files"));
+        if Format::of_path(&path).is_none() {
+            let known = Format::extensions();
+            return Err(Fault::value(name.span(), format!("no model that can be read: models are {known} files")));
         }
         let file = self.opened(&path, name)?;
         let open = &mut *self.open;
@@ -67,10 +71,11 @@ impl<'a> Named<'a> {
             open(path)?.read_to_end(&mut bytes)?;
             Ok(bytes)
         };
-        let loaded = obj::parse_with(file, &path, library, &obj::Options { crease })
+        let loaded = model_file::parse(file, &path, library, &Options { crease })
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
         self.warnings.extend(loaded.warnings);
-        let model = (Shared::new(loaded.mesh), loaded.origin);
+        self.textures.extend(loaded.textures.into_iter().map(|(name, texture)| (PathBuf::from(name), texture)));
+        let model = NamedModel { mesh: Shared::new(loaded.mesh), origin: loaded.origin, up: loaded.up };
         self.models.insert(key, model.clone());
         Ok(model)
     }
@@ -109,7 +114,7 @@ impl<'a> Named<'a> {
     }
 
     /// Loads a texture that a model's material names, from where the program runs or from the model's folder, as the
-    /// MTL file has been read. A missing or broken one is a warning.
+    /// model has been read, or from the model's own file. A missing or broken one is a warning.
     pub(super) fn texture_of_model(&mut self, path: &str, material: &str) -> Option<Shared<Texture>> {
         let path = PathBuf::from(path);
         if let Some(known) = self.textures.get(&path) {
@@ -149,8 +154,4 @@ impl<'a> Named<'a> {
 
 fn not_read(path: &Path, name: &Spanned<FileName>, error: io::Error) -> Fault {
     Fault::of(name.span(), SceneErrorKind::File { path: path.to_owned(), error })
-}
-
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }

@@ -11,7 +11,7 @@ use toml::Spanned;
 
 use super::error::Fault;
 use super::layout::ObjectLayout;
-use super::named::Named;
+use super::named::{Named, NamedModel};
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
 
@@ -80,19 +80,19 @@ impl Objects {
         if let (None, Some(crease)) = (&layout.model, &layout.crease) {
             return Err(Fault::value(crease.span(), "only a model has a crease angle"));
         }
-        let (mesh, origin) = match (&layout.shape, &layout.model) {
-            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3]),
+        let (mesh, origin, up) = match (&layout.shape, &layout.model) {
+            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3], None),
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
-                let (mesh, origin) = named.model(
+                let NamedModel { mesh, origin, up } = named.model(
                     model,
                     layout.crease.as_ref().map(|crease| Angle::from_degrees(crease.get_ref().0.into())),
                 )?;
                 let mesh =
                     if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) };
-                (mesh, origin)
+                (mesh, origin, up)
             }
             (Some(_), Some(model)) => {
                 return Err(Fault::value(model.span(), "beside a `shape`: an object is one of both"));
@@ -113,9 +113,7 @@ impl Objects {
             let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(pivot.vec3()[axis]) - origin[axis]) as f32);
             object.pivot = Vec3::new(x, y, z) * stretch;
         }
-        if let Some(up) = &layout.up_axis {
-            object.up_axis = up.0.0;
-        }
+        object.up_axis = layout.up_axis.as_ref().map(|up| up.0.0).or(up).unwrap_or_default();
         if let Some(List(degrees)) = layout.angles {
             object.angles = degrees.map(|degrees| Angle::from_degrees(degrees.0));
         }

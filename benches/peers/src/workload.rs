@@ -66,7 +66,7 @@ impl Workload {
             all.push(Self::of_mesh(name.to_owned(), shapes::by_name(name).ok_or("a shape that is not there")?)?);
         }
         let (name, mesh) = match rabbit {
-            Some(path) => (name_of(path), obj::load(path)?.mesh),
+            Some(path) => (name_of(path), model_file::load(path)?.mesh),
             None => ("sphere".to_owned(), refined(&shapes::by_name("cube").ok_or("no cube")?, 3_600)),
         };
         all.push(Self::of_mesh(name.clone(), mesh.clone())?);
@@ -78,7 +78,7 @@ impl Workload {
             let workload = if path.extension().is_some_and(|end| end == "tri") {
                 Self::of_tri(path)
             } else {
-                obj::load(path).map_err(Into::into).and_then(|loaded| Self::of_mesh(name_of(path), loaded.mesh))
+                model_file::load(path).map_err(Into::into).and_then(|loaded| Self::of_mesh(name_of(path), loaded.mesh))
             };
             all.push(workload.map_err(|error| format!("{file}: {error}"))?);
         }

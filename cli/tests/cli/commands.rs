@@ -83,7 +83,7 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
     put("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n");
     put("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n");
     put("binary.obj", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01");
-    put("model.stl", b"solid\n");
+    put("model.3ds", b"solid\n");
     put("broken.pal", b"JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
     put("short.vga", &[0; 767]);
     put("empty.gpl", b"");
@@ -102,7 +102,11 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (model("index.obj"), 2, "index.obj:5: there is no vertex 4"),
         (model("zero.obj"), 2, "zero.obj:4: index 0"),
         (model("binary.obj"), 2, "binary.obj"),
-        (model("model.stl"), 2, "model.stl: nothing that can be read: models are .obj files, scenes .toml"),
+        (
+            model("model.3ds"),
+            2,
+            "model.3ds: nothing that can be read: models are .obj, .stl and .ply files, scenes .toml",
+        ),
         (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h scenes lists the names)"),
         (model(""), 2, "mode13h: '': an empty word names nothing (mode13h render --help"),
         (palette(""), 2, "mode13h: --palette '': an empty word names nothing"),

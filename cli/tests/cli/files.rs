@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use mode13h_assets::obj::{self, Loaded, ObjError};
+use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
+use mode13h_assets::obj;
 use mode13h_assets::palette_file::FORMATS;
 use tempfile::TempDir;
 
@@ -18,7 +19,7 @@ fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ObjError> {
+fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_ref(), "model.obj", no_library)
 }
 
@@ -93,7 +94,7 @@ fn f1_broken_models_are_refused_with_their_place() {
     for (end, message) in &cases {
         for line_end in ["\n", "\r\n", "\r"] {
             fs::write(&path, format!("{TRIANGLE}{end}").replace('\n', line_end)).expect("written");
-            let error = obj::load(&path).expect_err(message);
+            let error = model_file::load(&path).expect_err(message);
             assert_eq!(error.to_string(), format!("{}{message}", path.display()));
             tried.add(1);
         }
@@ -154,7 +155,7 @@ fn f1_libraries_that_are_no_libraries_are_a_warning() {
         ("model.obj", 1),
     ] {
         fs::write(&path, format!("mtllib {library}\n{TRIANGLE}usemtl m\nf 1 2 3\n")).expect("written");
-        let loaded = obj::load(&path).expect("a model");
+        let loaded = model_file::load(&path).expect("a model");
         assert_eq!(loaded.warnings.len(), warnings, "{library}: {:?}", loaded.warnings);
         assert_eq!(loaded.mesh.surfaces()[0].name, "m");
         tried.add(1);
@@ -403,13 +404,13 @@ fn load_in_a_child(test: &str, faces: usize, full: bool) {
 #[cfg(target_os = "linux")]
 fn load_as_a_child(path: &Path) {
     // The code that loads is in memory from here on.
-    let warm = obj::load(crate::support::workspace::root().join("tests/data/house.obj"));
+    let warm = model_file::load(crate::support::workspace::root().join("tests/data/house.obj"));
     assert!(warm.is_ok(), "{warm:?}");
     let before = peak_memory();
     let begun = Instant::now();
     let length = fs::metadata(path).expect("a file").len();
     let mut told = vec![0];
-    let loaded = obj::load_with(path, &obj::Options::default(), |read, total| {
+    let loaded = model_file::load_with(path, &Options::default(), |read, total| {
         assert_eq!(total, length);
         told.push(read);
     });

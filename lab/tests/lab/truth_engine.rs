@@ -682,7 +682,7 @@ impl Written {
     }
 
     /// In any order, so that of two faces at one depth either may come first.
-    fn load(mut self, random: &mut Random) -> mode13h_assets::obj::Loaded {
+    fn load(mut self, random: &mut Random) -> mode13h_assets::model_file::Loaded {
         for i in (1..self.faces.len()).rev() {
             self.faces.swap(i, random.within(0, i as i64) as usize);
         }

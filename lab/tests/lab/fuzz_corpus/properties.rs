@@ -19,7 +19,8 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_assets::SceneExt;
 use mode13h_assets::animation::{FrameRate, GifWriter};
-use mode13h_assets::obj::{self, Loaded, ObjError, ObjErrorKind};
+use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
+use mode13h_assets::obj;
 use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h_assets::scene_file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h_assets::texture;
@@ -29,9 +30,11 @@ use mode13h_lab::replay;
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
-pub const PROPERTIES: [Property; 11] = [
+pub const PROPERTIES: [Property; 13] = [
     ("obj", obj),
     ("mtl", mtl),
+    ("stl", stl),
+    ("ply", ply),
     ("palette_jasc", palette_jasc),
     ("palette_gimp", palette_gimp),
     ("palette_hex", palette_hex),
@@ -106,11 +109,11 @@ pub fn mtl(bytes: &[u8]) {
 }
 
 /// What two ways of reading the same must agree in.
-fn outcome(result: &Result<Loaded, ObjError>) -> Result<&Loaded, String> {
+fn outcome(result: &Result<Loaded, ModelFileError>) -> Result<&Loaded, String> {
     result.as_ref().map_err(ToString::to_string)
 }
 
-fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) {
+fn check_obj(result: &Result<Loaded, ModelFileError>, model: &[u8], materials: &[u8]) {
     match result {
         Ok(Loaded { mesh, warnings, .. }) => {
             check_mesh(mesh);
@@ -120,18 +123,62 @@ fn check_obj(result: &Result<Loaded, ObjError>, model: &[u8], materials: &[u8]) 
         }
         Err(error) => {
             let text = if error.path == Path::new("model.obj") { model } else { materials };
-            if let Some(line) = error.line {
-                assert!(line >= 1 && line <= lines_in(text) as u64, "{error}: of {} lines", lines_in(text));
-            }
+            check_place(error, text);
             let whole_file = matches!(
                 error.kind,
-                ObjErrorKind::NoFaces | ObjErrorKind::NoArea | ObjErrorKind::TooLarge("more than 65,536 materials")
+                ModelFileErrorKind::NoFaces
+                    | ModelFileErrorKind::NoArea
+                    | ModelFileErrorKind::TooLarge("more than 65,536 materials")
             );
-            assert_eq!(error.line.is_none(), whole_file, "{error}");
+            assert_eq!(error.place.is_none(), whole_file, "{error}");
             let said = error.to_string();
             assert!(!said.contains(char::is_control) && said.len() < 300, "{said:?}");
         }
     }
+}
+
+/// A model's error names a line or a byte of its file, or the byte behind the last.
+fn check_place(error: &ModelFileError, bytes: &[u8]) {
+    match error.place {
+        Some(model_file::Place::Line(line)) => {
+            assert!(line >= 1 && line <= lines_in(bytes) as u64, "{error}: of {} lines", lines_in(bytes));
+        }
+        Some(model_file::Place::Offset(at)) => assert!(at <= bytes.len() as u64, "{error}: of {} bytes", bytes.len()),
+        None => {}
+    }
+}
+
+/// An STL file, text or binary.
+pub fn stl(bytes: &[u8]) {
+    model(bytes, "model.stl");
+}
+
+/// A PLY file, text or binary.
+pub fn ply(bytes: &[u8]) {
+    model(bytes, "model.ply");
+}
+
+/// A model's file of this name, beside which there is none.
+fn model(bytes: &[u8], name: &str) {
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    match model_file::parse(bytes, name, none, &Options::default()) {
+        Ok(Loaded { mesh, warnings, textures, .. }) => {
+            check_mesh(&mesh);
+            warnings.iter().for_each(|warning| assert_one_line(warning));
+            for texture in mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref()) {
+                assert!(!texture.contains('#') || textures.contains_key(texture), "{texture} is missing");
+            }
+            check_written_again(&mesh);
+        }
+        Err(error) => {
+            check_place(&error, bytes);
+            let said = error.to_string();
+            assert_one_line(&said);
+            assert!(said.len() < 400, "{said:?}");
+        }
+    }
+    // Whatever it is by its contents.
+    let _ = model_file::parse(bytes, "standard input", none, &Options::default());
 }
 
 /// LF, CR LF and CR end a line; an end of line at the end of the text begins no further line.

@@ -6,7 +6,7 @@ use core::mem;
 use earcut::Earcut;
 use mode13h::glam::Vec3;
 
-use super::ObjErrorKind;
+use super::ModelFileErrorKind;
 use crate::wide::{Wide, add, cross, sub, widen};
 
 /// The max number of corners of a concave face, unless it is monotone. The time of cutting ears grows by the square of
@@ -40,7 +40,7 @@ impl Splitter {
     /// Splits a face of n corners into n − 2 triangles, as numbers of its corners, in the face's winding. Each edge of
     /// the face is an edge of one of them, so no gap opens to its neighbours. A corner in the middle of a straight edge
     /// is therefore kept, if need be by a triangle of no area.
-    pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ObjErrorKind> {
+    pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ModelFileErrorKind> {
         self.triangles.clear();
         if corners.len() > 3 && self.flatten(corners) && !self.is_convex() {
             if corners.len() <= MAX_CONCAVE {
@@ -48,13 +48,13 @@ impl Splitter {
                     self.cut_ears();
                 }
             } else if !self.sweep(0) && !self.sweep(1) {
-                return Err(ObjErrorKind::TooLarge("a concave face of more than 20,000 corners"));
+                return Err(ModelFileErrorKind::TooLarge("a concave face of more than 20,000 corners"));
             }
         }
         // Convex; flat on a line; or so tangled that ears could not be cut.
         if self.triangles.len() != corners.len() - 2 {
             self.triangles.clear();
-            // Fewer than 2³² corners, see `statement`.
+            // Fewer than 2³² corners, see `Lists::end_face`.
             self.triangles.extend((1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]));
         }
         Ok(&self.triangles)
@@ -69,7 +69,7 @@ impl Splitter {
     fn sweep(&mut self, axis: usize) -> bool {
         let n = self.flat.len();
         let at = |i: u32| self.flat[i as usize % n][axis];
-        // Fewer than 2³² corners, see `statement`.
+        // Fewer than 2³² corners, see `Lists::end_face`.
         let count = n as u32;
         // The corners where the least coordinate is left for good, and where the greatest is reached.
         let least = (0..count).fold(0, |best, i| if at(i) < at(best) { i } else { best });

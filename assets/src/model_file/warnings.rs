@@ -5,7 +5,7 @@ use std::path::Path;
 /// Warnings, of which the first [`MAX`](Self::MAX) are kept and the others counted: a file may give cause for one in
 /// every line, and each holds a path as long as the file likes.
 #[derive(Default)]
-pub(super) struct Warnings {
+pub(crate) struct Warnings {
     kept: Vec<String>,
     more: usize,
 }
@@ -13,7 +13,7 @@ pub(super) struct Warnings {
 impl Warnings {
     const MAX: usize = 100;
 
-    pub(super) fn push(&mut self, warning: impl FnOnce() -> String) {
+    pub(crate) fn push(&mut self, warning: impl FnOnce() -> String) {
         if self.kept.len() < Self::MAX {
             self.kept.push(warning());
         } else {
@@ -22,7 +22,7 @@ impl Warnings {
     }
 
     /// One line each; the last may say how many more there are.
-    pub(super) fn into_lines(mut self) -> Vec<String> {
+    pub(crate) fn into_lines(mut self) -> Vec<String> {
         match self.more {
             0 => {}
             1 => self.kept.push("one more warning like these".into()),
@@ -34,20 +34,20 @@ impl Warnings {
 
 /// Statements that are not read, each of which makes one warning, however often it stands in a file.
 #[derive(Default)]
-pub(super) struct LeftOut {
+pub(crate) struct LeftOut {
     /// What, the first line of it, and the number of times.
     of: Vec<(&'static str, u64, u64)>,
 }
 
 impl LeftOut {
-    pub(super) fn add(&mut self, what: &'static str, line: u64) {
+    pub(crate) fn add(&mut self, what: &'static str, line: u64) {
         match self.of.iter_mut().find(|(known, ..)| *known == what) {
             Some((.., count)) => *count += 1,
             None => self.of.push((what, line, 1)),
         }
     }
 
-    pub(super) fn warn(self, path: &Path, warnings: &mut Warnings) {
+    pub(crate) fn warn(self, path: &Path, warnings: &mut Warnings) {
         let path = path.display();
         for (what, line, count) in self.of {
             let times = if count == 1 { String::new() } else { format!(", {count} times") };

@@ -5,21 +5,31 @@ use std::{error, fmt, io};
 
 use mode13h::mesh::MeshError;
 
-/// An error of a model that is refused. Displayed as `path:line: what`, on one line.
+/// An error of a model that is refused. Displayed on one line, as `path:line: what`, or as `path: byte 84: what` for a
+/// binary file.
 #[non_exhaustive]
-pub struct ObjError {
+pub struct ModelFileError {
     /// The file, as the caller or `mtllib` named it.
     pub path: PathBuf,
-    /// The line, counted from 1. `None` if no one line is at fault.
-    pub line: Option<u64>,
+    /// The place in the file. `None` if no one place is at fault.
+    pub place: Option<Place>,
     /// The kind of the error.
-    pub kind: ObjErrorKind,
+    pub kind: ModelFileErrorKind,
+}
+
+/// A place in a model's file.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Place {
+    /// A line of text, counted from 1.
+    Line(u64),
+    /// A byte of a binary file, counted from 0.
+    Offset(u64),
 }
 
 /// The kinds of errors of a model.
 #[derive(Debug)]
 #[non_exhaustive]
-pub enum ObjErrorKind {
+pub enum ModelFileErrorKind {
     /// The file does not exist or cannot be read.
     Read(io::Error),
     /// The path is that of a directory.
@@ -32,6 +42,17 @@ pub enum ObjErrorKind {
     NotNumber(String),
     /// A NaN, an infinity, or a number beyond the range of f32.
     NotFinite(String),
+    /// The file ends where this should stand.
+    Ends(&'static str),
+    /// This should stand here.
+    Expected {
+        /// What should stand here.
+        expected: &'static str,
+        /// What stands here.
+        found: String,
+    },
+    /// The file has a fault that these words name.
+    Fault(String),
     /// This should be `v`, `v/vt`, `v//vn` or `v/vt/vn`, whole numbers.
     NotCorner(String),
     /// Index 0: they count from 1.
@@ -56,26 +77,32 @@ pub enum ObjErrorKind {
     TooLarge(&'static str),
 }
 
-impl ObjError {
-    pub(super) fn of_file(path: &Path, kind: ObjErrorKind) -> Self {
-        Self { path: path.to_owned(), line: None, kind }
+impl ModelFileError {
+    pub(crate) fn of_file(path: &Path, kind: ModelFileErrorKind) -> Self {
+        Self { path: path.to_owned(), place: None, kind }
     }
 
-    pub(super) fn of_line(path: &Path, line: u64, kind: ObjErrorKind) -> Self {
-        Self { path: path.to_owned(), line: Some(line), kind }
+    pub(crate) fn of_line(path: &Path, line: u64, kind: ModelFileErrorKind) -> Self {
+        Self::at(path, Place::Line(line), kind)
+    }
+
+    pub(crate) fn at(path: &Path, place: Place, kind: ModelFileErrorKind) -> Self {
+        Self { path: path.to_owned(), place: Some(place), kind }
     }
 }
 
-impl fmt::Display for ObjError {
+impl fmt::Display for ModelFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.path.display(), self.kind),
-            None => write!(f, "{}: {}", self.path.display(), self.kind),
+        let path = self.path.display();
+        match self.place {
+            Some(Place::Line(line)) => write!(f, "{path}:{line}: {}", self.kind),
+            Some(Place::Offset(offset)) => write!(f, "{path}: byte {offset}: {}", self.kind),
+            None => write!(f, "{path}: {}", self.kind),
         }
     }
 }
 
-impl fmt::Display for ObjErrorKind {
+impl fmt::Display for ModelFileErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Read(error) => write!(f, "{error}"),
@@ -84,6 +111,9 @@ impl fmt::Display for ObjErrorKind {
             Self::Missing(what) => write!(f, "too few numbers for {what}"),
             Self::NotNumber(word) => write!(f, "`{word}` is not a number"),
             Self::NotFinite(word) => write!(f, "`{word}` is not a finite number"),
+            Self::Ends(what) => write!(f, "the file ends where {what} should stand"),
+            Self::Expected { expected, found } => write!(f, "expected {expected}, found `{found}`"),
+            Self::Fault(what) => f.write_str(what),
             Self::NotCorner(word) => write!(f, "`{word}` is not the corner of a face"),
             Self::IndexZero => write!(f, "index 0: indices count from 1"),
             Self::IndexOutOfRange { what, index, count } => write!(f, "there is no {what} {index}, only {count}"),
@@ -95,12 +125,12 @@ impl fmt::Display for ObjErrorKind {
     }
 }
 
-crate::errors::debug_as_display!(ObjError);
+crate::errors::debug_as_display!(ModelFileError);
 
-impl error::Error for ObjError {
+impl error::Error for ModelFileError {
     fn source(&self) -> Option<&(dyn error::Error + 'static)> {
         match &self.kind {
-            ObjErrorKind::Read(error) => Some(error),
+            ModelFileErrorKind::Read(error) => Some(error),
             _ => None,
         }
     }

@@ -1,26 +1,29 @@
-//! From the lists of an OBJ file to a mesh: faces split, triples made vertices, normals filled in.
+//! From the lists of a file to a mesh: faces split, triples made vertices, normals filled in.
 
+use core::iter;
 use std::collections::HashMap;
 
 use mode13h::Angle;
+use mode13h::glam::Vec3;
 use mode13h::mesh::normals::face_normal;
 use mode13h::mesh::{Mesh, Parts, Repairs, Surface};
 
-use super::ObjErrorKind;
+use super::ModelFileErrorKind;
+use super::lists::{Corner, Lists};
 use super::polygon::Splitter;
-use super::statement::{Corner, Model};
 
-/// Makes the mesh. `surfaces` are those of `model.names`; those that no face uses are dropped.
+/// Makes the mesh, of the lists with their positions in f32. Surfaces that no face uses are dropped.
 ///
 /// # Errors
 /// The error, with the line if one is at fault.
 pub(super) fn mesh(
-    model: Model,
+    lists: Lists,
+    positions: Vec<Vec3>,
     surfaces: Vec<Surface>,
     crease: Option<Angle>,
-) -> Result<(Mesh, Repairs), (Option<u64>, ObjErrorKind)> {
-    let Split { triangles, triangle_surfaces, lines, groups, surfaces } = split(&model, surfaces)?;
-    let Model { positions, texcoords, normals, corners, .. } = model;
+) -> Result<(Mesh, Repairs), (Option<u64>, ModelFileErrorKind)> {
+    let Split { triangles, triangle_surfaces, lines, groups, surfaces } = split(&lists, &positions, surfaces)?;
+    let Lists { texcoords, normals, corners, .. } = lists;
     let (triples, triangles) = vertices(&corners, triangles, positions.len()).map_err(|kind| (None, kind))?;
     drop(corners);
 
@@ -30,7 +33,7 @@ pub(super) fn mesh(
         face_normal(a, b, c).is_some()
     };
     if !triangles.iter().any(has_area) {
-        return Err((None, ObjErrorKind::NoArea));
+        return Err((None, ModelFileErrorKind::NoArea));
     }
     // `Corner::NONE` is out of range.
     let pair = |triple: &Corner| texcoords.get(triple.texcoord as usize).copied();
@@ -53,7 +56,7 @@ pub(super) fn mesh(
         crease,
     };
     drop((positions, texcoords, normals, triples));
-    Mesh::from_parts(parts).map_err(|error| (None, ObjErrorKind::Mesh(error)))
+    Mesh::from_parts(parts).map_err(|error| (None, ModelFileErrorKind::Mesh(error)))
 }
 
 /// The triangles that the faces of a file are split into.
@@ -69,13 +72,17 @@ struct Split {
     surfaces: Vec<Surface>,
 }
 
-fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, ObjErrorKind)> {
-    let count = model.corners.len() - 2 * model.sizes.len();
+fn split(
+    lists: &Lists,
+    positions: &[Vec3],
+    surfaces: Vec<Surface>,
+) -> Result<Split, (Option<u64>, ModelFileErrorKind)> {
+    let count = lists.corners.len() - 2 * lists.sizes.len();
     let mut triangles = Vec::with_capacity(count);
     let mut triangle_surfaces = Vec::with_capacity(count);
-    let mut lines = Vec::with_capacity(count);
-    let mut groups = Vec::with_capacity(if model.smoothing.is_empty() { 0 } else { count });
-    let mut changes = model.smoothing.iter().copied().peekable();
+    let mut lines = Vec::with_capacity(if lists.lines.is_empty() { 0 } else { count });
+    let mut groups = Vec::with_capacity(if lists.smoothing.is_empty() { 0 } else { count });
+    let mut changes = lists.smoothing.iter().copied().peekable();
     let mut group = Parts::NO_GROUP;
     let mut surfaces: Vec<Option<Surface>> = surfaces.into_iter().map(Some).collect();
     let mut numbers: Vec<Option<u16>> = surfaces.iter().map(|_| None).collect();
@@ -83,36 +90,40 @@ fn split(model: &Model, surfaces: Vec<Surface>) -> Result<Split, (Option<u64>, O
     let mut splitter = Splitter::new();
     let mut places = Vec::new();
     let mut first = 0;
-    for (i, &(from, name)) in model.runs.iter().enumerate() {
-        let to = model.runs.get(i + 1).map_or(model.sizes.len(), |next| next.0);
+    let runs = iter::once((0, 0)).chain(lists.runs.iter().copied());
+    for (i, (from, name)) in runs.enumerate() {
+        let to = lists.runs.get(i).map_or(lists.sizes.len(), |next| next.0);
         if from == to {
             continue;
         }
         let surface = match numbers[name] {
             Some(number) => number,
             None => {
-                let too_many = ObjErrorKind::TooLarge("more than 65,536 materials");
+                let too_many = ModelFileErrorKind::TooLarge("more than 65,536 materials");
                 let number = u16::try_from(used.len()).map_err(|_| (None, too_many))?;
                 used.extend(surfaces[name].take());
                 *numbers[name].insert(number)
             }
         };
-        for (place, &size) in (from..to).zip(&model.sizes[from..to]) {
-            // Fewer than 2³² corners, see `statement`.
+        for (place, &size) in (from..to).zip(&lists.sizes[from..to]) {
+            // Fewer than 2³² corners, see `Lists::end_face`.
             let start = first as u32;
-            let face = &model.corners[first..first + size as usize];
+            let face = &lists.corners[first..first + size as usize];
             if size == 3 {
                 triangles.push([start, start + 1, start + 2]);
             } else {
                 places.clear();
-                places.extend(face.iter().map(|corner| model.positions[corner.position as usize]));
-                let line = u64::from(model.lines[place]);
-                let pieces = splitter.split(&places).map_err(|kind| (Some(line), kind))?;
+                places.extend(face.iter().map(|corner| positions[corner.position as usize]));
+                let pieces = splitter
+                    .split(&places)
+                    .map_err(|kind| (lists.lines.get(place).map(|&line| u64::from(line)), kind))?;
                 triangles.extend(pieces.iter().map(|piece| piece.map(|corner| start + corner)));
             }
             triangle_surfaces.resize(triangles.len(), surface);
-            lines.resize(triangles.len(), model.lines[place]);
-            if !model.smoothing.is_empty() {
+            if let Some(&line) = lists.lines.get(place) {
+                lines.resize(triangles.len(), line);
+            }
+            if !lists.smoothing.is_empty() {
                 while let Some((_, next)) = changes.next_if(|change| change.0 <= place) {
                     group = next;
                 }
@@ -130,7 +141,7 @@ fn vertices(
     corners: &[Corner],
     mut triangles: Vec<[u32; 3]>,
     positions: usize,
-) -> Result<(Vec<Corner>, Vec<[u32; 3]>), ObjErrorKind> {
+) -> Result<(Vec<Corner>, Vec<[u32; 3]>), ModelFileErrorKind> {
     let mut triples: Vec<Corner> = Vec::new();
     // Most positions have one triple, which is found without a hash.
     let mut first = vec![u32::MAX; positions];
@@ -150,7 +161,7 @@ fn vertices(
         };
         if vertex == new {
             if triples.len() == Mesh::MAX_COUNT {
-                return Err(ObjErrorKind::TooLarge("more than 1,431,655,765 vertices"));
+                return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 vertices"));
             }
             triples.push(triple);
         }

@@ -1,0 +1,321 @@
+//! Models from files: one road from the lists that a format's reader gives to a mesh.
+//!
+//! | format | module | read |
+//! |---|---|---|
+//! | Wavefront OBJ with MTL | [`obj`](crate::obj) | positions, texture coordinates, normals, smoothing groups, materials |
+//! | STL, text and binary | [`stl`](crate::stl) | triangles; corners at the same place are one vertex |
+//! | PLY, text and both binaries | [`ply`](crate::ply) | faces of any size, strips, normals, texture coordinates, colours |
+//!
+//! A file's name says its format, with or without `.gz` behind it. A name without a known extension leaves it to the
+//! contents. Files packed by gzip are unpacked, whatever their name.
+//!
+//! Whatever the format, faces are split, missing normals filled in, a model far from 0 is moved there, scans are mended
+//! and errors placed by the same code; [`obj`](crate::obj) describes it.
+
+mod colors;
+mod error;
+mod gather;
+pub(crate) mod lists;
+mod polygon;
+mod progress;
+pub(crate) mod tokens;
+pub(crate) mod warnings;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use flate2::bufread::MultiGzDecoder;
+use mode13h::Angle;
+use mode13h::mesh::{Mesh, Surface};
+use mode13h::scene::{Shared, UpAxis};
+use mode13h::texture::Texture;
+
+use crate::{obj, ply, stl};
+pub(crate) use colors::paint;
+pub use error::{ModelFileError, ModelFileErrorKind, Place};
+use lists::Lists;
+use progress::Counted;
+use warnings::Warnings;
+
+/// A model and the warnings of its reading.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Loaded {
+    /// The model.
+    pub mesh: Mesh,
+    /// The textures that the file itself brings, by the names that the mesh's surfaces give them.
+    pub textures: Embedded,
+    /// The axis that points up, if the format says so: z for STL.
+    pub up: Option<UpAxis>,
+    /// The warnings, one line each, with the file and the line in it: the first hundred, and the number of further
+    /// ones.
+    pub warnings: Vec<String>,
+    /// The files that were read or looked for: the model's own if it was loaded from one, those that it names, and
+    /// textures that the materials name. Some may not exist.
+    pub files: Vec<PathBuf>,
+    /// The point of the file that is 0 in the mesh: the middle of a model far from 0, 0 of all others.
+    pub origin: [f64; 3],
+}
+
+/// Textures inside a model's file, by the name that [`Surface::texture`] has.
+pub type Embedded = BTreeMap<String, Shared<Texture>>;
+
+/// The options for reading a model.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Options {
+    /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between them.
+    /// 180° is smooth everywhere, 0 flat; values beyond count as these. With `None` the smoothing groups of the file
+    /// hold, and without groups 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    pub crease: Option<Angle>,
+}
+
+/// The formats of models.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// STL, text or binary.
+    Stl,
+    /// PLY, text or binary.
+    Ply,
+}
+
+impl Format {
+    /// All formats, with their extensions.
+    pub const ALL: [(Self, &'static [&'static str]); 3] =
+        [(Self::Obj, &["obj"]), (Self::Stl, &["stl"]), (Self::Ply, &["ply"])];
+
+    /// The format that a file's extension says, with or without `.gz` behind it.
+    #[must_use]
+    pub fn of_path(path: &Path) -> Option<Self> {
+        let unpacked = path.file_stem().filter(|_| has_extension(path, "gz")).map(Path::new);
+        let path = unpacked.unwrap_or(path);
+        let has = |extensions: &[&str]| extensions.iter().any(|extension| has_extension(path, extension));
+        Self::ALL.iter().find(|(_, extensions)| has(extensions)).map(|&(format, _)| format)
+    }
+
+    /// The format that the bytes of a file are in, as far as its beginning and its length say.
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
+        if ply::recognizes(bytes) {
+            Some(Self::Ply)
+        } else if stl::recognizes(bytes) {
+            Some(Self::Stl)
+        } else if obj::recognizes(bytes) {
+            Some(Self::Obj)
+        } else {
+            None
+        }
+    }
+
+    /// The extensions of all formats, as a sentence lists them: `.obj, .stl and .ply`.
+    #[must_use]
+    pub fn extensions() -> String {
+        let all: Vec<String> =
+            Self::ALL.iter().flat_map(|(_, extensions)| *extensions).map(|e| format!(".{e}")).collect();
+        match all.as_slice() {
+            [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
+            all => all.join(", "),
+        }
+    }
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}
+
+/// Reads a model and the files that it names. Textures outside it are only tested for existence.
+///
+/// # Errors
+/// A file that cannot be read, or that is broken: see [`ModelFileErrorKind`].
+pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ModelFileError> {
+    load_with(path, &Options::default(), |_, _| {})
+}
+
+/// Reads a file with `options`, as [`load`] does. It tells `progress` how many bytes of the model's file have been read,
+/// and how long the file is: after every 64 KiB or so, and at the end. Making a mesh of it then takes about as long
+/// again. A pipe or a device has the length 0; a file that grows meanwhile may be read beyond the length that it had.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_with(
+    path: impl AsRef<Path>,
+    options: &Options,
+    progress: impl FnMut(u64, u64),
+) -> Result<Loaded, ModelFileError> {
+    let path = path.as_ref();
+    let failed = |error: io::Error| ModelFileError::of_file(path, ModelFileErrorKind::Read(error));
+    let file = File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(ModelFileError::of_file(path, ModelFileErrorKind::Directory));
+    }
+    let file = BufReader::with_capacity(1 << 16, Counted::new(file, metadata.len(), progress));
+    let Parsed { mut mesh, textures, up, mut warnings, named, origin } = read(file, path, ordinary_file, options)?;
+    let outside = outside(&mesh, &textures);
+    let files = [path.to_owned()].into_iter().chain(named).chain(outside).collect();
+    for surface in mesh.surfaces_mut() {
+        let is_missing = |texture: &mut String| !textures.contains_key(texture) && !Path::new(texture).is_file();
+        if let Some(texture) = surface.texture.take_if(is_missing) {
+            let name = &surface.name;
+            warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
+        }
+    }
+    Ok(Loaded { mesh, textures, up, warnings: warnings.into_lines(), files, origin })
+}
+
+/// Reads a model from `reader`. Errors call it `path`, whose extension says its format, and the files that it names are
+/// looked for beside that: `file` is given their paths and returns their bytes. Textures outside the file are not looked
+/// for. What is in no known format is read as OBJ.
+///
+/// ```
+/// use mode13h_assets::model_file;
+/// let text = "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+/// let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+/// let model = model_file::parse(text.as_bytes(), "standard input", none, &model_file::Options::default())?;
+/// assert_eq!(model.mesh.triangles(), [[0, 1, 2]]);
+/// # Ok::<(), model_file::ModelFileError>(())
+/// ```
+///
+/// # Errors
+/// Those of [`load`].
+pub fn parse(
+    reader: impl BufRead,
+    path: impl AsRef<Path>,
+    file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    options: &Options,
+) -> Result<Loaded, ModelFileError> {
+    read(reader, path.as_ref(), file, options).map(Loaded::from)
+}
+
+impl From<Parsed> for Loaded {
+    fn from(Parsed { mesh, textures, up, warnings, named, origin }: Parsed) -> Self {
+        let files = named.into_iter().chain(outside(&mesh, &textures)).collect();
+        Self { mesh, textures, up, warnings: warnings.into_lines(), files, origin }
+    }
+}
+
+/// The textures that a model's materials name and its file does not bring.
+fn outside(mesh: &Mesh, textures: &Embedded) -> Vec<PathBuf> {
+    let named = mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref());
+    named.filter(|name| !textures.contains_key(*name)).map(PathBuf::from).collect()
+}
+
+/// Reads the bytes of a file that a model names. Only ordinary files are accepted: it may name a device that never ends.
+pub(crate) fn ordinary_file(path: &Path) -> io::Result<Vec<u8>> {
+    match fs::metadata(path)?.is_file() {
+        true => fs::read(path),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
+    }
+}
+
+/// The bytes themselves, or what they hold if they begin as a file packed by gzip does.
+///
+/// # Errors
+/// The reader's.
+pub fn unpacked<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead + 'r>> {
+    let is_packed = reader.fill_buf()?.starts_with(&[0x1F, 0x8B]);
+    Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(reader))) } else { Box::new(reader) })
+}
+
+/// A model of which no texture outside its file was looked for.
+pub(crate) struct Parsed {
+    mesh: Mesh,
+    textures: Embedded,
+    up: Option<UpAxis>,
+    warnings: Warnings,
+    /// The paths that the caller was asked for.
+    named: Vec<PathBuf>,
+    origin: [f64; 3],
+}
+
+/// What the reader of a format gives.
+#[derive(Default)]
+pub(crate) struct Draft {
+    pub(crate) lists: Lists,
+    /// The surfaces that the lists' runs name. Empty for one without a name.
+    pub(crate) surfaces: Vec<Surface>,
+    pub(crate) textures: Embedded,
+    pub(crate) up: Option<UpAxis>,
+    pub(crate) warnings: Warnings,
+}
+
+fn read(
+    reader: impl BufRead,
+    path: &Path,
+    mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    options: &Options,
+) -> Result<Parsed, ModelFileError> {
+    let failed = |error: io::Error| ModelFileError::of_file(path, ModelFileErrorKind::Read(error));
+    let mut named = Vec::new();
+    let file = |path: &Path| {
+        named.push(path.to_owned());
+        file(path)
+    };
+    let mut reader = unpacked(reader).map_err(failed)?;
+    let format = Format::of_path(path);
+    let draft = if format == Some(Format::Obj) {
+        obj::draft(reader, path, file)?
+    } else {
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).map_err(failed)?;
+        match format.or_else(|| Format::of_bytes(&bytes)).unwrap_or(Format::Obj) {
+            Format::Obj => obj::draft(&bytes[..], path, file)?,
+            Format::Stl => stl::draft(&bytes, path)?,
+            Format::Ply => ply::draft(&bytes, path)?,
+        }
+    };
+    finish(draft, path, named, options)
+}
+
+/// Makes the mesh of what a format's reader gives.
+pub(crate) fn finish(
+    draft: Draft,
+    path: &Path,
+    named: Vec<PathBuf>,
+    options: &Options,
+) -> Result<Parsed, ModelFileError> {
+    let Draft { mut lists, mut surfaces, textures, up, mut warnings } = draft;
+    let shown = path.display();
+    let place = |place: Place| match place {
+        Place::Line(line) => format!("{shown}:{line}"),
+        Place::Offset(offset) => format!("{shown}: byte {offset}"),
+    };
+    match lists.short {
+        None => {}
+        Some((first, 1)) => warnings.push(|| format!("{}: left out a face of fewer than 3 corners", place(first))),
+        Some((first, count)) => {
+            warnings
+                .push(|| format!("{}: left out {count} faces of fewer than 3 corners, the first here", place(first)));
+        }
+    }
+    if lists.sizes.is_empty() {
+        return Err(ModelFileError::of_file(path, ModelFileErrorKind::NoFaces));
+    }
+    let middle = lists::far_middle(&lists.positions, &lists.corners);
+    if let Some([x, y, z]) = middle {
+        warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));
+    }
+    // In place, as a file may hold many.
+    let positions = core::mem::take(&mut lists.positions).into_iter().map(|p| p.narrow(middle)).collect();
+    if surfaces.is_empty() {
+        surfaces.push(Surface::default());
+    }
+    let (mesh, mended) = gather::mesh(lists, positions, surfaces, options.crease).map_err(|(line, kind)| {
+        ModelFileError { path: path.to_owned(), place: line.map(Place::Line), kind } //
+    })?;
+    match mended.pairs {
+        0 => {}
+        1 => warnings.push(|| format!("{shown}: left out two faces back to back")),
+        pairs => warnings.push(|| format!("{shown}: left out {pairs} pairs of faces back to back")),
+    }
+    match mended.turned {
+        0 => {}
+        1 => warnings.push(|| format!("{shown}: turned round a body that was inside out")),
+        turned => warnings.push(|| format!("{shown}: turned round {turned} bodies that were inside out")),
+    }
+    Ok(Parsed { mesh, textures, up, warnings, named, origin: middle.unwrap_or_default() })
+}

@@ -1,0 +1,71 @@
+//! Words of a text format in which line ends count as blanks, with their lines.
+
+use super::{ModelFileError, ModelFileErrorKind, Place};
+use crate::obj::line::{parsed, shown};
+use std::path::Path;
+
+/// Words, one after the other. LF, CR LF and CR end a line.
+pub(crate) struct Tokens<'b> {
+    bytes: &'b [u8],
+    at: usize,
+    /// The line at `at`, counted from 1.
+    line: u64,
+    /// The line of the word that was read last.
+    pub(crate) word_line: u64,
+}
+
+impl<'b> Tokens<'b> {
+    /// The words of `bytes`, whose first line has this number.
+    pub(crate) fn new(bytes: &'b [u8], line: u64) -> Self {
+        Self { bytes, at: 0, line, word_line: line }
+    }
+
+    /// The line of the next word, or of the end.
+    pub(crate) fn line_of_next(&mut self) -> u64 {
+        while let Some(byte) = self.bytes.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
+            self.line += u64::from(ends_line(self.bytes, self.at, *byte));
+            self.at += 1;
+        }
+        self.line
+    }
+
+    /// The next word; `None` at the end.
+    pub(crate) fn next(&mut self) -> Option<&'b [u8]> {
+        let line = self.line_of_next();
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        if length == 0 {
+            return None;
+        }
+        self.word_line = line;
+        self.at += length;
+        Some(&rest[..length])
+    }
+
+    /// Leaves out what is left of the line.
+    pub(crate) fn skip_line(&mut self) {
+        let rest = &self.bytes[self.at..];
+        self.at += rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
+    }
+
+    /// The next word as a number within the range of f32.
+    pub(crate) fn number(&mut self, what: &'static str) -> Result<f64, ModelFileErrorKind> {
+        let word = self.next().ok_or(ModelFileErrorKind::Ends(what))?;
+        parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ModelFileErrorKind::Ends(what))
+    }
+
+    /// An error at the word that was read last.
+    pub(crate) fn error(&self, path: &Path, kind: ModelFileErrorKind) -> ModelFileError {
+        ModelFileError::at(path, Place::Line(self.word_line), kind)
+    }
+}
+
+/// Whether a blank ends a line: an LF, or a CR without an LF behind it.
+fn ends_line(bytes: &[u8], at: usize, byte: u8) -> bool {
+    byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n'))
+}
+
+/// An error that says what should stand here instead of `word`.
+pub(crate) fn expected(expected: &'static str, word: &[u8]) -> ModelFileErrorKind {
+    ModelFileErrorKind::Expected { expected, found: shown(word) }
+}

@@ -1,0 +1,301 @@
+//! Models from PLY files, text and binary, little and big endian.
+//!
+//! | read | as |
+//! |---|---|
+//! | `x`, `y`, `z` of `vertex` | positions |
+//! | `nx`, `ny`, `nz` | normals; one of length 0 is as if left out |
+//! | `s t`, `u v` or `texture_u texture_v` of `vertex`, or a list `texcoord` of `face` | texture coordinates, if a comment `TextureFile` names the texture |
+//! | a list `vertex_indices` or `vertex_index` of `face` | a face of three corners or more, fewer are left out with a warning |
+//! | a list `vertex_indices` of `tristrips` | strips of triangles; a negative index ends one |
+//! | `red`, `green`, `blue` of `vertex` or `face` | a colour for each face, up to 256 in all: the mean over its corners |
+//! | all other elements and properties | left alone |
+//!
+//! Colours are numbers up to the greatest of their type, or up to 1 in `float` and `double`. A texture goes before colours,
+//! and colours of faces before those of vertices. A vertex's colour is its corners' share in a mean, as this engine's
+//! triangles have one colour; in a scan they are small.
+
+mod header;
+mod value;
+
+use std::path::Path;
+
+use mode13h::glam::{Vec2, Vec3};
+use mode13h::mesh::Surface;
+use mode13h::palette::Rgb;
+
+use crate::model_file::lists::{Corner, Lists, Wide, push};
+use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, paint};
+use header::{Element, Header, Kind};
+use value::Values;
+
+/// Returns whether a file begins as a PLY does.
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
+}
+
+/// Reads a file.
+pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> {
+    let header = Header::read(bytes, path)?;
+    let mut draft = Draft::default();
+    let mut values = Values::new(&header, bytes);
+    let mut reading = Reading::new(&header, path)?;
+    for element in &header.elements {
+        // A row of nothing takes no bytes, and a header may announce 2⁶⁴ of them.
+        if element.properties.is_empty() {
+            continue;
+        }
+        let result = match element.name.as_str() {
+            "vertex" => reading.vertices(element, &mut values, &mut draft.lists),
+            "face" => reading.faces(element, &mut values, &mut draft.lists),
+            "tristrips" => reading.strips(element, &mut values, &mut draft.lists),
+            _ => (0..element.count).try_for_each(|_| values.skip(element)),
+        };
+        result.map_err(|kind| ModelFileError::at(path, values.place(), kind))?;
+    }
+    reading.finish(&header, path, &mut draft);
+    Ok(draft)
+}
+
+/// What the elements give beside positions, normals and faces.
+struct Reading {
+    /// The number of vertices that the header announces.
+    vertices: u64,
+    /// The colour of each vertex, or of none.
+    of_vertices: Vec<Rgb>,
+    /// The colour of each face, or of none.
+    of_faces: Vec<Rgb>,
+    /// Each vertex has texture coordinates, under its own index.
+    has_texcoords: bool,
+    /// Corners of faces have their own.
+    has_pairs: bool,
+    has_texture: bool,
+}
+
+impl Reading {
+    fn new(header: &Header, path: &Path) -> Result<Self, ModelFileError> {
+        let vertex = header.elements.iter().find(|element| element.name == "vertex");
+        let has_place = vertex.is_some_and(|v| ["x", "y", "z"].iter().all(|axis| v.scalar(&[axis]).is_some()));
+        if !has_place {
+            let what = "no positions: an element `vertex` needs x, y and z".into();
+            return Err(ModelFileError::of_file(path, ModelFileErrorKind::Fault(what)));
+        }
+        Ok(Self {
+            vertices: vertex.map_or(0, |vertex| vertex.count),
+            of_vertices: Vec::new(),
+            of_faces: Vec::new(),
+            has_texcoords: false,
+            has_pairs: false,
+            has_texture: header.texture.is_some(),
+        })
+    }
+
+    fn vertices(
+        &mut self,
+        element: &Element,
+        values: &mut Values<'_>,
+        lists: &mut Lists,
+    ) -> Result<(), ModelFileErrorKind> {
+        let place = ["x", "y", "z"].map(|name| element.scalar(&[name]));
+        let normal = ["nx", "ny", "nz"].map(|name| element.scalar(&[name]));
+        let colors = element.colors();
+        let pair = [["s", "u", "texture_u"], ["t", "v", "texture_v"]].map(|names| element.scalar(&names));
+        self.has_texcoords = self.has_texture && pair.iter().all(Option::is_some);
+        let mut row = Vec::new();
+        for _ in 0..element.count {
+            values.row(element, &mut row, |_, _| Ok(()))?;
+            let number = |property: Option<usize>| -> Result<f64, ModelFileErrorKind> {
+                let value = property.map_or(0.0, |property| row[property]);
+                if (value as f32).is_finite() {
+                    Ok(value)
+                } else {
+                    Err(ModelFileErrorKind::NotFinite(value.to_string()))
+                }
+            };
+            let [x, y, z] = place;
+            push(&mut lists.positions, Wide::new([number(x)?, number(y)?, number(z)?]))?;
+            if let [Some(x), Some(y), Some(z)] = normal {
+                // A scan has NaN where no surface was found.
+                let normal = Vec3::from_array([x, y, z].map(|axis| row[axis] as f32));
+                lists.normals.push(if normal.is_finite() { normal } else { Vec3::ZERO });
+            }
+            if let Some(colors) = colors {
+                self.of_vertices.push(element.color(colors, &row));
+            }
+            if self.has_texcoords {
+                let [u, v] = pair;
+                lists.texcoords.push(Vec2::new(number(u)? as f32, number(v)? as f32));
+            }
+        }
+        Ok(())
+    }
+
+    /// The vertex of an index.
+    fn vertex(&self, index: f64) -> Result<u32, ModelFileErrorKind> {
+        if index >= 0.0 && index < self.vertices as f64 && index < f64::from(u32::MAX) && index.fract() == 0.0 {
+            return Ok(index as u32);
+        }
+        match index.fract() == 0.0 && index.abs() < 1e18 {
+            true => Err(ModelFileErrorKind::IndexOutOfRange {
+                what: "vertex",
+                index: index as i64,
+                count: usize::try_from(self.vertices).unwrap_or(usize::MAX),
+            }),
+            false => Err(ModelFileErrorKind::NotCorner(index.to_string())),
+        }
+    }
+
+    /// The corner at a vertex, with all that the vertex has.
+    fn corner(&self, vertex: u32, has_normals: bool) -> Corner {
+        let or_none = |has: bool| if has { vertex } else { Corner::NONE };
+        Corner { position: vertex, texcoord: or_none(self.has_texcoords), normal: or_none(has_normals) }
+    }
+
+    fn faces(
+        &mut self,
+        element: &Element,
+        values: &mut Values<'_>,
+        lists: &mut Lists,
+    ) -> Result<(), ModelFileErrorKind> {
+        let Some(indices) = element.list(&["vertex_indices", "vertex_index"]) else {
+            let what = "an element `face` needs a list vertex_indices";
+            return Err(ModelFileErrorKind::Fault(what.into()));
+        };
+        let pairs = element.list(&["texcoord"]).filter(|_| self.has_texture);
+        let (colors, has_normals) = (element.colors(), has_normals(lists, self.vertices));
+        let (mut row, mut corners, mut texcoords) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..element.count {
+            corners.clear();
+            texcoords.clear();
+            let place = values.place_of_next();
+            values.row(element, &mut row, |property, value| {
+                if property == indices {
+                    corners.push(self.corner(self.vertex(value)?, has_normals));
+                } else if Some(property) == pairs {
+                    let finite = (value as f32).is_finite();
+                    texcoords.push(if finite { value as f32 } else { 0.0 });
+                }
+                Ok(())
+            })?;
+            let first = lists.corners.len();
+            if pairs.is_some() && texcoords.len() == 2 * corners.len() {
+                for (corner, pair) in corners.iter_mut().zip(texcoords.chunks_exact(2)) {
+                    // Fewer than 2³², see `push`.
+                    corner.texcoord = lists.texcoords.len() as u32;
+                    push(&mut lists.texcoords, Vec2::new(pair[0], pair[1]))?;
+                }
+            }
+            lists.corners.extend(&corners);
+            let before = lists.sizes.len();
+            lists.end_face(first, place)?;
+            if let Some(colors) = colors.filter(|_| lists.sizes.len() > before) {
+                self.of_faces.push(element.color(colors, &row));
+            }
+        }
+        self.has_pairs |= pairs.is_some();
+        Ok(())
+    }
+
+    fn strips(
+        &mut self,
+        element: &Element,
+        values: &mut Values<'_>,
+        lists: &mut Lists,
+    ) -> Result<(), ModelFileErrorKind> {
+        let Some(indices) = element.list(&["vertex_indices", "vertex_index"]) else {
+            return (0..element.count).try_for_each(|_| values.skip(element));
+        };
+        let has_normals = has_normals(lists, self.vertices);
+        let mut row = Vec::new();
+        for _ in 0..element.count {
+            let place = values.place_of_next();
+            // The last two corners, and how many the strip has had.
+            let (mut last, mut length) = ([None; 2], 0_u64);
+            values.row(element, &mut row, |property, value| {
+                if property != indices {
+                    return Ok(());
+                }
+                if value < 0.0 {
+                    (last, length) = ([None; 2], 0);
+                    return Ok(());
+                }
+                let corner = self.corner(self.vertex(value)?, has_normals);
+                if let [Some(a), Some(b)] = last {
+                    let first = lists.corners.len();
+                    lists.corners.extend(if length.is_multiple_of(2) { [a, b, corner] } else { [b, a, corner] });
+                    lists.end_face(first, place)?;
+                }
+                last = [last[1], Some(corner)];
+                length += 1;
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The texture, or the colours.
+    fn finish(self, header: &Header, path: &Path, draft: &mut Draft) {
+        if let (Some((_, name)), true) = (&header.texture, self.has_texcoords || self.has_pairs) {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let file = folder.join(name).to_string_lossy().into_owned();
+            draft.surfaces.push(Surface { name: name.clone(), texture: Some(file), ..Surface::default() });
+            return;
+        }
+        if let Some((line, _)) = header.texture {
+            let shown = path.display();
+            draft.warnings.push(|| format!("{shown}:{line}: no texture coordinates; drawn without the texture"));
+        }
+        let lists = &draft.lists;
+        let colors = if self.of_faces.len() == lists.sizes.len() {
+            self.of_faces
+        } else if self.of_vertices.len() == lists.positions.len() {
+            let mut corners = lists.corners.iter();
+            lists.sizes.iter().map(|&size| mean(corners.by_ref().take(size as usize), &self.of_vertices)).collect()
+        } else {
+            return;
+        };
+        if !colors.is_empty() {
+            paint(draft, &colors, format!("{}#colours", path.display()));
+        }
+    }
+}
+
+/// Whether each vertex has a normal. The vertices may stand behind the faces, which then have none.
+fn has_normals(lists: &Lists, vertices: u64) -> bool {
+    !lists.normals.is_empty() && lists.normals.len() as u64 == vertices
+}
+
+/// The mean colour of a face's corners.
+fn mean<'c>(corners: impl Iterator<Item = &'c Corner>, colors: &[Rgb]) -> Rgb {
+    let (mut sums, mut count) = ([0_u64; 3], 0);
+    for corner in corners {
+        let Rgb { r, g, b } = colors[corner.position as usize];
+        sums.iter_mut().zip([r, g, b]).for_each(|(sum, channel)| *sum += u64::from(channel));
+        count += 1;
+    }
+    // At most 255.
+    let [r, g, b] = sums.map(|sum| ((sum + count / 2) / count.max(1)) as u8);
+    Rgb::new(r, g, b)
+}
+
+impl Element {
+    /// Red, green and blue.
+    fn colors(&self) -> Option<[usize; 3]> {
+        let [red, green, blue] =
+            [["red", "diffuse_red", "r"], ["green", "diffuse_green", "g"], ["blue", "diffuse_blue", "b"]]
+                .map(|names| self.scalar(&names));
+        Some([red?, green?, blue?])
+    }
+
+    /// The colour of a row.
+    fn color(&self, colors: [usize; 3], row: &[f64]) -> Rgb {
+        let [r, g, b] = colors.map(|property| {
+            let full = match self.properties[property].kind {
+                Kind::Scalar(number) => number.full(),
+                Kind::List { .. } => 255.0,
+            };
+            // 0 to 255.5: the cast truncates after the half, and makes 0 of a NaN.
+            ((row[property] / full).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+        });
+        Rgb::new(r, g, b)
+    }
+}
