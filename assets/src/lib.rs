@@ -5,7 +5,7 @@
 //! | [`scene_file`] | scenes in TOML: camera, shapes, models, materials, lights, fog, motion |
 //! | [`shipped`] | the scenes that are compiled in |
 //! | [`model_file`] | meshes from files in any of the formats |
-//! | [`obj`], [`stl`], [`ply`] | the formats of models |
+//! | [`obj`], [`stl`], [`ply`], `gltf` | the formats of models |
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
 //! | [`texture`] | textures from pictures: PNG, and by the feature `images` JPEG, TGA, BMP, GIF and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
@@ -25,6 +25,8 @@ pub mod animation;
 pub mod auto_palette;
 #[cfg(feature = "std")]
 mod errors;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 #[cfg(feature = "std")]
 pub mod model;
 #[cfg(feature = "std")]

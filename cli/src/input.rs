@@ -66,8 +66,7 @@ impl Input {
 }
 
 /// Meaning of INPUT, for the help.
-pub(crate) const HELP: &str =
-    "A scene (.toml), a model (.obj, .stl, .ply), - for either on standard input, or the name of a scene or a shape";
+pub(crate) const HELP: &str = "A scene (.toml), a model (.obj, .stl, .ply, .gltf, .glb), - for either on standard input, or the name of a scene or a shape";
 
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {

@@ -8,6 +8,7 @@ mod errors;
 #[cfg(feature = "png")]
 mod export;
 mod gif;
+mod gltf_files;
 #[cfg(feature = "alloc")]
 mod mesh_normals;
 #[cfg(feature = "alloc")]

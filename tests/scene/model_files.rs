@@ -367,5 +367,5 @@ fn contents_say_the_format() {
     ] {
         assert_eq!(Format::of_path(Path::new(name)), format, "{name}");
     }
-    assert_eq!(Format::extensions(), ".obj, .stl and .ply");
+    assert_eq!(Format::extensions(), ".obj, .stl, .ply, .gltf and .glb");
 }

@@ -1,6 +1,6 @@
 //! Colours of faces, as scans have them: a texture whose texels are the model's colours.
 //!
-//! Each face gets one of up to 256 colours, found by median cut, and its corners the texture coordinates of that
+//! Each such face gets one of up to 256 colours, found by median cut, and its corners the texture coordinates of that
 //! colour's texel. So the faces of a scan are one material, lit and shaded as any texture, and no table is made for each
 //! colour. A face has one colour all over.
 
@@ -15,9 +15,10 @@ use super::Draft;
 /// The side of the texture, in texels.
 const SIDE: u8 = 16;
 
-/// Gives each face of the draft its colour, by a texture of that name. `colors` has one for each face.
-pub(crate) fn paint(draft: &mut Draft, colors: &[Rgb], name: String) {
-    let mut sorted = colors.to_vec();
+/// Gives faces of the draft their colours, by a texture of that name: `colors` has their indices, in ascending order.
+/// Returns the surface that these faces must have.
+pub(crate) fn paint(draft: &mut Draft, colors: &[(usize, Rgb)], name: String) -> Surface {
+    let mut sorted: Vec<Rgb> = colors.iter().map(|(_, color)| *color).collect();
     sorted.sort_unstable();
     // At most 2³¹ faces.
     let counted = sorted.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u32)).collect();
@@ -26,16 +27,27 @@ pub(crate) fn paint(draft: &mut Draft, colors: &[Rgb], name: String) {
     let means: Vec<Rgb> = cut.means().collect();
     let search = NearestColors::new(&means);
     let lists = &mut draft.lists;
+    // Fewer than 2³² corners, and about as many pairs.
+    let first_pair = lists.texcoords.len() as u32;
     let centre = |index: u8| (f32::from(index) + 0.5) / f32::from(SIDE);
-    lists.texcoords = (0..=255).map(|i| Vec2::new(centre(i % SIDE), centre(i / SIDE))).collect();
+    lists.texcoords.extend((0..=255).map(|i| Vec2::new(centre(i % SIDE), centre(i / SIDE))));
     let mut corners = lists.corners.iter_mut();
-    for (&size, &color) in lists.sizes.iter().zip(colors) {
-        let texel = search.nearest(color);
-        corners.by_ref().take(size as usize).for_each(|corner| corner.texcoord = u32::from(texel));
+    let mut colors = colors.iter().peekable();
+    for (face, &size) in lists.sizes.iter().enumerate() {
+        let corners = corners.by_ref().take(size as usize);
+        match colors.next_if(|(colored, _)| *colored == face) {
+            Some((_, color)) => {
+                let pair = first_pair + u32::from(search.nearest(*color));
+                corners.for_each(|corner| corner.texcoord = pair);
+            }
+            None => corners.for_each(drop),
+        }
     }
     let mut entries = [Rgb::BLACK; 256];
     entries.iter_mut().zip(means).for_each(|(entry, mean)| *entry = mean);
-    let Ok(texture) = Texture::new(SIDE.into(), SIDE.into(), (0..=255).collect(), entries) else { return };
-    draft.textures.insert(name.clone(), Shared::new(texture));
-    draft.surfaces = [Surface { name: "colours".into(), texture: Some(name), ..Surface::default() }].into();
+    let texture = Texture::new(SIDE.into(), SIDE.into(), (0..=255).collect(), entries).ok().map(|texture| {
+        draft.textures.insert(name.clone(), Shared::new(texture));
+        name
+    });
+    Surface { name: "colours".into(), texture, ..Surface::default() }
 }

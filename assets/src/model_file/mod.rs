@@ -5,6 +5,7 @@
 //! | Wavefront OBJ with MTL | [`obj`](crate::obj) | positions, texture coordinates, normals, smoothing groups, materials |
 //! | STL, text and binary | [`stl`](crate::stl) | triangles; corners at the same place are one vertex |
 //! | PLY, text and both binaries | [`ply`](crate::ply) | faces of any size, strips, normals, texture coordinates, colours |
+//! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene at rest as one mesh: materials, textures in the file and beside it, colours |
 //!
 //! A file's name says its format, with or without `.gz` behind it. A name without a known extension leaves it to the
 //! contents. Files packed by gzip are unpacked, whatever their name.
@@ -47,7 +48,7 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// The textures that the file itself brings, by the names that the mesh's surfaces give them.
     pub textures: Embedded,
-    /// The axis that points up, if the format says so: z for STL.
+    /// The axis that points up, if the format says so: z for STL, y for glTF.
     pub up: Option<UpAxis>,
     /// The warnings, one line each, with the file and the line in it: the first hundred, and the number of further
     /// ones.
@@ -81,12 +82,20 @@ pub enum Format {
     Stl,
     /// PLY, text or binary.
     Ply,
+    /// glTF 2.0, JSON or binary.
+    #[cfg(feature = "gltf")]
+    Gltf,
 }
 
 impl Format {
     /// All formats, with their extensions.
-    pub const ALL: [(Self, &'static [&'static str]); 3] =
-        [(Self::Obj, &["obj"]), (Self::Stl, &["stl"]), (Self::Ply, &["ply"])];
+    pub const ALL: &'static [(Self, &'static [&'static str])] = &[
+        (Self::Obj, &["obj"]),
+        (Self::Stl, &["stl"]),
+        (Self::Ply, &["ply"]),
+        #[cfg(feature = "gltf")]
+        (Self::Gltf, &["gltf", "glb"]),
+    ];
 
     /// The format that a file's extension says, with or without `.gz` behind it.
     #[must_use]
@@ -100,6 +109,10 @@ impl Format {
     /// The format that the bytes of a file are in, as far as its beginning and its length say.
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
+        #[cfg(feature = "gltf")]
+        if crate::gltf::recognizes(bytes) {
+            return Some(Self::Gltf);
+        }
         if ply::recognizes(bytes) {
             Some(Self::Ply)
         } else if stl::recognizes(bytes) {
@@ -111,7 +124,7 @@ impl Format {
         }
     }
 
-    /// The extensions of all formats, as a sentence lists them: `.obj, .stl and .ply`.
+    /// The extensions of all formats, as a sentence lists them: `.obj, .stl, .ply, .gltf and .glb`.
     #[must_use]
     pub fn extensions() -> String {
         let all: Vec<String> =
@@ -266,6 +279,8 @@ fn read(
             Format::Obj => obj::draft(&bytes[..], path, file)?,
             Format::Stl => stl::draft(&bytes, path)?,
             Format::Ply => ply::draft(&bytes, path)?,
+            #[cfg(feature = "gltf")]
+            Format::Gltf => crate::gltf::draft(&bytes, path, file)?,
         }
     };
     finish(draft, path, named, options)

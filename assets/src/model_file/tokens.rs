@@ -10,14 +10,14 @@ pub(crate) struct Tokens<'b> {
     at: usize,
     /// The line at `at`, counted from 1.
     line: u64,
-    /// The line of the word that was read last.
+    /// The line of the word that was read last; before the first, of the line before.
     pub(crate) word_line: u64,
 }
 
 impl<'b> Tokens<'b> {
     /// The words of `bytes`, whose first line has this number.
     pub(crate) fn new(bytes: &'b [u8], line: u64) -> Self {
-        Self { bytes, at: 0, line, word_line: line }
+        Self { bytes, at: 0, line, word_line: line.saturating_sub(1).max(1) }
     }
 
     /// The line of the next word, or of the end.

@@ -167,6 +167,9 @@ impl Header {
         let Some(encoding) = encoding else {
             return Err(ModelFileError::of_line(path, lines.number, ModelFileErrorKind::Ends("a line `format`")));
         };
+        if encoding == Encoding::Text && bytes[..lines.at].ends_with(b"\r") && bytes[lines.at..].starts_with(b"\n") {
+            lines.at += 1;
+        }
         Ok(Self { encoding, elements, texture, length: lines.at, lines: lines.number })
     }
 }
@@ -198,8 +201,10 @@ impl<'b> HeaderLines<'b> {
         let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'))?;
         let first = self.bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(0);
         let is_pair = self.bytes[first..].starts_with(b"\r\n") && rest[end..].starts_with(b"\r\n");
+        // Where only some lines end in CR LF, an LF behind a CR is no line of its own for who counts.
+        let is_second = end == 0 && rest[0] == b'\n' && self.bytes[..self.at].ends_with(b"\r");
         self.at += end + 1 + usize::from(is_pair);
-        self.number += 1;
+        self.number += u64::from(!is_second);
         Some(&rest[..end])
     }
 }

@@ -254,7 +254,9 @@ impl Reading {
             return;
         };
         if !colors.is_empty() {
-            paint(draft, &colors, format!("{}#colours", path.display()));
+            let colors: Vec<(usize, Rgb)> = colors.into_iter().enumerate().collect();
+            let surface = paint(draft, &colors, format!("{}#colours", path.display()));
+            draft.surfaces.push(surface);
         }
     }
 }

@@ -105,7 +105,7 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (
             model("model.3ds"),
             2,
-            "model.3ds: nothing that can be read: models are .obj, .stl and .ply files, scenes .toml",
+            "model.3ds: nothing that can be read: models are .obj, .stl, .ply, .gltf and .glb files, scenes .toml",
         ),
         (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h scenes lists the names)"),
         (model(""), 2, "mode13h: '': an empty word names nothing (mode13h render --help"),

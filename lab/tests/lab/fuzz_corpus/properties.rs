@@ -30,11 +30,12 @@ use mode13h_lab::replay;
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
-pub const PROPERTIES: [Property; 13] = [
+pub const PROPERTIES: [Property; 14] = [
     ("obj", obj),
     ("mtl", mtl),
     ("stl", stl),
     ("ply", ply),
+    ("gltf", gltf),
     ("palette_jasc", palette_jasc),
     ("palette_gimp", palette_gimp),
     ("palette_hex", palette_hex),
@@ -137,11 +138,12 @@ fn check_obj(result: &Result<Loaded, ModelFileError>, model: &[u8], materials: &
     }
 }
 
-/// A model's error names a line or a byte of its file, or the byte behind the last.
+/// A model's error names a line or a byte of its file, or the byte behind the last. An empty file has a line, too.
 fn check_place(error: &ModelFileError, bytes: &[u8]) {
     match error.place {
         Some(model_file::Place::Line(line)) => {
-            assert!(line >= 1 && line <= lines_in(bytes) as u64, "{error}: of {} lines", lines_in(bytes));
+            let lines = lines_in(bytes).max(1);
+            assert!(line >= 1 && line <= lines as u64, "{error}: of {lines} lines");
         }
         Some(model_file::Place::Offset(at)) => assert!(at <= bytes.len() as u64, "{error}: of {} bytes", bytes.len()),
         None => {}
@@ -156,6 +158,11 @@ pub fn stl(bytes: &[u8]) {
 /// A PLY file, text or binary.
 pub fn ply(bytes: &[u8]) {
     model(bytes, "model.ply");
+}
+
+/// A glTF file, JSON or binary.
+pub fn gltf(bytes: &[u8]) {
+    model(bytes, "model.glb");
 }
 
 /// A model's file of this name, beside which there is none.

@@ -1,0 +1,195 @@
+//! Buffers, and the numbers in them.
+
+use std::io;
+use std::path::Path;
+
+use ::gltf::accessor::{DataType, sparse};
+use ::gltf::buffer::{self, Source};
+use ::gltf::{Accessor, Document};
+use base64::Engine;
+use base64::engine::general_purpose::GeneralPurpose;
+use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
+
+use super::material::Image;
+
+/// The bytes of all buffers, and of the images that are no part of them.
+pub(super) struct Buffers {
+    buffers: Vec<Vec<u8>>,
+    /// The bytes of each image, or why there are none.
+    pub(super) images: Vec<Image>,
+}
+
+/// The max number of rows of a list that no buffer has: all are 0.
+const MAX_ZEROS: usize = 1 << 16;
+
+impl Buffers {
+    /// Reads all buffers and images.
+    pub(super) fn read(
+        document: &Document,
+        binary: Option<&[u8]>,
+        path: &Path,
+        mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    ) -> Result<Self, String> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut buffers = Vec::new();
+        for buffer in document.buffers() {
+            let part = format!("buffers[{}]", buffer.index());
+            let bytes = match buffer.source() {
+                Source::Bin => {
+                    binary.map(<[u8]>::to_vec).ok_or_else(|| format!("{part}: the file has no chunk of bytes"))?
+                }
+                Source::Uri(uri) => match data(uri) {
+                    Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?,
+                    None => {
+                        let path = folder.join(decoded(uri));
+                        file(&path).map_err(|error| format!("{part}: {}: {error}", path.display()))?
+                    }
+                },
+            };
+            if bytes.len() < buffer.length() {
+                return Err(format!("{part}: {} bytes, but it says {}", bytes.len(), buffer.length()));
+            }
+            buffers.push(bytes);
+        }
+        let mut own = Self { buffers, images: Vec::new() };
+        for image in document.images() {
+            let image = match image.source() {
+                ::gltf::image::Source::View { view, .. } => match own.view(&view) {
+                    Ok(bytes) => Image::Bytes(bytes.to_vec()),
+                    Err(what) => return Err(format!("images[{}]: {what}", image.index())),
+                },
+                ::gltf::image::Source::Uri { uri, .. } => match data(uri) {
+                    Some(Ok(bytes)) => Image::Bytes(bytes),
+                    Some(Err(what)) => return Err(format!("images[{}]: {what}", image.index())),
+                    None => Image::File(folder.join(decoded(uri)).to_string_lossy().into_owned()),
+                },
+            };
+            own.images.push(image);
+        }
+        Ok(own)
+    }
+
+    fn view(&self, view: &buffer::View<'_>) -> Result<&[u8], String> {
+        let bytes = self.buffers.get(view.buffer().index()).map(Vec::as_slice).unwrap_or_default();
+        let end = view.offset().checked_add(view.length());
+        end.and_then(|end| bytes.get(view.offset()..end))
+            .ok_or_else(|| format!("bufferViews[{}] ends beyond its buffer", view.index()))
+    }
+
+    /// The rows of an accessor, the first `N` numbers of each.
+    pub(super) fn rows<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, String> {
+        let part = format!("accessors[{}]", accessor.index());
+        if accessor.dimensions().multiplicity() < N {
+            return Err(format!("{part} has fewer than {N} numbers in a row"));
+        }
+        let (kind, size) = (accessor.data_type(), accessor.size());
+        let row = |bytes: &[u8]| row::<N>(bytes, kind, accessor.normalized());
+        let mut rows: Vec<[f64; N]> = match accessor.view() {
+            Some(view) => {
+                let bytes = self.view(&view)?;
+                let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(size);
+                let rows = slices(bytes, accessor.offset(), stride, size, accessor.count());
+                rows.ok_or_else(|| format!("{part} ends beyond bufferViews[{}]", view.index()))?.map(row).collect()
+            }
+            None if accessor.count() > MAX_ZEROS => return Err(format!("{part} has no bufferView")),
+            None => vec![[0.0; N]; accessor.count()],
+        };
+        if let Some(sparse) = accessor.sparse() {
+            let beyond = || format!("{part}.sparse ends beyond its bufferView");
+            let (indices, values) = (sparse.indices(), sparse.values());
+            let (kind, width) = match indices.index_type() {
+                sparse::IndexType::U8 => (DataType::U8, 1),
+                sparse::IndexType::U16 => (DataType::U16, 2),
+                sparse::IndexType::U32 => (DataType::U32, 4),
+            };
+            let view = indices.view();
+            let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(width);
+            let at = slices(self.view(&view)?, indices.offset(), stride, width, sparse.count()).ok_or_else(beyond)?;
+            let view = values.view();
+            let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(size);
+            let new = slices(self.view(&view)?, values.offset(), stride, size, sparse.count()).ok_or_else(beyond)?;
+            for (at, new) in at.zip(new) {
+                let [at] = self::row::<1>(at, kind, false);
+                *rows.get_mut(at as usize).ok_or_else(|| format!("{part}.sparse: there is no row {at}"))? = row(new);
+            }
+        }
+        Ok(rows)
+    }
+
+    /// The whole numbers of an accessor.
+    pub(super) fn read_indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, String> {
+        if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32) || accessor.normalized() {
+            return Err(format!("accessors[{}] has no indices", accessor.index()));
+        }
+        Ok(self.rows::<1>(accessor)?.into_iter().map(|[index]| index as u32).collect())
+    }
+}
+
+/// As many slices of `size` bytes as `count`, `stride` apart; `None` if they end beyond `bytes`.
+fn slices(
+    bytes: &[u8],
+    offset: usize,
+    stride: usize,
+    size: usize,
+    count: usize,
+) -> Option<impl Iterator<Item = &[u8]>> {
+    let last = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
+    let end = last?.checked_add(offset)?;
+    let bytes = bytes.get(offset.min(bytes.len())..).filter(|_| end <= bytes.len())?;
+    Some((0..count).map(move |i| &bytes[i * stride..][..size]))
+}
+
+/// The first `N` numbers of a row, which has as many.
+fn row<const N: usize>(bytes: &[u8], kind: DataType, normalized: bool) -> [f64; N] {
+    core::array::from_fn(|i| {
+        fn own<const B: usize>(bytes: &[u8], i: usize) -> [u8; B] {
+            bytes.as_chunks().0.get(i).copied().unwrap_or([0; B])
+        }
+        let (value, full): (f64, f64) = match kind {
+            DataType::I8 => (i8::from_le_bytes(own(bytes, i)).into(), i8::MAX.into()),
+            DataType::U8 => (u8::from_le_bytes(own(bytes, i)).into(), u8::MAX.into()),
+            DataType::I16 => (i16::from_le_bytes(own(bytes, i)).into(), i16::MAX.into()),
+            DataType::U16 => (u16::from_le_bytes(own(bytes, i)).into(), u16::MAX.into()),
+            DataType::U32 => (u32::from_le_bytes(own(bytes, i)).into(), u32::MAX.into()),
+            DataType::F32 => (f32::from_le_bytes(own(bytes, i)).into(), 1.0),
+        };
+        if normalized { (value / full).max(-1.0) } else { value }
+    })
+}
+
+/// The bytes of a data URI; `None` if it is another one.
+fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
+    let (head, body) = uri.strip_prefix("data:")?.split_once(',')?;
+    if !head.ends_with(";base64") {
+        return Some(Ok(decoded_bytes(body)));
+    }
+    const BASE64: GeneralPurpose = GeneralPurpose::new(
+        &base64::alphabet::STANDARD,
+        GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+    );
+    Some(BASE64.decode(body).map_err(|_| String::from("no base64")))
+}
+
+/// A URI's path with `%20` and the like decoded.
+fn decoded(uri: &str) -> String {
+    String::from_utf8_lossy(&decoded_bytes(uri)).into_owned()
+}
+
+fn decoded_bytes(uri: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, behind @ ..] = rest {
+        let digits = behind.get(..2).filter(|_| *first == b'%').and_then(|digits| str::from_utf8(digits).ok());
+        match digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &behind[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = behind;
+            }
+        }
+    }
+    bytes
+}

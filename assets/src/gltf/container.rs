@@ -1,0 +1,98 @@
+//! The two containers: JSON alone, and the binary one with JSON and bytes in chunks.
+
+use std::path::Path;
+
+use ::gltf::{Document, Error, json};
+
+use crate::errors::clause;
+use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
+
+/// The extensions without which a mesh would be read wrong.
+const NEEDED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Returns whether a file is a binary container, or JSON with an `asset`.
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+    let is_json = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start().starts_with(b"{");
+    bytes.starts_with(b"glTF") || (is_json && bytes.windows(7).any(|word| word == b"\"asset\""))
+}
+
+/// The document, and the binary chunk if there is one.
+pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option<&'b [u8]>), ModelFileError> {
+    let (text, start, binary) = match bytes.starts_with(b"glTF") {
+        true => chunks(bytes, path)?,
+        false => (bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), None, None),
+    };
+    let mut root: json::Root = json::deserialize::from_slice(text).map_err(|error| {
+        let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));
+        let place = match start {
+            None => Place::Line(error.line().max(1) as u64),
+            Some(start) => Place::Offset((start + offset(text, error.line(), error.column())) as u64),
+        };
+        ModelFileError::at(path, place, kind)
+    })?;
+    let fault = |what: String| ModelFileError::of_file(path, ModelFileErrorKind::Fault(what));
+    if let Some(needed) = root.extensions_required.iter().find(|name| NEEDED.contains(&name.as_str())) {
+        return Err(fault(format!("needs {needed}, which is not read")));
+    }
+    if !root.asset.version.starts_with("2.") {
+        return Err(fault(String::from("only glTF 2 is read")));
+    }
+    // Of what else is needed the rest can be drawn.
+    root.extensions_required.clear();
+    let document = Document::from_json(root).map_err(|error| match error {
+        Error::Validation(faults) => match faults.first() {
+            Some((part, what)) => fault(format!("{part}: {}", clause(&what.to_string()))),
+            None => fault(String::from("not valid")),
+        },
+        error => fault(clause(&error.to_string())),
+    })?;
+    Ok((document, binary))
+}
+
+/// The JSON of a binary file, where it begins, and the binary chunk.
+type Chunks<'b> = (&'b [u8], Option<usize>, Option<&'b [u8]>);
+
+fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError> {
+    let at = |offset: usize, kind| ModelFileError::at(path, Place::Offset(offset as u64), kind);
+    let ends = |what| at(bytes.len(), ModelFileErrorKind::Ends(what));
+    let word = |offset: usize| bytes.get(offset..)?.first_chunk().map(|word| u32::from_le_bytes(*word));
+    let version = word(4).ok_or_else(|| ends("the header of a glb"))?;
+    if version != 2 {
+        return Err(at(4, ModelFileErrorKind::Fault(format!("only glTF 2 is read, this is {version}"))));
+    }
+    let chunk = |offset: usize, what: &'static str| -> Result<(&'b [u8], u32), ModelFileError> {
+        let (Some(length), Some(kind)) = (word(offset), word(offset + 4)) else { return Err(ends(what)) };
+        let body = &bytes[offset + 8..];
+        usize::try_from(length)
+            .ok()
+            .and_then(|length| body.get(..length))
+            .map(|body| (body, kind))
+            .ok_or_else(|| ends(what))
+    };
+    const JSON: u32 = u32::from_le_bytes(*b"JSON");
+    const BINARY: u32 = u32::from_le_bytes(*b"BIN\0");
+    const FIRST: usize = 12;
+    let (text, kind) = chunk(FIRST, "a chunk of JSON")?;
+    if kind != JSON {
+        return Err(at(FIRST + 4, ModelFileErrorKind::Fault("the first chunk is not JSON".into())));
+    }
+    let next = FIRST + 8 + text.len();
+    let binary = match next < bytes.len() {
+        true => Some(chunk(next, "a chunk of bytes")?).filter(|(_, kind)| *kind == BINARY).map(|(bytes, _)| bytes),
+        false => None,
+    };
+    Ok((text, Some(FIRST + 8), binary))
+}
+
+/// The byte of a line and a column, both counted from 1.
+fn offset(text: &[u8], line: usize, column: usize) -> usize {
+    let before: usize = text.split(|byte| *byte == b'\n').take(line.saturating_sub(1)).map(|line| line.len() + 1).sum();
+    (before + column.saturating_sub(1)).min(text.len())
+}
+
+/// A message of JSON's reader without the place behind it, which an error says itself; on one line, and not too long.
+fn without_place(message: &str) -> String {
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    let line: String = message[..end].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    line.chars().take(200).collect()
+}

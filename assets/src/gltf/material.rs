@@ -1,0 +1,208 @@
+//! Surfaces and textures of materials, by the rule that the module above writes down.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Cursor;
+use std::path::Path;
+
+use ::gltf::Material;
+use ::gltf::material::AlphaMode;
+use ::gltf::texture::{Info, WrappingMode};
+use mode13h::mesh::Surface;
+use mode13h::scene::Shared;
+use mode13h::texture::Texture;
+
+use super::accessor::Buffers;
+use crate::model_file::Embedded;
+use crate::texture::{Decoded, decode_all};
+
+/// An image of the file.
+pub(super) enum Image {
+    /// The bytes of a picture's file.
+    Bytes(Vec<u8>),
+    /// The path of one.
+    File(String),
+}
+
+/// Where a texture lies: `KHR_texture_transform`.
+#[derive(Clone, Copy)]
+pub(super) struct Mapping {
+    /// The set of texture coordinates.
+    pub(super) set: u32,
+    offset: [f64; 2],
+    scale: [f64; 2],
+    rotation: f64,
+}
+
+impl Mapping {
+    const NONE: Self = Self { set: 0, offset: [0.0; 2], scale: [1.0; 2], rotation: 0.0 };
+
+    fn of(info: &Info<'_>) -> Self {
+        let set = info.tex_coord();
+        let Some(transform) = info.texture_transform() else { return Self { set, ..Self::NONE } };
+        Self {
+            set: transform.tex_coord().unwrap_or(set),
+            offset: transform.offset().map(f64::from),
+            scale: transform.scale().map(f64::from),
+            rotation: transform.rotation().into(),
+        }
+    }
+
+    /// The pair scaled, turned counter-clockwise as it is seen with v down, and moved.
+    pub(super) fn apply(self, pair: [f64; 2]) -> [f64; 2] {
+        let [u, v] = [0, 1].map(|i| pair[i] * self.scale[i]);
+        let (sin, cos) = (libm::sin(self.rotation), libm::cos(self.rotation));
+        [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
+    }
+}
+
+/// The surfaces of the materials that are used.
+pub(super) struct Materials<'a> {
+    path: &'a Path,
+    buffers: &'a Buffers,
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) textures: Embedded,
+    pub(super) left_out: BTreeMap<&'static str, u64>,
+    known: HashMap<Option<usize>, (usize, Mapping)>,
+    /// Images that were read: the texture, and whether some of it was not opaque.
+    images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
+}
+
+/// The exponent of a highlight that is a point.
+const MAX_SHININESS: f64 = 1000.0;
+
+impl<'a> Materials<'a> {
+    pub(super) fn new(path: &'a Path, buffers: &'a Buffers) -> Self {
+        Self {
+            path,
+            buffers,
+            surfaces: Vec::new(),
+            textures: Embedded::new(),
+            left_out: BTreeMap::new(),
+            known: HashMap::new(),
+            images: HashMap::new(),
+        }
+    }
+
+    fn leave_out(&mut self, what: &'static str) {
+        *self.left_out.entry(what).or_default() += 1;
+    }
+
+    /// The index of a material's surface, and where its texture lies.
+    pub(super) fn surface(&mut self, material: &Material<'_>) -> (usize, Mapping) {
+        if let Some(known) = self.known.get(&material.index()) {
+            return *known;
+        }
+        let made = self.made(material);
+        self.known.insert(material.index(), made);
+        made
+    }
+
+    fn made(&mut self, material: &Material<'_>) -> (usize, Mapping) {
+        let pbr = material.pbr_metallic_roughness();
+        let [red, green, blue, alpha] = pbr.base_color_factor();
+        let base = [red, green, blue].map(|channel| encoded(channel.into()));
+        let (mut metallic, mut roughness) = (f64::from(pbr.metallic_factor()), f64::from(pbr.roughness_factor()));
+        if let Some([_, rough, metal]) = pbr.metallic_roughness_texture().and_then(|info| self.means(&info)) {
+            (metallic, roughness) = (metallic * metal, roughness * rough);
+        }
+        let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
+        let mut diffuse = base.map(|b| b * (1.0 - metallic * (1.0 - roughness) / 2.0));
+        let mut specular = base.map(|b| (1.0 - roughness) * ((1.0 - metallic) * encoded(0.04) + metallic * b));
+        let mut shininess = (2.0 / (roughness * roughness * roughness * roughness) - 2.0).clamp(0.0, MAX_SHININESS);
+        if material.unlit() {
+            (diffuse, specular, shininess) = (base, [0.0; 3], 0.0);
+            self.leave_out("that materials are unlit");
+        }
+        let mut image = pbr.base_color_texture();
+        let emission = material.emissive_factor().map(|channel| encoded(channel.into()));
+        if emission != [0.0; 3] {
+            match material.emissive_texture() {
+                None => diffuse = [0, 1, 2].map(|i| (diffuse[i] + emission[i]).min(1.0)),
+                Some(emissive) if image.is_none() && base == [0.0; 3] => {
+                    (diffuse, image) = (emission, Some(emissive));
+                }
+                Some(_) => self.leave_out("textures of emission"),
+            }
+        }
+        if material.normal_texture().is_some() {
+            self.leave_out("textures of normals");
+        }
+        if material.occlusion_texture().is_some() {
+            self.leave_out("textures of occlusion");
+        }
+        let is_opaque = material.alpha_mode() == AlphaMode::Opaque;
+        let mut surface = Surface {
+            name: material.name().unwrap_or_default().to_owned(),
+            diffuse: diffuse.map(|channel| channel as f32),
+            specular: specular.map(|channel| channel as f32),
+            shininess: shininess as f32,
+            ..Surface::default()
+        };
+        if material.alpha_mode() == AlphaMode::Blend && alpha > 0.0 && alpha < 1.0 {
+            surface.opacity = alpha;
+        }
+        let mut mapping = Mapping::NONE;
+        if let Some(info) = &image {
+            mapping = Mapping::of(info);
+            surface.texture = self.texture(info, is_opaque);
+            let sampler = info.texture().sampler();
+            if [sampler.wrap_s(), sampler.wrap_t()].contains(&WrappingMode::MirroredRepeat) {
+                self.leave_out("that textures are mirrored");
+            }
+        }
+        self.surfaces.push(surface);
+        (self.surfaces.len() - 1, mapping)
+    }
+
+    /// The name of a texture: a file's, or one that the model brings.
+    fn texture(&mut self, info: &Info<'_>, is_opaque: bool) -> Option<String> {
+        let Some(source) = info.texture().source() else {
+            self.leave_out("textures in formats that are not read");
+            return None;
+        };
+        let buffers = self.buffers;
+        if let Some(Image::File(path)) = buffers.images.get(source.index()) {
+            return Some(path.clone());
+        }
+        let Some((texture, was_transparent)) = self.image(source.index()) else {
+            self.leave_out("textures in formats that are not read");
+            return None;
+        };
+        if was_transparent && !is_opaque {
+            self.leave_out("transparency of textures");
+        }
+        let name = format!("{}#{}", self.path.display(), source.index());
+        self.textures.insert(name.clone(), texture);
+        Some(name)
+    }
+
+    /// The texture of an image in the file, and whether some of it was not opaque.
+    fn image(&mut self, index: usize) -> Option<(Shared<Texture>, bool)> {
+        let buffers = self.buffers;
+        let read = || {
+            let Image::Bytes(bytes) = buffers.images.get(index)? else { return None };
+            let Decoded { texture, was_transparent, .. } = decode_all(Cursor::new(bytes)).ok()?;
+            Some((Shared::new(texture), was_transparent))
+        };
+        self.images.entry(index).or_insert_with(read).clone()
+    }
+
+    /// The means of the channels of a texture in the file.
+    fn means(&mut self, info: &Info<'_>) -> Option<[f64; 3]> {
+        let (texture, _) = self.image(info.texture().source()?.index())?;
+        let (mut sums, mut count) = ([0.0; 3], 0.0);
+        for (color, texels) in texture.colors().iter().zip(texture.histogram()) {
+            let texels = f64::from(texels);
+            let channels = [color.r, color.g, color.b];
+            sums.iter_mut().zip(channels).for_each(|(sum, channel)| *sum += f64::from(channel) * texels);
+            count += 255.0 * texels;
+        }
+        Some(sums.map(|sum| sum / count))
+    }
+}
+
+/// A share of light, 0 to 1, in sRGB.
+pub(super) fn encoded(linear: f64) -> f64 {
+    let linear = linear.clamp(0.0, 1.0);
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
+}

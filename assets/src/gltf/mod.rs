@@ -1,0 +1,273 @@
+//! Models from glTF 2.0 files, `.gltf` and `.glb`.
+//!
+//! | read | as |
+//! |---|---|
+//! | the default scene, or the first, or all nodes | one mesh: each node's mesh where its transforms put it, once for each node |
+//! | triangles, strips and fans, with indices or without | faces; points and lines are left out |
+//! | `POSITION`, `NORMAL`, `TEXCOORD_n`, `COLOR_0` in any type of number, sparse or not | positions, normals, texture coordinates; a colour for each face without a texture, up to 256 in all |
+//! | materials | surfaces, by the rule below |
+//! | images in the file, as data URIs and beside it | textures, placed by `KHR_texture_transform` |
+//!
+//! Both sides of a face are drawn unless the mesh is closed, so `doubleSided` needs nothing. What is left out makes one
+//! warning, which lists it. A model as it was at rest is read of one with animations, skins or morph targets.
+//!
+//! **Materials.** With base colour b (in sRGB, as all factors here), metalness m and roughness r:
+//!
+//! | of the surface | is |
+//! |---|---|
+//! | diffuse | b · (1 − m·(1 − r)/2): what a metal mirrors of its surroundings is missing here, so a rough one stays as it is |
+//! | specular | (1 − r) · ((1 − m)·0.22 + m·b); 0.22 is 4 % in sRGB |
+//! | shininess | 2/r⁴ − 2, at most 1000: Blinn's exponent for that roughness |
+//! | opacity | alpha of the base colour in the mode `BLEND`; textures' alpha is left out, and so is the mode `MASK` |
+//! | texture | that of the base colour |
+//!
+//! A texture of metalness and roughness counts by its means. Emission is added to the diffuse colour; a texture of it
+//! is shown where the base colour is black and has none. Unlit materials are matt.
+
+mod accessor;
+mod container;
+mod material;
+mod place;
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+use ::gltf::mesh::Mode;
+use ::gltf::{Document, Node, Primitive, Semantic};
+use mode13h::glam::{Vec2, Vec3};
+use mode13h::palette::Rgb;
+use mode13h::scene::UpAxis;
+
+use crate::model_file::lists::{Corner, Wide, push};
+use crate::model_file::warnings::Warnings;
+use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place, paint};
+use crate::wide::dot;
+use accessor::Buffers;
+pub(crate) use container::recognizes;
+use material::{Materials, encoded};
+use place::Placement;
+
+/// The max number of corners of all faces: a mesh may stand in many nodes, and so a small file for a large model.
+const MAX_CORNERS: usize = 3 << 26;
+
+/// Reads a file and the buffers that it names.
+pub(crate) fn draft(
+    bytes: &[u8],
+    path: &Path,
+    file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+) -> Result<Draft, ModelFileError> {
+    let (document, binary) = container::open(bytes, path)?;
+    let fault = |what: String| ModelFileError::of_file(path, ModelFileErrorKind::Fault(what));
+    let buffers = Buffers::read(&document, binary, path, file).map_err(fault)?;
+    let mut draft = Draft { up: Some(UpAxis::Y), ..Draft::default() };
+    let mut left_out = LeftOut::default();
+    left_out.of_document(&document);
+    let mut reading = Reading {
+        materials: Materials::new(path, &buffers),
+        buffers: &buffers,
+        left_out,
+        colors: Vec::new(),
+        color_surface: None,
+    };
+    for (node, place) in placed(&document).map_err(fault)? {
+        let Some(mesh) = node.mesh() else { continue };
+        reading.left_out.add("skins", u64::from(node.skin().is_some()));
+        for primitive in mesh.primitives() {
+            let part = format!("meshes[{}].primitives[{}]", mesh.index(), primitive.index());
+            reading.primitive(&primitive, place, &mut draft).map_err(|kind| {
+                let kind = match kind {
+                    ModelFileErrorKind::Fault(what) => ModelFileErrorKind::Fault(format!("{part}: {what}")),
+                    kind => kind,
+                };
+                ModelFileError::of_file(path, kind)
+            })?;
+        }
+    }
+    let Reading { mut materials, left_out, colors, color_surface, .. } = reading;
+    draft.surfaces = core::mem::take(&mut materials.surfaces);
+    draft.textures = core::mem::take(&mut materials.textures);
+    if let Some(surface) = color_surface {
+        draft.surfaces[surface] = paint(&mut draft, &colors, format!("{}#colours", path.display()));
+    }
+    left_out.warn(path, &materials.left_out, &mut draft.warnings);
+    Ok(draft)
+}
+
+/// The nodes of the scene and their transforms, in the order of the file.
+fn placed(document: &Document) -> Result<Vec<(Node<'_>, Placement)>, String> {
+    let roots: Vec<Node<'_>> = match document.default_scene().or_else(|| document.scenes().next()) {
+        Some(scene) => scene.nodes().collect(),
+        None => {
+            let mut is_child = vec![false; document.nodes().len()];
+            document.nodes().flat_map(|node| node.children()).for_each(|child| is_child[child.index()] = true);
+            document.nodes().filter(|node| !is_child[node.index()]).collect()
+        }
+    };
+    let mut is_placed = vec![false; document.nodes().len()];
+    let mut waiting: Vec<(Node<'_>, Placement)> = roots.into_iter().rev().map(|root| (root, Placement::NONE)).collect();
+    let mut nodes = Vec::new();
+    while let Some((node, of_parent)) = waiting.pop() {
+        if core::mem::replace(&mut is_placed[node.index()], true) {
+            return Err(format!("nodes[{}] stands twice in the scene", node.index()));
+        }
+        let place = of_parent.after(Placement::of_matrix(node.transform().matrix()));
+        let children: Vec<Node<'_>> = node.children().collect();
+        waiting.extend(children.into_iter().rev().map(|child| (child, place)));
+        nodes.push((node, place));
+    }
+    Ok(nodes)
+}
+
+struct Reading<'a> {
+    buffers: &'a Buffers,
+    materials: Materials<'a>,
+    left_out: LeftOut,
+    /// Faces with a colour of their own.
+    colors: Vec<(usize, Rgb)>,
+    /// The surface of these faces.
+    color_surface: Option<usize>,
+}
+
+impl Reading<'_> {
+    fn primitive(
+        &mut self,
+        primitive: &Primitive<'_>,
+        place: Placement,
+        draft: &mut Draft,
+    ) -> Result<(), ModelFileErrorKind> {
+        if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+            self.left_out.add("points and lines", 1);
+            return Ok(());
+        }
+        self.left_out.add("morph targets", u64::from(primitive.morph_targets().len() > 0));
+        let fault = ModelFileErrorKind::Fault;
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
+            self.left_out.add("meshes without positions", 1);
+            return Ok(());
+        };
+        let material = primitive.material();
+        let (surface, mapping) = self.materials.surface(&material);
+        let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
+        let count = positions.len();
+        let attribute = |semantic: &Semantic| {
+            // A list that is too short for the vertices is of no use.
+            primitive.get(semantic).filter(|accessor| accessor.count() >= count)
+        };
+        let normals = attribute(&Semantic::Normals).map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
+        let set = Semantic::TexCoords(mapping.set);
+        let pairs = attribute(&set).map(|a| self.buffers.rows::<2>(&a)).transpose().map_err(fault)?;
+        let is_textured = self.materials.surfaces[surface].texture.is_some();
+        let colors = attribute(&Semantic::Colors(0)).filter(|_| !is_textured);
+        let colors = colors.map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
+        let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
+
+        let lists = &mut draft.lists;
+        let first = [lists.positions.len(), lists.texcoords.len(), lists.normals.len()];
+        for position in positions {
+            let position = place.point(position);
+            if let Some(c) = position.iter().find(|c| !(**c as f32).is_finite()) {
+                return Err(ModelFileErrorKind::Fault(format!("a position of {c} is not finite")));
+            }
+            push(&mut lists.positions, Wide::new(position))?;
+        }
+        for normal in normals.iter().flatten().take(count) {
+            let normal = place.normal(*normal);
+            let length = libm::sqrt(dot(normal, normal));
+            let normal = Vec3::from_array(normal.map(|c| (c / length) as f32));
+            push(&mut lists.normals, if normal.is_finite() { normal } else { Vec3::ZERO })?;
+        }
+        for &[u, v] in pairs.iter().flatten().take(count) {
+            let pair = mapping.apply([u, v]);
+            // v runs down in the file.
+            let pair = Vec2::new(pair[0] as f32, (1.0 - pair[1]) as f32);
+            push(&mut lists.texcoords, if pair.is_finite() { pair } else { Vec2::ZERO })?;
+        }
+        let run = match (&colors, self.color_surface) {
+            (None, _) => surface,
+            (Some(_), Some(known)) => known,
+            (Some(_), None) => {
+                self.materials.surfaces.push(Default::default());
+                *self.color_surface.insert(self.materials.surfaces.len() - 1)
+            }
+        };
+        draft.lists.runs.push((draft.lists.sizes.len(), run));
+
+        let length = indices.as_ref().map_or(count, Vec::len);
+        let vertex = |i: usize| indices.as_ref().map_or(i, |indices| indices[i] as usize);
+        let triangles: usize = match primitive.mode() {
+            Mode::Triangles => length / 3,
+            _ => length.saturating_sub(2),
+        };
+        for i in 0..triangles {
+            let corners = match primitive.mode() {
+                Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],
+                Mode::TriangleFan => [0, i + 1, i + 2],
+                _ if i.is_multiple_of(2) => [i, i + 1, i + 2],
+                _ => [i + 1, i, i + 2],
+            };
+            let mut corners: [usize; 3] = corners.map(vertex);
+            if place.mirrors() {
+                corners.swap(1, 2);
+            }
+            if let Some(beyond) = corners.iter().find(|&&corner| corner >= count) {
+                return Err(ModelFileErrorKind::Fault(format!("there is no vertex {beyond}, only {count}")));
+            }
+            let lists = &mut draft.lists;
+            let start = lists.corners.len();
+            if start > MAX_CORNERS {
+                return Err(ModelFileErrorKind::TooLarge("more than 67,108,864 triangles, counted in each node"));
+            }
+            // Fewer than 2³² of each, see `push`.
+            let index = |first: usize, is_there: bool, corner: usize| {
+                if is_there { (first + corner) as u32 } else { Corner::NONE }
+            };
+            lists.corners.extend(corners.map(|corner| Corner {
+                position: index(first[0], true, corner),
+                texcoord: index(first[1], pairs.is_some(), corner),
+                normal: index(first[2], normals.is_some(), corner),
+            }));
+            if let Some(colors) = &colors {
+                let factor = material.pbr_metallic_roughness().base_color_factor();
+                let mean = [0, 1, 2].map(|channel| {
+                    let sum: f64 = corners.iter().map(|&corner| colors[corner][channel]).sum();
+                    encoded(sum / 3.0 * f64::from(factor[channel])) as f32
+                });
+                self.colors.push((lists.sizes.len(), Rgb::from_intensities(mean)));
+            }
+            // A place is named only for faces that are left out, and none is.
+            lists.end_face(start, Place::Offset(0))?;
+        }
+        Ok(())
+    }
+}
+
+/// What a file has and a mesh has not.
+#[derive(Default)]
+struct LeftOut {
+    counts: BTreeMap<&'static str, u64>,
+}
+
+impl LeftOut {
+    fn add(&mut self, what: &'static str, count: u64) {
+        if count > 0 {
+            *self.counts.entry(what).or_default() += count;
+        }
+    }
+
+    fn of_document(&mut self, document: &Document) {
+        self.add("animations", document.animations().len() as u64);
+        self.add("cameras", document.cameras().len() as u64);
+        let lights = document.extensions_used().filter(|name| *name == "KHR_lights_punctual").count();
+        self.add("lights", lights as u64);
+    }
+
+    /// Makes one warning of all.
+    fn warn(mut self, path: &Path, of_materials: &BTreeMap<&'static str, u64>, warnings: &mut Warnings) {
+        of_materials.iter().for_each(|(what, count)| self.add(what, *count));
+        if !self.counts.is_empty() {
+            let all: Vec<&str> = self.counts.into_keys().collect();
+            warnings.push(|| format!("{}: left out: {}", path.display(), all.join(", ")));
+        }
+    }
+}

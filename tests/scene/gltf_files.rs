@@ -1,0 +1,429 @@
+//! glTF: each way to write a mesh gives what OBJ gives, materials follow their rule, errors say which part.
+
+use std::collections::HashMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mode13h::glam::Vec2;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::Rgb;
+use mode13h::scene::UpAxis;
+use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
+
+/// A glTF file while it is written: the entries of its lists, and its buffer.
+#[derive(Default)]
+struct Gltf {
+    bytes: Vec<u8>,
+    lists: HashMap<&'static str, Vec<String>>,
+    /// What else stands in the root.
+    more: String,
+}
+
+impl Gltf {
+    /// Adds an entry to a list, and returns its index.
+    fn add(&mut self, list: &'static str, entry: impl Into<String>) -> usize {
+        let list = self.lists.entry(list).or_default();
+        list.push(entry.into());
+        list.len() - 1
+    }
+
+    fn view(&mut self, bytes: &[u8], stride: Option<usize>) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let (offset, length) = (self.bytes.len(), bytes.len());
+        self.bytes.extend(bytes);
+        let stride = stride.map_or(String::new(), |stride| format!(",\"byteStride\":{stride}"));
+        self.add("bufferViews", format!("{{\"buffer\":0,\"byteOffset\":{offset},\"byteLength\":{length}{stride}}}"))
+    }
+
+    /// An accessor over rows that follow one another.
+    fn accessor(&mut self, bytes: &[u8], component: u32, count: usize, kind: &str, more: &str) -> usize {
+        let view = self.view(bytes, None);
+        self.add(
+            "accessors",
+            format!(
+                "{{\"bufferView\":{view},\"componentType\":{component},\"count\":{count},\"type\":\"{kind}\"{more}}}"
+            ),
+        )
+    }
+
+    fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
+        let bytes: Vec<u8> = rows.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect();
+        // Those of positions must have bounds; nothing reads them.
+        let bounds = if N == 3 { ",\"min\":[0,0,0],\"max\":[0,0,0]" } else { "" };
+        self.accessor(&bytes, 5126, rows.len(), &format!("VEC{N}"), bounds)
+    }
+
+    fn indices(&mut self, indices: &[u32], component: u32) -> usize {
+        let bytes: Vec<u8> = match component {
+            5121 => indices.iter().map(|&i| i as u8).collect(),
+            5123 => indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
+            _ => indices.iter().flat_map(|&i| i.to_le_bytes()).collect(),
+        };
+        self.accessor(&bytes, component, indices.len(), "SCALAR", "")
+    }
+
+    /// A mesh of one primitive; `more` follows its attributes.
+    fn mesh(&mut self, attributes: &str, more: &str) -> usize {
+        self.add("meshes", format!("{{\"primitives\":[{{\"attributes\":{{{attributes}}}{more}}}]}}"))
+    }
+
+    fn json(&self, buffer: &str) -> String {
+        let lists: String = self.lists.iter().map(|(name, list)| format!(",\"{name}\":[{}]", list.join(","))).collect();
+        let length = self.bytes.len();
+        let buffers =
+            if length > 0 { format!(",\"buffers\":[{{\"byteLength\":{length}{buffer}}}]") } else { String::new() };
+        format!("{{\"asset\":{{\"version\":\"2.0\"}}{buffers}{lists}{}}}", self.more)
+    }
+
+    fn glb(&self) -> Vec<u8> {
+        let mut text = self.json("").into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let mut body = self.bytes.clone();
+        body.resize(body.len().next_multiple_of(4), 0);
+        let word = |length: usize| (length as u32).to_le_bytes();
+        let head = [*b"glTF", word(2), word(12 + 8 + text.len() + 8 + body.len()), word(text.len()), *b"JSON"];
+        [head.as_flattened(), &text, &word(body.len()), b"BIN\0", &body].concat()
+    }
+}
+
+/// Positions and triangles of a shape, each point once, in the order in which the triangles use them.
+fn points_of(mesh: &Mesh) -> (Vec<[f32; 3]>, Vec<u32>) {
+    let mut positions: Vec<[f32; 3]> = Vec::new();
+    let indices = mesh.triangles().as_flattened().iter().map(|&vertex| {
+        let place = mesh.positions()[vertex as usize].to_array();
+        let known = positions.iter().position(|known| *known == place);
+        known.unwrap_or_else(|| {
+            positions.push(place);
+            positions.len() - 1
+        }) as u32
+    });
+    let indices = indices.collect();
+    (positions, indices)
+}
+
+fn obj(positions: &[[f32; 3]], indices: &[u32]) -> Mesh {
+    let mut text: String = positions.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    for [a, b, c] in indices.as_chunks::<3>().0 {
+        text += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+    }
+    loaded(text.as_bytes(), "a.obj").mesh
+}
+
+fn with_files(bytes: &[u8], name: &str, files: &[(&str, &[u8])]) -> Result<Loaded, ModelFileError> {
+    let file = |path: &Path| {
+        let found = files.iter().find(|(name, _)| Path::new(name) == path);
+        found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(|| io::ErrorKind::NotFound.into())
+    };
+    model_file::parse(bytes, name, file, &Options::default())
+}
+
+fn loaded(bytes: &[u8], name: &str) -> Loaded {
+    with_files(bytes, name, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn contents(mesh: &Mesh) -> impl PartialEq + core::fmt::Debug + '_ {
+    (
+        (mesh.positions(), mesh.normals(), mesh.texcoords(), mesh.triangles()),
+        (mesh.surfaces(), mesh.triangle_surfaces(), mesh.is_closed(), mesh.is_convex()),
+    )
+}
+
+#[test]
+fn every_container_gives_the_mesh_that_obj_gives() {
+    for shape in [shapes::cube(), shapes::torus(12, 6)] {
+        let (positions, indices) = points_of(&shape);
+        let expected = obj(&positions, &indices);
+        for component in [5121, 5123, 5125] {
+            let mut file = Gltf::default();
+            let (position, index) = (file.floats(&positions), file.indices(&indices, component));
+            let mesh = file.mesh(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
+            file.add("nodes", format!("{{\"mesh\":{mesh}}}"));
+            let beside = file.json(",\"uri\":\"the%20bytes.bin\"");
+            let named =
+                with_files(beside.as_bytes(), "folder/a.gltf", &[("folder/the bytes.bin", &file.bytes)]).unwrap();
+            assert_eq!(named.files, [PathBuf::from("folder/the bytes.bin")]);
+            let percent: String = file.bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
+            let inside = file.json(&format!(",\"uri\":\"data:application/octet-stream,{percent}\""));
+            for model in [
+                loaded(&file.glb(), "a.glb"),
+                loaded(&file.glb(), "standard input"),
+                loaded(inside.as_bytes(), "a.gltf"),
+                loaded(inside.as_bytes(), "standard input"),
+                named,
+            ] {
+                assert_eq!(contents(&model.mesh), contents(&expected));
+                assert_eq!((model.up, model.warnings.as_slice()), (Some(UpAxis::Y), &[][..]));
+            }
+        }
+    }
+}
+
+#[test]
+fn strips_fans_and_lists_without_indices() {
+    let positions =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.5, 2.0, 0.0], [2.0, 2.0, 1.0]];
+    for (mode, triangles) in [
+        (4, vec![0, 1, 2, 3, 4, 5]),
+        (5, vec![0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5]),
+        (6, vec![0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5]),
+    ] {
+        let mut file = Gltf::default();
+        let position = file.floats(&positions);
+        file.mesh(&format!("\"POSITION\":{position}"), &format!(",\"mode\":{mode}"));
+        file.add("nodes", "{\"mesh\":0}");
+        let (found, expected) = (loaded(&file.glb(), "a.glb").mesh, obj(&positions, &triangles));
+        assert_eq!(contents(&found), contents(&expected), "mode {mode}");
+    }
+}
+
+/// A tree of nodes: a quarter turn, a mirror and a stretch, all exact in f32.
+#[test]
+fn nodes_place_their_meshes() {
+    let (positions, indices) = points_of(&shapes::torus(8, 4));
+    let mut file = Gltf::default();
+    let (position, index) = (file.floats(&positions), file.indices(&indices, 5125));
+    file.mesh(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
+    file.add("nodes", "{\"children\":[1,2],\"matrix\":[0,1,0,0,-1,0,0,0,0,0,1,0,8,0,0,1]}");
+    file.add("nodes", "{\"mesh\":0,\"scale\":[2,1,0.5]}");
+    file.add("nodes", "{\"mesh\":0,\"scale\":[-1,1,1],\"translation\":[0,0,16]}");
+    file.add("nodes", "{\"mesh\":0}");
+    file.add("scenes", "{\"nodes\":[3]}");
+    file.add("scenes", "{\"nodes\":[0]}");
+    file.more = ",\"scene\":1".into();
+    let turned = |[x, y, z]: [f32; 3]| [8.0 - y, x, z];
+    let mut placed: Vec<[f32; 3]> = positions.iter().map(|&[x, y, z]| turned([2.0 * x, y, 0.5 * z])).collect();
+    placed.extend(positions.iter().map(|&[x, y, z]| turned([-x, y, z + 16.0])));
+    let mut triangles = indices.clone();
+    let count = positions.len() as u32;
+    triangles.extend(indices.as_chunks::<3>().0.iter().flat_map(|&[a, b, c]| [a, c, b].map(|i| i + count)));
+    let model = loaded(&file.glb(), "a.glb");
+    let expected = obj(&placed, &triangles);
+    assert_eq!(contents(&model.mesh), contents(&expected));
+    assert_eq!(model.warnings, [""; 0], "nothing is inside out");
+}
+
+/// A normal of a slanted face stays at right angles to it when the node stretches it, also mirrored.
+#[test]
+fn normals_go_with_their_faces() {
+    for scale in ["[1,1,1]", "[4,1,1]", "[1,-3,1]", "[-2,-1,-5]"] {
+        let mut file = Gltf::default();
+        let positions = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (position, normal) = (file.floats(&positions), file.floats(&[[2.0, 2.0, 2.0]; 3]));
+        file.mesh(&format!("\"POSITION\":{position},\"NORMAL\":{normal}"), "");
+        file.add("nodes", format!("{{\"mesh\":0,\"scale\":{scale}}}"));
+        let mesh = loaded(&file.glb(), "a.glb").mesh;
+        let [a, b, c] = mesh.triangles()[0].map(|vertex| mesh.positions()[vertex as usize]);
+        let expected = (b - a).cross(c - a).normalize();
+        // Both are unit vectors, each of a few roundings by 2⁻²⁴.
+        assert!((mesh.normals()[0] - expected).length() < 2f32.powi(-21), "{scale}: {} {expected}", mesh.normals()[0]);
+    }
+}
+
+/// Positions, texture coordinates and colours as whole numbers, with a stride, and with a sparse change.
+#[test]
+fn numbers_of_all_types() {
+    let mut file = Gltf::default();
+    let rows: [[i16; 4]; 3] = [[-32767, 0, 0, 99], [32767, 0, 0, 99], [0, 16384, 0, 99]];
+    let bytes: Vec<u8> = rows.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect();
+    let view = file.view(&bytes, Some(8));
+    let change = [file.view(&[1, 0], None), file.view(&[0, 0, 1, 0, 0, 0], None)];
+    let [at, new] = change;
+    let position = file.add(
+        "accessors",
+        format!(
+            "{{\"bufferView\":{view},\"componentType\":5122,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[0,0,0],\
+             \"sparse\":{{\"count\":1,\"indices\":{{\"bufferView\":{at},\"componentType\":5123}},\
+             \"values\":{{\"bufferView\":{new}}}}}}}"
+        ),
+    );
+    let pair = file.accessor(&[0, 255, 51, 0, 255, 102], 5121, 3, "VEC2", ",\"normalized\":true");
+    file.mesh(&format!("\"POSITION\":{position},\"TEXCOORD_0\":{pair}"), "");
+    file.add("nodes", "{\"mesh\":0}");
+    let mesh = loaded(&file.glb(), "a.glb").mesh;
+    let places: Vec<[f32; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+    assert_eq!(places, [[-32767.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 16384.0, 0.0]]);
+    // v runs up.
+    assert_eq!(mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::new(0.2, 1.0), Vec2::new(1.0, 0.6)]);
+}
+
+/// A picture of one red row above a blue one.
+fn picture() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().unwrap().write_image_data(&[255, 0, 0, 0, 0, 255]).unwrap();
+    bytes
+}
+
+#[test]
+fn textures_lie_as_the_file_says() {
+    for (transform, expected) in [
+        ("", [[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]),
+        ("\"offset\":[0.5,0.25],\"scale\":[2,0.5]", [[0.5, 0.25], [1.0, 0.5], [2.5, 0.75]]),
+        // Counter-clockwise as it is seen with v down: u goes up, so v sinks.
+        ("\"rotation\":1.5707963267948966", [[0.0, 0.0], [0.5, -0.25], [1.0, -1.0]]),
+    ] {
+        let mut file = Gltf::default();
+        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        let pairs = file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]);
+        let view = file.view(&picture(), None);
+        file.add("images", format!("{{\"bufferView\":{view},\"mimeType\":\"image/png\"}}"));
+        file.add("textures", "{\"source\":0}");
+        let extension = format!(",\"extensions\":{{\"KHR_texture_transform\":{{{transform}}}}}");
+        file.add(
+            "materials",
+            format!(
+                "{{\"name\":\"a\",\"pbrMetallicRoughness\":{{\"metallicFactor\":0,\"baseColorTexture\":{{\"index\":0{}}}}}}}",
+                if transform.is_empty() { "" } else { &extension }
+            ),
+        );
+        file.mesh(&format!("\"POSITION\":{positions},\"TEXCOORD_0\":{pairs}"), ",\"material\":0");
+        file.add("nodes", "{\"mesh\":0}");
+        let Loaded { mesh, textures, files, .. } = loaded(&file.glb(), "a.glb");
+        for (pair, [u, v]) in mesh.texcoords().unwrap().iter().zip(expected) {
+            // The angle is a quarter turn but for the rounding of f32.
+            assert!((*pair - Vec2::new(u, 1.0 - v)).length() < 1e-6, "{transform}: {pair} {u} {v}");
+        }
+        let name = mesh.surfaces()[0].texture.as_ref().unwrap();
+        // The upper row has the higher v.
+        assert_eq!([0, 1].map(|y| textures[name][(0, y)]), [Rgb::new(0, 0, 255), Rgb::new(255, 0, 0)]);
+        assert!(files.is_empty());
+    }
+}
+
+/// The rule, computed once more.
+#[test]
+fn materials_follow_the_rule() {
+    let srgb = |linear: f64| if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    for (base, metal, rough) in [(0.5, 0.0, 0.5), (0.25, 1.0, 0.25), (1.0, 0.5, 1.0), (0.001, 0.75, 0.0)] {
+        let mut file = Gltf::default();
+        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        file.add(
+            "materials",
+            format!(
+                "{{\"name\":\"tin\",\"alphaMode\":\"BLEND\",\"emissiveFactor\":[0,1,0],\"pbrMetallicRoughness\":\
+                 {{\"baseColorFactor\":[{base},{base},0,0.25],\"metallicFactor\":{metal},\"roughnessFactor\":{rough}}}}}"
+            ),
+        );
+        file.mesh(&format!("\"POSITION\":{positions}"), ",\"material\":0");
+        file.add("nodes", "{\"mesh\":0}");
+        let mesh = loaded(&file.glb(), "a.glb").mesh;
+        let [surface] = mesh.surfaces() else { panic!("{:?}", mesh.surfaces()) };
+        let b = srgb(base);
+        let diffuse = [b * (1.0 - metal * (1.0 - rough) / 2.0), 1.0, 0.0];
+        let specular = [b, b, 0.0].map(|b| (1.0 - rough) * ((1.0 - metal) * srgb(0.04) + metal * b));
+        let shininess = (2.0 / f64::powi(rough, 4) - 2.0).min(1000.0);
+        assert_eq!((surface.name.as_str(), surface.opacity), ("tin", 0.25));
+        for (found, expected) in surface.diffuse.iter().chain(&surface.specular).zip(diffuse.iter().chain(&specular)) {
+            // One rounding to f32 of a number up to 1, and factors that are read as f32.
+            assert!((f64::from(*found) - expected).abs() < 1e-6, "{surface:?}: {expected}");
+        }
+        assert!((f64::from(surface.shininess) - shininess).abs() <= 1e-6 * shininess, "{surface:?}: {shininess}");
+    }
+}
+
+/// Faces of coloured vertices have the mean, in sRGB.
+#[test]
+fn colors_of_vertices_are_texels() {
+    let mut file = Gltf::default();
+    let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    let colors = file.accessor(
+        &[255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 0, 0, 0, 255],
+        5121,
+        4,
+        "VEC4",
+        ",\"normalized\":true",
+    );
+    file.mesh(&format!("\"POSITION\":{positions}"), ",\"mode\":5");
+    file.mesh(&format!("\"POSITION\":{positions},\"COLOR_0\":{colors}"), ",\"mode\":5");
+    file.add("nodes", "{\"mesh\":0,\"translation\":[0,0,1]}");
+    file.add("nodes", "{\"mesh\":1}");
+    let Loaded { mesh, textures, .. } = loaded(&file.glb(), "a.glb");
+    assert_eq!(mesh.surfaces().iter().map(|surface| surface.texture.is_some()).collect::<Vec<_>>(), [false, true]);
+    let texture = &textures[mesh.surfaces()[1].texture.as_ref().unwrap()];
+    let color = |triangle: usize| {
+        let pair = mesh.texcoords().unwrap()[mesh.triangles()[triangle][0] as usize] * 16.0;
+        texture[(pair.x as u32, pair.y as u32)]
+    };
+    // A third of full light is 0.6124 in sRGB, 156.2 of 255.
+    assert_eq!([2, 3].map(color), [Rgb::new(156, 156, 156), Rgb::new(0, 156, 156)]);
+}
+
+#[test]
+fn errors_say_part_or_place() {
+    let refused = |bytes: &[u8]| match with_files(bytes, "a.glb", &[]) {
+        Ok(_) => "read".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let with = |edit: &dyn Fn(&mut Gltf)| {
+        let mut file = Gltf::default();
+        let positions = file.floats(&triangle);
+        file.mesh(&format!("\"POSITION\":{positions}"), "");
+        file.add("nodes", "{\"mesh\":0}");
+        edit(&mut file);
+        refused(&file.glb())
+    };
+    assert_eq!(with(&|_| {}), "read");
+    assert_eq!(
+        with(&|file| {
+            let indices = file.indices(&[0, 1, 3], 5123);
+            file.lists.remove("meshes");
+            file.mesh("\"POSITION\":0", &format!(",\"indices\":{indices}"));
+        }),
+        "a.glb: meshes[0].primitives[0]: there is no vertex 3, only 3"
+    );
+    assert_eq!(
+        with(&|file| file.lists.get_mut("accessors").unwrap()[0] =
+            file.lists["accessors"][0].replace("\"count\":3", "\"count\":4")),
+        "a.glb: meshes[0].primitives[0]: accessors[0] ends beyond bufferViews[0]"
+    );
+    assert_eq!(
+        with(&|file| file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":0,\"children\":[0]}".into()),
+        "a.glb: no faces"
+    );
+    assert_eq!(
+        with(&|file| {
+            file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":0,\"children\":[0]}".into();
+            file.add("scenes", "{\"nodes\":[0]}");
+        }),
+        "a.glb: nodes[0] stands twice in the scene"
+    );
+    assert_eq!(
+        with(&|file| file.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]".into()),
+        "a.glb: needs KHR_draco_mesh_compression, which is not read"
+    );
+    assert!(
+        with(&|file| file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":7}".into())
+            .starts_with("a.glb: nodes[0].mesh: ")
+    );
+    let mut whole = Gltf::default();
+    whole.floats(&triangle);
+    let whole = whole.glb();
+    let cut = whole.len() - 1;
+    assert_eq!(refused(&whole[..cut]), format!("a.glb: byte {cut}: the file ends where a chunk of bytes should stand"));
+    assert_eq!(refused(&whole[..9]), "a.glb: byte 9: the file ends where a chunk of JSON should stand");
+    assert_eq!(refused(b"glTF\x01\0\0\0"), "a.glb: byte 4: only glTF 2 is read, this is 1");
+    assert!(refused(b"{\n\"asset\": 7\n}").starts_with("a.glb:2: not glTF: invalid type: integer `7`"));
+    let missing = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3,\"uri\":\"no.bin\"}]}";
+    assert_eq!(refused(missing.as_bytes()), "a.glb: buffers[0]: no.bin: entity not found");
+}
+
+#[test]
+fn what_is_left_out_is_one_warning() {
+    let mut file = Gltf::default();
+    let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    file.add("materials", "{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}");
+    file.add("textures", "{}");
+    file.mesh(&format!("\"POSITION\":{positions}"), ",\"material\":0");
+    file.mesh(&format!("\"POSITION\":{positions}"), ",\"mode\":1");
+    file.add("nodes", "{\"mesh\":0}");
+    file.add("nodes", "{\"mesh\":1}");
+    file.more = ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],\
+                 \"extensionsUsed\":[\"KHR_materials_unlit\"]"
+        .into();
+    assert_eq!(
+        loaded(&file.glb(), "a.glb").warnings,
+        ["a.glb: left out: cameras, points and lines, textures of normals, that materials are unlit"]
+    );
+}
