@@ -7,7 +7,7 @@
 //! | [`model_file`] | meshes from files in any of the formats |
 //! | [`obj`], [`stl`], [`ply`], `gltf` | the formats of models |
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
-//! | [`texture`] | textures from pictures: PNG, and by the feature `images` JPEG, TGA, BMP, GIF and WebP |
+//! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and by the feature `images` JPEG, TGA, BMP and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
 //! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round |
 //! | [`animation`] | animated GIF and PNG, and Y4M for other programs |

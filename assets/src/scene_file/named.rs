@@ -42,7 +42,7 @@ pub(super) struct Named<'a> {
 }
 
 /// The max length of a palette file. A longer one is read to here, and refused for its contents then.
-const LONGEST_PALETTE: u64 = LONGEST as u64;
+const LONGEST_PALETTE: usize = LONGEST;
 
 /// The max length of a texture file: a picture of 4,096 × 4,096 in true colour that cannot be packed.
 const LONGEST_TEXTURE: u64 = 64 << 20;
@@ -80,14 +80,22 @@ impl<'a> Named<'a> {
         Ok(model)
     }
 
-    /// A palette that is built in, or a file.
+    /// A palette that is built in, a file, or that of a picture of indices.
     pub(super) fn palette(&mut self, name: &Spanned<FileName>) -> Result<Palette, Fault> {
         if let Some(builtin) = builtin::by_name(&name.get_ref().0) {
             return Ok(builtin.palette.clone());
         }
         let path = self.folder.join(&name.get_ref().0);
-        let bytes = self.bytes(&path, name, LONGEST_PALETTE)?;
-        palette_file::parse_named(&name.get_ref().0, &bytes)
+        let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
+        if texture::may_have_palette(&bytes) {
+            let decoded = texture::decode_all(Cursor::new(bytes)).and_then(|decoded| {
+                decoded.palette.ok_or_else(|| LoadErrorKind::Picture("it has no palette".into())) //
+            });
+            let failed = |kind| Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }));
+            return decoded.map(Palette::from_colors).map_err(failed);
+        }
+        let bytes = &bytes[..bytes.len().min(LONGEST_PALETTE)];
+        palette_file::parse_named(&name.get_ref().0, bytes)
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Palette { path, error }))
     }
 

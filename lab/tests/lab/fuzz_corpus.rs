@@ -37,7 +37,7 @@ fn check(check: fn(&[u8]), of: &Path, bytes: &[u8]) {
 
 #[test]
 fn f5_every_file_of_every_corpus() {
-    let mut tried = Tried::new("f5_every_file_of_every_corpus", 134);
+    let mut tried = Tried::new("f5_every_file_of_every_corpus", 137);
     for (name, property) in PROPERTIES {
         let files = corpus(name);
         assert!(files.len() >= 5, "{name} has {} files", files.len());

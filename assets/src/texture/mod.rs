@@ -1,8 +1,15 @@
 //! Textures from picture files.
+//!
+//! Pictures of indices keep them, and their palette, if a texture may have their size.
+
+mod aseprite;
+mod gif;
+mod indexed;
+mod pcx;
 
 use core::fmt;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Seek};
+use std::io::{self, BufRead, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use mode13h::palette::Rgb;
@@ -10,6 +17,10 @@ use mode13h::texture::{Texture, TextureError};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
 
 use crate::errors::clause;
+use indexed::Indexed;
+
+/// The first bytes of a PNG.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
@@ -72,6 +83,8 @@ pub struct Decoded {
     pub texture: Texture,
     /// Some pixel of the picture is not opaque; the texture is.
     pub was_transparent: bool,
+    /// The palette of a picture of indices, whatever its size.
+    pub palette: Option<[Rgb; 256]>,
 }
 
 impl Decoded {
@@ -82,9 +95,10 @@ impl Decoded {
     }
 }
 
-/// Reads a PNG, with the feature `images` also a JPEG, TGA, BMP, GIF or WebP, and makes a texture of it as
-/// [`Texture::from_rgb`] does. The kind is told by the contents, not by the name. Grey becomes RGB, 16 bits become 8, and
-/// transparency is left out. An indexed PNG whose sides are powers of two up to 256 keeps its indices and colours.
+/// Reads a PNG, GIF, PCX of 256 colours or an indexed sprite of Aseprite, with the feature `images` also a JPEG, TGA, BMP
+/// or WebP, and makes a texture of it as [`Texture::from_rgb`] does. The kind is told by the contents, not by the name.
+/// Grey becomes RGB, 16 bits become 8, and transparency is left out. Of films and sprites the first frame is read. An
+/// indexed picture whose sides are powers of two up to 256 keeps its indices and colours.
 ///
 /// # Errors
 /// A file that cannot be read, that is no such picture or a broken one, or with a side above 4,096.
@@ -122,15 +136,33 @@ pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
 /// # Errors
 /// Those of [`load`].
 pub fn decode_all(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
-    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
     let head = file.fill_buf().map_err(LoadErrorKind::Read)?;
     if head.starts_with(PNG) {
         return decode_png(file);
+    }
+    if gif::recognizes(head) {
+        return gif::decode(file)?.into_decoded();
+    }
+    type Whole = fn(&[u8]) -> Result<Indexed, LoadErrorKind>;
+    let whole: Option<Whole> = match head {
+        head if aseprite::recognizes(head) => Some(aseprite::decode),
+        head if pcx::recognizes(head) => Some(pcx::decode),
+        _ => None,
+    };
+    if let Some(decode) = whole {
+        let mut bytes = Vec::new();
+        file.take(MAX_BYTES as u64).read_to_end(&mut bytes).map_err(LoadErrorKind::Read)?;
+        return decode(&bytes)?.into_decoded();
     }
     #[cfg(feature = "images")]
     return others::decode(file);
     #[cfg(not(feature = "images"))]
     Err(LoadErrorKind::Picture("not a PNG; other kinds need the feature `images`".into()))
+}
+
+/// Whether a file begins as a picture of a kind that may have a palette.
+pub(crate) fn may_have_palette(head: &[u8]) -> bool {
+    head.starts_with(PNG) || gif::recognizes(head) || aseprite::recognizes(head) || pcx::recognizes(head)
 }
 
 /// Kinds that the crate `image` reads.
@@ -159,7 +191,7 @@ mod others {
         let was_transparent = picture.pixels().any(|pixel| pixel[3] < 255);
         let pixels: Vec<Rgb> = picture.pixels().map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect();
         let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
-        Ok(Decoded { texture, was_transparent })
+        Ok(Decoded { texture, was_transparent, palette: None })
     }
 
     fn reason(error: ImageError) -> LoadErrorKind {
@@ -195,8 +227,7 @@ fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
     let head = decoder.read_header_info().map_err(reason)?;
     let (width, height) = (head.width, head.height);
     check_size(width, height)?;
-    let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
-    let keeps_indices = head.color_type == ColorType::Indexed && is_side(width) && is_side(height);
+    let keeps_indices = head.color_type == ColorType::Indexed;
     decoder.set_transformations(match keeps_indices {
         true => Transformations::IDENTITY,
         false => Transformations::EXPAND,
@@ -231,25 +262,21 @@ fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
         })
         .collect();
     let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
-    Ok(Decoded { texture, was_transparent })
+    Ok(Decoded { texture, was_transparent, palette: None })
 }
 
 /// The texture of a picture's indices, of 1, 2, 4 or 8 bits each, its rows from the top down.
 fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
     let (width, bits) = (info.width as usize, usize::from(info.bit_depth as u8));
     let row_bytes = (width * bits).div_ceil(8);
-    let texels: Vec<u8> = rows
+    let indices: Vec<u8> = rows
         .chunks_exact(row_bytes)
-        .rev()
         .flat_map(|row| (0..width).map(move |x| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xFF >> (8 - bits))))
         .collect();
-    let mut colors = [Rgb::BLACK; 256];
-    let entries = info.palette.as_deref().unwrap_or_default().as_chunks::<3>().0;
-    colors.iter_mut().zip(entries).for_each(|(color, &[red, green, blue])| *color = Rgb::new(red, green, blue));
+    let colors = indexed::colors(info.palette.as_deref().unwrap_or_default());
     let opacities = info.trns.as_deref().unwrap_or_default();
-    let was_transparent = texels.iter().any(|&texel| opacities.get(usize::from(texel)).is_some_and(|&o| o < 255));
-    let texture = Texture::new(info.width, info.height, texels, colors).map_err(LoadErrorKind::Texture)?;
-    Ok(Decoded { texture, was_transparent })
+    let was_transparent = indices.iter().any(|&index| opacities.get(usize::from(index)).is_some_and(|&o| o < 255));
+    Indexed { width: info.width, height: info.height, indices, colors, was_transparent }.into_decoded()
 }
 
 fn reason(error: DecodingError) -> LoadErrorKind {
@@ -258,3 +285,6 @@ fn reason(error: DecodingError) -> LoadErrorKind {
         error => LoadErrorKind::Picture(clause(&error.to_string())),
     }
 }
+
+#[cfg(test)]
+mod tests;
