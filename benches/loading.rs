@@ -20,7 +20,7 @@ use mode13h::mesh::shapes;
 use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
-use mode13h_assets::obj;
+use mode13h_assets::model_file;
 use mode13h_conformance::Random;
 
 /// What loads.

@@ -62,7 +62,7 @@ fn golden_frames_of_a_house() {
     use mode13h::light::Light;
     use mode13h::scene::{Camera, Motion, Object, Shared};
     use mode13h_assets::auto_palette;
-    use mode13h_assets::obj;
+    use mode13h_assets::model_file;
 
     let mut tried = Tried::new("golden_frames_of_a_house", 5);
     let loaded = model_file::load(crate::support::workspace::root().join("tests/data/house.obj")).expect("a model");

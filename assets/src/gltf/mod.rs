@@ -11,7 +11,7 @@
 //! Both sides of a face are drawn unless the mesh is closed, so `doubleSided` needs nothing. What is left out makes one
 //! warning, which lists it. A model as it was at rest is read of one with animations, skins or morph targets.
 //!
-//! **Materials.** With base colour b (in sRGB, as all factors here), metalness m and roughness r:
+//! **Materials.** With base colour b (in sRGB, as all factors here), metallic factor m and roughness r:
 //!
 //! | of the surface | is |
 //! |---|---|
@@ -21,7 +21,7 @@
 //! | opacity | alpha of the base colour in the mode `BLEND`; textures' alpha is left out, and so is the mode `MASK` |
 //! | texture | that of the base colour |
 //!
-//! A texture of metalness and roughness counts by its means. Emission is added to the diffuse colour; a texture of it
+//! A metallic-roughness texture counts by its means. Emission is added to the diffuse colour; a texture of it
 //! is shown where the base colour is black and has none. Unlit materials are matt.
 
 mod accessor;

@@ -57,7 +57,7 @@ impl<'b> Values<'b> {
             }
             Source::Binary { bytes, at, last, is_big_endian } => {
                 *last = *at;
-                fn take<'b, const N: usize>(bytes: &'b [u8], at: &mut usize, is_big: bool) -> Option<[u8; N]> {
+                fn take<const N: usize>(bytes: &[u8], at: &mut usize, is_big: bool) -> Option<[u8; N]> {
                     let mut own: [u8; N] = *bytes[*at..].first_chunk()?;
                     *at += N;
                     if is_big {

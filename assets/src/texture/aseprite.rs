@@ -126,10 +126,10 @@ fn palette(mut chunk: Bytes<'_>, colors: &mut [Rgb; 256]) -> Result<(), LoadErro
     chunk.double()?;
     let (first, last) = (chunk.double()?, chunk.double()?);
     chunk.take(8)?;
-    for entry in first..=last.min(255) {
+    for color in colors.get_mut(first..=last.min(255)).unwrap_or_default() {
         let has_name = chunk.word()? & 1 != 0;
         let [r, g, b, _] = chunk.array()?;
-        colors[entry] = Rgb::new(r, g, b);
+        *color = Rgb::new(r, g, b);
         if has_name {
             let length = chunk.word()?;
             chunk.take(length.into())?;

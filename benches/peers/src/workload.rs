@@ -10,7 +10,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Scene};
-use mode13h_assets::obj;
+use mode13h_assets::model_file;
 
 use crate::candidate::{Corner, Triangle};
 use crate::refine::refined;

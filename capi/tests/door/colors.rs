@@ -100,7 +100,7 @@ fn the_card_shows_the_same() {
         let color = Rgb::new(random.below(256) as u8, random.below(256) as u8, random.below(256) as u8);
         // SAFETY: as above.
         let nearest = unsafe { m13_palette_nearest(from.as_ptr(), color.into()) };
-        assert_eq!(nearest, palette.nearest(color).into());
+        assert_eq!(nearest, i32::from(palette.nearest(color)));
     }
     let mut pixels: Vec<u8> = (0..7 * 5).map(|_| random.below(256) as u8).collect();
     let canvas = crate::target(&mut pixels, 6, 5, 7);
