@@ -30,7 +30,7 @@ named! {
         Phong = "phong",
         /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: the method of a
         /// program of today.
-        Float = "float",
+        Float = "gouraud-float",
     }
 }
 

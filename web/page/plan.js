@@ -17,7 +17,7 @@ const FIXED = ["transform", "hidden-surfaces", "near-clipping", "screen-clipping
 /** Why a budget draws faces by a technique, in plain words. */
 const WHY = new Map([
   ["flat", "one shade is close enough"],
-  ["float", "straight in space, curved on the screen"],
+  ["gouraud-float", "straight in space, curved on the screen"],
   ["phong-quadratic", "a curve is close enough"],
   ["phong-every-16", "lit at every 16th pixel, straight between"],
   ["phong-every-8", "lit at every 8th pixel"],

@@ -54,7 +54,7 @@ export const TECHNIQUES = new Map([
   ["gouraud-hyperbolic", "straight in space, exact"],
   ["gouraud-tessellated", "straight blend, faces split"],
   ["phong-table", "lit from a table"],
-  ["float", "straight in space"],
+  ["gouraud-float", "straight in space"],
   ["phong-quadratic", "curve"],
   ["phong-every-16", "lit at every 16th pixel"],
   ["phong-every-8", "lit at every 8th pixel"],

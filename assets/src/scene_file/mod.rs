@@ -30,7 +30,7 @@
 //! | `build` | from the layout to a [`Scene`] |
 //! | `object`, `material`, `motion`, `camera` | the parts of it |
 //! | `named` | the files that a scene names |
-//! | `renamed` | keys and values that had other names before |
+//! | `renamed` | keys and values that had other names before, and a short name |
 //! | `error`, `place` | what is wrong, in which line and column, of which key |
 
 mod build;
@@ -61,6 +61,7 @@ use layout::SceneLayout;
 pub use limits::{LONGEST, MAX_TRIANGLES};
 use mode13h::scene::Scene;
 pub use place::Place;
+pub use renamed::{GOURAUD, in_full};
 
 /// A scene and the warnings of its reading.
 #[derive(Clone, Debug)]

@@ -1,10 +1,28 @@
-//! Keys and values that had other names before. An old name is an error that says the new one.
+//! Keys and values that had other names before, and the short name of one. An old name is an error that says the new one.
+
+use mode13h::settings::Shading;
 
 /// Old keys, with those they lay in, and the present name of each.
 const KEYS: [(&str, &str); 2] = [("wishes", "render"), ("render.rung", "shading")];
 
 /// Old values, and the present name of each.
-const VALUES: [(&str, &str); 1] = [("gouraud-period", "gouraud-vintage")];
+const VALUES: [(&str, &str); 2] = [("gouraud-period", "gouraud-vintage"), ("float", "gouraud-float")];
+
+/// The short name of the default shading.
+pub const GOURAUD: &str = "gouraud";
+
+/// The name that a short name stands for; any other name as it is.
+///
+/// ```
+/// use mode13h_assets::scene_file::in_full;
+///
+/// assert_eq!(in_full("gouraud"), "gouraud-8.8-reseeded");
+/// assert_eq!(in_full("gouraud-16.16"), "gouraud-16.16");
+/// ```
+#[must_use]
+pub fn in_full(name: &str) -> &str {
+    if name == GOURAUD { Shading::default().name() } else { name }
+}
 
 /// The new name of a key.
 pub(super) fn key(old: &str) -> Option<&'static str> {

@@ -283,7 +283,7 @@ impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for NameVisitor<T> {
     }
 
     fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
-        name.parse().map(Name).map_err(|error| match renamed::value(name) {
+        renamed::in_full(name).parse().map(Name).map_err(|error| match renamed::value(name) {
             Some(new) if new.parse::<T>().is_ok() => E::custom(format_args!("\"{name}\" is now called \"{new}\"")),
             _ => E::custom(format_args!("\"{name}\": {error}")),
         })

@@ -16,7 +16,7 @@ use mode13h::settings::Shading;
 /// | `gouraud-tessellated` | – | – | edges are split by an estimate, six times at most; faces inside by none |
 /// | `phong-table` | – | – | normals linear on the screen and in 256 steps, lamps as suns, the eye far away |
 /// | `phong` | `lit` | ½ + 1/512 + 1/100 | f32 of normals and positions |
-/// | `float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
+/// | `gouraud-float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
 ///
 /// A vertex's shade is rounded to 1/256, so by 1/512; what is made from it is a mean of three, and no farther off. The
 /// rest is what the raster adds ([`Interpolation`](mode13h::raster::Interpolation)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of

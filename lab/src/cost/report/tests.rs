@@ -161,7 +161,7 @@ fn a_report_is_well_formed_and_says_everything() {
         "The time for a frame",
         "1\u{2009}200",
         "No measurable difference in time",
-        "gouraud-8.8 and float",
+        "gouraud-8.8 and gouraud-float",
         "holds in part",
         "does not hold",
         "It <is> so.",
