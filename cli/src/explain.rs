@@ -21,24 +21,21 @@ use crate::{chart, input, output, read_files};
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The pixel, counted from 0 at the upper left
+    /// Explain this pixel, counted from 0 at the upper left
     ///
-    /// It says which triangle it shows and why, its span and its sums, the exact value, the truth, and the stages of its
-    /// byte.
+    /// Says which triangle shows and why, how its shade was computed, the exact value, light computed at this very pixel,
+    /// and the stages that made the byte.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pixel: Option<(u32, u32)>,
-    /// The row, counted from 0 at the top
+    /// Chart this row, counted from 0 at the top
     ///
-    /// Its intensity and the slope of that are shown, drawn and true. Where the slope jumps the eye sees a line, a Mach
-    /// band.
+    /// Charts intensity and slope, as drawn and as they should be. Where the slope jumps, the eye sees a line, a Mach band.
     #[arg(long, value_name = "Y")]
     row: Option<u32>,
-    /// Write the chart of a row to a file that ends in .svg
-    ///
-    /// [default: print a chart in characters]
+    /// Write the chart of a row to FILE, which ends in .svg [default: print it]
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
-    /// Print as JSON
+    /// Print the figures as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -109,9 +106,9 @@ fn outside(pixel: Option<(u32, u32)>, row: Option<u32>, screen: Screen) -> Optio
 fn pixel_json(name: &str, at: f64, pixel: &Pixel) -> Value {
     let color = pixel.color;
     json!({
-        "schema": 2,
+        "schema": output::SCHEMA,
         "input": name,
-        "at": at,
+        "time": at,
         "pixel": [pixel.x, pixel.y],
         "byte": pixel.byte,
         "rgb": [color.r, color.g, color.b],
@@ -285,9 +282,9 @@ fn row_json(name: &str, at: f64, row: &Row) -> Value {
         })
     });
     json!({
-        "schema": 2,
+        "schema": output::SCHEMA,
         "input": name,
-        "at": at,
+        "time": at,
         "row": row.y,
         "columns": columns.collect::<Vec<_>>(),
         "slope": {

@@ -17,8 +17,8 @@ use mode13h_lab::explain::ExplainError;
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
-  1    A check found something: `verify` a fault, `cost` a broken promise
-  2    The words on the command line or the input are wrong
+  1    A check failed: `verify` found a wrong byte, `cost` a broken promise
+  2    Wrong arguments or wrong input
   3    A file could not be read or written
   130  Interrupted";
 

@@ -19,16 +19,26 @@ use crate::renderer_pool::RendererPool;
 /// Pixels and palette of a frame.
 pub(crate) struct Frame {
     pixels: Vec<u8>,
+    /// The width, if the pixels are square and not those of mode 13h.
+    width: Option<u32>,
     palette: Palette,
 }
 
 impl Frame {
     pub(crate) fn of(vga: &Vga) -> Frame {
-        Frame { pixels: vga.pixels().to_vec(), palette: vga.palette() }
+        Frame { pixels: vga.pixels().to_vec(), width: None, palette: vga.palette() }
     }
 
-    fn picture(&self) -> Picture<'_> {
-        Picture::mode_13h(&self.pixels, &self.palette)
+    /// A frame of square pixels.
+    pub(crate) fn square(pixels: Vec<u8>, width: u32, palette: Palette) -> Frame {
+        Frame { pixels, width: Some(width), palette }
+    }
+
+    pub(crate) fn picture(&self) -> Picture<'_> {
+        match self.width {
+            None => Picture::mode_13h(&self.pixels, &self.palette),
+            Some(width) => Picture::of(&self.pixels, width as usize, &self.palette),
+        }
     }
 }
 
@@ -55,6 +65,8 @@ pub(crate) struct Film {
     /// True if the number of frames was given.
     is_told: bool,
     rate: FrameRate,
+    /// The size of a frame before it is enlarged.
+    size: (u32, u32),
     scale: Scale,
 }
 
@@ -62,15 +74,22 @@ impl Film {
     /// 4:3 in square pixels, as browsers show them.
     const SCALE: Scale = Scale::To { width: 640, height: 480 };
 
-    /// A film of `frames` frames, or of one.
-    pub(crate) fn new(kind: Kind, out: &Path, frames: Option<u32>, rate: FrameRate, scale: Option<Scale>) -> Film {
+    /// A film of `frames` frames, or of one, in mode 13h or in square pixels of a size.
+    pub(crate) fn new(
+        kind: Kind,
+        out: &Path,
+        frames: Option<u32>,
+        rate: FrameRate,
+        (size, scale): (Option<(u32, u32)>, Option<Scale>),
+    ) -> Film {
         Film {
             kind,
             out: out.to_path_buf(),
             frames: frames.unwrap_or(1),
             is_told: frames.is_some(),
             rate,
-            scale: scale.unwrap_or(Self::SCALE),
+            size: size.unwrap_or((320, 200)),
+            scale: scale.unwrap_or(if size.is_some() { Scale::One } else { Self::SCALE }),
         }
     }
 
@@ -145,7 +164,7 @@ impl Film {
         };
         self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
         let bytes = file.finish().map_err(Failure::from)?;
-        let (width, height) = self.scale.size(320, 200);
+        let (width, height) = self.scale.size(self.size.0 as usize, self.size.1 as usize);
         let (above, below) = self.rate.fraction();
         let (frames, seconds) = (self.frames, f64::from(self.frames) * f64::from(below) / f64::from(above));
         let line = format!(

@@ -24,7 +24,7 @@ use mode13h_assets::{SceneExt, scene_file};
 
 use crate::failure::{Failure, on_one_line};
 use crate::turntable::{Colors, Turntable};
-use crate::{read_files, typo};
+use crate::{output, read_files, typo};
 
 /// A mesh, and what to call it.
 pub(crate) struct Model {
@@ -66,13 +66,13 @@ impl Input {
 }
 
 /// Meaning of INPUT, for the help.
-pub(crate) const HELP: &str = "A scene (.toml), a model (.obj, .stl, .ply, .gltf, .glb), - for either on standard input, or the name of a scene or a shape";
+pub(crate) const HELP: &str = "A scene (.toml), a model (.obj, .stl, .ply, .gltf, .glb), a name, or - for standard input";
 
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {
     format!(
-        "{HELP}. Files may be packed (.gz). `mode13h scenes` lists the names. Where a scene and a shape share a name, it is \
-         the scene. What a scene or model on standard input names is looked for in this directory."
+        "{HELP}. `mode13h list scenes` shows the names; one that a scene and a shape share means the scene. Files may be \
+         gzipped. A scene on standard input names its files relative to the current directory."
     )
 }
 
@@ -262,7 +262,7 @@ fn load(path: &Path, options: &Options) -> Result<model_file::Loaded, ModelFileE
         // Beside the reading, as making the mesh may take most of the time and says nothing meanwhile.
         let bar = &bar;
         scope.spawn(move || {
-            if waits.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
+            if waits.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) && !output::is_quiet() {
                 bar.set_draw_target(ProgressDrawTarget::stderr());
                 bar.enable_steady_tick(Duration::from_millis(100));
             }

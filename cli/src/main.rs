@@ -2,6 +2,7 @@
 
 extern crate alloc;
 
+mod cases;
 mod chart;
 mod cost;
 mod demo;
@@ -13,6 +14,7 @@ mod film;
 mod generate;
 mod host;
 mod input;
+mod list;
 mod names;
 mod options;
 mod output;
@@ -23,7 +25,6 @@ mod read_files;
 mod render;
 mod renderer_pool;
 mod scenes;
-mod show;
 mod stats;
 mod toggles;
 mod turntable;

@@ -5,7 +5,7 @@ mod shading;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -13,12 +13,14 @@ use mode13h::palette::{Rgb, builtin};
 use mode13h::render::Renderer;
 use mode13h::scene::{Scene, UpAxis};
 use mode13h::settings::DitherPattern;
-use mode13h::settings::{HiddenSurfaces, Mapping, VertexPath};
+use mode13h::settings::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h_assets::model_file::Options;
+use mode13h_assets::scene_file::{GOURAUD, in_full};
 
 use crate::failure::Failure;
 use crate::input::{self, Input};
+use crate::output;
 use crate::turntable::{Background, Colors, Turntable};
 pub(crate) use shading::{ShadingOptions, pace};
 
@@ -30,38 +32,38 @@ const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 #[derive(Args, Clone)]
 #[command(next_help_heading = "What is drawn")]
 pub(crate) struct Drawing {
-    /// Enlarge what is seen
+    /// Enlarge by FACTOR
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     zoom: Option<f64>,
-    /// Look from the point EYE at the point TARGET
+    /// Look from the point EYE at TARGET
     ///
-    /// Each point is X,Y,Z in units of the scene; for a model, from its middle.
+    /// A point is X,Y,Z, in units of the scene; a model's centre is 0,0,0.
     ///
-    /// [default: the scene's camera, or one that shows all of the model; TARGET is 0,0,0]
+    /// [default: the scene's camera, or one that shows the whole model; TARGET is 0,0,0]
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
-    /// The axis of a model that points up [default: y; z for a sheet that looks along it]
-    #[arg(long, value_name = "AXIS", value_enum)]
+    /// The axis of a model that points up [default: y; z for a flat sheet facing z]
+    #[arg(long, value_name = "AXIS", value_enum, hide_short_help = true)]
     up: Option<Up>,
-    /// The angle beyond which faces of a model meet at an edge
+    /// Keep a model's edges sharp from DEGREES on
     ///
-    /// It is for models without normals: 180 makes them smooth everywhere, 0 flat.
+    /// For models without normals: 180 makes everything smooth, 0 everything flat.
     ///
-    /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease)]
+    /// [default: the model's smoothing groups, or else 40; scans are smooth]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease, hide_short_help = true)]
     crease: Option<Angle>,
     #[arg(
         long,
         value_name = "FILE|NAME",
-        help = "The palette: a file, a built-in one, or auto",
+        help = "A palette file, a built-in palette, or auto",
         long_help = long_help_on_palettes(),
     )]
     palette: Option<OsString>,
-    /// What the frame is cleared to: a colour or an entry
+    /// Clear the frame to COLOUR
     ///
-    /// A colour is written '#rrggbb' or rrggbb; the palette's nearest entry is taken. An entry is 0 to 255.
+    /// '#rrggbb' or rrggbb, for the nearest colour in the palette; or the number of an entry, 0 to 255.
     ///
-    /// [default: the scene's, otherwise entry 0]
+    /// [default: the scene's, or else entry 0]
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
     #[command(flatten)]
@@ -77,8 +79,8 @@ struct Pipeline {
         value_name = "NAME",
         value_parser = one_of(HiddenSurfaces::ALL, HiddenSurfaces::name),
         hide_possible_values = true,
-        help = "How hidden surfaces are left out",
-        long_help = long_help_on_names("How hidden surfaces are left out", &HiddenSurfaces::ALL.map(HiddenSurfaces::name)),
+        help = "How to remove hidden surfaces",
+        long_help = long_help_on_names("How to remove hidden surfaces", &HiddenSurfaces::ALL.map(HiddenSurfaces::name)),
     )]
     hidden_surfaces: Option<HiddenSurfaces>,
     #[arg(
@@ -86,38 +88,42 @@ struct Pipeline {
         value_name = "NAME",
         value_parser = one_of(Mapping::ALL, Mapping::name),
         hide_possible_values = true,
-        help = "How textures are mapped",
-        long_help = long_help_on_names("How textures are mapped", &Mapping::ALL.map(Mapping::name)),
+        help = "How to map textures",
+        long_help = long_help_on_names("How to map textures", &Mapping::ALL.map(Mapping::name)),
     )]
     mapping: Option<Mapping>,
-    /// Draw distant textures from smaller copies
-    ///
-    /// [default: as the scene calls for]
-    #[arg(long, value_name = "on|off", value_parser = switch, num_args = 0..=1, default_missing_value = "on")]
-    mipmaps: Option<bool>,
-    /// Split faces until linear shades are off by at most N shades
+    /// Draw distant textures from smaller copies [default: if the scene needs it]
+    #[arg(long, conflicts_with = "no_mipmaps", hide_short_help = true)]
+    mipmaps: bool,
+    /// Draw all textures in full resolution
+    #[arg(long, hide_short_help = true)]
+    no_mipmaps: bool,
+    /// Split faces until linear shading is off by at most N shades
     ///
     /// A shade is 1/255 of full intensity.
     ///
-    /// [default: the scene's, otherwise no face is split]
-    #[arg(long, value_name = "N", value_parser = shades)]
+    /// [default: the scene's, or else no face is split]
+    #[arg(long, value_name = "N", value_parser = shades, hide_short_help = true)]
     tessellation: Option<f32>,
     #[arg(
         long,
-        value_name = "on|off|PATTERN",
-        value_parser = dither,
-        num_args = 0..=1,
-        default_missing_value = "on",
-        help = "Show shades between two entries as a pattern of both",
+        value_name = "PATTERN",
+        value_parser = one_of(DitherPattern::ALL, DitherPattern::name),
+        hide_possible_values = true,
+        conflicts_with = "no_dither",
+        help = "Mix shades between two colours as a pattern",
         long_help = long_help_on_dither(),
     )]
-    dither: Option<Dither>,
+    dither: Option<DitherPattern>,
+    /// Draw without dither
+    #[arg(long, hide_short_help = true)]
+    no_dither: bool,
     #[arg(
         long,
         value_name = "NAME",
         value_parser = one_of(VertexPath::ALL, VertexPath::name),
         hide_possible_values = true,
-        help = "The numbers that vertices are made in",
+        help = "The numbers that vertices are computed in",
         long_help = long_help_on_arithmetic(),
     )]
     arithmetic: Option<VertexPath>,
@@ -125,21 +131,21 @@ struct Pipeline {
         long,
         value_name = "NAME",
         value_parser = str::parse::<Kernel>,
-        help = "The span kernel",
+        help = "The kernel that fills spans",
         long_help = long_help_on_kernels(),
     )]
     kernel: Option<Kernel>,
 }
 
 /// Which moment of a scene is drawn.
-#[derive(Args)]
+#[derive(Args, Clone, Default)]
 pub(crate) struct Moment {
-    /// The time of the frame, or of the first one
+    /// Draw the scene as it is at SECONDS
     ///
-    /// A model turns by 90 degrees in a second.
+    /// Several frames start there. A model turns by 90 degrees a second.
     ///
-    /// [default: for a single frame that is not turned, the scene's `picture`; otherwise 0]
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true, visible_alias = "at")]
+    /// [default: the scene's `picture` for a single frame, otherwise 0]
+    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
     time: Option<f64>,
 }
 
@@ -152,6 +158,23 @@ impl Moment {
     /// Time in seconds of the first of several frames.
     pub(crate) fn of_first(&self) -> f64 {
         self.time.unwrap_or_default()
+    }
+}
+
+/// Whether a command says what it does.
+#[derive(Args, Clone, Copy, Default)]
+pub(crate) struct Quiet {
+    /// Print only warnings and errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Quiet {
+    /// Silences the program, if that was asked for.
+    pub(crate) fn obey(self) {
+        if self.quiet {
+            output::be_quiet();
+        }
     }
 }
 
@@ -190,7 +213,7 @@ impl Drawing {
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
         let input = input::input(words, &Options { crease: self.crease })?;
         if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
-            return Err(Failure::words("--crease is for models: a scene says itself what each of its models has"));
+            return Err(Failure::words("--crease is for models; in a scene, each model has a key for it"));
         }
         Ok(input)
     }
@@ -218,9 +241,7 @@ impl Drawing {
                 (stage, Some(colors))
             }
             Input::Scene { .. } if self.up.is_some() => {
-                return Err(Failure::words(
-                    "--up is for models: a scene says itself which axis of each of its models points up",
-                ));
+                return Err(Failure::words("--up is for models; in a scene, each model has a key for it"));
             }
             Input::Scene { scene, .. } => {
                 let auto = scene.auto_palette.then_some(Colors::Auto);
@@ -237,8 +258,8 @@ impl Drawing {
         if let Some(background) = self.background {
             stage.set_background(background);
         }
-        if let Some(Dither(dither)) = self.pipeline.dither {
-            stage.set_dither(dither);
+        if self.pipeline.dither.is_some() || self.pipeline.no_dither {
+            stage.set_dither(self.pipeline.dither);
         }
         if let Some(shades) = self.pipeline.tessellation {
             stage.scene.settings.tessellation = Some(shades);
@@ -273,15 +294,24 @@ impl Drawing {
 
     /// A renderer with the settings of the command line, except for the shading.
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
-        let Pipeline { hidden_surfaces, mapping, mipmaps, arithmetic, .. } = self.pipeline;
+        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
         renderer.kernel = kernel;
         renderer.settings.hidden_surfaces = hidden_surfaces;
         renderer.settings.mapping = mapping;
-        renderer.settings.mipmaps = mipmaps;
+        renderer.settings.mipmaps = (mipmaps || no_mipmaps).then_some(mipmaps);
         renderer.settings.vertex_path = arithmetic;
         renderer
     }
+}
+
+/// Takes the name of one of these shadings, or `gouraud` for the default one.
+pub(crate) fn shading_of<const N: usize>(all: [Shading; N]) -> impl TypedValueParser<Value = Shading> {
+    let value = |shading: Shading| {
+        let value = PossibleValue::new(shading.name());
+        if shading == Shading::default() { value.alias(GOURAUD) } else { value }
+    };
+    PossibleValuesParser::new(all.map(value)).try_map(|word| in_full(&word).parse::<Shading>())
 }
 
 /// Takes one of these names, and offers them to the shell's completions.
@@ -347,29 +377,6 @@ fn background(words: &str) -> Result<Background, String> {
     entry.map_err(|_| "neither a colour such as '#203040' nor an entry of the palette, 0 to 255".to_string())
 }
 
-fn switch(words: &str) -> Result<bool, String> {
-    match words {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err("neither on nor off; an INPUT stands before this option, or behind its =on".to_string()),
-    }
-}
-
-/// A pattern of dither, or none.
-#[derive(Clone, Copy)]
-struct Dither(Option<DitherPattern>);
-
-fn dither(words: &str) -> Result<Dither, String> {
-    match words {
-        "on" => Ok(Dither(Some(DitherPattern::default()))),
-        "off" => Ok(Dither(None)),
-        _ => words.parse().map(|pattern| Dither(Some(pattern))).map_err(|_| {
-            let names = DitherPattern::ALL.map(DitherPattern::name).join(", ");
-            format!("none of on, off, {names}; an INPUT stands before this option, or behind its =on")
-        }),
-    }
-}
-
 /// An angle between faces on the command line, in degrees.
 pub(crate) fn crease(words: &str) -> Result<Angle, String> {
     match words.parse::<f32>() {
@@ -387,21 +394,20 @@ pub(crate) fn shades(words: &str) -> Result<f32, String> {
 }
 
 fn long_help_on_names(what: &str, names: &[&str]) -> String {
-    format!("{what}: {}\n\n[default: as the scene calls for]", names.join(", "))
+    format!("{what}: {}\n\n[default: as the scene needs]", names.join(", "))
 }
 
 fn long_help_on_dither() -> String {
     format!(
-        "Show shades between two entries as a pattern of both: off, {}. `on` is {}.\n\n[default: as the scene says]",
-        DitherPattern::ALL.map(DitherPattern::name).join(", "),
-        DitherPattern::default()
+        "Mix shades between two colours as a pattern of both: {}\n\n[default: the scene's, or else none]",
+        DitherPattern::ALL.map(DitherPattern::name).join(", ")
     )
 }
 
 fn long_help_on_arithmetic() -> String {
     let names = VertexPath::ALL.map(VertexPath::name).join(", ");
     format!(
-        "The numbers that vertices are made in: {names}. Fixed numbers have 16 bits before the point and 16 behind it.\n\n\
+        "The numbers that vertices are computed in: {names}. `fixed` is 16.16, as a 386 without a coprocessor needs it.\n\n\
          [default: {}]",
         VertexPath::default()
     )
@@ -409,8 +415,8 @@ fn long_help_on_arithmetic() -> String {
 
 fn long_help_on_palettes() -> String {
     format!(
-        "The palette. `auto` makes one for what is seen. `mode13h palette` lists the built-in ones. The name of a file \
-         ends in {}.\n\n[default: the scene's; for a model, auto if it has colours of its own, otherwise grey]",
+        "A palette file ({}), a built-in palette (`mode13h list palettes`), or `auto`, which makes one for what is seen\n\n\
+         [default: the scene's; for a model, auto if it has colours of its own, or else grey]",
         input::palette_extensions()
     )
 }
@@ -418,8 +424,8 @@ fn long_help_on_palettes() -> String {
 fn long_help_on_kernels() -> String {
     let names: Vec<&str> = Kernel::available().map(Kernel::name).collect();
     format!(
-        "The span kernel: {}. All draw the same bytes.\n\n[default: the environment variable {KERNEL_VARIABLE}, otherwise \
-         the fastest, {}]",
+        "The kernel that fills spans: {}. All draw the same bytes.\n\n[default: the environment variable \
+         {KERNEL_VARIABLE}, or else the fastest, {}]",
         names.join(", "),
         Kernel::default().name()
     )

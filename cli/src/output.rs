@@ -12,6 +12,9 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::read_files;
 
+/// The version of all JSON that the program prints or writes.
+pub(crate) const SCHEMA: u32 = 1;
+
 /// Held while a file is written, by any number of threads.
 static WRITING: RwLock<()> = RwLock::new(());
 
@@ -20,6 +23,24 @@ static WRITING_LONG: Mutex<()> = Mutex::new(());
 
 /// Set once the program has been told to end.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Set once by --quiet.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Lets the program print nothing but warnings, errors and what it is run for.
+pub(crate) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Returns whether --quiet was given.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints to standard output, unless the program is to be quiet.
+pub(crate) fn say(text: &str) -> Result<(), Failure> {
+    if is_quiet() { Ok(()) } else { print(text) }
+}
 
 /// Makes Ctrl-C, and what else asks a program to end, wait for the files that are being written: each is then whole
 /// under its name, or gone if it takes long, and none is left beside it.
@@ -68,12 +89,9 @@ pub(crate) fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// Writes what `vga` shows as a PNG: indexed, or in true colour if `rgb`.
-pub(crate) fn picture(vga: &Vga, path: &Path, rgb: bool, scale: Option<Scale>) -> Result<(), Failure> {
-    let palette = vga.palette();
-    let picture = Picture::mode_13h(vga.pixels(), &palette);
-    let scale = scale.unwrap_or(if rgb { Scale::FiveBySix } else { Scale::One });
-    file(path, || Png { scale, rgb }.save(&picture, path))
+/// Writes a picture as a PNG: indexed, or in true colour if `rgb`.
+pub(crate) fn picture(picture: &Picture<'_>, path: &Path, rgb: bool, scale: Scale) -> Result<(), Failure> {
+    file(path, || Png { scale, rgb }.save(picture, path))
 }
 
 /// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
@@ -82,7 +100,7 @@ pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, Failure> {
     let mut names = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
     // Some number below 2⁶⁴ is free, as no directory holds so many files.
     let path = names.find(|path| path.symlink_metadata().is_err()).unwrap_or_default();
-    picture(vga, &path, false, None)?;
+    picture(&Picture::mode_13h(vga.pixels(), &vga.palette()), &path, false, Scale::One)?;
     Ok(path)
 }
 

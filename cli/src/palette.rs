@@ -23,39 +23,35 @@ use crate::{input, output, read_files};
 pub(crate) struct Options {
     #[arg(
         value_name = "FILE|NAME",
-        help = "A palette file, or a built-in palette [default: list those]",
+        help = "A palette file, or the name of a built-in palette",
         long_help = long_help(),
     )]
     palette: Option<OsString>,
     /// Make a palette for a model
     ///
-    /// It has black, a ramp for each of the model's materials by how much of it is seen over a turn, colours for its
-    /// textures, and white.
+    /// It holds black, white, a ramp for each material and colours for the textures. A material that shows more over a
+    /// turn of the model gets a longer ramp.
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
-    /// The axis of that model that points up [default: y; z for a sheet that looks along it]
+    /// The axis of the model that points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
     up: Option<Up>,
-    /// The angle beyond which two faces of that model meet at an edge
+    /// Keep edges of the model sharp from DEGREES on, if it has no normals
     ///
-    /// It is for models without normals.
-    ///
-    /// [default: the model's smoothing groups, otherwise 40; scans are smooth]
+    /// [default: the model's smoothing groups, or else 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
     crease: Option<Angle>,
-    /// Write the palette to a file, in the format of its extension
-    ///
-    /// A name ending in .png is a chart of the colours.
-    #[arg(short, long, value_name = "OUT", conflicts_with = "json")]
+    /// Convert to FILE, in the format of its extension; .png draws a chart
+    #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
-    /// Print as JSON
+    /// Print the colours as JSON
     #[arg(long)]
     json: bool,
 }
 
 fn long_help() -> String {
     format!(
-        "A palette file ({}), or a built-in palette. Without either the built-in palettes are listed.",
+        "A palette file ({}), or the name of a built-in palette; `mode13h list palettes` shows those",
         input::palette_extensions()
     )
 }
@@ -69,11 +65,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             out.as_deref().map_or(Ok(()), read_files::spare)?;
             (name, palette, Vec::new())
         }
-        (None, None) if out.is_some() => {
-            return Err(Failure::words("-o writes one palette: FILE|NAME or --from MODEL says which"));
+        (None, None) => {
+            return Err(Failure::words(
+                "no palette: give FILE|NAME or --from MODEL; `mode13h list palettes` shows the built-in ones",
+            ));
         }
-        (None, None) if *json => return output::print_json(&list_json()),
-        (None, None) => return output::print(&list()),
     };
     match out {
         Some(out) => convert(&name, &palette, out),
@@ -85,21 +81,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// A line for each built-in palette.
-fn list() -> String {
-    let widest = builtin::ALL.iter().map(|builtin| builtin.name.len()).max().unwrap_or_default();
-    let line = |builtin: &Builtin| {
-        let Builtin { name, provenance, .. } = builtin;
-        format!("{name:widest$}  {}. {provenance}", ramps(builtin.palette)).trim_end().to_string() + "\n"
-    };
-    builtin::ALL.iter().map(line).collect()
-}
-
-fn list_json() -> Value {
-    let palettes = builtin::ALL.iter().map(
-        |builtin| json!({ "name": builtin.name, "ramps": builtin.palette.ramps(), "provenance": builtin.provenance }),
-    );
-    json!({ "schema": 1, "palettes": palettes.collect::<Vec<_>>() })
+/// What a built-in palette holds, and where it is from.
+pub(crate) fn summary(builtin: &Builtin) -> String {
+    format!("{}. {}", ramps(builtin.palette), builtin.provenance).trim_end().to_string()
 }
 
 fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
@@ -109,7 +93,7 @@ fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
         json!({ "material": material, "what": what, "first": first, "last": last })
     });
     json!({
-        "schema": 1,
+        "schema": output::SCHEMA,
         "name": name,
         "ramps": palette.ramps(),
         "colors": colors.collect::<Vec<_>>(),

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::effect_cost::EffectCost;
 use crate::failure::Failure;
-use crate::options::{Drawing, ShadingOptions, finite};
+use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::turntable::Pose;
 use crate::{input, output};
 
@@ -28,17 +28,16 @@ const TIME_OF_ONE: (Duration, Duration) = (Duration::from_millis(5), Duration::f
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// Print the plan as JSON
-    ///
-    /// It is the same on every run, times excepted.
-    #[arg(long)]
-    json: bool,
     /// Measure what each effect costs, or would cost if it were on
     #[arg(long)]
-    time: bool,
-    /// The time of the frame [default: the scene's `picture`, otherwise 0]
-    #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
-    at: Option<f64>,
+    measure: bool,
+    /// Print the plan as JSON
+    ///
+    /// Only what --measure adds differs from run to run.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    moment: Moment,
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -46,12 +45,12 @@ pub(crate) struct Options {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, json, time, at, drawing, shading } = options;
+    let Options { input, json, measure, moment, drawing, shading } = options;
     let kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
-    let at = at.unwrap_or(stage.scene.picture);
+    let at = moment.of_picture(&stage.scene);
     let frames = [at - STEP, at].map(|seconds| {
         stage.show(seconds, Pose::FIRST);
         stage.scene.clone()
@@ -68,13 +67,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let effects = rows.len().max(1);
     let of_one = (TIME / u32::try_from(effects).unwrap_or(u32::MAX)).clamp(TIME_OF_ONE.0, TIME_OF_ONE.1);
     let meter = EffectCost { renderer: || alike.with_same_settings(), frames: &frames, time: of_one };
-    let prices = if *time { Some(prices(&meter, &rows)?) } else { None };
+    let prices = if *measure { Some(prices(&meter, &rows)?) } else { None };
     if *json {
         return output::print_json(&as_json(&name, renderer.plan().near_needed(), &rows, prices.as_deref()));
     }
     let plan = renderer.plan();
     let head = Head { name: &name, at, plan, stats: &stats, planning: meter.plan()? };
-    let frame = if *time { Some(meter.frame()?) } else { None };
+    let frame = if *measure { Some(meter.frame()?) } else { None };
     output::print(&(head.text(&rows, frame) + &tables(&rows, prices.as_deref())))
 }
 
@@ -103,7 +102,7 @@ fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) ->
 #[derive(Serialize)]
 struct Json<'a> {
     schema: u32,
-    scene: &'a str,
+    input: &'a str,
     /// The least near distance that depths need, if the camera's is smaller.
     near_needed: Option<f32>,
     objects: Vec<JsonObject<'a>>,
@@ -144,7 +143,7 @@ fn as_json<'a>(
         });
         Some(JsonObject { object: &rows[0].object, effects: effects.collect() })
     });
-    Json { schema: 2, scene: name, near_needed, objects: objects.collect() }
+    Json { schema: output::SCHEMA, input: name, near_needed, objects: objects.collect() }
 }
 
 /// Facts about all objects.

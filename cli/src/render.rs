@@ -1,4 +1,4 @@
-//! `mode13h render`: one picture, a numbered row of them, or a film.
+//! `mode13h render`: a picture, numbered pictures, or an animation.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::Scale;
+use mode13h::raster::Frame;
 use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::settings::Accuracy;
 use mode13h::span::Kernel;
@@ -23,7 +24,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::host::clock;
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, ShadingOptions, finite};
+use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
@@ -32,74 +33,84 @@ use crate::{input, output, read_files, stats};
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The file: .png, .gif, .apng, or - for a stream to ffmpeg
+    /// Write to FILE: .png, .gif, .apng, or - for ffmpeg
     ///
-    /// A name ending in .png is a picture. With --frames it holds %04d or the like for the number. A name ending in .gif or
-    /// .apng is a film.
+    /// A .png is a picture; for several frames its name holds %04d or the like. A .gif or .apng is an animation. An existing
+    /// file is overwritten.
     ///
-    /// The name - is a film in Y4M on standard output: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p
-    /// torus.mp4`. Y4M says its size and rate itself; its colours are rounded to YCbCr, those of .apng are exact.
+    /// - is an animation in Y4M on standard output: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
+    /// Y4M rounds colours to YCbCr; those of .apng are exact.
     ///
-    /// [default: INPUT.png in this directory, which is not overwritten without --force]
-    #[arg(short, long, value_name = "OUT")]
+    /// [default: INPUT.png in the current directory, never overwritten without --force]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite INPUT.png
     #[arg(long)]
     force: bool,
-    /// How many frames
+    /// Draw N frames, numbered from 0
     ///
-    /// They are numbered from 0.
-    ///
-    /// [default: 1; for a film, those of one round: four seconds, or what the scene says]
+    /// [default: 1; for an animation one round, which is four seconds or what the scene says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// Turn what is seen: one frame by so much, or spread over all
+    /// Rotate by DEGREES, spread over all frames
     ///
-    /// Of N frames, frame i is turned by i/N of it, so 360 makes a seamless turn. In a scene that moves, 360 are one round
-    /// of it. Round a scene that does not move the camera goes.
+    /// A single frame is rotated by all of it. Frame i of N is rotated by i/N of DEGREES, so 360 loops seamlessly. A scene that moves goes through one round in 360
+    /// degrees; around one that does not, the camera circles.
     ///
-    /// [default for a film: 360]
+    /// [default: 0; for an animation 360]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     turn: Option<f64>,
     #[command(flatten)]
     moment: Moment,
-    /// Frames a second [default: 35]
+    /// Frames per second [default: 35]
     ///
-    /// A film has up to 50. Of pictures it says how much time passes from one to the next, where --turn does not.
+    /// Up to 50 in an animation. For pictures without --turn, it sets the time from one to the next.
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f64>,
-    /// Enlarge: 1, 2, 5x6, or a size such as 640x480
+    /// Draw WxH square pixels instead of mode 13h's 320x200
     ///
-    /// 5x6 is exactly 4:3 in square pixels.
+    /// Up to 4096x4096. The pixels of mode 13h are not square: 320x200 of them fill a 4:3 screen.
+    #[arg(long, value_name = "WxH", value_parser = size, conflicts_with = "max_time")]
+    size: Option<(u32, u32)>,
+    /// Enlarge the frame: 2, 5x6, or to a size like 640x480
     ///
-    /// [default: 1; with --rgb 5x6; for a film 640x480]
+    /// 5x6 makes mode 13h exactly 4:3.
+    ///
+    /// [default: 1; for mode 13h 5x6 with --rgb, and 640x480 in an animation]
     #[arg(long, value_name = "SCALE")]
     scale: Option<Scale>,
     /// Write true colour instead of a palette; PNG only
     #[arg(long)]
     rgb: bool,
-    /// How many frames are drawn at a time [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Draw N frames at a time [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
-    /// Keep the triangles of the picture, for `verify --replay`
+    /// Save the triangles of the picture in FILE, for `verify --replay`
     ///
-    /// With --frames the name holds %04d or the like.
-    #[arg(long, value_name = "FILE")]
+    /// For several frames the name holds %04d or the like.
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     record: Option<PathBuf>,
-    /// Keep the error of each frame under --max-time, for --replay-errors
-    #[arg(long, value_name = "FILE")]
+    /// Save the error that --max-time chose for each frame in FILE
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     record_errors: Option<PathBuf>,
-    /// Draw each frame within the error that --record-errors kept
+    /// Draw each frame with the error that --record-errors saved in FILE
     ///
-    /// The bytes are equal on every machine.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["shading", "max_error", "max_time", "record_errors"])]
+    /// The bytes are the same on every machine.
+    #[arg(
+        long,
+        value_name = "FILE",
+        hide_short_help = true,
+        conflicts_with_all = ["shading", "max_error", "max_time", "record_errors"],
+    )]
     replay_errors: Option<PathBuf>,
-    /// Say what was drawn, a line for each frame, on standard error
+    /// Print figures for each frame to standard error
     #[arg(long)]
     stats: bool,
-    /// Print what was written as JSON, with --stats what was drawn
-    #[arg(long)]
+    /// Print the files' names as JSON, with --stats the figures
+    #[arg(long, conflicts_with = "quiet")]
     json: bool,
+    #[command(flatten)]
+    quiet: Quiet,
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -118,6 +129,13 @@ impl Options {
     }
 }
 
+/// A size in pixels, on the command line.
+fn size(words: &str) -> Result<(u32, u32), String> {
+    let side = |word: &str| word.parse().ok().filter(|side| (1..=Frame::MAX_SIDE).contains(side));
+    let size = words.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    size.ok_or_else(|| format!("not a size such as 640x400, with sides from 1 to {}", Frame::MAX_SIDE))
+}
+
 fn rate(words: &str) -> Result<f64, String> {
     match finite(words) {
         Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
@@ -126,10 +144,11 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    options.quiet.obey();
     let path = options.out();
     let mut out = Out::new(options, &path)?;
     if options.json && film_kind(&path) == Some(Kind::Stream) {
-        return Err(Failure::words("-: the film is on standard output, which leaves no room for --json"));
+        return Err(Failure::words("-: the animation is on standard output, which leaves no room for --json"));
     }
     let input = options.drawing.input(&options.input)?;
     let is_still = matches!(out, Out::Pictures(_, 1));
@@ -160,6 +179,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         renderer: options.shading.renderer(&options.drawing, kernel),
         stage: stage.clone(),
         vga: Vga::new(),
+        square: options.size.map(|(width, height)| SquareFrame::new(width, height)),
     };
     let renderer_pool = RendererPool::new(make);
     let drawn: Mutex<Vec<Drawn>> = Mutex::default();
@@ -180,14 +200,18 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let written: Mutex<Vec<u32>> = Mutex::default();
     let picture = |names: &Names, artist: &mut Artist, number| {
         draw(artist, number)?;
-        output::picture(&artist.vga, &names.of(number), options.rgb, options.scale)?;
+        let scale = options.scale.unwrap_or(match options.size {
+            None if options.rgb => Scale::FiveBySix,
+            _ => Scale::One,
+        });
+        output::picture(&artist.frame().picture(), &names.of(number), options.rgb, scale)?;
         written.lock().unwrap_or_else(PoisonError::into_inner).push(number);
         progress.inc(1);
         Ok(())
     };
     let frame = |artist: &mut Artist, number| {
         draw(artist, number)?;
-        Ok(film::Frame::of(&artist.vga))
+        Ok(artist.frame())
     };
     let pool = || {
         let threads = options.threads.map_or(0, usize::from);
@@ -217,10 +241,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return output::print_json(&as_json(options, &out, film, drawn));
     }
     match film {
-        Some(film) => output::print(&film.line),
+        Some(film) => output::say(&film.line),
         None if options.out.is_none() => {
             let names = out.files().into_iter().map(|file| on_one_line(&file.to_string_lossy()) + "\n");
-            output::print(&names.collect::<String>())
+            output::say(&names.collect::<String>())
         }
         None => Ok(()),
     }
@@ -245,12 +269,12 @@ fn saying_which(failure: Failure, names: &Names, mut written: Vec<u32>) -> Failu
 fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<Drawn>) -> Value {
     drawn.sort_by_key(|(number, ..)| *number);
     let mut json = json!({
-        "schema": 1,
+        "schema": output::SCHEMA,
         "input": input::name_of(&options.input),
         "files": out.files().iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
     });
     if let Some(film) = film {
-        json["film"] = film.json;
+        json["animation"] = film.json;
     }
     if options.stats {
         let frame = |(number, stats, timed): &Drawn| {
@@ -276,7 +300,7 @@ enum Out {
 
 impl Out {
     fn new(options: &Options, out: &Path) -> Result<Out, Failure> {
-        let Options { frames, turn, fps, rgb, scale, .. } = options;
+        let Options { frames, turn, fps, rgb, size, scale, .. } = options;
         let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
         let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
         if ends_in("png") {
@@ -287,20 +311,20 @@ impl Out {
             Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
         } else if let Some(kind) = film_kind(out) {
             if *rgb {
-                return Err(wrong(&"--rgb is for .png: a film has the colours that it needs"));
+                return Err(wrong(&"--rgb is for .png: an animation has the colours that it needs"));
             }
             if kind != Kind::Stream && out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
-                return Err(wrong(&"a film is one file: its name needs no number"));
+                return Err(wrong(&"an animation is one file: its name needs no number"));
             }
             let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::try_from).map_err(|error| wrong(&error))?;
-            Ok(Out::Film(Film::new(kind, out, *frames, rate, *scale)))
+            Ok(Out::Film(Film::new(kind, out, *frames, rate, (*size, *scale))))
         } else {
             // What ffmpeg makes of a stream.
             let films = ["mp4", "webm", "mkv", "mov", "avi", "webp"];
             let shown = out.display();
             Err(match films.into_iter().any(ends_in) {
                 true => wrong(&format!(
-                    "films are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p {shown}`"
+                    "animations are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p {shown}`"
                 )),
                 false => wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"),
             })
@@ -464,7 +488,26 @@ impl Run {
 struct Artist {
     renderer: Renderer,
     stage: Turntable,
+    /// The machine: its frame, unless that is of another size, and its palette.
     vga: Vga,
+    square: Option<SquareFrame>,
+}
+
+/// A frame of square pixels.
+struct SquareFrame {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+impl SquareFrame {
+    fn new(width: u32, height: u32) -> SquareFrame {
+        SquareFrame { width, height, pixels: vec![0; width as usize * height as usize] }
+    }
+
+    fn screen(&self) -> Screen {
+        Screen { width: self.width, height: self.height, pixel_aspect: (1, 1) }
+    }
 }
 
 impl Artist {
@@ -474,20 +517,35 @@ impl Artist {
         }
         let (seconds, pose) = motion.of(number, &self.stage);
         self.stage.show(seconds, pose);
-        self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)
+        let scene = &self.stage.scene;
+        let Some(SquareFrame { width, height, pixels }) = &mut self.square else {
+            return self.renderer.draw(scene, &mut self.vga).map_err(Failure::from);
+        };
+        let frame = Frame::new(pixels, *width, *height, *width as usize).map_err(Failure::words)?;
+        let stats = self.renderer.draw_frame(scene, frame, (1, 1)).map_err(Failure::from)?;
+        scene.load_palette(&mut self.vga);
+        Ok(stats)
+    }
+
+    /// The frame that was drawn last.
+    fn frame(&self) -> film::Frame {
+        match &self.square {
+            None => film::Frame::of(&self.vga),
+            Some(SquareFrame { width, pixels, .. }) => film::Frame::square(pixels.clone(), *width, self.vga.palette()),
+        }
     }
 
     /// Keeps the triangles of the frame that was drawn last.
     fn record(&mut self, path: &Path) -> Result<(), Failure> {
-        let record =
-            Record::of_scene(&mut self.renderer, &self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+        let screen = self.square.as_ref().map_or(Screen::MODE_13H, SquareFrame::screen);
+        let record = Record::of_scene(&mut self.renderer, &self.stage.scene, screen).map_err(Failure::from)?;
         output::file(path, || record.save(path))
     }
 }
 
 /// A bar on standard error, if that is a terminal and there is more than one frame.
 fn progress(frames: u32) -> ProgressBar {
-    if frames == 1 {
+    if frames == 1 || output::is_quiet() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(frames.into());

@@ -1,64 +1,58 @@
-//! `mode13h scenes`: the scenes that are compiled in.
+//! `mode13h scenes`: the scenes that are compiled in, as files.
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use mode13h::export;
-use mode13h::mesh::shapes;
 use mode13h_assets::shipped::{self, Shipped};
-use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::{output, typo};
 
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Write the file of a scene, to be edited
+    #[command(subcommand)]
+    what: Option<What>,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// Write a shipped scene to a file that you can edit
+    Copy(CopyOptions),
+}
+
+#[derive(Args)]
+struct CopyOptions {
+    /// The scene: `mode13h list scenes` shows the names
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Write to FILE, which ends in .toml; an existing file is overwritten
     ///
-    /// It is NAME.toml in this directory. One that exists is not overwritten without --force.
-    #[arg(long, value_name = "NAME")]
-    copy: Option<String>,
-    /// The name of the copy, which ends in .toml; what it holds is overwritten
-    #[arg(short, long, value_name = "FILE", requires = "copy")]
+    /// [default: NAME.toml in the current directory, never overwritten without --force]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite NAME.toml
-    #[arg(long, requires = "copy")]
+    #[arg(long)]
     force: bool,
-    /// Print the list as JSON
-    #[arg(long, conflicts_with = "copy")]
-    json: bool,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { copy, out, force, json } = options;
-    let Some(name) = copy else {
-        return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
+    let Some(What::Copy(CopyOptions { name, out, force })) = &options.what else {
+        return Err(Failure::words(
+            "scenes are listed by `mode13h list scenes`, and copied by `mode13h scenes copy NAME`",
+        ));
     };
     let Ok(scene) = name.parse::<Shipped>() else {
         let near = typo::nearest(name, shipped::ALL.iter().map(|scene| scene.name));
         let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-        return Err(Failure::words(format!("{name}: no such scene{near} (mode13h scenes lists them)")));
+        return Err(Failure::words(format!("{name}: no such scene{near} (mode13h list scenes shows the names)")));
     };
-    let out = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
-    if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-        return Err(Failure::words(format!("{}: the file of a scene ends in .toml", out.display())));
+    let path = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return Err(Failure::words(format!("{}: the file of a scene ends in .toml", path.display())));
     }
-    if options.out.is_none() {
-        output::refuse_overwriting(&out, *force)?;
+    if out.is_none() {
+        output::refuse_overwriting(&path, *force)?;
     }
-    output::file(&out, || export::write_atomically(&out, |file| file.write_all(scene.text.as_bytes())))
-}
-
-/// A line for each scene, with what it shows, and one for all shapes.
-fn list() -> String {
-    let widest = shipped::ALL.iter().map(|scene| scene.name.len()).max().unwrap_or_default();
-    let scenes: String =
-        shipped::ALL.iter().map(|scene| format!("{:widest$}  {}\n", scene.name, scene.shows())).collect();
-    format!("{scenes}\nshapes: {}\n", shapes::NAMES.join(", "))
-}
-
-fn list_json() -> Value {
-    let scenes: Vec<Value> =
-        shipped::ALL.iter().map(|scene| json!({ "name": scene.name, "shows": scene.shows() })).collect();
-    json!({ "schema": 1, "scenes": scenes, "shapes": shapes::NAMES })
+    output::file(&path, || export::write_atomically(&path, |file| file.write_all(scene.text.as_bytes())))
 }

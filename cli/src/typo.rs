@@ -1,17 +1,22 @@
 //! Words that are nearly right: the nearest name, and the new names of what was called otherwise before.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 use mode13h::mesh::shapes;
 use mode13h_assets::shipped;
 
 /// The names of the commands.
-pub(crate) const COMMANDS: [&str; 11] =
-    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "dos", "verify", "generate"];
+pub(crate) const COMMANDS: [&str; 12] =
+    ["demo", "render", "list", "scenes", "plan", "explain", "cost", "palette", "cases", "dos", "verify", "generate"];
+
+/// Commands that were renamed, and what each is now.
+const RENAMED: [(&str, &str); 1] = [("show", "cases")];
 
 /// Options that were renamed, and what each is now.
-const OPTIONS: [(&str, &str); 4] = [
+const OPTIONS: [(&str, &str); 6] = [
+    ("--at", "--time"),
+    ("--copy", "scenes copy"),
     ("--rung", "--shading"),
     ("--rungs", "--shadings"),
     ("--hidden", "--hidden-surfaces"),
@@ -19,7 +24,22 @@ const OPTIONS: [(&str, &str); 4] = [
 ];
 
 /// Values of options that were renamed, and what each is now.
-const VALUES: [(&str, &str); 2] = [("gouraud-period", "gouraud-vintage"), ("integer", "fixed")];
+const VALUES: [(&str, &str); 3] =
+    [("gouraud-period", "gouraud-vintage"), ("float", "gouraud-float"), ("integer", "fixed")];
+
+/// Options that took on and off, with each of these values, and what to write instead.
+const SWITCHES: [(&str, &str, &str); 4] = [
+    ("--dither", "on", "--dither ordered"),
+    ("--dither", "off", "--no-dither"),
+    ("--mipmaps", "on", "--mipmaps"),
+    ("--mipmaps", "off", "--no-mipmaps"),
+];
+
+/// The new name of a command, unless a file has the old name.
+pub(crate) fn renamed_command(old: &OsStr) -> Option<&'static str> {
+    let is_file = Path::new(old).symlink_metadata().is_ok();
+    RENAMED.into_iter().find_map(|(name, new)| (old == name && !is_file).then_some(new))
+}
 
 /// The new name of an option.
 pub(crate) fn renamed_option(old: &str) -> Option<&'static str> {
@@ -30,6 +50,16 @@ pub(crate) fn renamed_option(old: &str) -> Option<&'static str> {
 /// The new name of an option's value.
 pub(crate) fn renamed_value(old: &str) -> Option<&'static str> {
     VALUES.into_iter().find_map(|(name, new)| (name == old).then_some(new))
+}
+
+/// What to write for an option with its value, if it was a switch that took on and off.
+pub(crate) fn renamed_switch(words: &[OsString]) -> Option<(String, &'static str)> {
+    SWITCHES.into_iter().find_map(|(option, value, new)| {
+        let joined = format!("{option}={value}");
+        let is_there = words.iter().any(|word| *word == *joined)
+            || words.windows(2).any(|pair| pair[0] == option && pair[1] == value);
+        is_there.then(|| (format!("{option} {value}"), new))
+    })
 }
 
 /// The nearest of some names, if one is near: at most a third of the letters are wrong, missing, too many or swapped.
@@ -57,7 +87,7 @@ pub(crate) fn no_input(word: &str) -> String {
         Some(name) => format!("; did you mean {name}?"),
         None => String::new(),
     };
-    format!("neither a file nor a scene nor a shape{near} (mode13h scenes lists the names)")
+    format!("neither a file nor a scene nor a shape{near} (mode13h list scenes shows the names)")
 }
 
 /// The names of scenes and shapes.
@@ -71,14 +101,14 @@ mod tests {
 
     #[test]
     fn the_nearest_name_is_near() {
-        let names = ["render", "scenes", "show", "cost", "plan"];
+        let names = ["render", "scenes", "list", "cost", "plan"];
         for (word, name) in [
             ("rendr", Some("render")),
             ("redner", Some("render")), // typo
             ("scnees", Some("scenes")),
             ("csot", Some("cost")),
             ("plann", Some("plan")),
-            ("shw", Some("show")), // typo
+            ("lsit", Some("list")),
             ("render", Some("render")),
             ("house", None),
             ("x", None),

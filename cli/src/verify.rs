@@ -17,41 +17,44 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::options::Quiet;
 use crate::{output, typo};
 
 #[derive(Args)]
 pub(crate) struct Options {
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, conflicts_with = "quiet")]
     json: bool,
-    /// The number that the random cases of loops are made from
-    ///
-    /// The same number makes the same cases.
+    #[command(flatten)]
+    quiet: Quiet,
+    /// Seed the random cases of the loops with N
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
-    /// Draw one frame, or all whose names begin with NAME, and try no loop
+    /// Check only the frame NAME, or all whose names begin with NAME/
     ///
-    /// Such as effect/fog or shipped/torus/picture.
+    /// Such as effect/fog or shipped/torus/picture. No loop is checked then.
     #[arg(long, value_name = "NAME", conflicts_with = "seed")]
     frame: Option<String>,
-    /// List the names of the frames, and draw nothing
-    #[arg(long, conflicts_with_all = ["json", "seed", "out", "replay"])]
+    /// List the names of the frames, and check nothing
+    #[arg(long, conflicts_with_all = ["json", "quiet", "seed", "out", "replay"])]
     list: bool,
-    /// The picture of the first frame that is wrong: as drawn, as it should be, and which pixels differ
+    /// Write a picture of the first wrong frame to FILE, which ends in .png
     ///
-    /// With --frame, if nothing is wrong, the first frame.
-    /// [default: verify-NAME.png for a frame that is wrong]
-    #[arg(short, long, value_name = "PNG", conflicts_with = "replay")]
+    /// It shows the frame as drawn, as it should be, and which pixels differ. If nothing is wrong, it shows the first frame.
+    ///
+    /// [default: verify-NAME.png, if frame NAME is wrong]
+    #[arg(short, long, value_name = "FILE", conflicts_with = "replay")]
     out: Option<PathBuf>,
-    /// Check a frame that `render --record` kept, instead of the cases
+    /// Check only the frame that `render --record` saved in FILE
     ///
-    /// It is drawn by every kernel, with hidden surfaces left out in every way, and by the exact oracle. The frames are
-    /// compared.
+    /// It is drawn by every kernel, with every method of removing hidden surfaces, and by the exact definition; all must
+    /// agree.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seed", "frame"])]
     replay: Option<PathBuf>,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    options.quiet.obey();
     match &options.replay {
         Some(path) => replay(path, options.json),
         None => check(options),
@@ -149,7 +152,7 @@ fn check(options: &Options) -> Result<(), Failure> {
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
         + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
     let picture = picture(options, &chosen, &by_kernel)?;
-    output::print(&if options.json {
+    output::say(&if options.json {
         as_json(options, &loops, &by_kernel, picture.as_deref())
     } else {
         as_text(options, &loops, &by_kernel, picture.as_deref())
@@ -276,7 +279,7 @@ fn as_json(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture
     let passed = loops.iter().all(|outcome| outcome.wrong.is_none())
         && by_kernel.iter().all(|kernel| kernel["wrong"].as_array().is_some_and(Vec::is_empty));
     let all = json!({
-        "schema": 2, "passed": passed, "seed": options.seed, "kernels": kernels(), "loops": outcomes,
+        "schema": output::SCHEMA, "passed": passed, "seed": options.seed, "kernels": kernels(), "loops": outcomes,
         "frames": { "hash": hex(expected_hash(options.frame.as_deref())), "by_kernel": by_kernel },
         "picture": picture.map(|path| path.display().to_string()),
     });
@@ -289,7 +292,7 @@ fn replay(path: &Path, as_json: bool) -> Result<(), Failure> {
         if matches!(error.kind, RecordErrorKind::Read(_)) { Failure::file(line) } else { Failure::words(line) }
     })?;
     let replay = replay::replay(&record);
-    output::print(&if as_json { replay_as_json(&record, &replay) } else { replay_as_text(&record, &replay) })?;
+    output::say(&if as_json { replay_as_json(&record, &replay) } else { replay_as_text(&record, &replay) })?;
     match replay.failures.as_slice() {
         [] => Ok(()),
         [first, ..] => Err(Failure::found(format!("{}: {first}", path.display()))),
@@ -345,7 +348,7 @@ fn replay_as_json(record: &Record, replay: &Replay) -> String {
         })
         .collect();
     let all = json!({
-        "schema": 1,
+        "schema": output::SCHEMA,
         "passed": replay.failures.is_empty(),
         "kernels": kernels(),
         "width": record.width(),
@@ -367,7 +370,7 @@ mod tests {
 
     fn options() -> Options {
         let frame = Some("canvas/bands".into());
-        Options { json: false, seed: 13, frame, list: false, out: None, replay: None }
+        Options { json: false, quiet: Quiet::default(), seed: 13, frame, list: false, out: None, replay: None }
     }
 
     #[test]

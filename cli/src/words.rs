@@ -7,15 +7,15 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_STATUS, Failure};
 use crate::typo::COMMANDS;
-use crate::{cost, demo, dos, explain, generate, output, palette, plan, render, scenes, show, typo, verify};
+use crate::{cases, cost, demo, dos, explain, generate, list, output, palette, plan, render, scenes, typo, verify};
 
 /// Columns of help, at most.
 const WIDTH: usize = 100;
 
 /// Draw scenes and models as a 386 with a VGA card did
 ///
-/// A frame has 320 x 200 bytes, each an entry of a palette of 256 colours. Without a command the INPUT is shown in a
-/// window, as by `mode13h demo`.
+/// Every frame has 320 x 200 pixels in a palette of 256 colours. Without a command, `mode13h INPUT` is `mode13h demo
+/// INPUT`.
 #[derive(Parser)]
 #[command(name = "mode13h", version, args_conflicts_with_subcommands = true)]
 pub(crate) struct Words {
@@ -29,43 +29,48 @@ pub(crate) struct Words {
 enum Command {
     /// Show a scene or a model in a window
     ///
-    /// So do `mode13h` and `mode13h INPUT`. An INPUT is loaded again when one of its files changes; the window says what
-    /// is wrong with it. Without a display one frame of each INPUT is saved as a PNG, under the first free name of
-    /// mode13h-0001.png, mode13h-0002.png and so on.
+    /// This is the default command. An INPUT is reloaded when one of its files changes; an error in it shows in the
+    /// window. Without a display, one frame of each INPUT is saved under the first free name of mode13h-0001.png,
+    /// mode13h-0002.png and so on.
     Demo(demo::Options),
-    /// Write a picture, a row of pictures, or a film
+    /// Write a picture, numbered pictures, or an animation
     ///
-    /// Without -o the picture is INPUT.png in this directory, and the pictures of a row are INPUT-0000.png and so on. The
-    /// names are printed.
+    /// Without -o, the picture is INPUT.png in the current directory; several are INPUT-0000.png and so on. Their names
+    /// are printed.
     Render(render::Options),
-    /// List the scenes and shapes that have a name, or copy a scene
+    /// List shadings, palettes, kernels, or scenes
+    List(list::Options),
+    /// Copy a shipped scene, to edit it
     Scenes(scenes::Options),
-    /// Say what a scene calls for, object by object, and why
+    /// Say which effects each object of a scene needs, and why
     ///
-    /// The frame follows another that is 1/35 s earlier, so that it shows what is kept from frame to frame.
+    /// The frame comes 1/35 s after another one, so that the plan shows what can be reused from frame to frame.
     Plan(plan::Options),
-    /// Say why a pixel has its byte, or draw a row's intensity
+    /// Explain the byte of one pixel, or chart the intensity of a row
     Explain(explain::Options),
     /// Measure what accuracy costs in time
     ///
-    /// Each shading and each budget of error is timed, and compared with the truth. The report, a chart, the study as JSON
-    /// and every time that was taken are written into a directory.
+    /// Times every shading and error budget, and compares each with a reference picture in f64. Writes a report, a chart,
+    /// the figures as JSON, and all times into a directory.
     Cost(cost::Options),
-    /// List palettes, look at one, convert it, or make one for a model
+    /// Show a palette, convert it, or make one for a model
     Palette(palette::Options),
-    /// Draw a hard case, the right way beside the fault
+    /// Draw a hard case, right and wrong side by side
     ///
-    /// Both are enlarged 16 times. Without an ID the cases are listed.
-    Show(show::Options),
-    /// Write a program for DOS, or a floppy, that shows a scene in mode 13h
+    /// Both are enlarged 16 times. Without an ID, all cases are listed.
+    Cases(cases::Options),
+    /// Write a program for DOS, or a bootable floppy, that shows a scene
     ///
-    /// It draws one round of the scene by integers alone, on a 386 with 4 MB, HIMEM.SYS and a VGA, until Esc is pressed.
-    /// With /B it prints frames per second and the hash of its frames, which is the one printed here. Effects that
-    /// `--arithmetic fixed` leaves out are left out, and palettes stand still.
+    /// The program draws one round of the scene over and over in mode 13h, until Esc is pressed. It needs a 386 with 4 MB,
+    /// HIMEM.SYS and a VGA, and computes in integers, so it leaves out the effects that `--arithmetic fixed` leaves out;
+    /// palettes do not change. Started with /B, it prints frames per second and a hash of its frames, which must equal the
+    /// one printed here.
     Dos(dos::Options),
-    /// Check the span kernels and the hard cases on this machine
+    /// Check that this machine draws the right bytes
+    ///
+    /// Runs every pixel loop against its definition, and draws the conformance frames with every kernel.
     Verify(verify::Options),
-    /// Print completions for a shell, or man pages
+    /// Print shell completions or man pages
     Generate(generate::Options),
 }
 
@@ -77,7 +82,12 @@ pub(crate) fn command() -> clap::Command {
         true => arg,
         false => arg.allow_negative_numbers(true),
     };
-    let command = Words::command().mut_args(takes_negative);
+    // The short page of the program has its commands; those of the commands have how to draw.
+    let is_left_out = |arg: clap::Arg| {
+        let has_heading = arg.get_help_heading().is_some();
+        arg.hide_short_help(has_heading)
+    };
+    let command = Words::command().mut_args(takes_negative).mut_args(is_left_out);
     command
         .mut_subcommands(|command| command.mut_args(takes_negative))
         .max_term_width(WIDTH)
@@ -92,6 +102,10 @@ pub(crate) fn command() -> clap::Command {
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
         return Err(Err(Failure::words(format!("{word}: an empty word names nothing ({} shows the options)", help()))));
+    }
+    // Before the value is taken for an INPUT.
+    if let Some((old, new)) = typo::renamed_switch(&std::env::args_os().skip(1).collect::<Vec<OsString>>()) {
+        return Err(Err(Failure::words(format!("{old} is now {new} ({} shows the options)", help()))));
     }
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
@@ -111,12 +125,13 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
         }
         Some(Command::Demo(options)) => demo::run(options),
         Some(Command::Render(options)) => render::run(options),
+        Some(Command::List(options)) => list::run(options),
         Some(Command::Scenes(options)) => scenes::run(options),
         Some(Command::Plan(options)) => plan::run(options),
         Some(Command::Explain(options)) => explain::run(options),
         Some(Command::Cost(options)) => cost::run(options),
         Some(Command::Palette(options)) => palette::run(options),
-        Some(Command::Show(options)) => show::run(options),
+        Some(Command::Cases(options)) => cases::run(options),
         Some(Command::Dos(options)) => dos::run(options),
         Some(Command::Verify(options)) => verify::run(options),
         Some(Command::Generate(options)) => generate::run(options, command()),
@@ -148,6 +163,14 @@ fn sentence(error: &clap::Error) -> String {
         _ => None,
     };
     let help = help();
+    if first_word().is_some_and(|word| word == "plan")
+        && context(ContextKind::InvalidArg).is_some_and(|arg| arg.starts_with("--time"))
+        && [ErrorKind::InvalidValue, ErrorKind::ValueValidation].contains(&error.kind())
+    {
+        return format!(
+            "--time takes a number of SECONDS; --measure measures what effects cost ({help} shows the options)"
+        );
+    }
     if let Some(old) = context(ContextKind::InvalidArg)
         && let Some(new) = typo::renamed_option(old)
         && error.kind() == ErrorKind::UnknownArgument
@@ -169,9 +192,12 @@ fn sentence(error: &clap::Error) -> String {
     format!("{}{near} ({help} shows the options)", paragraph.join(" "))
 }
 
-/// Finds the command whose name the first word nearly is, if there is nothing else.
+/// Finds the command that the first word was the name of, or nearly is, if it is nothing else.
 fn mistyped_command() -> Option<String> {
     let word = first_word()?;
+    if let Some(new) = typo::renamed_command(&word) {
+        return Some(format!("{} is now called {new} (mode13h --help lists the commands)", word.display()));
+    }
     let command = typo::mistyped_command(&word)?;
     Some(format!(
         "{}: neither a command nor a file nor a scene nor a shape; did you mean {command}? (mode13h --help lists the \

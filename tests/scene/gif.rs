@@ -473,7 +473,7 @@ fn delays_add_up_to_the_exact_time() {
 #[test]
 fn rates_that_no_gif_has_are_refused() {
     for (rate, says) in [
-        (60.0, "a film shows 0.1 to 50 frames a second, not 60: browsers slow down anything faster"),
+        (60.0, "an animation shows 0.1 to 50 frames a second, not 60: browsers slow down anything faster"),
         (50.000_000_1, "not 50.0000001: browsers"),
         (f64::INFINITY, "not inf: browsers"),
         (0.0, "not 0"),

@@ -36,7 +36,7 @@ function measure(name, words, toml) {
   time(scene, 2000);
   for (let round = 0; round < ROUNDS; round++) {
     here.push(time(scene, 500));
-    const said = execFileSync(program, ["plan", words, "--time", "--at", "0.5", "--kernel", "simd-sse2"], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+    const said = execFileSync(program, ["plan", words, "--measure", "--time", "0.5", "--kernel", "simd-sse2"], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
     there.push(Number(/drawing the frame takes (\d+) ns/.exec(said.replace(/\s+/g, " "))?.[1]));
   }
   const { faces } = scene.about;

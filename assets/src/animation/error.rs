@@ -88,7 +88,7 @@ impl fmt::Display for AnimationErrorKind {
             Self::FrameRate { frames_per_second: given } => {
                 let (lowest, highest) = FRAME_RATES.into_inner();
                 let too_fast = if *given > highest { ": browsers slow down anything faster" } else { "" };
-                write!(f, "a film shows {lowest} to {highest} frames a second, not {given}{too_fast}")
+                write!(f, "an animation shows {lowest} to {highest} frames a second, not {given}{too_fast}")
             }
             Self::NoFrames => f.write_str("a film without a frame"),
             Self::FrameCount { promised, given } => write!(f, "a film of {promised} frames was given {given}"),

@@ -10,7 +10,8 @@ use crate::failure::Failure;
 use crate::{output, read_files};
 
 /// Their names.
-const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", "report.html"];
+const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", REPORT];
+pub(super) const REPORT: &str = "report.html";
 
 /// What the first bytes of each hold, which tells it from a file of another origin.
 const MARKS: [&str; NAMES.len()] =

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use mode13h_lab::cost::{BudgetRow, Claim, Errors, Nanoseconds, OptionRow, ShadingRow, Study, TimeRow};
 use serde::Serialize;
 
+use crate::output::SCHEMA;
+
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
     schema: u32,
@@ -232,7 +234,7 @@ impl<'a> From<&'a Claim> for JsonClaim<'a> {
 pub(super) fn json<'a>(study: &'a Study, warnings: &'a [String]) -> Json<'a> {
     let host = &study.host;
     Json {
-        schema: 2,
+        schema: SCHEMA,
         input: &study.input,
         host: Host {
             processor: &host.processor,

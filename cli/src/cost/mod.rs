@@ -17,7 +17,7 @@ use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 
 use crate::failure::{Failure, on_one_line};
-use crate::options::{Drawing, finite, one_of};
+use crate::options::{Drawing, Quiet, finite, shading_of};
 use crate::turntable::Turntable;
 use crate::{host, input, output};
 
@@ -28,46 +28,50 @@ const STEPS: u32 = 5;
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The directory to write the study into
+    /// Write the study into DIR
     ///
-    /// It gets report.html, chart.svg, cost.json, and samples.csv with every time that was taken; what they hold is
-    /// overwritten.
+    /// report.html, chart.svg, cost.json, and samples.csv with every single time. Those of an earlier study are overwritten.
     ///
-    /// [default: cost-INPUT in this directory, in which nothing is overwritten without --force; none with --json]
+    /// [default: cost-INPUT in the current directory, never overwritten without --force; none with --json]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Overwrite a study in cost-INPUT
     #[arg(long)]
     force: bool,
+    /// Open the report in the browser
+    #[arg(long, conflicts_with = "json")]
+    open: bool,
     /// Print the study as JSON
-    #[arg(long)]
+    #[arg(long, conflicts_with = "quiet")]
     json: bool,
+    #[command(flatten)]
+    quiet: Quiet,
     #[arg(
         long,
-        help = "The shadings to be studied, with commas between [default: all]",
+        help = "Measure only these shadings [default: all]",
         long_help = long_help_on_shadings(),
         value_name = "NAME,...",
         value_delimiter = ',',
-        value_parser = one_of(Shading::ALL, Shading::name),
+        value_parser = shading_of(Shading::ALL),
         hide_possible_values = true,
     )]
     shadings: Vec<Shading>,
-    /// How many frames, spread over one round
+    /// Measure N frames of one round
     ///
-    /// A model turns once; a scene moves for as long as it says.
+    /// They are evenly spread. A model turns once; a scene says how long its round is.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
     frames: u32,
-    /// Count instructions too, by valgrind
+    /// Count instructions as well, with valgrind
     ///
-    /// Valgrind does not know every vector instruction. Times are then taken with the kernel that ran there.
+    /// Valgrind lacks some vector instructions; times are then taken with the kernel that ran there.
     #[arg(long)]
     instructions: bool,
-    /// Take times for at most so long
+    /// Stop timing after SECONDS
     ///
-    /// There are seven rounds in any case; fewer rounds make wider intervals. The errors are found before that, which takes
-    /// a second or two for each frame.
+    /// At least seven rounds are timed; fewer rounds make wider intervals. Finding the errors takes a second or two for each
+    /// frame before that.
     ///
-    /// [default: about 10, up to 20 where a ratio is not known to 2 %]
+    /// [default: 10, up to 20 until every ratio is known to 2 %]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Draw what instructions are counted of, and nothing else
@@ -79,7 +83,7 @@ pub(crate) struct Options {
 
 fn long_help_on_shadings() -> String {
     format!(
-        "The shadings to be studied, with commas between: {}\n\n[default: all]",
+        "Measure only these shadings, separated by commas: {}\n\n[default: all]",
         Shading::ALL.map(Shading::name).join(", ")
     )
 }
@@ -93,7 +97,8 @@ fn seconds(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, force, json, frames, instructions, seconds, counted, drawing, .. } = options;
+    let Options { input, out, force, open, json, quiet, frames, instructions, seconds, counted, drawing, .. } = options;
+    quiet.obey();
     let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
@@ -127,7 +132,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
     };
     let compared = if frames.len() == 1 { "1 frame is".to_string() } else { format!("{} frames are", frames.len()) };
-    eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
+    if !output::is_quiet() {
+        eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
+    }
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
@@ -148,9 +155,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     // Whatever became of the files, what was found out is not lost.
-    let written = written.map_or(String::new(), |directory| format!("\nwritten to {}\n", directory.display()));
-    output::print(&if *json { as_json } else { report::text(&study) + &written })?;
+    let place = written.as_ref().map_or(String::new(), |directory| format!("\nwritten to {}\n", directory.display()));
+    output::say(&if *json { as_json } else { report::text(&study) + &place })?;
     result?;
+    if let Some(directory) = written.filter(|_| *open) {
+        let page = directory.join(files::REPORT);
+        open::that_detached(&page)
+            .map_err(|error| Failure::file(format!("{}: cannot be opened in a browser: {error}", page.display())))?;
+    }
     verdict(&study)
 }
 
@@ -182,7 +194,7 @@ struct Progress {
 
 impl Progress {
     fn new() -> Progress {
-        let bar = ProgressBar::new(1000);
+        let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(1000) };
         let bar = match ProgressStyle::with_template("{bar:40} {percent}% {msg}") {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
@@ -198,7 +210,9 @@ impl Progress {
                 // The first frame is done, and on every other processor nearly another.
                 let threads = std::thread::available_parallelism().map_or(1.0, |threads| threads.get() as f64);
                 let seconds = (self.begun.elapsed().as_secs_f64() / (share * threads)).ceil().max(1.0);
-                self.bar.suspend(|| eprintln!("mode13h: the comparison takes about {seconds} s"));
+                if !output::is_quiet() {
+                    self.bar.suspend(|| eprintln!("mode13h: the comparison takes about {seconds} s"));
+                }
             }
             self.bar.set_message(match step {
                 Step::Errors => "frames compared with the truth",

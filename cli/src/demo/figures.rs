@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::demo::loader::{self, Inputs};
     use crate::demo::shading::ShadingChoice;
-    use crate::options::{Drawing, ShadingOptions};
+    use crate::options::{Drawing, Moment, ShadingOptions};
     use crate::overlay::tests::WINDOWS;
 
     #[derive(Parser)]
@@ -135,7 +135,7 @@ mod tests {
     /// The demo of a scene after its first frame.
     fn demo(name: &str) -> Demo {
         let Words { drawing, shading } = Words::parse_from(["mode13h"]);
-        let inputs = Arc::new(Inputs { drawing, shading, words: vec![name.into()] });
+        let inputs = Arc::new(Inputs { moment: Moment::default(), drawing, shading, words: vec![name.into()] });
         let first = loader::load(&inputs, 0, &[]);
         let mut demo = Demo::new(inputs, Kernel::default());
         demo.put_on(first).expect("a shipped scene");

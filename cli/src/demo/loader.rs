@@ -10,7 +10,7 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 
 use crate::failure::Failure;
-use crate::options::{Drawing, ShadingOptions};
+use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::turntable::Turntable;
 use crate::{input, read_files};
 
@@ -25,6 +25,7 @@ const LAG: Duration = Duration::from_millis(20);
 
 /// Inputs to be loaded, and how they are to be drawn.
 pub(super) struct Inputs {
+    pub(super) moment: Moment,
     pub(super) drawing: Drawing,
     pub(super) shading: ShadingOptions,
     pub(super) words: Vec<OsString>,
@@ -181,7 +182,8 @@ mod tests {
 
     fn inputs(words: &[&Path]) -> Arc<Inputs> {
         let Words { drawing, shading } = Words::parse_from(["mode13h"]);
-        Arc::new(Inputs { drawing, shading, words: words.iter().map(|path| path.as_os_str().to_os_string()).collect() })
+        let words = words.iter().map(|path| path.as_os_str().to_os_string()).collect();
+        Arc::new(Inputs { moment: Moment::default(), drawing, shading, words })
     }
 
     /// The next that the loader gives, which takes a second or so.

@@ -42,7 +42,7 @@ use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
 
 use crate::failure::Failure;
-use crate::options::{Drawing, ShadingOptions};
+use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::overlay::{self, Sheet, Side};
 use crate::toggles::Switch;
 use crate::turntable::Colors;
@@ -64,33 +64,34 @@ pub(crate) const KEYS: &str = "\
 Keys in the window:
   Esc             Quit
   H               Show the keys
-  I               Show the plan, times, errors and the share of each shading
-  Space           Stop the time, and let it go on
+  I               Show the plan, times, errors, and the share of each shading
+  Space           Stop time, start it again
   arrows, mouse   Turn
-  + - and wheel   Enlarge, make smaller
+  + - and wheel   Zoom
   [ and ]         Step through the shadings
   1 to 9          The first nine shadings
-  0               The budget of error
-  B, Shift-B      A smaller budget, a greater one: 16, 8, 4, 2, 1, 1/2 shades
-  F, Shift-F      The least error that fits in a time: 16 to 1/4 ms a frame,
-                  a shorter time, a longer one
-  E               Lay the error map over the picture
-  C               Divide the window at the mouse: another shading on the right.
-                  A click fixes the divider. Shift with [ ] and digits chooses
-                  the right shading
+  0               The error budget
+  B, Shift-B      A smaller budget, a larger one: 16, 8, 4, 2, 1, 1/2 shades
+  F, Shift-F      The smallest error that fits a time: less time, more time
+  E               The error map
+  C               Divide the window at the mouse, with another shading on the
+                  right; a click fixes the divider, Shift with [ ] and digits
+                  chooses the right shading
   X               Swap the two shadings
   Z               Magnify 16 times at the mouse; the pixel explains itself
-  . and ,         Step through the pixels of its triangle, with Shift its rows
-  K, P, M         The next kernel, the next palette, the next mapping of textures
-  L, O, T         Lights, fog, texture off and on
+  . and ,         Step through its triangle's pixels, with Shift its rows
+  K, P, M         The next kernel, palette, texture mapping
+  L, O, T         Lights, fog, textures off and on
   D               Dither: ordered, blue noise, off
   N, Shift-N      The next INPUT, the one before
-  S               Save the picture, without the text over it, as a PNG";
+  S               Save the picture as a PNG, without the text over it";
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
     #[arg(default_value = "torus", value_name = "INPUT", help = input::HELP, long_help = long_help_on_inputs())]
     inputs: Vec<OsString>,
+    #[command(flatten)]
+    moment: Moment,
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -122,12 +123,12 @@ const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
 fn long_help_on_inputs() -> String {
-    format!("{}\n\nOf several the first is shown, and the key N goes to the next.", input::long_help())
+    format!("{}\n\nOf several, the first is shown; the key N goes to the next.", input::long_help())
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { inputs, drawing, shading } = options.clone();
-    let inputs = Arc::new(Inputs { drawing, shading, words: inputs });
+    let Options { inputs, moment, drawing, shading } = options.clone();
+    let inputs = Arc::new(Inputs { moment, drawing, shading, words: inputs });
     let kernel = inputs.drawing.kernel()?;
     let loader = Loader::start(Arc::clone(&inputs))?;
     let mut demo = Demo::new(inputs, kernel);
@@ -351,7 +352,7 @@ impl Demo {
 
     /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
     fn set(&mut self, stage: Turntable, keeps: bool) -> Result<(), Failure> {
-        let Inputs { drawing, shading, .. } = &*self.inputs;
+        let Inputs { moment, drawing, shading, .. } = &*self.inputs;
         self.name = self.inputs.name(self.at);
         self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
         self.stage = stage;
@@ -377,7 +378,7 @@ impl Demo {
             self.pacing = Pacing::default();
             self.switches.clear();
             self.chose_palette = false;
-            self.motion.begin_anew();
+            self.motion.begin_anew(moment.of_first());
         }
         self.compare.renew(&self.renderer);
         self.forget_times();
@@ -411,7 +412,7 @@ impl Demo {
                 worst = worst.filter(|worst| worst.status() >= wrong.status()).or(Some(wrong));
                 continue;
             }
-            self.motion.go_to(self.stage.scene.picture);
+            self.motion.go_to(self.inputs.moment.of_picture(&self.stage.scene));
             self.draw()?;
             let path = output::numbered_picture(self.on_screen())?;
             let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };

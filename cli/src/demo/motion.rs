@@ -62,9 +62,9 @@ impl Motion {
         Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
     }
 
-    /// Starts again at time 0, in the first pose; stays stopped if it is.
-    pub(super) fn begin_anew(&mut self) {
-        (self.time, self.pose) = (0.0, Pose::FIRST);
+    /// Starts again at the time `seconds`, in the first pose; stays stopped if it is.
+    pub(super) fn begin_anew(&mut self, seconds: f64) {
+        (self.time, self.pose) = (seconds, Pose::FIRST);
         self.change = self.change.map(|_| self.now);
     }
 

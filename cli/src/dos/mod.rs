@@ -26,7 +26,7 @@ use self::player::{Film, PIXELS, Player};
 use self::unpack::unpack;
 use crate::failure::Failure;
 use crate::input;
-use crate::options::{Drawing, one_of};
+use crate::options::{Drawing, Quiet, shading_of};
 use crate::turntable::{Pose, Turntable};
 use crate::{output, read_files};
 
@@ -50,20 +50,24 @@ const STACK: usize = 0x1_0000;
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// The name of the program, .exe or .img [default: INPUT.EXE in this directory]
+    /// Write to FILE: .exe for a program, .img for a floppy
     ///
-    /// A name that ends in .img is that of a floppy of 1.44 MB, which starts the program without DOS.
+    /// The floppy has 1.44 MB and starts the program without DOS. An existing file is overwritten.
+    ///
+    /// [default: INPUT.EXE in the current directory, never overwritten without --force]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite INPUT.EXE
     #[arg(long)]
     force: bool,
-    /// The number of frames of a round
+    /// Frames in a round of the scene
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u16).range(1..=1024))]
     frames: u16,
-    /// The shading of every face, of those that integers draw
-    #[arg(long, value_name = "NAME", value_parser = one_of(SHADINGS, Shading::name))]
+    /// Shade every face by this method; these work in integers
+    #[arg(long, value_name = "NAME", value_parser = shading_of(SHADINGS))]
     shading: Option<Shading>,
+    #[command(flatten)]
+    quiet: Quiet,
     #[command(flatten)]
     drawing: Drawing,
 }
@@ -79,7 +83,8 @@ const SHADINGS: [Shading; 6] = [
 ];
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, force, frames, shading, drawing } = options;
+    let Options { input, out, force, frames, shading, quiet, drawing } = options;
+    quiet.obey();
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
     let ends_in = |out: &Path, wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
@@ -111,7 +116,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .and_then(|film| hash_of(&film))
         .ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
     output::file(&out, || export::write_atomically(&out, |file| file.write_all(&program)))?;
-    output::print(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
+    output::say(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
 }
 
 /// What the film leaves out of a scene, if anything: effects that it calls for and that 16.16 does not know.

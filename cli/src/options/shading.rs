@@ -8,9 +8,10 @@ use mode13h::scene::Scene;
 use mode13h::settings::{Accuracy, Settings, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
+use mode13h_assets::scene_file::GOURAUD;
 use mode13h_lab::cost::calibrate;
 
-use super::{Drawing, one_of, shades};
+use super::{Drawing, shades, shading_of};
 use crate::failure::Failure;
 use crate::host::clock;
 
@@ -21,21 +22,20 @@ pub(crate) struct ShadingOptions {
     #[arg(
         long,
         value_name = "NAME",
-        value_parser = one_of(Shading::ALL, Shading::name),
+        value_parser = shading_of(Shading::ALL),
         hide_possible_values = true,
-        help = "The shading of every face",
+        help = "Shade every face by this method",
         long_help = long_help(),
     )]
     shading: Option<Shading>,
-    /// Give each face the cheapest shading that is off by at most E shades
+    /// Shade each face as cheaply as E shades of error allow
     ///
-    /// A shade is 1/255 of full intensity. Not beside --shading.
+    /// A shade is 1/255 of full intensity. Not with --shading.
     #[arg(long, value_name = "E", value_parser = shades, conflicts_with = "shading")]
     max_error: Option<f32>,
-    /// Draw each frame within the least error that fits in T milliseconds
+    /// Find the smallest error that fits into T milliseconds
     ///
-    /// The error is at most 16 shades, or that of --max-error. It is chosen by the times that frames take on this machine.
-    /// Not beside --shading.
+    /// The error is chosen from the times of frames on this machine, up to 16 shades or --max-error. Not with --shading.
     #[arg(long, value_name = "T", value_parser = milliseconds, conflicts_with = "shading")]
     max_time: Option<f32>,
 }
@@ -108,7 +108,8 @@ impl ShadingOptions {
 fn long_help() -> String {
     let names = Shading::ALL.map(Shading::name).join(", ");
     format!(
-        "The shading of every face, from cheap to exact: {names}\n\n[default: the scene's, otherwise {}]",
+        "Shade every face by this method, from cheap to exact: {names}. `mode13h list shadings` explains them.\n\n[default: \
+         the scene's, or else {GOURAUD}, which is short for {}]",
         Shading::default()
     )
 }

@@ -107,11 +107,11 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
             2,
             "model.3ds: nothing that can be read: models are .obj, .stl, .ply, .gltf and .glb files, scenes .toml",
         ),
-        (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h scenes lists the names)"),
+        (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h list scenes shows the names)"),
         (model(""), 2, "mode13h: '': an empty word names nothing (mode13h render --help"),
         (palette(""), 2, "mode13h: --palette '': an empty word names nothing"),
         (vec![""], 2, "mode13h: '': an empty word names nothing"),
-        (vec!["scenes", "--copy", ""], 2, "mode13h: --copy '': an empty word names nothing"),
+        (vec!["scenes", "copy", ""], 2, "mode13h: '': an empty word names nothing"),
         (vec!["render", "torus", "--palette="], 2, "mode13h: --palette=: an empty word names nothing"),
         (palette("broken.pal"), 2, "broken.pal: line 5"),
         (palette("short.vga"), 2, "short.vga: "),
@@ -148,7 +148,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x"], "x: "),
         (
             vec!["render", "torus", "-o", "a.mp4"],
-            "a.mp4: films are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`",
+            "a.mp4: animations are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`",
         ),
         (vec!["render", "torus", "-o", "a.mp4", "--fps", "30"], "`-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`"),
         (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
@@ -157,7 +157,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.png", "--scale", "3"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--scale", "16385x1"], "a scale is 1, 2, 5x6"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "NaN"], "--turn"),
-        (vec!["render", "torus", "-o", "x.png", "--at", "inf"], "--time"),
+        (vec!["render", "torus", "-o", "x.png", "--time", "inf"], "--time"),
         (vec!["render", "torus", "-o", "x.png", "--time", "soon"], "--time"),
         (vec!["render", "torus", "-o", "x.png", "--zoom", "0"], "not a number from 0.001 to 1000"),
         (vec!["render", "torus", "-o", "x.png", "--zoom", "nan"], "not a number from 0.001 to 1000"),
@@ -175,17 +175,33 @@ fn wrong_words_end_with_2() {
             "neither a colour such as '#203040' nor an entry",
         ),
         (vec!["render", "torus", "-o", "x.png", "--background", "#12345"], "neither a colour"),
-        (vec!["render", "torus", "-o", "x.png", "--dither=maybe"], "none of on, off, ordered, blue-noise"),
+        (vec!["render", "torus", "-o", "x.png", "--dither", "maybe"], "[possible values: ordered, blue-noise]"),
+        (vec!["render", "-o", "x.png", "--dither", "torus"], "[possible values: ordered, blue-noise]"),
+        (vec!["render", "torus", "--dither", "ordered", "--no-dither"], "cannot be used with"),
+        (vec!["render", "torus", "--mipmaps", "--no-mipmaps"], "cannot be used with"),
+        (vec!["render", "torus", "--size", "640"], "not a size such as 640x400, with sides from 1 to 4096"),
+        (vec!["render", "torus", "--size", "0x9"], "not a size such as 640x400"),
+        (vec!["render", "torus", "--size", "4097x9"], "not a size such as 640x400"),
+        (vec!["render", "torus", "--size", "64x64", "--max-time", "9"], "cannot be used with"),
+        (vec!["cost", "torus", "--open", "--json"], "cannot be used with"),
+        (vec!["cost", "torus", "--quiet", "--json"], "cannot be used with"),
+        (vec!["list"], "<WHAT>"),
+        (vec!["list", "colours"], "[possible values: shadings, palettes, kernels, scenes]"),
+        (vec!["palette"], "`mode13h list palettes` shows the built-in ones"),
+        (vec!["scenes"], "scenes are listed by `mode13h list scenes`"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
         (vec!["render", "torus", "-o", "x.gif", "--rgb"], "x.gif: --rgb is for .png"),
-        (vec!["render", "torus", "-o", "x%04d.gif"], "x%04d.gif: a film is one file"),
+        (vec!["render", "torus", "-o", "x%04d.gif"], "x%04d.gif: an animation is one file"),
         (
             vec!["render", "torus", "-o", "x.gif", "--fps", "60"],
-            "x.gif: a film shows 0.1 to 50 frames a second, not 60",
+            "x.gif: an animation shows 0.1 to 50 frames a second, not 60",
         ),
-        (vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"], "x.gif: a film shows 0.1 to 50 frames a second"),
+        (
+            vec!["render", "torus", "-o", "x.gif", "--fps", "0.05"],
+            "x.gif: an animation shows 0.1 to 50 frames a second",
+        ),
         (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
         (vec!["render", "torus", "-o", "x%d-%04d.png"], "x%d-%04d.png: a name holds one number"),
         (vec!["render", "torus", "-o", "x%d%d.png", "--frames", "2"], "x%d%d.png: a name holds one number"),
@@ -194,8 +210,8 @@ fn wrong_words_end_with_2() {
             "%d%d: a name holds one number",
         ),
         (vec!["render", "torus", "-o", "x.apng", "--rgb"], "x.apng: --rgb is for .png"),
-        (vec!["render", "torus", "-o", "x%d.apng"], "x%d.apng: a film is one file"),
-        (vec!["render", "torus", "-o", "-", "--fps", "60"], "-: a film shows 0.1 to 50 frames a second, not 60"),
+        (vec!["render", "torus", "-o", "x%d.apng"], "x%d.apng: an animation is one file"),
+        (vec!["render", "torus", "-o", "-", "--fps", "60"], "-: an animation shows 0.1 to 50 frames a second, not 60"),
         (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
@@ -209,14 +225,16 @@ fn wrong_words_end_with_2() {
         ),
         (vec!["render", "torus", "-o", "x.png", "--arithmetic", "best"], "[possible values: float, fixed]"),
         (vec!["demo", "torus", "--hidden-surfaces", "best"], "[possible values: back-faces, painter, "),
-        (vec!["scenes", "-o", "x.toml"], "--copy"),
+        (vec!["scenes", "copy", "-o", "x.toml"], "<NAME>"),
         (vec!["verify", "--xml"], "(mode13h verify --help shows"),
         (vec!["render", "--xml"], "(mode13h render --help shows"),
         (vec!["--xml"], "(mode13h --help shows"),
         (vec!["torus", "--xml"], "(mode13h --help shows"),
         (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
         (vec!["plan"], "<INPUT>"),
-        (vec!["plan", "torus", "--at", "inf"], "--at"),
+        (vec!["plan", "torus", "--time", "inf"], "--time takes a number of SECONDS; --measure"),
+        (vec!["plan", "torus", "--time"], "--time takes a number of SECONDS; --measure"),
+        (vec!["demo", "torus", "--time", "soon"], "--time"),
         (vec!["plan", "torus", "--shading", "mirror"], "[possible values: flat, gouraud-vintage, gouraud-8.8, "),
     ] {
         assert_fails(&run(&directory, &words), 2, says);
@@ -404,8 +422,8 @@ fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
     assert_eq!(read(&directory, "turn1.png"), read(&directory, "alone.png"));
     tried.add(1);
 
-    succeed(&directory, &["render", "teapot", "-o", "time%d.png", "--frames", "3", "--fps", "2", "--at", "7"]);
-    succeed(&directory, &["render", "teapot", "-o", "alone.png", "--at", "8"]);
+    succeed(&directory, &["render", "teapot", "-o", "time%d.png", "--frames", "3", "--fps", "2", "--time", "7"]);
+    succeed(&directory, &["render", "teapot", "-o", "alone.png", "--time", "8"]);
     assert_eq!(read(&directory, "time2.png"), read(&directory, "alone.png"));
     tried.add(1);
     assert_ne!(read(&directory, "time0.png"), read(&directory, "alone.png"));
@@ -485,7 +503,7 @@ fn a_film_shows_the_frames_of_the_row_of_pictures() {
     let look = ["--scale", "333x222", "--palette", "copper", "--frames", "9"];
     for (of_film, of_row) in [
         (vec![], vec!["--turn", "360"]),
-        (vec!["--turn", "-40", "--at", "0.7"], vec!["--turn", "-40", "--at", "0.7"]),
+        (vec!["--turn", "-40", "--time", "0.7"], vec!["--turn", "-40", "--time", "0.7"]),
         (vec!["--fps", "12"], vec!["--turn", "360"]),
     ] {
         succeed(&directory, &[&["render", "torus", "-o", "x%d.png"], &look[..], &of_row[..]].concat());
@@ -756,7 +774,7 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
     for (words, status, line) in [
         (vec!["dos", "cube", "-o", "house.obj"], 2, "house.obj: a program for DOS ends in .exe, a floppy in .img"),
         (vec!["dos", "cube", "-o", "house"], 2, "ends in .exe"),
-        (vec!["scenes", "--copy", "torus", "-o", "house.obj"], 2, "house.obj: the file of a scene ends in .toml"),
+        (vec!["scenes", "copy", "torus", "-o", "house.obj"], 2, "house.obj: the file of a scene ends in .toml"),
         ([&cost[..], &["."]].concat(), 3, "report.html: exists already, and is no file of a study"),
         (
             vec!["render", "cube", "-o", "b.gif", "--max-time", "5", "--record-errors", "b.gif"],
@@ -1001,9 +1019,11 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
     let directory = directory();
     for shipped in &shipped::ALL {
         for at in [0.0, 1.25] {
-            let text = printed(&directory, &["plan", shipped.name, "--json", "--at", &at.to_string()]);
-            let other =
-                printed(&directory, &["plan", shipped.name, "--json", "--at", &at.to_string(), "--kernel", "portable"]);
+            let text = printed(&directory, &["plan", shipped.name, "--json", "--time", &at.to_string()]);
+            let other = printed(
+                &directory,
+                &["plan", shipped.name, "--json", "--time", &at.to_string(), "--kernel", "portable"],
+            );
             assert!(text == other, "{}: another plan with another kernel", shipped.name);
 
             let mut scene = shipped.load().expect("it is shipped").scene;
@@ -1014,7 +1034,7 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
             }
             let mut rows = renderer.rows(&scene).into_iter();
             let json: Value = serde_json::from_str(&text).expect("JSON");
-            assert_eq!((&json["schema"], &json["scene"]), (&Value::from(2), &Value::from(shipped.name)));
+            assert_eq!((&json["schema"], &json["input"]), (&Value::from(1), &Value::from(shipped.name)));
             let objects = json["objects"].as_array().expect("a list");
             assert_eq!(objects.len(), scene.objects().len());
             for object in objects {
@@ -1040,19 +1060,20 @@ fn a_plan_for_programs_is_that_of_the_second_of_two_frames_and_the_same_on_every
 #[test]
 fn a_plan_with_times_has_a_price_for_each_effect() {
     let directory = directory();
-    let json: Value = serde_json::from_str(&printed(&directory, &["plan", "torus", "--json", "--time"])).expect("JSON");
+    let json: Value =
+        serde_json::from_str(&printed(&directory, &["plan", "torus", "--json", "--measure"])).expect("JSON");
     let effects = json["objects"][0]["effects"].as_array().expect("a list");
     // How large they are depends on the machine's rest: what is noise and what is not has a test beside the code.
     assert!(effects.iter().all(|effect| effect["ns_per_frame"].is_u64()), "{effects:#?}");
 
     // The integer path has no fog: it has no price.
-    let words = ["plan", "torus", "--json", "--time", "--arithmetic", "fixed"];
+    let words = ["plan", "torus", "--json", "--measure", "--arithmetic", "fixed"];
     let json: Value = serde_json::from_str(&printed(&directory, &words)).expect("JSON");
     let effects = json["objects"][0]["effects"].as_array().expect("a list");
     let fog = effects.iter().find(|effect| effect["effect"] == "fog").expect("listed");
     assert!(fog["ns_per_frame"].is_null() && fog["on"] == false, "{fog}");
 
-    let text = printed(&directory, &["plan", "cube", "--time"]);
+    let text = printed(&directory, &["plan", "cube", "--measure"]);
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     assert!(text.contains("drawing the frame takes "), "{text}");
 }
@@ -1147,7 +1168,7 @@ fn palettes_are_made_for_models() {
     assert!(warnings.contains("chest planks.ppm: no picture that can be read: "), "{warnings}");
     assert!(String::from_utf8(output.stdout).expect("text").contains("wood: a ramp, entries 1 to "));
 
-    assert_fails(&run(&directory, &["palette", "-o", "x.pal"]), 2, "--from MODEL says which");
+    assert_fails(&run(&directory, &["palette", "-o", "x.pal"]), 2, "no palette: give FILE|NAME or --from MODEL");
     assert_fails(&run(&directory, &["palette", "grey", "--from", "torus"]), 2, "--from");
     assert_fails(&run(&directory, &["palette", "grey", "--up", "z"]), 2, "--up");
     assert_fails(&run(&directory, &["palette", "grey", "--crease", "9"]), 2, "--crease");
@@ -1185,7 +1206,7 @@ fn a_model_with_colours_is_shown_in_them() {
     assert!(green(&read(&directory, "auto.png")) > 0.05, "grass");
     // It is the palette that `palette --from` writes, whatever moment is drawn.
     succeed(&directory, &["palette", "--from", &house, "-o", "house.gpl"]);
-    succeed(&directory, &["render", &house, "-o", "later.png", "--at", "1.5"]);
+    succeed(&directory, &["render", &house, "-o", "later.png", "--time", "1.5"]);
     let written = palette_file::parse_named("house.gpl", &read(&directory, "house.gpl")).expect("a palette");
     for name in ["auto.png", "later.png"] {
         assert_eq!(indexed(&read(&directory, name)).0, written.colors(), "{name}");
@@ -1379,7 +1400,7 @@ fn f3_broken_scenes_are_one_line_with_their_place() {
 #[test]
 fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     let directory = directory();
-    let output = run(&directory, &["scenes"]);
+    let output = run(&directory, &["list", "scenes"]);
     assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
     let list = String::from_utf8(output.stdout).expect("text");
     let shapes = list.lines().skip(shipped::ALL.len()).collect::<Vec<_>>().join(" ");
@@ -1388,19 +1409,19 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
         let (name, shows) = line.split_once(' ').expect("two columns");
         assert_eq!((name, shows.trim_start()), (scene.name, scene.shows()));
     }
-    succeed(&directory, &["scenes", "--copy", "fog"]);
-    succeed(&directory, &["scenes", "--copy", "fog", "-o", "other.toml"]);
+    succeed(&directory, &["scenes", "copy", "fog"]);
+    succeed(&directory, &["scenes", "copy", "fog", "-o", "other.toml"]);
     assert_eq!(names_in(directory.path()), ["fog.toml", "other.toml"]);
     let text = "fog".parse::<shipped::Shipped>().expect("a scene").text;
     assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
     fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
-    assert_fails(&run(&directory, &["scenes", "--copy", "fog"]), 3, "fog.toml: exists already; --force");
+    assert_fails(&run(&directory, &["scenes", "copy", "fog"]), 3, "fog.toml: exists already; --force");
     assert_eq!(read(&directory, "fog.toml"), b"what stood there");
-    assert_fails(&run(&directory, &["scenes", "--copy", "frog"]), 2, "frog: no such scene; did you mean fog?");
-    assert_fails(&run(&directory, &["scenes", "--copy", "fog", "-o", "none/x.toml"]), 3, "none does not exist");
+    assert_fails(&run(&directory, &["scenes", "copy", "frog"]), 2, "frog: no such scene; did you mean fog?");
+    assert_fails(&run(&directory, &["scenes", "copy", "fog", "-o", "none/x.toml"]), 3, "none does not exist");
     // A copy is the scene.
-    succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--at", "1"]);
-    succeed(&directory, &["render", "fog", "-o", "fog.png", "--at", "1"]);
+    succeed(&directory, &["render", "other.toml", "-o", "copy.png", "--time", "1"]);
+    succeed(&directory, &["render", "fog", "-o", "fog.png", "--time", "1"]);
     assert!(read(&directory, "copy.png") == read(&directory, "fog.png"));
 }
 
@@ -1408,7 +1429,7 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
 fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
     let directory = directory();
     for scene in &shipped::ALL {
-        succeed(&directory, &["render", scene.name, "-o", "x.png", "--at", "1.5"]);
+        succeed(&directory, &["render", scene.name, "-o", "x.png", "--time", "1.5"]);
         assert_eq!(png_header(&read(&directory, "x.png")).0, (320, 200), "{}", scene.name);
     }
     // The teapot of the scene has its palette, not that of a shape.
@@ -1438,11 +1459,11 @@ fn words_have_the_last_word_over_a_scene() {
     assert!(said.contains("), float vertices,"), "{said}");
     let (_, grey) = stats(&["phong", "--palette", "grey"]);
     assert!(grey != own);
-    let (_, perspective) = stats(&["crate", "--at", "0.3"]);
+    let (_, perspective) = stats(&["crate", "--time", "0.3"]);
     for mapping in ["affine", "every-16"] {
-        assert!(stats(&["crate", "--at", "0.3", "--mapping", mapping]).1 != perspective, "{mapping}");
+        assert!(stats(&["crate", "--time", "0.3", "--mapping", mapping]).1 != perspective, "{mapping}");
     }
-    assert!(stats(&["crate", "--at", "0.3", "--mapping", "perspective"]).1 == perspective);
+    assert!(stats(&["crate", "--time", "0.3", "--mapping", "perspective"]).1 == perspective);
 }
 
 /// Enlarged, from another place, before another colour, with dither: what is asked for is seen.
@@ -1473,11 +1494,12 @@ fn the_view_is_as_asked_for() {
         assert!(palette[usize::from(pixels[0])].distance_squared(color) < 100, "{word}");
     }
     assert_eq!(picture(&["cube", "--background", "7"]).1[0], 7);
-    let [with, without] = ["--dither", "--dither=off"].map(|word| picture(&["still", word]));
-    assert!(with == picture(&["still"]) && with != without && without == picture(&["still", "--dither=off"]));
+    let [with, without] =
+        [&["--dither", "ordered"][..], &["--no-dither"]].map(|words| picture(&[&["still"], words].concat()));
+    assert!(with == picture(&["still"]) && with != without && without != picture(&["still", "--dither", "blue-noise"]));
     // With nothing said a picture is of the moment that the scene names; a film and a turn begin at 0.
     assert!(picture(&["flash"]) == picture(&["flash", "--time", "1.11"]));
-    assert!(picture(&["flash", "--turn", "0"]) == picture(&["flash", "--at", "0"]));
+    assert!(picture(&["flash", "--turn", "0"]) == picture(&["flash", "--time", "0"]));
 }
 
 /// What a scene shows in the ramps of its palette keeps its colours in one that is made for it.
@@ -1485,7 +1507,7 @@ fn the_view_is_as_asked_for() {
 fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
     let directory = directory();
     let colors = |words: &[&str]| {
-        succeed(&directory, &[&["render"], words, &["-o", "x.png", "--dither=off"]].concat());
+        succeed(&directory, &[&["render"], words, &["-o", "x.png", "--no-dither"]].concat());
         let (palette, pixels) = indexed(&read(&directory, "x.png"));
         pixels.into_iter().map(move |pixel| palette[usize::from(pixel)]).collect::<Vec<Rgb>>()
     };
@@ -1506,13 +1528,13 @@ fn scenes_are_drawn_at_their_time() {
         succeed(&directory, &[&["render"], words, &["-o", "x.png"]].concat());
         read(&directory, "x.png")
     };
-    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--turn", "90"]));
-    assert!(picture(&["rgb", "--at", "1"]) == picture(&["rgb", "--at", "5"]));
-    assert!(picture(&["rgb", "--at", "1"]) != picture(&["rgb"]));
-    assert!(picture(&["still", "--at", "1"]) == picture(&["still"]));
+    assert!(picture(&["rgb", "--time", "1"]) == picture(&["rgb", "--turn", "90"]));
+    assert!(picture(&["rgb", "--time", "1"]) == picture(&["rgb", "--time", "5"]));
+    assert!(picture(&["rgb", "--time", "1"]) != picture(&["rgb"]));
+    assert!(picture(&["still", "--time", "1"]) == picture(&["still"]));
     assert!(picture(&["still", "--turn", "90"]) != picture(&["still"]));
     // The scene lasts three seconds, not four.
-    assert!(picture(&["flash", "--turn", "120"]) == picture(&["flash", "--at", "1"]));
+    assert!(picture(&["flash", "--turn", "120"]) == picture(&["flash", "--time", "1"]));
     let (line, _) = film(&directory, &["flash", "-o", "x.gif", "--fps", "10", "--scale", "1"]);
     assert!(line.contains(" 30 frames ") && line.contains(", 3.00 s, "), "{line}");
 }
@@ -1535,7 +1557,7 @@ fn explain_says_why_a_pixel_has_its_byte() {
         assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
         let output = run(&directory, &["explain", "cone", "--pixel", &place, "--json"]);
         let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        assert_eq!((&json["schema"], &json["byte"]), (&Value::from(2), &Value::from(byte)));
+        assert_eq!((&json["schema"], &json["byte"]), (&Value::from(1), &Value::from(byte)));
         let Some(seen) = json["seen"].get(0) else {
             assert_eq!((json["byte"].clone(), text.contains("the background")), (Value::from(0), true));
             continue;
@@ -1587,7 +1609,7 @@ fn explain_draws_a_row() {
 
     let output = run(&directory, &["explain", "cone", "--row", "120", "--json"]);
     let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!((&json["schema"], &json["row"]), (&Value::from(2), &Value::from(120)));
+    assert_eq!((&json["schema"], &json["row"]), (&Value::from(1), &Value::from(120)));
     let columns = json["columns"].as_array().expect("columns");
     assert_eq!((columns.len(), json["slope"]["lit"].as_array().map(Vec::len)), (320, Some(320)));
     let faces = columns.iter().filter(|column| !column["face"].is_null()).count();

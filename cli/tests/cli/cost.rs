@@ -73,7 +73,7 @@ fn everything_is_measured_and_written() {
         json["budget"].as_array().expect("a list").iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert!(verdicts.len() == 6 && verdicts.iter().all(|verdict| verdict.starts_with("accuracy kept")), "{verdicts:?}");
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&2.into(), &"torus".into(), &3.into()));
+    assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &3.into()));
     for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
         assert!(named.as_str().is_some_and(|name| !name.is_empty()), "{json}");
     }
@@ -287,7 +287,7 @@ fn a_study_is_not_lost_when_it_cannot_be_written() {
         ),
         "{lines}"
     );
-    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 2"));
+    assert!(fs::read_to_string(kept.join("cost.json")).expect("read").contains("\"schema\": 1"));
     let table = String::from_utf8(output.stdout).expect("text");
     assert!(
         table.contains("gouraud-8.8-reseeded") && table.contains(&format!("written to {}", kept.display())),

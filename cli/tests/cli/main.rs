@@ -2,10 +2,10 @@
 
 mod support;
 
+mod cases;
 mod commands;
 mod cost;
 mod files;
 mod record;
-mod show;
 mod verify;
 mod words;

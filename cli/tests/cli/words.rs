@@ -5,6 +5,11 @@ use std::fs;
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use mode13h::palette::builtin;
+use mode13h::raster::Frame;
+use mode13h::render::Renderer;
+use mode13h::settings::Shading;
+use mode13h::span::Kernel;
 use mode13h_assets::shipped;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -12,8 +17,8 @@ use tempfile::TempDir;
 use crate::support::tried::{Tried, is_here};
 use crate::verify::{verified, verified_as_json};
 
-const COMMANDS: [&str; 11] =
-    ["demo", "render", "scenes", "plan", "explain", "cost", "palette", "show", "dos", "verify", "generate"];
+const COMMANDS: [&str; 12] =
+    ["demo", "render", "list", "scenes", "plan", "explain", "cost", "palette", "cases", "dos", "verify", "generate"];
 
 /// The commands that draw a scene.
 const DRAWING: [&str; 5] = ["demo", "render", "plan", "explain", "cost"];
@@ -86,7 +91,7 @@ fn options(help: &str) -> BTreeSet<String> {
 #[test]
 fn help_is_short_or_long_and_no_wider_than_the_terminal() {
     let mut tried = Tried::new("help_is_short_or_long_and_no_wider_than_the_terminal", 70);
-    let nested = ["", "generate completions", "generate man"];
+    let nested = ["", "generate completions", "generate man", "scenes copy"];
     for command in COMMANDS.into_iter().chain(nested) {
         for (columns, widest) in [("80", 80), ("100", 100), ("300", 100)] {
             let [short, long] = ["-h", "--help"].map(|option| help(command, option, columns));
@@ -94,7 +99,8 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
                 assert!(line.chars().count() <= widest, "{command}: {line}");
             }
             assert!(short.lines().count() < long.lines().count(), "{command}");
-            assert_eq!(options(&short), options(&long), "{command}");
+            // The short page leaves out what few need.
+            assert!(options(&short).is_subset(&options(&long)), "{command}");
             tried.add(2);
         }
         // The names of scenes are in `scenes` alone.
@@ -169,7 +175,7 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
         .collect();
     assert!(keys.len() >= 6, "{keys:?}");
     for command in DRAWING {
-        let known = options(&help(command, "-h", "100"));
+        let known = options(&help(command, "--help", "100"));
         for key in keys.iter().chain(&["palette", "background", "arithmetic", "kernel", "zoom", "camera"]) {
             // It compares shadings and budgets, and takes several of the one.
             let is_compared = command == "cost" && ["shading", "max-error"].contains(key);
@@ -203,7 +209,7 @@ fn an_option_does_what_its_key_does() {
         ("mipmaps", "on"),
         ("mipmaps", "off"),
         ("tessellation", "0.5"),
-        ("dither", "on"),
+        ("dither", "ordered"),
     ] {
         let in_file = match value {
             "on" => "true".to_string(),
@@ -212,9 +218,13 @@ fn an_option_does_what_its_key_does() {
             _ => format!("'{value}'"),
         };
         fs::write(directory.path().join("asks.toml"), format!("{lit}render.{key} = {in_file}\n")).expect("written");
-        let by_option = picture(&format!("plain.toml --{key} {value}"));
+        let by_option = picture(&match value {
+            "on" => format!("plain.toml --{key}"),
+            "off" => format!("plain.toml --no-{key}"),
+            _ => format!("plain.toml --{key} {value}"),
+        });
         assert!(by_option == picture("asks.toml"), "--{key} {value}");
-        if ["phong", "affine", "0.5", "on"].contains(&value) && key != "mipmaps" {
+        if ["phong", "affine", "0.5", "ordered"].contains(&value) && key != "mipmaps" {
             assert!(by_option != picture("plain.toml"), "--{key} {value} changes nothing");
         }
         tried.add(1);
@@ -230,6 +240,16 @@ fn old_names_are_answered_with_the_new_ones() {
         ("plan torus --hidden painter", "--hidden is now called --hidden-surfaces "),
         ("explain torus --row 3 --vertex-path integer", "--vertex-path is now called --arithmetic, "),
         ("cost torus --rungs flat", "--rungs is now called --shadings "),
+        ("show R5 -o x.png", "show is now called cases "),
+        ("show", "show is now called cases "),
+        ("scenes --copy fog", "--copy is now called scenes copy "),
+        ("plan torus --at 1", "--at is now called --time "),
+        ("plan torus --time", "--measure measures what effects cost "),
+        ("torus --dither on", "--dither on is now --dither ordered "),
+        ("render torus -o x.png --dither=off", "--dither off is now --no-dither "),
+        ("torus --mipmaps off", "--mipmaps off is now --no-mipmaps "),
+        ("render --mipmaps on torus -o x.png", "--mipmaps on is now --mipmaps "),
+        ("render torus -o x.png --shading float", "float is now called gouraud-float "),
         ("render torus --arithmetic integer", "integer is now called fixed "),
         ("render torus --shading gouraud-period", "gouraud-period is now called gouraud-vintage "),
         ("cost torus --shadings flat,gouraud-period", "gouraud-period is now called gouraud-vintage "),
@@ -240,7 +260,201 @@ fn old_names_are_answered_with_the_new_ones() {
         .expect("written");
     let line = failed(&run(&directory, "render old.toml -o x.png"), 2, "old.toml");
     assert_eq!(line, "mode13h: old.toml:2:2: key `wishes`: is now called `render`\n");
+    fs::write(directory.path().join("old.toml"), "objects = [{ shape = 'cube' }]\nrender.shading = 'float'\n")
+        .expect("written");
+    let line = failed(&run(&directory, "render old.toml -o x.png"), 2, "old.toml");
+    assert!(line.contains("\"float\" is now called \"gouraud-float\""), "{line}");
     assert_eq!(names_in(&directory), BTreeSet::from(["old.toml".to_string()]));
+    // A file of an old name is an INPUT.
+    fs::write(directory.path().join("show"), "no model").expect("written");
+    assert!(failed(&run(&directory, "show"), 2, "show").contains("show: nothing that can be read"));
+}
+
+/// The short page of each command, in a terminal of 80 columns.
+#[test]
+fn every_short_help_fits_its_screen() {
+    for command in COMMANDS.into_iter().chain(["", "generate completions", "generate man", "scenes copy"]) {
+        let page = help(command, "-h", "80");
+        assert!(page.lines().count() <= 42, "{command}: {} lines\n{page}", page.lines().count());
+    }
+}
+
+/// Each list has the names that the library has, and marks what is taken where nothing is said.
+#[test]
+fn lists_have_the_names_that_options_take() {
+    let directory = directory();
+    let list = |what: &str| printed(run(&directory, &format!("list {what}")));
+    let names = |text: &str| -> Vec<String> {
+        let of_line = |line: &str| line.split_whitespace().next().map(String::from);
+        text.lines().take_while(|line| !line.is_empty()).filter_map(of_line).collect()
+    };
+    let shadings = list("shadings");
+    assert_eq!(names(&shadings), Shading::ALL.map(Shading::name));
+    let marked: Vec<&str> = shadings.lines().filter(|line| line.contains("the default, `gouraud` for short")).collect();
+    assert!(marked.len() == 1 && marked[0].starts_with(Shading::default().name()), "{shadings}");
+    let palettes = list("palettes");
+    assert_eq!(names(&palettes), builtin::ALL.iter().map(|palette| palette.name).collect::<Vec<_>>());
+    let kernels = list("kernels");
+    assert_eq!(names(&kernels), Kernel::available().map(Kernel::name).collect::<Vec<_>>());
+    let marked: Vec<&str> = kernels.lines().filter(|line| line.contains("the default")).collect();
+    assert!(marked.len() == 1 && marked[0].starts_with(Kernel::default().name()), "{kernels}");
+    assert_eq!(names(&list("scenes")), shipped::ALL.iter().map(|scene| scene.name).collect::<Vec<_>>());
+    for line in [shadings, palettes, kernels].iter().flat_map(|text| text.lines()) {
+        assert!(line.chars().count() <= 100 && line == line.trim_end(), "{line}");
+    }
+}
+
+/// Wherever a shading is named, `gouraud` is the default one.
+#[test]
+fn gouraud_is_short_for_the_default_shading() {
+    let directory = directory();
+    let picture = |words: &str| {
+        assert!(printed(run(&directory, &format!("render {words} -o x.png"))).is_empty());
+        fs::read(directory.path().join("x.png")).expect("a picture")
+    };
+    // A scene that asks for another.
+    let scene = "objects = [{ shape = 'torus' }]\nlights = [{ sun = [0, 0, 1] }]\nrender.shading = ";
+    let put = |name: &str, shading: &str| {
+        fs::write(directory.path().join(name), format!("{scene}'{shading}'\n")).expect("written");
+    };
+    put("flat.toml", "flat");
+    put("short.toml", "gouraud");
+    put("full.toml", Shading::default().name());
+    let default = picture(&format!("flat.toml --shading {}", Shading::default()));
+    assert!(picture("flat.toml --shading gouraud") == default && picture("flat.toml") != default);
+    assert!(picture("short.toml") == default && picture("full.toml") == default);
+    let output = run(&directory, "render flat.toml -o x.png --shading gouraud --stats --json");
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["frames"][0]["shading"], Shading::default().name());
+    let study = run(&directory, "cost cube --frames 1 --seconds 0 --shadings flat,gouraud --json --arithmetic fixed");
+    let json: Value = serde_json::from_slice(&study.stdout).expect("JSON");
+    assert_eq!(json["shadings"][1]["shading"], Shading::default().name());
+    let program = |shading: &str| {
+        printed(run(&directory, &format!("dos cube --frames 2 -o CUBE.EXE --shading {shading}")));
+        fs::read(directory.path().join("CUBE.EXE")).expect("a program")
+    };
+    assert!(program("gouraud") == program(Shading::default().name()) && program("gouraud") != program("flat"));
+    // It is no name of anything else, nor of what works beside it.
+    let line = failed(&run(&directory, "render cube -o x.png --mapping gouraud"), 2, "--mapping");
+    assert!(line.contains("invalid value 'gouraud'"), "{line}");
+    fs::write(directory.path().join("wrong.toml"), "objects = [{ shape = 'cube' }]\nrender.mapping = 'gouraud'\n")
+        .expect("written");
+    assert!(failed(&run(&directory, "render wrong.toml -o x.png"), 2, "wrong.toml").contains("\"gouraud\": unknown"));
+}
+
+/// Frames of square pixels in any size are the library's.
+#[test]
+fn a_frame_has_the_size_that_was_asked_for() {
+    let directory = directory();
+    let decoded = |name: &str| {
+        let file = fs::File::open(directory.path().join(name)).expect("a picture");
+        let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
+        decoder.set_transformations(png::Transformations::IDENTITY);
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        let info = reader.info();
+        ((info.width, info.height), info.pixel_dims.map(|dims| (dims.xppu, dims.yppu)), pixels)
+    };
+    let mut scene = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("it loads").scene;
+    scene.set_time(0.5);
+    for (width, height) in [(640, 400), (97, 33), (1, 1), (1021, 7)] {
+        let said = printed(run(&directory, &format!("render torus --time 0.5 --size {width}x{height} -o x.png")));
+        let (size, dims, pixels) = decoded("x.png");
+        let mut expected = vec![0; (width * height) as usize];
+        let frame = Frame::new(&mut expected, width, height, width as usize).expect("a frame");
+        Renderer::new().draw_frame(&scene, frame, (1, 1)).expect("a legal scene");
+        assert!(said.is_empty() && size == (width, height) && pixels == expected, "{width} x {height}");
+        assert!(dims.is_none_or(|(x, y)| x == y), "{width} x {height}: {dims:?}");
+    }
+    // Enlarged after that; in true colour no larger by itself.
+    printed(run(&directory, "render torus --size 64x48 --scale 2 -o x.png"));
+    assert_eq!(decoded("x.png").0, (128, 96));
+    printed(run(&directory, "render torus --size 64x48 --rgb -o x.png"));
+    assert_eq!(decoded("x.png").0, (64, 48));
+    for animation in ["gif", "apng"] {
+        let words = format!("render torus --size 64x48 --frames 2 -o x.{animation} --json");
+        let json: Value = serde_json::from_slice(&run(&directory, &words).stdout).expect("JSON");
+        assert_eq!((&json["animation"]["width"], &json["animation"]["height"]), (&64.into(), &48.into()));
+    }
+    // A palette that changes is that of the frame's time.
+    let colors = |words: &str| {
+        printed(run(&directory, &format!("render fade --time 1 {words} -o x.png")));
+        let file = fs::File::open(directory.path().join("x.png")).expect("a picture");
+        let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
+        reader.info().palette.as_deref().map(<[u8]>::to_vec)
+    };
+    assert!(colors("") == colors("--size 64x48") && colors("--time 1").is_some());
+    // The triangles of a frame are those of its size.
+    printed(run(&directory, "render cube --size 64x48 --record r.rec -o x.png"));
+    assert!(printed(run(&directory, "verify --replay r.rec")).starts_with("frame of 64 x 48 pixels"));
+}
+
+/// Nothing but the files.
+#[test]
+fn quiet_commands_say_nothing() {
+    let directory = directory();
+    for words in [
+        "render cube -q",
+        "render cube --frames 2 --quiet",
+        "render cube --frames 2 -o x.gif -q",
+        "cases R5 -q",
+        "dos cube --frames 2 -q",
+        "verify --frame canvas/bands/plain -q",
+        "cost cube --frames 1 --seconds 0 --shadings flat --arithmetic fixed -q",
+    ] {
+        assert!(printed(run(&directory, words)).is_empty(), "{words}");
+    }
+    for file in ["cube.png", "cube-0001.png", "x.gif", "R5.png", "CUBE.EXE", "cost-cube/report.html"] {
+        assert!(directory.path().join(file).is_file(), "{file}");
+    }
+    // Errors are still said.
+    failed(&run(&directory, "render cube -q"), 3, "render cube -q");
+}
+
+/// A scene's moment by the one option, in the window too: without a display a frame of it is saved.
+#[test]
+fn time_is_the_same_for_all_that_draw() {
+    let directory = directory();
+    let read = |name: &str| fs::read(directory.path().join(name)).expect("a picture");
+    printed(run(&directory, "render flash --time 0.25 -o at.png"));
+    printed(run(&directory, "render flash -o usual.png"));
+    assert!(run(&directory, "flash --time 0.25").status.success());
+    assert!(run(&directory, "demo flash").status.success());
+    assert!(read("mode13h-0001.png") == read("at.png") && read("mode13h-0002.png") == read("usual.png"));
+    assert!(read("at.png") != read("usual.png"));
+    assert!(printed(run(&directory, "plan flash --time 0.25")).starts_with("flash at 0.25 s, "));
+    assert!(printed(run(&directory, "explain flash --row 9 --time 0.25")).starts_with("flash at 0.25 s, "));
+}
+
+/// The browser that it is opened in is a script here, which writes down what it was given.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_is_opened_in_the_browser() {
+    use std::os::unix::fs::PermissionsExt;
+    use std::time::{Duration, Instant};
+
+    let directory = directory();
+    let browsers = directory.path().join("bin");
+    fs::create_dir(&browsers).expect("made");
+    let browser = browsers.join("xdg-open");
+    fs::write(&browser, "#!/bin/sh\necho \"$1\" > opened\n").expect("written");
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).expect("allowed");
+    let words = "cost cube --frames 1 --seconds 0 --shadings flat --arithmetic fixed -q -o study --open";
+    let run = |path: &std::path::Path| program(&directory).args(words.split(' ')).env("PATH", path).output();
+    assert!(printed(run(&browsers).expect("started")).is_empty());
+    let (opened, begun) = (directory.path().join("opened"), Instant::now());
+    let said = loop {
+        match fs::read_to_string(&opened) {
+            Ok(said) if said.ends_with('\n') => break said,
+            _ => assert!(begun.elapsed() < Duration::from_secs(30), "nothing was opened"),
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(said, "study/report.html\n");
+    // Without any the report is there all the same.
+    let output = run(std::path::Path::new("/nowhere")).expect("started");
+    assert!(failed(&output, 3, words).contains("study/report.html: cannot be opened in a browser"), "{output:?}");
 }
 
 #[test]
@@ -250,14 +464,14 @@ fn typos_are_answered_with_the_nearest_word() {
         ("rendr torus -o x.png", "rendr: neither a command nor a file nor a scene nor a shape; did you mean render?"),
         ("rendr torus", "did you mean render?"),
         ("rendr", "did you mean render?"),
-        ("scnees --copy fog", "did you mean scenes?"),
+        ("scnees copy fog", "did you mean scenes?"),
         ("verfiy", "did you mean verify?"),        // typo
         ("genrate man", "did you mean generate?"), // typo
         ("palete grey", "did you mean palette?"),  // typo
         ("torsu", "torsu: neither a file nor a scene nor a shape; did you mean torus?"),
         ("render spere", "did you mean sphere?"), // typo
         ("demo rendr", "did you mean the command render?"),
-        ("scenes --copy frog", "frog: no such scene; did you mean fog?"),
+        ("scenes copy frog", "frog: no such scene; did you mean fog?"),
         ("render torus --shadng flat", "did you mean --shading?"),
         ("render torus --shading phongs", "did you mean phong?"),
         ("generate completion bash", "did you mean completions?"),
@@ -277,7 +491,7 @@ fn typos_are_answered_with_the_nearest_word() {
 /// Each command's end by each status that it can have.
 #[test]
 fn every_command_ends_with_the_status_that_help_names() {
-    let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 39);
+    let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 41);
     let directory = directory();
     let put = |name: &str, text: &str| fs::write(directory.path().join(name), text).expect("written");
     put("broken.obj", "v 0 0 0\nf 1 2 3\n");
@@ -285,7 +499,7 @@ fn every_command_ends_with_the_status_that_help_names() {
     put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
     put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
     put("broken.rec", "no record\n");
-    let cases: [(&str, &[(&str, i32)]); 11] = [
+    let cases: [(&str, &[(&str, i32)]); 12] = [
         (
             "demo",
             &[
@@ -310,14 +524,15 @@ fn every_command_ends_with_the_status_that_help_names() {
                 ("render cube -o x.png --palette none.pal", 3),
             ],
         ),
+        ("list", &[("list scenes", 0), ("list", 2), ("list bogus", 2)]),
         (
             "scenes",
             &[
-                ("scenes", 0),
-                ("scenes --copy fog -o y.toml", 0),
-                ("scenes --copy bogus", 2),
-                ("scenes --force", 2),
-                ("scenes --copy fog -o none/y.toml", 3),
+                ("scenes copy fog -o y.toml", 0),
+                ("scenes", 2),
+                ("scenes copy bogus", 2),
+                ("scenes copy --force", 2),
+                ("scenes copy fog -o none/y.toml", 3),
             ],
         ),
         ("plan", &[("plan cube", 0), ("plan", 2), ("plan broken.toml", 2), ("plan none.obj", 3)]),
@@ -344,7 +559,7 @@ fn every_command_ends_with_the_status_that_help_names() {
         (
             "palette",
             &[
-                ("palette", 0),
+                ("palette", 2),
                 ("palette grey", 0),
                 ("palette bogus", 2),
                 ("palette broken.pal", 2),
@@ -352,7 +567,7 @@ fn every_command_ends_with_the_status_that_help_names() {
                 ("palette grey -o none/x.pal", 3),
             ],
         ),
-        ("show", &[("show", 0), ("show R5 -o x.png", 0), ("show BOGUS", 2), ("show R5 -o none/x.png", 3)]),
+        ("cases", &[("cases", 0), ("cases R5 -o x.png", 0), ("cases BOGUS", 2), ("cases R5 -o none/x.png", 3)]),
         (
             "dos",
             &[
@@ -415,12 +630,16 @@ fn lists_and_figures_are_json_for_programs() {
     let json = |words: &str| value(words, &run(&directory, words));
     let length = |value: &Value| value.as_array().expect("a list").len();
 
-    let scenes = json("scenes --json");
+    let scenes = json("list scenes --json");
     assert_eq!((length(&scenes["scenes"]), &scenes["schema"]), (shipped::ALL.len(), &1.into()));
     assert_eq!(scenes["scenes"][0]["name"], "torus");
     assert!(scenes["shapes"].as_array().expect("a list").contains(&"cylinder".into()));
 
-    let palettes = json("palette --json");
+    let shadings = json("list shadings --json");
+    assert_eq!((length(&shadings["shadings"]), &shadings["shadings"][3]["default"]), (10, &true.into()));
+    let kernels = json("list kernels --json");
+    assert_eq!((&kernels["schema"], &kernels["kernels"][0]["name"]), (&1.into(), &"portable".into()));
+    let palettes = json("list palettes --json");
     assert_eq!((length(&palettes["palettes"]), &palettes["palettes"][0]["name"]), (9, &"grey".into()));
     let copper = json("palette copper --json");
     assert_eq!(
@@ -430,9 +649,9 @@ fn lists_and_figures_are_json_for_programs() {
     let made = json("palette --from torus --json");
     assert_eq!((length(&made["materials"]), &made["materials"][0]["what"]), (1, &"a ramp".into()));
 
-    let cases = json("show --json");
+    let cases = json("cases --json");
     assert!(length(&cases["cases"]) >= 20 && cases["cases"][0]["id"] == "R1", "{cases}");
-    assert_eq!(json("show R5 --json -o r.png")["file"], "r.png");
+    assert_eq!(json("cases R5 --json -o r.png")["file"], "r.png");
 
     let pictures = json("render torus -o x%d.png --frames 3 --stats --json");
     assert_eq!(pictures["files"], serde_json::json!(["x0.png", "x1.png", "x2.png"]));
@@ -446,21 +665,21 @@ fn lists_and_figures_are_json_for_programs() {
     assert_eq!((&budget["frames"][0]["max_error"], &budget["frames"][0]["arithmetic"]), (&4.0.into(), &"float".into()));
     let film = json("render cube -o x.gif --frames 2 --json");
     assert_eq!(
-        (&film["film"]["frames"], &film["film"]["width"], &film["frames"]),
+        (&film["animation"]["frames"], &film["animation"]["width"], &film["frames"]),
         (&2.into(), &640.into(), &Value::Null)
     );
-    assert_eq!(json("render cube -o x.apng --frames 2 --scale 1 --json")["film"]["width"], 320);
+    assert_eq!(json("render cube -o x.apng --frames 2 --scale 1 --json")["animation"]["width"], 320);
     let words = "render cube -o - --json";
     assert!(failed(&run(&directory, words), 2, words).contains("standard output"));
 
-    assert_eq!(json("plan torus --json")["schema"], 2);
+    assert_eq!(json("plan torus --json")["schema"], 1);
     let pixel = json("explain torus --pixel 160,60 --json --shading phong");
     assert_eq!((&pixel["shading"], &pixel["arithmetic"]), (&"phong".into(), &"float".into()));
     assert!(pixel["shading_reason"].is_string() && pixel["faces"][0]["interpolation"].is_string(), "{pixel}");
     assert_eq!(length(&json("explain torus --row 60 --json")["columns"]), 320);
     assert_eq!(value("verify --json", verified_as_json())["passed"], true);
     let cost = value(COST, cost());
-    assert_eq!((&cost["schema"], &cost["shadings"][0]["shading"]), (&2.into(), &"flat".into()));
+    assert_eq!((&cost["schema"], &cost["shadings"][0]["shading"]), (&1.into(), &"flat".into()));
     for text in [pixel, cost] {
         let text = text.to_string();
         for old in ["rung", "why", "vertex_path", "gouraud-period", "integer"] {
@@ -480,8 +699,8 @@ fn only_files_that_were_named_are_overwritten() {
     for (words, out, files) in [
         ("render cube", "-o cube.png", &["cube.png"][..]),
         ("render cube --frames 2 --turn 90", "-o cube-%04d.png", &["cube-0000.png", "cube-0001.png"]),
-        ("scenes --copy fog", "-o fog.toml", &["fog.toml"]),
-        ("show R5", "-o R5.png", &["R5.png"]),
+        ("scenes copy fog", "-o fog.toml", &["fog.toml"]),
+        ("cases R5", "-o R5.png", &["R5.png"]),
         (
             cost,
             "-o cost-cube",
@@ -582,6 +801,6 @@ fn man_pages_are_written_for_each_command() {
             assert!(page.contains(&option.replace('-', r"\-")), "{command}: {option}: {page}");
         }
     }
-    let nested = ["mode13h-generate-completions.1", "mode13h-generate-man.1"];
+    let nested = ["mode13h-generate-completions.1", "mode13h-generate-man.1", "mode13h-scenes-copy.1"];
     assert!(nested.iter().all(|name| pages(name).contains(".TH ")));
 }

@@ -19,7 +19,7 @@ use mode13h_assets::auto_palette;
 /// A scene by its name.
 type Named = (&'static str, fn() -> Scene);
 
-/// The scenes, in the order of `mode13h scenes`.
+/// The scenes, in the order of `mode13h list scenes`.
 pub const ALL: [Named; 18] = [
     ("torus", torus),
     ("cube", cube),

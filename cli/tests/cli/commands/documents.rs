@@ -139,7 +139,8 @@ fn documents_give_options_values_that_they_take() {
                     continue;
                 }
                 let known = match pair[0] {
-                    "--shading" => value.parse::<Shading>().is_ok(),
+                    "--shading" => mode13h_assets::scene_file::in_full(value).parse::<Shading>().is_ok(),
+                    "--dither" => value.parse::<DitherPattern>().is_ok(),
                     "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
                     "--arithmetic" => value.parse::<VertexPath>().is_ok(),

@@ -1,4 +1,4 @@
-//! `mode13h show`: a hard case as a picture.
+//! `mode13h cases`: hard cases as pictures.
 
 use std::path::PathBuf;
 
@@ -8,28 +8,32 @@ use mode13h_lab::show::{self, CASES, Case};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::options::Quiet;
 use crate::output;
 
 #[derive(Args)]
 pub(crate) struct Options {
-    /// The case, such as R5 [default: list those that have a picture]
+    /// The case to draw, such as R5 [default: list all cases]
     #[arg(value_name = "ID")]
     id: Option<String>,
-    /// The picture's name; what it holds is overwritten
+    /// Write to FILE, which ends in .png; an existing file is overwritten
     ///
-    /// [default: ID.png in this directory, which is not overwritten without --force]
-    #[arg(short, long, value_name = "OUT.png", requires = "id")]
+    /// [default: ID.png in the current directory, never overwritten without --force]
+    #[arg(short, long, value_name = "FILE", requires = "id")]
     out: Option<PathBuf>,
     /// Overwrite ID.png
     #[arg(long, requires = "id")]
     force: bool,
     /// Print the list, or what was drawn, as JSON
-    #[arg(long)]
+    #[arg(long, conflicts_with = "quiet")]
     json: bool,
+    #[command(flatten)]
+    quiet: Quiet,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { id, out, force, json } = options;
+    let Options { id, out, force, json, quiet } = options;
+    quiet.obey();
     let Some(id) = id else {
         return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
     };
@@ -52,13 +56,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     output::file(&path, || export::write_atomically(&path, |file| file.write_all(&bytes)))?;
     if *json {
         let mut case = case_json(case);
-        case["schema"] = 1.into();
+        case["schema"] = output::SCHEMA.into();
         case["file"] = path.to_string_lossy().into();
         return output::print_json(&case);
     }
     match out {
         Some(_) => Ok(()),
-        None => output::print(&format!("{}: {}\n", path.display(), case.sentence)),
+        None => output::say(&format!("{}: {}\n", path.display(), case.sentence)),
     }
 }
 
@@ -67,7 +71,7 @@ fn list() -> String {
 }
 
 fn list_json() -> Value {
-    json!({ "schema": 1, "cases": CASES.iter().map(case_json).collect::<Vec<_>>() })
+    json!({ "schema": output::SCHEMA, "cases": CASES.iter().map(case_json).collect::<Vec<_>>() })
 }
 
 fn case_json(case: &Case) -> Value {
