@@ -66,7 +66,8 @@ impl Input {
 }
 
 /// Meaning of INPUT, for the help.
-pub(crate) const HELP: &str = "A scene (.toml), a model (.obj, .stl, .ply, .gltf, .glb), a name, or - for standard input";
+pub(crate) const HELP: &str =
+    "A scene (.toml), a model (.obj, .stl, .ply, .gltf, .glb), a name, or - for standard input";
 
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {

@@ -311,7 +311,8 @@ pub(crate) fn shading_of<const N: usize>(all: [Shading; N]) -> impl TypedValuePa
         let value = PossibleValue::new(shading.name());
         if shading == Shading::default() { value.alias(GOURAUD) } else { value }
     };
-    PossibleValuesParser::new(all.map(value)).try_map(|word| in_full(&word).parse::<Shading>())
+    PossibleValuesParser::new(all.map(value))
+        .try_map(|word| in_full(&word).parse::<Shading>().map_err(|error| error.to_string()))
 }
 
 /// Takes one of these names, and offers them to the shell's completions.

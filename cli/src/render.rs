@@ -38,7 +38,7 @@ pub(crate) struct Options {
     /// A .png is a picture; for several frames its name holds %04d or the like. A .gif or .apng is an animation. An existing
     /// file is overwritten.
     ///
-    /// - is an animation in Y4M on standard output: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
+    /// With - an animation goes to standard output in Y4M: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
     /// Y4M rounds colours to YCbCr; those of .apng are exact.
     ///
     /// [default: INPUT.png in the current directory, never overwritten without --force]
