@@ -108,7 +108,7 @@ mod tests {
             ("scnees", Some("scenes")),
             ("csot", Some("cost")),
             ("plann", Some("plan")),
-            ("lsit", Some("list")),
+            ("lsit", Some("list")), // typo
             ("render", Some("render")),
             ("house", None),
             ("x", None),
