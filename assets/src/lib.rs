@@ -25,26 +25,18 @@ pub mod animation;
 pub mod auto_palette;
 #[cfg(feature = "std")]
 mod errors;
-#[cfg(feature = "gltf")]
-pub mod gltf;
 #[cfg(feature = "std")]
 pub mod model;
 #[cfg(feature = "std")]
 pub mod model_file;
 #[cfg(feature = "std")]
-pub mod obj;
-#[cfg(feature = "std")]
 pub mod palette_file;
-#[cfg(feature = "std")]
-pub mod ply;
 #[cfg(feature = "std")]
 mod scene_ext;
 #[cfg(feature = "std")]
 pub mod scene_file;
 #[cfg(feature = "std")]
 pub mod shipped;
-#[cfg(feature = "std")]
-pub mod stl;
 #[cfg(feature = "std")]
 pub mod texture;
 #[cfg(feature = "std")]

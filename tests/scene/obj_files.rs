@@ -11,8 +11,8 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
+use mode13h_assets::model_file::obj;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
-use mode13h_assets::obj;
 use proptest::prelude::*;
 
 use crate::support::property::property;

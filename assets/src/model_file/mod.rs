@@ -2,25 +2,31 @@
 //!
 //! | format | module | read |
 //! |---|---|---|
-//! | Wavefront OBJ with MTL | [`obj`](crate::obj) | positions, texture coordinates, normals, smoothing groups, materials |
-//! | STL, text and binary | [`stl`](crate::stl) | triangles; corners at the same place are one vertex |
-//! | PLY, text and both binaries | [`ply`](crate::ply) | faces of any size, strips, normals, texture coordinates, colours |
+//! | Wavefront OBJ with MTL | [`obj`] | positions, texture coordinates, normals, smoothing groups, materials |
+//! | STL, text and binary | `stl` | triangles; corners at the same place are one vertex |
+//! | PLY, text and both binaries | `ply` | faces of any size, strips, normals, texture coordinates, colours |
 //! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene at rest as one mesh: materials, textures in the file and beside it, colours |
 //!
 //! A file's name says its format, with or without `.gz` behind it. A name without a known extension leaves it to the
 //! contents. Files packed by gzip are unpacked, whatever their name.
 //!
 //! Whatever the format, faces are split, missing normals filled in, a model far from 0 is moved there, scans are mended
-//! and errors placed by the same code; [`obj`](crate::obj) describes it.
+//! and errors placed by the same code; [`obj`] describes it.
 
 mod colors;
 mod error;
 mod gather;
+#[cfg(feature = "gltf")]
+mod gltf;
 pub(crate) mod lists;
+pub mod obj;
+mod ply;
 mod polygon;
 mod progress;
+mod stl;
 pub(crate) mod tokens;
 pub(crate) mod warnings;
+mod word;
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -33,7 +39,6 @@ use mode13h::mesh::{Mesh, Surface};
 use mode13h::scene::{Shared, UpAxis};
 use mode13h::texture::Texture;
 
-use crate::{obj, ply, stl};
 pub(crate) use colors::paint;
 pub use error::{ModelFileError, ModelFileErrorKind, Place};
 use lists::Lists;
@@ -110,7 +115,7 @@ impl Format {
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
         #[cfg(feature = "gltf")]
-        if crate::gltf::recognizes(bytes) {
+        if gltf::recognizes(bytes) {
             return Some(Self::Gltf);
         }
         if ply::recognizes(bytes) {
@@ -280,7 +285,7 @@ fn read(
             Format::Stl => stl::draft(&bytes, path)?,
             Format::Ply => ply::draft(&bytes, path)?,
             #[cfg(feature = "gltf")]
-            Format::Gltf => crate::gltf::draft(&bytes, path, file)?,
+            Format::Gltf => gltf::draft(&bytes, path, file)?,
         }
     };
     finish(draft, path, named, options)

@@ -1,7 +1,7 @@
 //! Words of a text format in which line ends count as blanks, with their lines.
 
+use super::word::{parsed, shown};
 use super::{ModelFileError, ModelFileErrorKind, Place};
-use crate::obj::line::{parsed, shown};
 use std::path::Path;
 
 /// Words, one after the other. LF, CR LF and CR end a line.

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use mode13h_assets::model_file::obj;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
-use mode13h_assets::obj;
 use mode13h_assets::palette_file::FORMATS;
 use tempfile::TempDir;
 

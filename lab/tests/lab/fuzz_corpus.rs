@@ -128,7 +128,7 @@ fn f5_no_file_takes_memory_out_of_proportion() {
     let mut tried = Tried::new("f5_no_file_takes_memory_out_of_proportion", 2_000);
     let mut worst = 0;
     let mut measure = |what: &Path, bytes: &[u8]| {
-        let peak = counted::peak(|| drop(mode13h_assets::obj::parse(bytes, "model.obj", none)));
+        let peak = counted::peak(|| drop(mode13h_assets::model_file::obj::parse(bytes, "model.obj", none)));
         let most = BYTES_FOR_NOTHING + BYTES_PER_BYTE * bytes.len();
         assert!(peak <= most, "{}: {peak} bytes for a file of {}", what.display(), bytes.len());
         worst = worst.max(peak.saturating_sub(BYTES_FOR_NOTHING) / bytes.len().max(1));

@@ -690,7 +690,7 @@ impl Written {
         self.positions.iter().for_each(|p| text += &format!("v {} {} {}\n", p.x, p.y, p.z));
         self.faces.iter().for_each(|[a, b, c]| text += &format!("f {a} {b} {c}\n"));
         let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
-        mode13h_assets::obj::parse(text.as_bytes(), "scan.obj", none).expect("a model")
+        mode13h_assets::model_file::obj::parse(text.as_bytes(), "scan.obj", none).expect("a model")
     }
 }
 

@@ -49,7 +49,7 @@ use statement::Statements;
 /// their paths and returns their bytes. Textures are not looked for.
 ///
 /// ```
-/// use mode13h_assets::obj;
+/// use mode13h_assets::model_file::obj;
 /// let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 /// let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
 /// let model = obj::parse(text.as_bytes(), "square.obj", none)?;

@@ -6,8 +6,9 @@ use std::path::Path;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 
-use super::line::{Lines, keyword, name, number, numbers, shown, wide_numbers, words};
+use super::line::{Lines, keyword, number, numbers, wide_numbers};
 use crate::model_file::lists::{Corner, Lists, Wide, push};
+use crate::model_file::word::{name, shown, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 
 /// The statements of an OBJ file.

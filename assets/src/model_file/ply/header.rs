@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::model_file::tokens::expected;
+use crate::model_file::word::{name, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
-use crate::obj::line::{name, words};
 
 /// How numbers are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

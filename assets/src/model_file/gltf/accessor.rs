@@ -10,7 +10,13 @@ use base64::Engine;
 use base64::engine::general_purpose::GeneralPurpose;
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
 
-use super::material::Image;
+/// An image of the file.
+pub(super) enum Image {
+    /// The bytes of a picture's file.
+    Bytes(Vec<u8>),
+    /// The path of one.
+    File(String),
+}
 
 /// The bytes of all buffers, and of the images that are no part of them.
 pub(super) struct Buffers {

@@ -11,17 +11,9 @@ use mode13h::mesh::Surface;
 use mode13h::scene::Shared;
 use mode13h::texture::Texture;
 
-use super::accessor::Buffers;
+use super::accessor::{Buffers, Image};
 use crate::model_file::Embedded;
 use crate::texture::{Decoded, decode_all};
-
-/// An image of the file.
-pub(super) enum Image {
-    /// The bytes of a picture's file.
-    Bytes(Vec<u8>),
-    /// The path of one.
-    File(String),
-}
 
 /// Where a texture lies: `KHR_texture_transform`.
 #[derive(Clone, Copy)]

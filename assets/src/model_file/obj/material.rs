@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 
 use mode13h::mesh::Surface;
 
-use super::line::{Lines, keyword, name, number, words};
+use super::line::{Lines, keyword, number};
 use super::statement::Statements;
 use crate::model_file::warnings::{LeftOut, Warnings};
+use crate::model_file::word::{name, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
 /// The surfaces for `model.names`, in their order.

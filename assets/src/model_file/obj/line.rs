@@ -1,10 +1,10 @@
 //! Lines and words, of OBJ and MTL alike.
 
 use core::mem;
-use core::str::FromStr;
 use std::io::{self, BufRead};
 
 use crate::model_file::ModelFileErrorKind;
+use crate::model_file::word::parsed;
 
 /// Lines, with those joined that end in a backslash. LF, CR LF and CR end a line. One buffer serves them all.
 pub(crate) struct Lines<R> {
@@ -88,31 +88,10 @@ pub(crate) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     line.split_at(end)
 }
 
-/// The words, up to a comment.
-pub(crate) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
-    rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take_while(|word| word[0] != b'#')
-}
-
-/// A name or a path: the rest of the line, which may hold blanks.
-pub(crate) fn name(rest: &[u8]) -> String {
-    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
-}
-
 /// The next word as a finite number, or `None` at the end of the line.
 pub(crate) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ModelFileErrorKind> {
     let Some(word) = words.next() else { return Ok(None) };
     parsed(word, f32::is_finite)
-}
-
-pub(crate) fn parsed<T: FromStr + Copy>(
-    word: &[u8],
-    is_finite: fn(T) -> bool,
-) -> Result<Option<T>, ModelFileErrorKind> {
-    match str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
-        None => Err(ModelFileErrorKind::NotNumber(shown(word))),
-        Some(value) if !is_finite(value) => Err(ModelFileErrorKind::NotFinite(shown(word))),
-        value => Ok(value),
-    }
 }
 
 /// Reads the `N` numbers that the statement needs in f64; all are within the range of f32.
@@ -138,15 +117,4 @@ pub(crate) fn numbers<'a, const N: usize>(
         *value = number(words)?.ok_or(ModelFileErrorKind::Missing(what))?;
     }
     Ok(values)
-}
-
-/// A word as an error shows it: on one line, and short, for words may be a megabyte long.
-pub(crate) fn shown(word: &[u8]) -> String {
-    const MAX: usize = 40;
-    let text = String::from_utf8_lossy(&word[..word.len().min(MAX)]);
-    let mut shown = text.replace(char::is_control, "\u{FFFD}");
-    if word.len() > MAX {
-        shown.push('…');
-    }
-    shown.to_owned()
 }

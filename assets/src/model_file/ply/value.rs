@@ -2,8 +2,8 @@
 
 use super::header::{Element, Encoding, Header, Kind, Number};
 use crate::model_file::tokens::{Tokens, expected};
+use crate::model_file::word::parsed;
 use crate::model_file::{ModelFileErrorKind, Place};
-use crate::obj::line::parsed;
 
 /// The numbers behind a header, one after the other.
 pub(super) struct Values<'b> {

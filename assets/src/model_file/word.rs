@@ -1,0 +1,38 @@
+//! Words of text formats.
+
+use std::str::FromStr;
+
+use super::ModelFileErrorKind;
+
+/// The words, up to a comment.
+pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
+    rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take_while(|word| word[0] != b'#')
+}
+
+/// A name or a path: the rest of the line, which may hold blanks.
+pub(super) fn name(rest: &[u8]) -> String {
+    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+}
+
+/// A word as a number, if it is finite.
+pub(super) fn parsed<T: FromStr + Copy>(
+    word: &[u8],
+    is_finite: fn(T) -> bool,
+) -> Result<Option<T>, ModelFileErrorKind> {
+    match str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
+        None => Err(ModelFileErrorKind::NotNumber(shown(word))),
+        Some(value) if !is_finite(value) => Err(ModelFileErrorKind::NotFinite(shown(word))),
+        value => Ok(value),
+    }
+}
+
+/// A word as an error shows it: on one line, and short, for words may be a megabyte long.
+pub(super) fn shown(word: &[u8]) -> String {
+    const MAX: usize = 40;
+    let text = String::from_utf8_lossy(&word[..word.len().min(MAX)]);
+    let mut shown = text.replace(char::is_control, "\u{FFFD}");
+    if word.len() > MAX {
+        shown.push('…');
+    }
+    shown.to_owned()
+}
