@@ -25,6 +25,7 @@ fn what_was_measured_is_reported() {
     for row in &study.shadings {
         assert!(page.contains(&format!("frame of {}", row.shading)), "{}", row.shading);
     }
-    assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len());
+    // Each shading's picture and its error, and the first screen's two pictures.
+    assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len() + 2);
     assert_eq!(page.matches("<svg").count(), 3, "three charts");
 }

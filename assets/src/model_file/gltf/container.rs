@@ -25,7 +25,10 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     let mut root: json::Root = json::deserialize::from_slice(text).map_err(|error| {
         let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));
         let place = match start {
-            None => Place::Line(error.line().max(1) as u64),
+            // A file that ends too early ends on its last line, not on the one that a final line break would begin.
+            None => {
+                Place::Line(error.line().min(text.trim_ascii_end().split(|byte| *byte == b'\n').count()).max(1) as u64)
+            }
             Some(start) => Place::Offset((start + offset(text, error.line(), error.column())) as u64),
         };
         ModelFileError::at(path, place, kind)

@@ -187,7 +187,7 @@ fn documents_name_what_there_is() {
     known.extend(DitherPattern::ALL.map(DitherPattern::name));
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
-    known.extend(["mode13h-assets", "mode13h-conformance", "mode13h-lab", "mode13h-cli"]);
+    known.extend(["mode13h-assets", "mode13h-capi", "mode13h-conformance", "mode13h-lab", "mode13h-cli"]);
     // The error lists those that this machine lacks, too.
     known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-neon", "simd-wasm", "simd-avx2", "simd-avx512"]);
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
