@@ -5,7 +5,6 @@
 //! | [`scene_file`] | scenes in TOML: camera, shapes, models, materials, lights, fog, motion |
 //! | [`shipped`] | the scenes that are compiled in |
 //! | [`model_file`] | meshes from files in any of the formats |
-//! | [`obj`], [`stl`], [`ply`], `gltf` | the formats of models |
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
 //! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and by the feature `images` JPEG, TGA, BMP and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
