@@ -40,6 +40,14 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     if !root.asset.version.starts_with("2.") {
         return Err(fault(String::from("only glTF 2 is read")));
     }
+    // `gltf` looks at these before it has checked them.
+    let positions = json::validation::Checked::Valid(json::mesh::Semantic::Positions);
+    for (i, mesh) in root.meshes.iter().enumerate() {
+        let mut named = mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&positions));
+        if named.any(|accessor| accessor.value() >= root.accessors.len()) {
+            return Err(fault(format!("meshes[{i}]: there are no such positions")));
+        }
+    }
     // Of what else is needed the rest can be drawn.
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {
