@@ -28,7 +28,7 @@ struct CornerX {
     shade: i32,
 }
 
-/// A sheet of so many quads, wavy, over the whole frame.
+/// A wavy sheet of `columns` × `rows` quads, over the whole frame.
 fn sheet(columns: u16, rows: u16) -> (Vec<Corner>, Vec<u16>) {
     let mut corners = Vec::new();
     for j in 0..=rows {

@@ -31,8 +31,8 @@
  * Coordinates are rounded to the nearest 1/256 pixel.
  *
  * FLOAT OR FIXED. m13_triangle and m13_draw read 32-bit floats. m13_triangle_x and m13_draw_x read 32-bit integers in 16.16
- * (65536 is 1.0) and use no floating point at all. Both have the same layouts, and draw the same pixels for the same
- * numbers.
+ * (65536 is 1.0), and use no floating point where the processor has no FPU. Both have the same layouts, and draw the same
+ * pixels for the same numbers.
  *
  *     value             float               16.16
  *     x, y              pixels              pixels
@@ -284,7 +284,7 @@ int m13_palette_nearest(const uint8_t palette[768], uint32_t rgb);
 /* The palette that is `part` 256ths of the way to another, 0 to 256. `out` may be either of them. */
 int m13_palette_fade(const uint8_t palette[768], const uint8_t other[768], uint32_t part, uint8_t out[768]);
 
-/* Moves `entries` entries from `first` on round by so many steps, upwards if positive. */
+/* Moves `entries` entries from `first` on by `steps` places in a circle, upwards if positive. */
 int m13_palette_cycle(uint8_t palette[768], uint32_t first, uint32_t entries, int32_t steps);
 
 /* To the 6 bits of the VGA's DAC, rounded down, and back. On a VGA: outp(0x3C8, 0), then 768 times outp(0x3C9, out[i]).

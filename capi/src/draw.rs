@@ -93,7 +93,7 @@ impl<K: Kept, const TOGETHER: usize> Waiting<'_, K, TOGETHER> {
     }
 }
 
-/// `gather` with memory for so many.
+/// Does what `gather` does, with room for `TOGETHER` triangles and `REMEMBERED` vertices.
 ///
 /// # Safety
 /// That of `gather`.

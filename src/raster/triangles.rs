@@ -232,6 +232,7 @@ impl<D: Cell> Raster<'_, D> {
 mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
+    use core::ops::Range;
 
     use proptest::prelude::*;
 
@@ -241,53 +242,69 @@ mod tests {
     use crate::raster::frame::{Frame, Rect};
     use crate::span::Kernel;
 
-    const SIZE: [u32; 2] = [120, 90];
+    /// Rows of several pieces, and a pitch of its own.
+    const WIDTH: u32 = 400;
+    const PITCH: usize = 411;
+    /// The rows of the frame, and those that a band of it holds.
+    const HEIGHT: u32 = 90;
+    const BAND: Range<u32> = 17..71;
 
+    /// A vertex near the frame, on a pixel's centre or not, or as far out as there is one.
     fn vertex() -> impl Strategy<Value = Vertex> {
-        // Far beyond the frame, too.
-        let at = || -(90 << 8)..200_i32 << 8;
-        (at(), at(), 0..=0xFF00_u16, 0..=1_u32 << 30).prop_map(|(x, y, shade, depth)| {
+        let near = || -(60 << 8)..460_i32 << 8;
+        let at =
+            || prop_oneof![4 => near(), 1 => near().prop_map(|bits| bits | 0xFF), 2 => -(4_095 << 8)..=4_095_i32 << 8];
+        let depth = prop_oneof![0..=1_u32 << 30, any::<u32>(), 0..3_u32];
+        (at(), at(), 0..=0xFF00_u16, depth).prop_map(|(x, y, shade, depth)| {
             let [x, y] = [x, y].map(I24F8::from_bits);
             Vertex::new(x, y, U8F8::from_bits(shade), depth).expect("within the guard band")
         })
     }
 
+    /// Draws on one way or the other; returns counts, bytes and cells.
+    fn drawn<D: Cell>(
+        (triangles, interpolation): (&[[Vertex; 3]], Interpolation),
+        (clip, kernel): (Rect, Kernel),
+        [are_together, is_band, has_depth]: [bool; 3],
+    ) -> (Vec<DrawStats>, Vec<u8>, Vec<D>) {
+        let rows = if is_band { BAND } else { 0..HEIGHT };
+        let count = (rows.end - rows.start) as usize;
+        let (mut bytes, mut cells) = (vec![9; count * PITCH], vec![D::default(); count * WIDTH as usize]);
+        let frame = Frame::band(&mut bytes, WIDTH, HEIGHT, PITCH, rows).expect("a legal band");
+        let depth = DepthBuffer::new(&mut cells, &frame).expect("as long as the band");
+        let mut raster =
+            Raster { clip: frame.bounds(), frame, depth: has_depth.then_some(depth), kernel }.with_clip(clip);
+        let draw = |vertices| match are_together {
+            true => raster.tall_triangle(vertices, interpolation),
+            false => raster.triangle_by_rows(vertices, interpolation),
+        };
+        let counts = triangles.iter().map(draw).collect();
+        (counts, bytes, cells)
+    }
+
     proptest! {
-        /// The two ways on which [`Raster::triangle`] draws give equal bytes, depths and counts.
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+        /// Both ways on which [`Raster::triangle`] draws give equal bytes, depths and counts.
         #[test]
         fn rows_together_are_rows_by_themselves(
             triangles in prop::collection::vec([vertex(), vertex(), vertex()], 1..6),
-            clip in [0..120_u32, 0..90, 1..121, 1..91],
+            ([x0, y0], [x1, y1]) in ([0..WIDTH, 0..HEIGHT], [1..WIDTH + 1, 1..HEIGHT + 1]),
             which in 0..Interpolation::INTERPOLATED.len() + 1,
             kernel: u8,
+            is_band: bool,
             has_depth: bool,
         ) {
             let interpolation = Interpolation::INTERPOLATED.get(which).copied().unwrap_or(Interpolation::Flat(77));
             prop_assume!(interpolation.has_exact_cover());
             let kernels: Vec<Kernel> = Kernel::available().collect();
-            let kernel = kernels[usize::from(kernel) % kernels.len()];
-            let [x0, y0, x1, y1] = clip;
-            let draw = |are_together: bool| {
-                let [width, height] = SIZE;
-                let mut bytes = vec![9; (width * height) as usize];
-                let mut cells = vec![0_u32; bytes.len()];
-                let frame = Frame::new(&mut bytes, width, height, width as usize).expect("a legal frame");
-                let depth = DepthBuffer::new(&mut cells, &frame).expect("as long as the frame");
-                let mut raster = Raster::new(frame).with_clip(Rect { x0, y0, x1: x1.max(x0), y1: y1.max(y0) });
-                if has_depth {
-                    raster = raster.with_depth(depth);
-                }
-                let mut raster = raster.with_kernel(kernel);
-                let drawn: Vec<DrawStats> = triangles
-                    .iter()
-                    .map(|vertices| match are_together {
-                        true => raster.tall_triangle(vertices, interpolation),
-                        false => raster.triangle_by_rows(vertices, interpolation),
-                    })
-                    .collect();
-                (drawn, bytes, cells)
-            };
-            prop_assert!(draw(true) == draw(false));
+            let of = (Rect { x0, y0, x1: x1.max(x0), y1: y1.max(y0) }, kernels[usize::from(kernel) % kernels.len()]);
+            let what = (&*triangles, interpolation);
+            let ways = [[true, is_band, has_depth], [false, is_band, has_depth]];
+            let [together, alone] = ways.map(|way| drawn::<u32>(what, of, way));
+            prop_assert!(together == alone);
+            let [together, alone] = ways.map(|way| drawn::<u16>(what, of, way));
+            prop_assert!(together == alone);
         }
     }
 }

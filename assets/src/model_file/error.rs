@@ -46,9 +46,9 @@ pub enum ModelFileErrorKind {
     Ends(&'static str),
     /// This should stand here.
     Expected {
-        /// What should stand here.
+        /// The word that belongs here.
         expected: &'static str,
-        /// What stands here.
+        /// The word in the file.
         found: String,
     },
     /// The file has a fault that these words name.

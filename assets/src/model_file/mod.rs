@@ -158,7 +158,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ModelFileError> {
 /// again. A pipe or a device has the length 0; a file that grows meanwhile may be read beyond the length that it had.
 ///
 /// # Errors
-/// Those of [`load`].
+/// Returns the errors of [`load`].
 pub fn load_with(
     path: impl AsRef<Path>,
     options: &Options,
@@ -199,7 +199,7 @@ pub fn load_with(
 /// ```
 ///
 /// # Errors
-/// Those of [`load`].
+/// Returns the errors of [`load`].
 pub fn parse(
     reader: impl BufRead,
     path: impl AsRef<Path>,
@@ -250,7 +250,7 @@ pub(crate) struct Parsed {
     origin: [f64; 3],
 }
 
-/// What the reader of a format gives.
+/// A model as its format's reader gives it, before faces are split and repaired.
 #[derive(Default)]
 pub(crate) struct Draft {
     pub(crate) lists: Lists,

@@ -1,4 +1,5 @@
-//! The span with a depth test by AVX2, of shades and of bytes: eight pixels a turn, or four where that is enough.
+//! The span with a depth test by AVX2, of shades and of bytes: four pixels a turn in the shortest spans, eight in others, and
+//! sixteen of shades in spans longer than eight.
 //!
 //! Pixels of a turn that a span does not have are given depth 0, which is nearer than nothing, so that they are written as
 //! they were read: AVX2 has masked stores of 32 bits alone, and on some processors they are slow. So as many pixels and

@@ -131,7 +131,7 @@ impl Buffers {
     }
 }
 
-/// As many slices of `size` bytes as `count`, `stride` apart; `None` if they end beyond `bytes`.
+/// `count` slices of `size` bytes, `stride` apart; `None` if they end beyond `bytes`.
 fn slices(
     bytes: &[u8],
     offset: usize,

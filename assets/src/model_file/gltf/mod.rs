@@ -151,7 +151,7 @@ impl Reading<'_> {
         let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
         let count = positions.len();
         let attribute = |semantic: &Semantic| {
-            // A list that is too short for the vertices is of no use.
+            // A list that is too short for the vertices is left out.
             primitive.get(semantic).filter(|accessor| accessor.count() >= count)
         };
         let normals = attribute(&Semantic::Normals).map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
@@ -242,7 +242,7 @@ impl Reading<'_> {
     }
 }
 
-/// What a file has and a mesh has not.
+/// The features of a file that a mesh cannot hold, for the warning.
 #[derive(Default)]
 struct LeftOut {
     counts: BTreeMap<&'static str, u64>,

@@ -73,7 +73,7 @@ pub fn parse(
 /// Reads a model with `options`, as [`parse`] does.
 ///
 /// # Errors
-/// Those of [`parse`].
+/// Returns the errors of [`parse`].
 pub fn parse_with(
     reader: impl BufRead,
     path: impl AsRef<Path>,
