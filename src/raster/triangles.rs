@@ -7,7 +7,7 @@ use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
 use super::pick::CHUNK;
 use super::triangle::Raster;
-use super::vertex::Vertex;
+use super::vertex::{Vertex, misses_centres};
 use crate::fixed::U8F8;
 use crate::lanes::LANES;
 
@@ -162,6 +162,10 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         let (mut drawn, mut batch) = (DrawStats::default(), Batch::new());
         for (vertices, interpolation) in triangles {
+            // On a fine model most are such: they are not worth the storing.
+            if Batch::takes(interpolation) && misses_centres(vertices) {
+                continue;
+            }
             if batch.push(vertices, interpolation) {
                 continue;
             }
@@ -280,6 +284,33 @@ mod tests {
         };
         let counts = triangles.iter().map(draw).collect();
         (counts, bytes, cells)
+    }
+
+    /// What [`Raster::triangles`] leaves out draws nothing, at every side of a box and of a centre; and whatever draws nothing by
+    /// its box alone is left out.
+    #[test]
+    fn triangles_that_miss_all_centres_draw_nothing() {
+        let coordinates = [-129_i32, -128, -127, 0, 127, 128, 129, 255, 384];
+        let points: Vec<Vertex> = coordinates
+            .into_iter()
+            .flat_map(|x| coordinates.map(|y| [x, y].map(|bits| I24F8::from_bits(bits + 1_024))))
+            .map(|[x, y]| Vertex::new(x, y, U8F8::from(9), 0).expect("within the guard band"))
+            .collect();
+        let mut bytes = [0; 64];
+        let mut raster = Raster::new(Frame::new(&mut bytes, 8, 8, 8).expect("a legal frame"));
+        let mut left_out = 0;
+        for a in &points {
+            for b in &points {
+                for corners in points.iter().map(|c| [*a, *b, *c]).filter(misses_centres) {
+                    assert_eq!(raster.triangle_by_rows(&corners, Interpolation::Gouraud).pixels, 0, "{corners:?}");
+                    left_out += 1;
+                }
+            }
+        }
+        // Between centres lie the first two, the next four and the last three: all corners in one such interval, for x or y.
+        let of_one = [2_usize, 4, 3].map(|n| n.pow(3)).iter().sum::<usize>();
+        let of_all = coordinates.len().pow(3);
+        assert_eq!(left_out, 2 * of_one * of_all - of_one * of_one);
     }
 
     proptest! {

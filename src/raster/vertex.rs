@@ -119,6 +119,18 @@ impl Vertex {
     }
 }
 
+/// Returns whether the box of these corners holds no pixel centre, its left and top sides included and the others not: a
+/// triangle with exact cover then draws nothing.
+#[inline]
+pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
+    let [a, b, c] = corners;
+    // The first pixel whose centre lies at a coordinate or behind it. At most 2²⁰ and 127: no overflow.
+    let first = |coordinate: I24F8| (coordinate.to_bits() + 127) >> 8;
+    let no_centre = |[a, b, c]: [I24F8; 3]| first(a.min(b).min(c)) == first(a.max(b).max(c));
+    // Both, as a branch for each would be guessed wrong twice as often.
+    no_centre([a.x(), b.x(), c.x()]) | no_centre([a.y(), b.y(), c.y()])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

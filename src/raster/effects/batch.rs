@@ -11,7 +11,7 @@ use crate::raster::depth::Cell;
 use crate::raster::draw_stats::DrawStats;
 use crate::raster::pick::CHUNK;
 use crate::raster::triangle::Raster;
-use crate::raster::vertex::Vertex;
+use crate::raster::vertex::{Vertex, misses_centres};
 
 /// Faces that are drawn by one pixel pipeline. Filled and drawn again and again it allocates nothing.
 #[derive(Clone, Debug, Default)]
@@ -33,13 +33,6 @@ struct Corners {
     channels: [[[U8F8; 3]; 2]; CORNERS],
     slope: [[U8F8; 2]; CORNERS],
     lit: [[f32; 6]; CORNERS],
-}
-
-/// Returns whether no pixel centre lies between these coordinates, the least included and the greatest not.
-#[inline]
-fn has_no_centre([a, b, c]: [i32; 3]) -> bool {
-    let first_centre = |coordinate: i32| (coordinate + 127) >> 8;
-    first_centre(a.min(b).min(c)) == first_centre(a.max(b).max(c))
 }
 
 /// Corners of a whole batch.
@@ -105,9 +98,7 @@ impl EffectBatch {
             return false;
         }
         // On a fine model most are such: they are not worth the storing.
-        if has_no_centre(vertices.each_ref().map(|vertex| vertex.x().to_bits()))
-            || has_no_centre(vertices.each_ref().map(|vertex| vertex.y().to_bits()))
-        {
+        if misses_centres(vertices) {
             return true;
         }
         if self.corners.is_empty() {
