@@ -36,7 +36,9 @@ pub(super) fn choose(
         None => {}
     }
     if transparent > 0 {
-        return if transparent == order.len() {
+        let is_opaque = |material: &Material| material.blend == Blend::Opaque;
+        let none_opaque = order.iter().all(|&i| !objects[i].materials.iter().any(is_opaque));
+        return if none_opaque {
             (HiddenSurfaces::BackFaces, Reason::AllTransparent)
         } else {
             (HiddenSurfaces::DepthBuffer, Reason::TransparentLast)

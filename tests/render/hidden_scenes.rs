@@ -4,8 +4,8 @@
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::light::{Blend, Light};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
@@ -102,6 +102,48 @@ fn d3_objects_of_equal_depths_are_not_left_to_the_painter() {
         assert!(pixels > 20 && kept == pixels, "{distances:?}: {kept} of {pixels} pixels of the first");
         tried.add(1);
     }
+}
+
+/// Opaque faces of a body that has glass, too, hide one another as if they were a body of their own.
+#[test]
+fn opaque_faces_beside_glass_hide_each_other() {
+    // Sheets across the view: opaque near ones, glass, opaque far ones; in the mesh the far ones come last.
+    let sheets = [(2.0, 0), (-1.0, 1), (-2.0, 0)];
+    let mesh = |with: &[u16]| {
+        let (mut positions, mut triangles, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
+        for &(z, surface) in sheets.iter().filter(|(_, surface)| with.contains(surface)) {
+            let first = positions.len() as u32;
+            let half = 1.0 - z / 4.0;
+            positions
+                .extend([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x * half, y, z)));
+            triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|corner| first + corner)));
+            surfaces.extend([surface; 2]);
+        }
+        let mesh = Mesh::new(positions, triangles).expect("sheets");
+        mesh.with_surfaces(vec![Surface::default(); 2], surfaces).expect("two surfaces")
+    };
+    let scene = |meshes: &[Mesh]| {
+        let mut scene = Scene::new();
+        for mesh in meshes {
+            let mut object = Object::new(mesh.clone());
+            (object.materials[0].diffuse, object.materials[1].blend) = (0.4, Blend::Mix(100));
+            scene.add(object);
+        }
+        scene.camera = Camera::framing(Vec3::ZERO, 4.0);
+        scene.add_light(Light::sun([0.3, 0.7, 1.0]));
+        scene
+    };
+    let (together, way) = picture(&scene(&[mesh(&[0, 1])]), None);
+    assert_eq!(way, HiddenSurfaces::DepthBuffer);
+    // The opaque ones as an object, and the glass as another.
+    let mut apart = scene(&[mesh(&[0]), mesh(&[1])]);
+    apart.objects_mut()[0].materials[1].blend = Blend::Opaque;
+    assert_eq!(picture(&apart, None).1, HiddenSurfaces::DepthBuffer);
+    assert!(together == picture(&apart, None).0);
+    // Glass alone needs no depths.
+    let mut glass = scene(&[mesh(&[0, 1])]);
+    glass.objects_mut()[0].materials[0].blend = Blend::Add;
+    assert_eq!(picture(&glass, None).1, HiddenSurfaces::BackFaces);
 }
 
 /// Of each pixel, how many triangles cover it, by the oracle.
