@@ -88,35 +88,6 @@ const tests = {
     assert.ok(pixels > 10000);
   },
 
-  "triangles have the engine's bytes: exact starts every 64 pixels, steps toward zero"() {
-    let worst = 0;
-    times(150, (n) => {
-      const [w, h] = n % 3 ? [40, 24] : [320, 60];
-      const corner = () => [integer(-400, w * 256 + 400), integer(-400, h * 256 + 400), integer(0, 65280)];
-      const corners = [corner(), corner(), corner()];
-      if (!area(corners)) return;
-      const bytes = M.drawTriangle(corners, w, h, new Uint8Array(w * h).fill(7));
-      const { byteAt, exactAt } = slowShades(corners);
-      const range = corners.map((c) => (c[2] + 128) >> 8);
-      for (let y = 0; y < h; y++) {
-        let first = -1;
-        for (let x = 0; x < w; x++) {
-          const [, inside] = slowCover(corners, x, y);
-          if (!inside) {
-            assert.equal(bytes[y * w + x], 7);
-            continue;
-          }
-          if (first < 0) first = x;
-          const byte = bytes[y * w + x];
-          assert.equal(byte, byteAt(x, y, first + Math.floor((x - first) / 64) * 64));
-          assert.ok(byte >= Math.min(...range) && byte <= Math.max(...range));
-          worst = Math.max(worst, Math.abs(byte - exactAt(x, y)));
-        }
-      }
-    });
-    assert.ok(worst < .75 && worst > .5, `worst ${worst}`);
-  },
-
   "neighbours share no pixel and leave none under the top-left rule alone"() {
     const sums = {};
     for (const rule of ["top-left", "both", "neither", "slope"]) {
@@ -241,15 +212,26 @@ const tests = {
   },
 
   "finer walls come nearer to light at each pixel, by the square"() {
+    const exact = M.wallExact(60, 40);
     const worst = [2, 4, 8, 16, 32].map((n) => {
-      const exact = M.wallExact(60, 40);
-      const { bytes, triangles } = M.wallGouraud(n, 60, 40);
+      const triangles = M.wallTriangles(n, 60, 40);
       assert.equal(triangles.length, 2 * n * n);
-      return Math.max(...exact.map((v, i) => Math.abs(v - bytes[i])));
+      // Shades linear over each triangle, at every pixel's centre.
+      let off = 0;
+      for (const [[x0, y0, s0], [x1, y1, s1], [x2, y2, s2]] of triangles) {
+        const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+        for (let y = Math.floor(Math.min(y0, y1, y2)); y < Math.max(y0, y1, y2) && y < 90; y++) {
+          for (let x = Math.floor(Math.min(x0, x1, x2)); x < Math.max(x0, x1, x2) && x < 144; x++) {
+            const [dx, dy] = [x + .5 - x0, y + .5 - y0];
+            const [b, c] = [(dx * (y2 - y0) - (x2 - x0) * dy) / area, ((x1 - x0) * dy - dx * (y1 - y0)) / area];
+            if (b >= 0 && c >= 0 && b + c <= 1) off = Math.max(off, Math.abs(s0 + b * (s1 - s0) + c * (s2 - s0) - exact[y * 144 + x]));
+          }
+        }
+      }
+      return off;
     });
-    // A byte's own half shade apart.
     assert.ok(worst.every((w, i) => !i || w <= worst[i - 1]), `${worst}`);
-    const ratio = (worst[3] - .5) / (worst[4] - .5);
+    const ratio = worst[3] / worst[4];
     assert.ok(ratio > 3 && ratio < 5, `${worst}`);
     for (let i = 0; i < 144; i++) assert.ok(M.wallLight(i, 30, 60, 40) >= 0 && M.wallLight(i, 30, 60, 40) <= 1);
   },
@@ -392,25 +374,6 @@ function slowCover(corners, px, py) {
     where = Math.min(where, e < 0n ? -1 : e === 0n ? 0 : 1);
   }
   return [where, inside];
-}
-
-// Shades of a triangle, from the plane through its corners.
-function slowShades(corners) {
-  const v = corners.map(big).sort((p, q) => Number(p[1] - q[1] || p[0] - q[0]));
-  const [[x0, y0, s0], [x1, y1, s1], [x2, y2, s2]] = v;
-  let A = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
-  let gx = (s1 - s0) * (y2 - y0) - (s2 - s0) * (y1 - y0);
-  let gy = (s2 - s0) * (x1 - x0) - (s1 - s0) * (x2 - x0);
-  if (A < 0n) [A, gx, gy] = [-A, -gx, -gy];
-  const step = (gx * 256n) / A;
-  const N = (x, y) => s0 * A + gx * (BigInt(x) * 256n + 128n - x0) + gy * (BigInt(y) * 256n + 128n - y0);
-  return {
-    exactAt: (x, y) => Number(N(x, y) * 1000000n / A) / 256e6,
-    byteAt(x, y, seedX) {
-      const start = gx < 0n ? ceil(N(seedX, y), A) : floor(N(seedX, y), A);
-      return Number(BigInt.asUintN(16, start + 128n + step * BigInt(x - seedX)) >> 8n);
-    },
-  };
 }
 
 // Rows of the period, one addition a row and edge.

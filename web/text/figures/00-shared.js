@@ -393,34 +393,6 @@ export function coverExact(corners, width, height, into = new Uint8Array(width *
   return into;
 }
 
-/**
- * Bytes of a triangle [x, y, shade] in 1/256 pixel and 1/256 shade, as the engine draws it: one
- * step toward zero, exact starts every `reseed` pixels. Exact for coordinates on a small screen.
- * @param {number[][]} corners
- * @param {number} width
- * @param {number} height
- * @param {Uint8Array} bytes
- */
-export function drawTriangle(corners, width, height, bytes, reseed = 64) {
-  const { v, area: signedArea } = sorted(corners);
-  const area = Math.abs(signedArea);
-  if (!area) return bytes;
-  const [[x0, y0, s0], [x1, y1, s1], [x2, y2, s2]] = v;
-  const sign = Math.sign(signedArea);
-  const gx = sign * ((s1 - s0) * (y2 - y0) - (s2 - s0) * (y1 - y0));
-  const gy = sign * ((s2 - s0) * (x1 - x0) - (s1 - s0) * (x2 - x0));
-  const step = Math.trunc(gx * 256 / area) & 0xFFFF;
-  coverRows(corners, height, (y, left, right) => {
-    const [from, to] = [Math.max(left, 0), Math.min(right, width)];
-    for (let seed = from; seed < to; seed += reseed) {
-      const n = s0 * area + gx * (256 * seed + 128 - x0) + gy * (256 * y + 128 - y0);
-      const start = ((gx < 0 ? ceilDiv(n, area) : floorDiv(n, area)) + 128) & 0xFFFF;
-      bytes.set(spanBytes(start, step, Math.min(to - seed, reseed)), y * width + seed);
-    }
-  });
-  return bytes;
-}
-
 // 8 bits through the DAC's 6 and back.
 export const toDac6 = (eight) => eight >> 2;
 export const dac6To8 = (six) => (six << 2) | (six >> 4);
