@@ -4,8 +4,9 @@
 //! cargo bench --bench effects
 //! ```
 //!
-//! As in the table of `spans`: each round times every loop once, in a new order, and the figure is the
-//! median over the rounds. The first row is the span's fastest kernel, for comparison.
+//! The first row is the span's fastest kernel, for comparison.
+
+mod interleaved;
 
 use mode13h::internals::lanes::{LANES, Points};
 use mode13h::internals::span::channels::{mix_cube, mix_cube_portable, mix_nearest};
@@ -18,8 +19,8 @@ use mode13h::internals::span::lit::interpolate;
 use mode13h::internals::span::lookup;
 use mode13h::internals::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::Kernel;
+use mode13h_conformance::Random;
 use std::hint::black_box;
-use std::time::Instant;
 
 const LENGTHS: [usize; 13] = [1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 100, 160, 320];
 /// Rows in a batch: one from each place in a cache line, as spans start anywhere.
@@ -128,14 +129,9 @@ fn perspective(fill: Perspective, memory: &mut Memory, start: usize, n: usize) {
 }
 
 fn main() {
-    let mut state = 13_u32;
-    let mut bytes = |count: usize| -> Vec<u8> {
-        let mut byte = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 24) as u8
-        };
-        (0..count).map(|_| byte()).collect()
-    };
+    let mut random = Random::again(13);
+    // Its low byte.
+    let mut bytes = |count: usize| -> Vec<u8> { (0..count).map(|_| random.next_u64() as u8).collect() };
     let mut memory = Memory {
         row: bytes(CAPACITY),
         channels: [bytes(CAPACITY), bytes(CAPACITY), bytes(CAPACITY)],
@@ -146,8 +142,7 @@ fn main() {
         table: bytes(65_536).try_into().expect("as long"),
         map: bytes(32_768).try_into().expect("as long"),
     };
-    // `cargo bench` passes --bench; under `cargo test` the benches only have to run.
-    let rounds = if std::env::args().any(|argument| argument == "--bench") { 101 } else { 1 };
+    let rounds = if interleaved::is_bench() { 101 } else { 1 };
     println!("ns per row, median of {rounds} rounds, every round all loops in turn");
     print!("{:>22}", "pixels");
     for length in LENGTHS {
@@ -157,21 +152,13 @@ fn main() {
     let mut medians = vec![Vec::new(); LOOPS.len()];
     for length in LENGTHS {
         let turns = (400 / length.max(10)).max(2);
-        let mut times = vec![Vec::new(); LOOPS.len()];
-        for round in 0..rounds {
-            for i in 0..LOOPS.len() {
-                // 5 and the number of loops have no common factor.
-                let which = (i * 5 + round) % LOOPS.len();
-                let started = Instant::now();
-                for _ in 0..turns {
-                    batch(LOOPS[which].1, &mut memory, black_box(length));
-                }
-                times[which].push(started.elapsed().as_secs_f64() * 1e9 / (turns * ROWS) as f64);
+        let times = interleaved::times(LOOPS.len(), rounds, |which| {
+            for _ in 0..turns {
+                batch(LOOPS[which].1, &mut memory, black_box(length));
             }
-        }
-        for (medians, mut times) in medians.iter_mut().zip(times) {
-            times.sort_by(f64::total_cmp);
-            medians.push(times[times.len() / 2]);
+        });
+        for (medians, times) in medians.iter_mut().zip(times) {
+            medians.push(interleaved::median(times) * 1e9 / (turns * ROWS) as f64);
         }
     }
     for (i, (name, _)) in LOOPS.iter().enumerate() {

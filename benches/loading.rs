@@ -10,11 +10,12 @@
 //! that of ratios within a round. `tobj` reads as it is asked to by those who draw (triangles, one index a vertex), and as it
 //! is fastest.
 
+mod interleaved;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use mode13h::mesh::shapes;
 use mode13h::render::Renderer;
@@ -48,9 +49,7 @@ fn load(path: &Path) -> mode13h::mesh::Mesh {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    // Under `cargo test` it only has to run.
-    let is_bench = words.iter().any(|word| word == "--bench");
-    let (rounds, stacks) = if is_bench { (11, 500) } else { (1, 10) };
+    let (rounds, stacks) = if interleaved::is_bench() { (11, 500) } else { (1, 10) };
     let mut paths: Vec<PathBuf> = words.iter().filter(|word| !word.starts_with('-')).map(PathBuf::from).collect();
     if paths.is_empty() {
         paths = [("scan", false), ("with-normals", true)].map(|(name, normals)| made(name, stacks, normals)).into();
@@ -58,20 +57,14 @@ fn main() {
     for path in &paths {
         let bytes = fs::metadata(path).expect("it is there").len();
         println!("{}: {} faces, {bytes} bytes", path.display(), load(path).triangles().len());
-        let mut times = [const { Vec::new() }; LOADERS.len()];
-        for _ in 0..rounds {
-            for ((_, load), times) in LOADERS.iter().zip(&mut times) {
-                let started = Instant::now();
-                load(path);
-                times.push(started.elapsed().as_secs_f64() * 1e3);
-            }
-        }
+        let times = interleaved::times(LOADERS.len(), rounds, |which| LOADERS[which].1(path));
         println!("{:>32} {:>8} {:>22} {:>22}", "", "ms", LOADERS[0].0, LOADERS[1].0);
         for ((name, _), own) in LOADERS.iter().zip(&times) {
-            let ratio = |other: &[f64]| median(own.iter().zip(other).map(|(own, other)| own / other).collect());
+            let ratio =
+                |other: &[f64]| interleaved::median(own.iter().zip(other).map(|(own, other)| own / other).collect());
             println!(
                 "{name:>32} {:>8.0} {:>20.2} x {:>20.2} x",
-                median(own.clone()),
+                interleaved::median(own.clone()) * 1e3,
                 ratio(&times[0]),
                 ratio(&times[1])
             );
@@ -104,9 +97,4 @@ fn made(name: &str, stacks: u32, normals: bool) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}.obj", mesh.triangles().len()));
     fs::write(&path, text).expect("written");
     path
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
