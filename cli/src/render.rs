@@ -9,13 +9,12 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::Scale;
 use mode13h::raster::Frame;
-use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::render::{Renderer, Stats};
 use mode13h::settings::Accuracy;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_assets::animation::FrameRate;
 use mode13h_lab::cost::{calibrate, time_frame};
-use mode13h_lab::record::{self, Record, RecordErrorKind};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
@@ -85,24 +84,6 @@ pub(crate) struct Options {
     /// Draw N frames at a time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
-    /// Save the triangles of the picture in FILE, for `verify --replay`
-    ///
-    /// For several frames the name holds %04d or the like.
-    #[arg(long, value_name = "FILE", hide_short_help = true)]
-    record: Option<PathBuf>,
-    /// Save the error that --max-time chose for each frame in FILE
-    #[arg(long, value_name = "FILE", hide_short_help = true)]
-    record_errors: Option<PathBuf>,
-    /// Draw each frame with the error that --record-errors saved in FILE
-    ///
-    /// The bytes are the same on every machine.
-    #[arg(
-        long,
-        value_name = "FILE",
-        hide_short_help = true,
-        conflicts_with_all = ["shading", "max_error", "max_time", "record_errors"],
-    )]
-    replay_errors: Option<PathBuf>,
     /// Print figures for each frame to standard error
     #[arg(long)]
     stats: bool,
@@ -155,26 +136,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let stage = if is_still { options.drawing.still(input) } else { options.drawing.stage(input) }?;
     out.lasts(stage.seconds());
     let frames = out.frames();
-    let records = options.record.as_deref().map(|record| Names::new(record, frames, "records")).transpose()?;
     out.spare()?;
     if options.out.is_none() {
         out.files().iter().try_for_each(|file| output::refuse_overwriting(file, options.force))?;
-    }
-    records.as_ref().map_or(Ok(()), |records| records.spare(frames))?;
-    let outputs = [Some(&path), options.record.as_ref(), options.record_errors.as_ref()];
-    if let [Some(a), Some(b), _] | [Some(a), _, Some(b)] | [_, Some(a), Some(b)] = outputs
-        && a == b
-    {
-        return Err(Failure::words(format!("{}: one name for two files to write", a.display())));
     }
     let kernel = options.drawing.kernel()?;
     let progress = progress(frames);
     let motion = Motion::new(options, &out, &stage);
     let run = Run::of(options, &motion, &stage, kernel)?;
-    if let Some(path) = &options.record_errors {
-        read_files::spare(path)?;
-        output::file(path, || run.record().save(path))?;
-    }
     let make = || Artist {
         renderer: options.shading.renderer(&options.drawing, kernel),
         stage: stage.clone(),
@@ -186,9 +155,6 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
         let stats = artist.draw(&motion, &run, number)?;
         let timed = run.timed.get(number as usize).copied();
-        if let Some(records) = &records {
-            artist.record(&records.of(number))?;
-        }
         if options.stats && options.json {
             drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats, timed));
         } else if options.stats {
@@ -338,7 +304,7 @@ impl Out {
         }
     }
 
-    /// The files that are written, except for records.
+    /// The files that are written.
     fn files(&self) -> Vec<PathBuf> {
         match self {
             Out::Pictures(names, frames) => (0..*frames).map(|number| names.of(number)).collect(),
@@ -437,28 +403,14 @@ struct Run {
 
 impl Run {
     fn of(options: &Options, motion: &Motion, stage: &Turntable, kernel: Kernel) -> Result<Run, Failure> {
-        let Options { replay_errors, record_errors, shading, drawing, .. } = options;
-        let frames = motion.frames as usize;
-        if let Some(path) = replay_errors {
-            let fault = |reason: &dyn std::fmt::Display| format!("{}: {reason}", path.display());
-            let run = record::Run::load(path).map_err(|error| match error.kind {
-                RecordErrorKind::Read(_) => Failure::file(fault(&error)),
-                _ => Failure::words(fault(&error)),
-            })?;
-            if run.errors.len() < frames {
-                return Err(Failure::words(fault(&format!("{} errors for {frames} frames", run.errors.len()))));
-            }
-            return Ok(Run { errors: run.errors, timed: Vec::new() });
-        }
+        let Options { shading, drawing, .. } = options;
+        let frames = motion.frames;
         let mut renderer = shading.renderer(drawing, kernel);
         let (Some(max_time), Some(mut pace)) = (shading.max_time(), shading.pace(&renderer)) else {
-            return match record_errors {
-                Some(path) => Err(Failure::words(format!("{}: no --max-time chooses errors", path.display()))),
-                None => Ok(Run::default()),
-            };
+            return Ok(Run::default());
         };
         let (mut stage, mut vga, mut run) = (stage.clone(), Vga::new(), Run::default());
-        for number in 0..motion.frames {
+        for number in 0..frames {
             let (seconds, pose) = motion.of(number, &stage);
             stage.show(seconds, pose);
             if number == 0 {
@@ -475,11 +427,6 @@ impl Run {
             eprintln!("mode13h: even the greatest error takes longer than it may in {late} of {frames} frames");
         }
         Ok(run)
-    }
-
-    /// The errors as they are kept in a file.
-    fn record(&self) -> record::Run {
-        record::Run { errors: self.errors.clone() }
     }
 }
 
@@ -503,10 +450,6 @@ struct SquareFrame {
 impl SquareFrame {
     fn new(width: u32, height: u32) -> SquareFrame {
         SquareFrame { width, height, pixels: vec![0; width as usize * height as usize] }
-    }
-
-    fn screen(&self) -> Screen {
-        Screen { width: self.width, height: self.height, pixel_aspect: (1, 1) }
     }
 }
 
@@ -533,13 +476,6 @@ impl Artist {
             None => film::Frame::of(&self.vga),
             Some(SquareFrame { width, pixels, .. }) => film::Frame::square(pixels.clone(), *width, self.vga.palette()),
         }
-    }
-
-    /// Keeps the triangles of the frame that was drawn last.
-    fn record(&mut self, path: &Path) -> Result<(), Failure> {
-        let screen = self.square.as_ref().map_or(Screen::MODE_13H, SquareFrame::screen);
-        let record = Record::of_scene(&mut self.renderer, &self.stage.scene, screen).map_err(Failure::from)?;
-        output::file(path, || record.save(path))
     }
 }
 

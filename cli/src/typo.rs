@@ -1,6 +1,6 @@
-//! Words that are nearly right: the nearest name, and the new names of what was called otherwise before.
+//! Words that are nearly right, and the nearest name.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::path::Path;
 
 use mode13h::mesh::shapes;
@@ -9,58 +9,6 @@ use mode13h_assets::shipped;
 /// The names of the commands.
 pub(crate) const COMMANDS: [&str; 12] =
     ["demo", "render", "list", "scenes", "plan", "explain", "cost", "palette", "cases", "dos", "verify", "generate"];
-
-/// Commands that were renamed, and what each is now.
-const RENAMED: [(&str, &str); 1] = [("show", "cases")];
-
-/// Options that were renamed, and what each is now.
-const OPTIONS: [(&str, &str); 6] = [
-    ("--at", "--time"),
-    ("--copy", "scenes copy"),
-    ("--rung", "--shading"),
-    ("--rungs", "--shadings"),
-    ("--hidden", "--hidden-surfaces"),
-    ("--vertex-path", "--arithmetic, with the values float and fixed"),
-];
-
-/// Values of options that were renamed, and what each is now.
-const VALUES: [(&str, &str); 3] =
-    [("gouraud-period", "gouraud-vintage"), ("float", "gouraud-float"), ("integer", "fixed")];
-
-/// Options that took on and off, with each of these values, and what to write instead.
-const SWITCHES: [(&str, &str, &str); 4] = [
-    ("--dither", "on", "--dither ordered"),
-    ("--dither", "off", "--no-dither"),
-    ("--mipmaps", "on", "--mipmaps"),
-    ("--mipmaps", "off", "--no-mipmaps"),
-];
-
-/// The new name of a command, unless a file has the old name.
-pub(crate) fn renamed_command(old: &OsStr) -> Option<&'static str> {
-    let is_file = Path::new(old).symlink_metadata().is_ok();
-    RENAMED.into_iter().find_map(|(name, new)| (old == name && !is_file).then_some(new))
-}
-
-/// The new name of an option.
-pub(crate) fn renamed_option(old: &str) -> Option<&'static str> {
-    let old = old.split(['=', ' ']).next()?;
-    OPTIONS.into_iter().find_map(|(name, new)| (name == old).then_some(new))
-}
-
-/// The new name of an option's value.
-pub(crate) fn renamed_value(old: &str) -> Option<&'static str> {
-    VALUES.into_iter().find_map(|(name, new)| (name == old).then_some(new))
-}
-
-/// What to write for an option with its value, if it was a switch that took on and off.
-pub(crate) fn renamed_switch(words: &[OsString]) -> Option<(String, &'static str)> {
-    SWITCHES.into_iter().find_map(|(option, value, new)| {
-        let joined = format!("{option}={value}");
-        let is_there = words.iter().any(|word| *word == *joined)
-            || words.windows(2).any(|pair| pair[0] == option && pair[1] == value);
-        is_there.then(|| (format!("{option} {value}"), new))
-    })
-}
 
 /// The nearest of some names, if one is near: at most a third of the letters are wrong, missing, too many or swapped.
 pub(crate) fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

@@ -11,8 +11,6 @@ use mode13h::span::Kernel;
 use mode13h_conformance::frames::{self, Difference, Drawn, Frame};
 use mode13h_conformance::hash::START;
 use mode13h_conformance::loops::{self, Cases, Outcome};
-use mode13h_lab::record::{Record, RecordErrorKind};
-use mode13h_lab::replay::{self, Replay};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
@@ -36,29 +34,20 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME", conflicts_with = "seed")]
     frame: Option<String>,
     /// List the names of the frames, and check nothing
-    #[arg(long, conflicts_with_all = ["json", "quiet", "seed", "out", "replay"])]
+    #[arg(long, conflicts_with_all = ["json", "quiet", "seed", "out"])]
     list: bool,
     /// Write a picture of the first wrong frame to FILE, which ends in .png
     ///
     /// It shows the frame as drawn, as it should be, and which pixels differ. If nothing is wrong, it shows the first frame.
     ///
     /// [default: verify-NAME.png, if frame NAME is wrong]
-    #[arg(short, long, value_name = "FILE", conflicts_with = "replay")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Check only the frame that `render --record` saved in FILE
-    ///
-    /// It is drawn by every kernel, with every method of removing hidden surfaces, and by the exact definition; all must
-    /// agree.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["seed", "frame"])]
-    replay: Option<PathBuf>,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     options.quiet.obey();
-    match &options.replay {
-        Some(path) => replay(path, options.json),
-        None => check(options),
-    }
+    check(options)
 }
 
 fn kernels() -> Vec<&'static str> {
@@ -286,91 +275,13 @@ fn as_json(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture
     format!("{all:#}\n")
 }
 
-fn replay(path: &Path, as_json: bool) -> Result<(), Failure> {
-    let record = Record::load(path).map_err(|error| {
-        let line = format!("{}: {error}", path.display());
-        if matches!(error.kind, RecordErrorKind::Read(_)) { Failure::file(line) } else { Failure::words(line) }
-    })?;
-    let replay = replay::replay(&record);
-    output::say(&if as_json { replay_as_json(&record, &replay) } else { replay_as_text(&record, &replay) })?;
-    match replay.failures.as_slice() {
-        [] => Ok(()),
-        [first, ..] => Err(Failure::found(format!("{}: {first}", path.display()))),
-    }
-}
-
-fn replay_as_text(record: &Record, replay: &Replay) -> String {
-    let mut text = format!(
-        "frame of {} x {} pixels, {} triangles, recorded with {}; {} pixels covered, {} more than once\nkernels {}\n",
-        record.width(),
-        record.height(),
-        record.triangles.len(),
-        record.hidden_surfaces,
-        replay.covered,
-        replay.overlaid,
-        kernels().join(", ")
-    );
-    for comparison in &replay.comparisons {
-        let verdict = match (comparison.pixels, comparison.must_agree) {
-            (0, _) => "the depth buffer's frame".to_string(),
-            (pixels, true) => format!("FAILED, {pixels} pixels are not the depth buffer's"),
-            (pixels, false) => format!("{pixels} pixels are not the depth buffer's, which is no failure"),
-        };
-        text += &format!("{}: {verdict}\n", comparison.hidden_surfaces);
-    }
-    text += match replay.failures.len() {
-        0 => "every kernel the same bytes, whole and in bands; the depth buffer's frame is the definition's\n",
-        _ => "FAILED\n",
-    };
-    text + &failures(&replay.failures, replay.smallest.as_ref())
-}
-
-/// The lines of failures, and below them what can be replayed.
-fn failures(lines: &[String], record: Option<&Record>) -> String {
-    let mut text: String = lines.iter().map(|line| format!("    {line}\n")).collect();
-    if let Some(record) = record {
-        text += "    to see it again, put the lines below into a file and verify --replay it:\n";
-        text.extend(record.to_string().lines().map(|line| format!("        {line}\n")));
-    }
-    text
-}
-
-fn replay_as_json(record: &Record, replay: &Replay) -> String {
-    let comparisons: Vec<Value> = replay
-        .comparisons
-        .iter()
-        .map(|comparison| {
-            json!({
-                "hidden_surfaces": comparison.hidden_surfaces.name(),
-                "pixels": comparison.pixels,
-                "must_agree": comparison.must_agree,
-            })
-        })
-        .collect();
-    let all = json!({
-        "schema": output::SCHEMA,
-        "passed": replay.failures.is_empty(),
-        "kernels": kernels(),
-        "width": record.width(),
-        "height": record.height(),
-        "triangles": record.triangles.len(),
-        "hidden_surfaces": record.hidden_surfaces.name(),
-        "covered": replay.covered,
-        "overlaid": replay.overlaid,
-        "comparisons": comparisons,
-        "failures": replay.failures,
-        "smallest": replay.smallest.as_ref().map(Record::to_string),
-    });
-    format!("{all:#}\n")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn options() -> Options {
         let frame = Some("canvas/bands".into());
-        Options { json: false, quiet: Quiet::default(), seed: 13, frame, list: false, out: None, replay: None }
+        Options { json: false, quiet: Quiet::default(), seed: 13, frame, list: false, out: None }
     }
 
     #[test]

@@ -103,10 +103,6 @@ pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
         return Err(Err(Failure::words(format!("{word}: an empty word names nothing ({} shows the options)", help()))));
     }
-    // Before the value is taken for an INPUT.
-    if let Some((old, new)) = typo::renamed_switch(&std::env::args_os().skip(1).collect::<Vec<OsString>>()) {
-        return Err(Err(Failure::words(format!("{old} is now {new} ({} shows the options)", help()))));
-    }
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(&error.render().to_string()),
@@ -171,18 +167,6 @@ fn sentence(error: &clap::Error) -> String {
             "--time takes a number of SECONDS; --measure measures what effects cost ({help} shows the options)"
         );
     }
-    if let Some(old) = context(ContextKind::InvalidArg)
-        && let Some(new) = typo::renamed_option(old)
-        && error.kind() == ErrorKind::UnknownArgument
-    {
-        return format!("{old} is now called {new} ({help} shows the options)");
-    }
-    if let Some(old) = context(ContextKind::InvalidValue)
-        && let Some(new) = typo::renamed_value(old)
-        && error.kind() == ErrorKind::InvalidValue
-    {
-        return format!("{old} is now called {new} ({help} shows the options)");
-    }
     let message = error.render().to_string();
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
@@ -195,9 +179,6 @@ fn sentence(error: &clap::Error) -> String {
 /// Finds the command that the first word was the name of, or nearly is, if it is nothing else.
 fn mistyped_command() -> Option<String> {
     let word = first_word()?;
-    if let Some(new) = typo::renamed_command(&word) {
-        return Some(format!("{} is now called {new} (mode13h --help lists the commands)", word.display()));
-    }
     let command = typo::mistyped_command(&word)?;
     Some(format!(
         "{}: neither a command nor a file nor a scene nor a shape; did you mean {command}? (mode13h --help lists the \

@@ -7,15 +7,11 @@
 //! | [`explain`] | why a pixel has its byte; a row's intensity and slope |
 //! | [`museum`] | methods of the sources that the engine has left behind |
 //! | [`show`] | hard cases as pictures: the right way beside the fault |
-//! | [`record`] | a frame's triangles in a file |
-//! | [`replay`] | a recorded frame through every kernel and hidden-surface method, and by the exact oracle |
 
 extern crate alloc;
 
 pub mod cost;
 pub mod explain;
 pub mod museum;
-pub mod record;
-pub mod replay;
 pub mod show;
 pub mod truth;

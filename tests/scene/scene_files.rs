@@ -110,15 +110,6 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "2:8: key `render.hidden_surfaces`: unknown key; known are shading, hidden-",
         ),
         (cube("\"`, expected one of `a`\" = 1"), "2:1: key ``, expected one of `a``: unknown key; known are name, "),
-        // Names of before.
-        (cube("[wishes]\nrung = 'flat'"), "2:2: key `wishes`: is now called `render`"),
-        (cube("wishes.rung = 'flat'"), "2:1: key `wishes`: is now called `render`"),
-        (cube("[render]\nrung = 'flat'"), "3:1: key `render.rung`: is now called `shading`"),
-        (cube("render = { rung = 'flat' }"), "2:12: key `render.rung`: is now called `shading`"),
-        (
-            cube("render.shading = 'gouraud-period'"),
-            "2:18: key `render.shading`: \"gouraud-period\" is now called \"gouraud-vintage\"",
-        ),
         // Wrong types.
         (list("name = 7"), "1:8: key `name`: expected a string, found integer `7`"),
         (list("objects = 7"), "1:11: key `objects`: expected a sequence, found integer `7`"),

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::{error, fmt, io};
 
 use super::place::{Place, key_at};
-use super::renamed;
 use crate::model_file::ModelFileError;
 use crate::palette_file::PaletteError;
 use crate::texture::LoadError;
@@ -45,11 +44,6 @@ pub enum SceneErrorKind {
     UnknownKey {
         /// The keys that are known.
         known: String,
-    },
-    /// The key had this name before.
-    Renamed {
-        /// The present name.
-        new: &'static str,
     },
     /// A required key is missing.
     MissingKey,
@@ -105,10 +99,7 @@ impl Fault {
                     key = Some(key.map_or(String::new(), |table| table + ".") + field);
                     kind = SceneErrorKind::MissingKey;
                 } else if message.starts_with("unknown field `") {
-                    kind = match key.as_deref().and_then(renamed::key) {
-                        Some(new) => SceneErrorKind::Renamed { new },
-                        None => SceneErrorKind::UnknownKey { known: known_keys(message) },
-                    };
+                    kind = SceneErrorKind::UnknownKey { known: known_keys(message) };
                 } else if let Some(turned) = expected_first(message) {
                     *message = turned;
                 }
@@ -194,7 +185,6 @@ impl fmt::Display for SceneErrorKind {
             Self::NotText => write!(f, "not text in UTF-8"),
             Self::NotToml(what) => write!(f, "not TOML: {what}"),
             Self::UnknownKey { known } => write!(f, "unknown key; known are {known}"),
-            Self::Renamed { new } => write!(f, "is now called `{new}`"),
             Self::MissingKey => write!(f, "missing"),
             Self::Value(what) => f.write_str(what),
             Self::File { path, error } => write!(f, "{}: {error}", path.display()),

@@ -30,7 +30,7 @@
 //! | `build` | from the layout to a [`Scene`] |
 //! | `object`, `material`, `motion`, `camera` | the parts of it |
 //! | `named` | the files that a scene names |
-//! | `renamed` | keys and values that had other names before, and a short name |
+//! | `names` | the short name of the default shading |
 //! | `error`, `place` | what is wrong, in which line and column, of which key |
 
 mod build;
@@ -41,9 +41,9 @@ mod limits;
 mod material;
 mod motion;
 mod named;
+mod names;
 mod object;
 mod place;
-mod renamed;
 mod shape;
 mod value;
 
@@ -60,8 +60,8 @@ pub use error::{SceneError, SceneErrorKind};
 use layout::SceneLayout;
 pub use limits::{LONGEST, MAX_TRIANGLES};
 use mode13h::scene::Scene;
+pub use names::{GOURAUD, in_full};
 pub use place::Place;
-pub use renamed::{GOURAUD, in_full};
 
 /// A scene and the warnings of its reading.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use mode13h::glam::Vec3;
 use mode13h::palette::Rgb;
 use serde::de::{Deserialize, Deserializer, Error, Expected, SeqAccess, Unexpected, Visitor};
 
-use super::renamed;
+use super::names::in_full;
 
 /// A kind of number.
 pub(super) trait Number: Sized {
@@ -283,10 +283,7 @@ impl<T: FromStr<Err: fmt::Display>> Visitor<'_> for NameVisitor<T> {
     }
 
     fn visit_str<E: Error>(self, name: &str) -> Result<Name<T>, E> {
-        renamed::in_full(name).parse().map(Name).map_err(|error| match renamed::value(name) {
-            Some(new) if new.parse::<T>().is_ok() => E::custom(format_args!("\"{name}\" is now called \"{new}\"")),
-            _ => E::custom(format_args!("\"{name}\": {error}")),
-        })
+        in_full(name).parse().map(Name).map_err(|error| E::custom(format_args!("\"{name}\": {error}")))
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod files;
 mod instructions;
-mod json;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -15,6 +14,7 @@ use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
+use serde::Serialize;
 
 use crate::failure::{Failure, on_one_line};
 use crate::options::{Drawing, Quiet, finite, shading_of};
@@ -146,7 +146,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     for warning in &warnings {
         eprintln!("mode13h: {}", on_one_line(warning));
     }
-    let as_json = output::json(&json::json(&study, &warnings))?;
+    let as_json = as_json(&study, &warnings)?;
     let (written, result) = match &directory {
         None => (None, Ok(())),
         Some(directory) => {
@@ -228,6 +228,18 @@ impl Progress {
     }
 }
 
+/// The study for programs.
+fn as_json(study: &Study, warnings: &[String]) -> Result<String, Failure> {
+    #[derive(Serialize)]
+    struct Json<'a> {
+        schema: u32,
+        #[serde(flatten)]
+        study: &'a Study,
+        warnings: &'a [String],
+    }
+    output::json(&Json { schema: output::SCHEMA, study, warnings })
+}
+
 #[cfg(test)]
 mod tests {
     use mode13h::mesh::shapes;
@@ -259,7 +271,7 @@ mod tests {
         ] {
             let warnings = cost::warnings(&study);
             assert_eq!(warnings, [says]);
-            let json = output::json(&json::json(&study, &warnings)).expect("JSON");
+            let json = as_json(&study, &warnings).expect("JSON");
             assert!(json.contains(says));
             let status = verdict(&study).map_err(|failure| failure.status());
             assert_eq!(status, if says.contains("the aim") { Ok(()) } else { Err(1) });

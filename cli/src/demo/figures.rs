@@ -7,7 +7,7 @@ use super::Demo;
 use crate::overlay::Row;
 
 /// The keys, and what each does.
-const KEYS: [(&str, &str); 25] = [
+const KEYS: [(&str, &str); 23] = [
     ("Esc", "quit"),
     ("H", "these keys"),
     ("I", "figures of the picture"),
@@ -24,8 +24,6 @@ const KEYS: [(&str, &str); 25] = [
     ("C", "side by side, at the mouse"),
     ("Shift", "[ ] 1 to 9: the right side"),
     ("X", "swap the sides"),
-    ("Z", "magnify at the mouse"),
-    (". ,", "there: step, Shift a row"),
     ("K", "next kernel"),
     ("P", "next palette"),
     ("M", "next mapping of textures"),

@@ -6,8 +6,6 @@
 //! | `motion` | what the clock and the user move |
 //! | `error_map` | how far each pixel is from the truth, over the picture |
 //! | `compare` | two shadings side by side |
-//! | `magnifier`, `account` | the pixels about the mouse, and what the one under it says of itself |
-//! | `step` | a triangle pixel by pixel, and the registers of the loop |
 //! | `figures`, `timing` | what I and H show |
 //! | `background` | a thread that the picture does not wait for |
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
@@ -19,12 +17,9 @@ mod compare;
 mod error_map;
 mod figures;
 mod loader;
-mod magnifier;
 mod motion;
 mod pixel;
-mod shade_trace;
 mod shading;
-mod step;
 mod timing;
 
 use std::ffi::OsString;
@@ -52,11 +47,9 @@ use choice::Choice;
 use compare::Compare;
 use error_map::Map;
 use loader::{Inputs, Loader, Loading};
-use magnifier::{Cells, Magnifier};
 use motion::{Motion, STOPPED};
 use pixel::Pixel;
 use shading::{Pacing, ShadingChoice};
-use step::Stepper;
 use timing::Timing;
 
 /// The keys, as the long help lists them.
@@ -78,8 +71,6 @@ Keys in the window:
                   right; a click fixes the divider, Shift with [ ] and digits
                   chooses the right shading
   X               Swap the two shadings
-  Z               Magnify 16 times at the mouse; the pixel explains itself
-  . and ,         Step through its triangle's pixels, with Shift its rows
   K, P, M         The next kernel, palette, texture mapping
   L, O, T         Lights, fog, textures off and on
   D               Dither: ordered, blue noise, off
@@ -235,12 +226,9 @@ struct Demo {
     /// Figures of the picture.
     figures: Panel,
     maps: bool,
-    magnifies: bool,
     /// The pixel under the mouse, or the last that was.
     mouse: Pixel,
     map: Map,
-    magnifier: Magnifier,
-    stepper: Stepper,
     compare: Compare,
     /// The picture.
     vga: Vga,
@@ -287,11 +275,8 @@ impl Demo {
             help: Panel::default(),
             figures: Panel::default(),
             maps: false,
-            magnifies: false,
             mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
             map: Map::default(),
-            magnifier: Magnifier::default(),
-            stepper: Stepper::default(),
             compare: Compare::new(),
             vga: Vga::new(),
             shown: Vga::new(),
@@ -466,19 +451,11 @@ impl Demo {
                 panel.press();
             }
         }
-        for (key, shown, name) in [(Key::E, &mut self.maps, "error map"), (Key::Z, &mut self.magnifies, "magnifier")] {
-            if input.pressed(key) {
-                *shown ^= true;
-                let state = if *shown { "on" } else { "off" };
-                self.notice = Some((format!("{name} {state}"), seconds + NOTICE));
-            }
+        if input.pressed(Key::E) {
+            self.maps ^= true;
+            self.say(format!("error map {}", if self.maps { "on" } else { "off" }));
         }
         self.mouse = input.mouse.and_then(Pixel::at).unwrap_or(self.mouse);
-        if !self.magnifies {
-            self.stepper.stop();
-        } else if self.stepper.follow(input, self.mouse) {
-            self.motion.stop();
-        }
         Ok(if input.pressed(Key::Escape) {
             Wish::End
         } else if input.pressed(Key::N)
@@ -535,9 +512,6 @@ impl Demo {
         if self.maps {
             self.map.lay_over(&mut self.shown, self.number, self.compare.divider());
         }
-        if self.magnifies {
-            self.magnify()?;
-        }
         Ok(())
     }
 
@@ -556,15 +530,8 @@ impl Demo {
         }
     }
 
-    /// Lays the error map's legend, the magnifier's account and what is said of two halves over the picture.
+    /// Lays the error map's legend and what is said of two halves over the picture.
     fn lay_over(&self, sheet: &mut Sheet) {
-        if self.magnifies {
-            // The account needs the room that the legend would take.
-            let Pixel { x, y } = self.pixel();
-            let byte = self.side(x).1.pixels()[usize::from(y) * Vga::WIDTH + usize::from(x)];
-            let registers = self.stepper.lines(self.lens_number(), byte);
-            return self.magnifier.write(sheet, self.pixel(), byte, registers);
-        }
         if self.compare.is_on {
             let errors = [0, 1].map(|side| self.map.errors_of(self.number, side));
             self.compare.lay_over(sheet, (&self.shading, &self.timing), errors);
@@ -577,7 +544,7 @@ impl Demo {
     /// Lays out the sheet over the picture in a window of this size.
     fn sheet(&mut self, size: (usize, usize)) -> Sheet {
         let mut sheet = Sheet::new(size);
-        if self.maps && !self.magnifies {
+        if self.maps {
             self.map.corner(&mut sheet, self.number);
         }
         let said = if self.is_loading { Some(self.loading()) } else { self.said() };
@@ -630,45 +597,9 @@ impl Demo {
         Ok(())
     }
 
-    /// The pixel in the middle of the lens.
-    fn pixel(&self) -> Pixel {
-        self.stepper.pixel().unwrap_or(self.mouse)
-    }
-
-    /// Renderer that draws a column of the picture, and the picture that is its own.
-    fn side(&self, column: u16) -> (&Renderer, &Vga) {
-        let is_left = usize::from(column) < self.compare.divider();
-        if is_left { (&self.renderer, &self.vga) } else { (&self.compare.right.renderer, &self.compare.right.vga) }
-    }
-
-    /// The number of the picture in the lens: with the error map that.
-    fn lens_number(&self) -> u64 {
-        2 * self.number + u64::from(self.maps)
-    }
-
-    fn magnify(&mut self) -> Result<(), Failure> {
-        let (number, pixel) = (self.lens_number(), self.pixel());
-        // Out of the way of what the question borrows.
-        let mut magnifier = std::mem::take(&mut self.magnifier);
-        let followed = magnifier.follow(number, pixel, || magnifier::Question {
-            number,
-            pixel,
-            scene: self.stage.scene.clone(),
-            renderer: self.side(pixel.x).0.with_same_settings(),
-            cells: Cells::about(pixel, &self.shown),
-        });
-        if let Some(seen) = magnifier.seen(number, pixel) {
-            self.stepper.take_up(number, seen);
-        }
-        let pixel = self.pixel();
-        magnifier.lay_over(&mut self.shown, number, pixel);
-        self.magnifier = magnifier;
-        followed
-    }
-
     /// Picture that was drawn last.
     fn on_screen(&self) -> &Vga {
-        if self.maps || self.magnifies || self.compare.is_on { &self.shown } else { &self.vga }
+        if self.maps || self.compare.is_on { &self.shown } else { &self.vga }
     }
 
     /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.

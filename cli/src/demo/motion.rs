@@ -118,6 +118,7 @@ impl Motion {
     }
 
     /// Stops the clock.
+    #[cfg(test)]
     pub(super) fn stop(&mut self) {
         self.time = self.seconds();
         self.change = None;

@@ -89,11 +89,6 @@ impl Sheet {
         self.picture
     }
 
-    /// The letters that suit the window.
-    pub(crate) fn letters(&self) -> Letters {
-        self.letters
-    }
-
     /// The first row at the lower edge that is taken by messages.
     pub(crate) fn free_bottom(&self) -> usize {
         self.free[0].1.min(self.free[1].1)
@@ -255,15 +250,6 @@ pub(crate) mod tests {
     pub(crate) const WINDOWS: [(usize, usize); 5] = [(960, 720), (640, 480), (333, 251), (320, 240), (1920, 1080)];
 
     impl Sheet {
-        /// Its blocks.
-        pub(crate) fn blocks(&self) -> Vec<Area> {
-            let blocks = self.things.iter().filter_map(|thing| match thing {
-                Thing::Block { area, .. } => Some(*area),
-                _ => None,
-            });
-            blocks.collect()
-        }
-
         /// Every word that stands on it.
         pub(crate) fn words(&self) -> Vec<String> {
             let texts = self.things.iter().filter_map(|thing| match thing {

@@ -205,14 +205,9 @@ fn wrong_words_end_with_2() {
         (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
         (vec!["render", "torus", "-o", "x%d-%04d.png"], "x%d-%04d.png: a name holds one number"),
         (vec!["render", "torus", "-o", "x%d%d.png", "--frames", "2"], "x%d%d.png: a name holds one number"),
-        (
-            vec!["render", "torus", "-o", "x%d.png", "--frames", "2", "--record", "%d%d"],
-            "%d%d: a name holds one number",
-        ),
         (vec!["render", "torus", "-o", "x.apng", "--rgb"], "x.apng: --rgb is for .png"),
         (vec!["render", "torus", "-o", "x%d.apng"], "x%d.apng: an animation is one file"),
         (vec!["render", "torus", "-o", "-", "--fps", "60"], "-: an animation shows 0.1 to 50 frames a second, not 60"),
-        (vec!["render", "torus", "-o", "x.gif", "--record", "r.txt"], "r.txt: a row of records needs"),
         (vec!["palette", "grey", "-o", "x.txt"], "x.txt: "),
         (vec!["render", "torus", "-o", "x.png", "--up", "z"], "--up is for models"),
         (vec!["render", "torus", "-o", "x.png", "--crease", "30"], "--crease is for models"),
@@ -689,7 +684,7 @@ fn films_of_all_kinds_show_the_same() {
 #[cfg(unix)]
 #[test]
 fn f4_what_was_read_is_never_overwritten() {
-    let mut tried = Tried::new("f4_what_was_read_is_never_overwritten", 30);
+    let mut tried = Tried::new("f4_what_was_read_is_never_overwritten", 29);
     let directory = directory();
     let path = |name: &str| directory.path().join(name);
     let put = |name: &str, text: &str| fs::write(path(name), text).expect("written");
@@ -729,15 +724,9 @@ fn f4_what_was_read_is_never_overwritten() {
             all.push(vec!["render", input, "-o", out, "--frames", "2"]);
         }
         all.push(vec!["render", input, "-o", "row%d.png", "--frames", "5"]);
-        for record in ["box.obj", "box.mtl", "box.png"] {
-            all.push(vec!["render", input, "-o", "new.png", "--record", record]);
-        }
     }
-    for record in ["scene.toml", "own.gpl", "faded.pal", "around.png"] {
-        all.push(vec!["render", "scene.toml", "-o", "new.png", "--record", record]);
-    }
+    all.push(vec!["render", "scene.toml", "-o", "around.png"]);
     all.push(vec!["render", "bare.obj", "-o", "box.png"]);
-    all.push(vec!["render", "cube", "--palette", "own.gpl", "-o", "new.png", "--record", "own.gpl"]);
     all.push(vec!["palette", "own.gpl", "-o", "own.gpl"]);
     all.push(vec!["palette", "--from", "box.obj", "-o", "box.png"]);
     all.push(vec!["explain", "scene.toml", "--row", "5", "-o", "link.svg"]);
@@ -764,7 +753,7 @@ fn f4_what_was_read_is_never_overwritten() {
 /// What a command writes is of its own kind, and no second file of the same command.
 #[test]
 fn f4_what_is_of_another_kind_is_not_overwritten() {
-    let mut tried = Tried::new("f4_what_is_of_another_kind_is_not_overwritten", 8);
+    let mut tried = Tried::new("f4_what_is_of_another_kind_is_not_overwritten", 5);
     let directory = directory();
     for name in ["house.obj", "house.mtl", "report.html", "Cargo.toml"] {
         fs::write(directory.path().join(name), "what stood there").expect("written");
@@ -776,17 +765,6 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
         (vec!["dos", "cube", "-o", "house"], 2, "ends in .exe"),
         (vec!["scenes", "copy", "torus", "-o", "house.obj"], 2, "house.obj: the file of a scene ends in .toml"),
         ([&cost[..], &["."]].concat(), 3, "report.html: exists already, and is no file of a study"),
-        (
-            vec!["render", "cube", "-o", "b.gif", "--max-time", "5", "--record-errors", "b.gif"],
-            2,
-            "b.gif: one name for two files to write",
-        ),
-        (vec!["render", "cube", "-o", "b.png", "--record", "b.png"], 2, "b.png: one name for two files to write"),
-        (
-            vec!["render", "cube", "-o", "b.png", "--max-time", "5", "--record-errors", "./b.png"],
-            2,
-            "which was written just now, and is not overwritten",
-        ),
     ] {
         assert_fails(&run(&directory, &words), status, line);
         tried.add(1);
@@ -847,11 +825,6 @@ fn input_comes_by_a_pipe_or_packed() {
     put("broken.obj.gz", b"\x1f\x8b\x08 no");
     assert_fails(&run(&directory, &["render", "broken.obj.gz", "-o", "x.png"]), 3, "broken.obj");
     assert_fails(&run(&directory, &["render", "none.obj.gz", "-o", "x.png"]), 3, "none.obj.gz: No such file");
-    assert_fails(
-        &run(&directory, &["render", "a.obj.gz", "-o", "x.png", "--record", "a.obj.gz"]),
-        2,
-        "is not overwritten",
-    );
 }
 
 /// Input from a pipe is kept until the program ends: the window shows it again after another input, and when a file that it
@@ -889,13 +862,13 @@ fn dos_says_what_is_left_out() {
 }
 
 #[test]
-fn a_film_has_its_figures_and_records() {
+fn a_film_has_its_figures() {
     let directory = directory();
-    let words = ["render", "cube", "-o", "x.gif", "--frames", "3", "--stats", "--record", "r%d.txt"];
+    let words = ["render", "cube", "-o", "x.gif", "--frames", "3", "--stats"];
     let output = run(&directory, &words);
     assert!(output.status.success(), "{output:?}");
     assert_eq!(String::from_utf8(output.stderr).expect("text").lines().count(), 3);
-    assert_eq!(names_in(directory.path()), ["r0.txt", "r1.txt", "r2.txt", "x.gif"]);
+    assert_eq!(names_in(directory.path()), ["x.gif"]);
 }
 
 #[cfg(unix)]
@@ -909,7 +882,7 @@ fn f4_an_interrupted_film_leaves_nothing_behind() {
         }
         let names = names_in(directory.path());
         let mut child = program(&directory)
-            .args(["render", "torus", "-o", "x.gif", "--frames", "100000", "--record", "r%d.txt"])
+            .args(["render", "torus", "-o", "x.gif", "--frames", "100000"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -928,10 +901,7 @@ fn f4_an_interrupted_film_leaves_nothing_behind() {
         let output = child.wait_with_output().expect("waited");
         assert_fails(&output, 130, "interrupted");
         tried.add(1);
-        let mut left = names_in(directory.path());
-        // Of the records each is whole.
-        left.retain(|name| !(name.starts_with('r') && name.ends_with(".txt")));
-        assert_eq!(left, names);
+        assert_eq!(names_in(directory.path()), names);
         tried.add(1);
         assert_eq!(fs::read_to_string(directory.path().join("x.gif")).ok().as_deref(), before);
         tried.add(1);

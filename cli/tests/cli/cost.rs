@@ -54,10 +54,15 @@ fn assert_errors(errors: &Value) {
 /// The median lies between the quartiles, and a ratio in its interval.
 #[track_caller]
 fn assert_time(row: &Value) {
-    let (time, quartiles) = (number(&row["ns_per_frame"]), &row["ns_per_frame_quartiles"]);
-    assert!(0.0 < number(&quartiles[0]) && number(&quartiles[0]) <= time && time <= number(&quartiles[1]), "{row}");
-    if let Some(ratio) = row["ratio"].as_f64() {
-        let [low, high] = [0, 1].map(|i| number(&row["ratio_interval"][i]));
+    let [low, time, high] = ["lower_quartile", "median", "upper_quartile"].map(|of| number(&row["ns_per_frame"][of]));
+    assert!(0.0 < low && low <= time && time <= high, "{row}");
+    // A shading's interval stands beside its ratio, that of the others in one list with it.
+    let (ratio, interval) = match row.get("ratio_interval") {
+        Some(interval) => (&row["ratio"], interval),
+        None => (&row["ratio"][0], &row["ratio"][1]),
+    };
+    if let Some(ratio) = ratio.as_f64() {
+        let [low, high] = [0, 1].map(|i| number(&interval[i]));
         assert!(0.0 < low && low <= ratio && ratio <= high, "{row}");
     }
 }
@@ -68,10 +73,12 @@ fn everything_is_measured_and_written() {
     let words = ["torus", "--frames", "3", "--seconds", "0", "--json", "-o", "out"];
     let output = run(&directory, &words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    // The time is the machine's matter; the status says what the verdicts say of accuracy.
-    let verdicts: Vec<&str> =
-        json["budget"].as_array().expect("a list").iter().filter_map(|row| row["verdict"].as_str()).collect();
-    assert!(verdicts.len() == 6 && verdicts.iter().all(|verdict| verdict.starts_with("accuracy kept")), "{verdicts:?}");
+    // The time is the machine's matter; the status says what the warnings say of accuracy.
+    let warnings: Vec<&str> = json["warnings"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    assert!(
+        !warnings.iter().any(|warning| warning.contains(" keeps ") || warning.contains("its bound")),
+        "{warnings:?}"
+    );
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!((&json["schema"], &json["input"], &json["frames"]), (&1.into(), &"torus".into(), &3.into()));
     for named in [&json["kernel"], &json["host"]["processor"], &json["host"]["flags"], &json["host"]["clock"]] {
@@ -122,7 +129,7 @@ fn everything_is_measured_and_written() {
         let triangles = row["triangles"].as_object().expect("numbers by shading");
         assert!(!triangles.is_empty() && triangles.values().all(|count| count.as_u64() > Some(0)), "{row}");
         // Phong is within a shade of its own model.
-        assert!(row["best_single_shading"].is_string() && number(&row["best_single_ns"]) > 0.0, "{row}");
+        assert!(row["best_single_shading"].is_string() && number(&row["best_single_ns"]["median"]) > 0.0, "{row}");
     }
 
     let times = json["times"].as_array().expect("a list");

@@ -6,6 +6,5 @@ mod cases;
 mod commands;
 mod cost;
 mod files;
-mod record;
 mod verify;
 mod words;

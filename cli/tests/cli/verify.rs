@@ -14,13 +14,7 @@ fn run(words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).output().expect("started")
 }
 
-/// Output of `mode13h verify`. It takes seconds, so one run serves all tests.
-pub(crate) fn verified() -> &'static Output {
-    static OUTPUT: OnceLock<Output> = OnceLock::new();
-    OUTPUT.get_or_init(|| run(&["verify"]))
-}
-
-/// Output of `mode13h verify --json --seed 7`, from one run as well.
+/// Output of `mode13h verify --json --seed 7`. It takes seconds, so one run serves all tests.
 pub(crate) fn verified_as_json() -> &'static Output {
     static OUTPUT: OnceLock<Output> = OnceLock::new();
     OUTPUT.get_or_init(|| run(&["verify", "--json", "--seed", "7"]))
@@ -38,16 +32,16 @@ fn hash() -> String {
 }
 
 #[test]
-fn loops_frames_and_the_hash() {
-    let (text, status) = text_and_status(verified());
+fn frames_by_each_kernel() {
+    let output = run(&["verify", "--frame", "canvas"]);
+    let (text, status) = text_and_status(&output);
     assert_eq!(status, Some(0), "{text}");
-    let lines: Vec<&str> = text.lines().collect();
     let kernels: Vec<&str> = Kernel::available().map(Kernel::name).collect();
-    assert_eq!(lines[0], format!("kernels {}; seed 13", kernels.join(", ")));
-    assert!(lines[1].starts_with("loops: ") && lines[1].ends_with(" cases, ok"), "{text}");
-    let count = frames::all().len();
-    assert_eq!(lines[2], format!("frames: {count} by each kernel, {} in all, ok", count * kernels.len()));
-    assert_eq!(lines[3..], [format!("hash {}, as on every machine", hash())]);
+    let count = frames::all().iter().filter(|frame| frame.name.starts_with("canvas/")).count();
+    let frames = format!("frames: {count} by each kernel, {} in all, ok", count * kernels.len());
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[..2], [format!("kernels {}; seed 13", kernels.join(", ")), frames]);
+    assert!(lines.len() == 3 && lines[2].starts_with("hash ") && lines[2].ends_with(", as on every machine"), "{text}");
 }
 
 #[test]

@@ -15,7 +15,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::support::tried::{Tried, is_here};
-use crate::verify::{verified, verified_as_json};
+use crate::verify::verified_as_json;
 
 const COMMANDS: [&str; 12] =
     ["demo", "render", "list", "scenes", "plan", "explain", "cost", "palette", "cases", "dos", "verify", "generate"];
@@ -232,42 +232,9 @@ fn an_option_does_what_its_key_does() {
 }
 
 #[test]
-fn old_names_are_answered_with_the_new_ones() {
-    let directory = directory();
-    for (words, says) in [
-        ("render torus -o x.png --rung flat", "--rung is now called --shading "),
-        ("torus --rung=flat", "--rung is now called --shading "),
-        ("plan torus --hidden painter", "--hidden is now called --hidden-surfaces "),
-        ("explain torus --row 3 --vertex-path integer", "--vertex-path is now called --arithmetic, "),
-        ("cost torus --rungs flat", "--rungs is now called --shadings "),
-        ("show R5 -o x.png", "show is now called cases "),
-        ("show", "show is now called cases "),
-        ("scenes --copy fog", "--copy is now called scenes copy "),
-        ("plan torus --at 1", "--at is now called --time "),
-        ("plan torus --time", "--measure measures what effects cost "),
-        ("torus --dither on", "--dither on is now --dither ordered "),
-        ("render torus -o x.png --dither=off", "--dither off is now --no-dither "),
-        ("torus --mipmaps off", "--mipmaps off is now --no-mipmaps "),
-        ("render --mipmaps on torus -o x.png", "--mipmaps on is now --mipmaps "),
-        ("render torus -o x.png --shading float", "float is now called gouraud-float "),
-        ("render torus --arithmetic integer", "integer is now called fixed "),
-        ("render torus --shading gouraud-period", "gouraud-period is now called gouraud-vintage "),
-        ("cost torus --shadings flat,gouraud-period", "gouraud-period is now called gouraud-vintage "),
-    ] {
-        assert!(failed(&run(&directory, words), 2, words).contains(says), "{words}");
-    }
-    fs::write(directory.path().join("old.toml"), "objects = [{ shape = 'cube' }]\n[wishes]\nrung = 'flat'\n")
-        .expect("written");
-    let line = failed(&run(&directory, "render old.toml -o x.png"), 2, "old.toml");
-    assert_eq!(line, "mode13h: old.toml:2:2: key `wishes`: is now called `render`\n");
-    fs::write(directory.path().join("old.toml"), "objects = [{ shape = 'cube' }]\nrender.shading = 'float'\n")
-        .expect("written");
-    let line = failed(&run(&directory, "render old.toml -o x.png"), 2, "old.toml");
-    assert!(line.contains("\"float\" is now called \"gouraud-float\""), "{line}");
-    assert_eq!(names_in(&directory), BTreeSet::from(["old.toml".to_string()]));
-    // A file of an old name is an INPUT.
-    fs::write(directory.path().join("show"), "no model").expect("written");
-    assert!(failed(&run(&directory, "show"), 2, "show").contains("show: nothing that can be read"));
+fn a_time_without_its_seconds_says_which_option_measures() {
+    let line = failed(&run(&directory(), "plan torus --time"), 2, "--time");
+    assert!(line.contains("--measure measures what effects cost "), "{line}");
 }
 
 /// The short page of each command, in a terminal of 80 columns.
@@ -385,9 +352,6 @@ fn a_frame_has_the_size_that_was_asked_for() {
         reader.info().palette.as_deref().map(<[u8]>::to_vec)
     };
     assert!(colors("--time 1") == colors("--time 1 --size 64x48") && colors("--time 1") != colors("--time 0"));
-    // The triangles of a frame are those of its size.
-    printed(run(&directory, "render cube --size 64x48 --record r.rec -o x.png"));
-    assert!(printed(run(&directory, "verify --replay r.rec")).starts_with("frame of 64 x 48 pixels"));
 }
 
 /// Nothing but the files.
@@ -491,14 +455,13 @@ fn typos_are_answered_with_the_nearest_word() {
 /// Each command's end by each status that it can have.
 #[test]
 fn every_command_ends_with_the_status_that_help_names() {
-    let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 41);
+    let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 40);
     let directory = directory();
     let put = |name: &str, text: &str| fs::write(directory.path().join(name), text).expect("written");
     put("broken.obj", "v 0 0 0\nf 1 2 3\n");
     put("broken.toml", "objects = 3\n");
     put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
     put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
-    put("broken.rec", "no record\n");
     let cases: [(&str, &[(&str, i32)]); 12] = [
         (
             "demo",
@@ -582,15 +545,7 @@ fn every_command_ends_with_the_status_that_help_names() {
             ],
         ),
         // That a check which fails ends with 1 has a test beside the code: here none may.
-        (
-            "verify",
-            &[
-                ("verify", 0),
-                ("verify --seed x", 2),
-                ("verify --replay broken.rec", 2),
-                ("verify --replay none.rec", 3),
-            ],
-        ),
+        ("verify", &[("verify", 0), ("verify --seed x", 2), ("verify --frame canvas -o none/x.png", 3)]),
         (
             "generate",
             &[
@@ -609,7 +564,7 @@ fn every_command_ends_with_the_status_that_help_names() {
         assert_eq!(known, [0, 1, 2, 3, 130], "{command}: {said}");
         for (words, status) in runs {
             let output = match *words {
-                "verify" => verified(),
+                "verify" => verified_as_json(),
                 COST => cost(),
                 words => &run(&directory, words),
             };

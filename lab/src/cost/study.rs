@@ -1,4 +1,7 @@
 //! Results of a study, in numbers. Times are in nanoseconds, errors in shades of 1/255 of full intensity.
+//!
+//! With the feature `serde` all of it can be serialized: a time with its quartiles is an object, a ratio with its interval a
+//! list `[ratio, [low, high]]`, and what has a name is that name.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -8,6 +11,7 @@ use mode13h::settings::Shading;
 
 /// The cost of accuracy on one scene or model.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Study {
     /// Name of the input that was measured.
@@ -34,6 +38,7 @@ pub struct Study {
 
 /// Machine and programs of a study.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Host {
     /// The processor's name, as it says itself.
@@ -45,11 +50,13 @@ pub struct Host {
     /// The clock that times were read from.
     pub clock: String,
     /// Length of a step of it, as measured.
+    #[cfg_attr(feature = "serde", serde(rename = "clock_step_ns"))]
     pub clock_step: f64,
 }
 
 /// A time over many samples.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Nanoseconds {
     /// The median.
     pub median: f64,
@@ -61,6 +68,7 @@ pub struct Nanoseconds {
 
 /// Split of a frame's time into parts; medians.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Split {
     /// Deciding which effects are on.
     pub plan: f64,
@@ -76,6 +84,7 @@ pub struct Split {
 
 /// Errors of frames against a standard of truth.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Errors {
     /// The largest.
     pub max: f64,
@@ -91,22 +100,29 @@ pub struct Errors {
 
 /// One shading.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ShadingRow {
     /// The shading.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]
     pub shading: Shading,
     /// Time for a frame, scan-out left out.
+    #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
     /// Time for a pixel written.
+    #[cfg_attr(feature = "serde", serde(rename = "ns_per_pixel"))]
     pub per_pixel: f64,
     /// Time for a triangle drawn.
+    #[cfg_attr(feature = "serde", serde(rename = "ns_per_triangle"))]
     pub per_triangle: f64,
     /// The time as a ratio to that of `gouraud-8.8`.
     pub ratio: f64,
     /// Its 95 % interval, by bootstrap.
     pub ratio_interval: (f64, f64),
     /// Split of the time.
+    #[cfg_attr(feature = "serde", serde(rename = "split_ns"))]
     pub split: Split,
     /// Instructions for a frame, where they were counted.
+    #[cfg_attr(feature = "serde", serde(rename = "instructions_per_frame"))]
     pub instructions: Option<u64>,
     /// Against `gouraud`.
     pub error_gouraud: Errors,
@@ -120,21 +136,26 @@ pub struct ShadingRow {
     pub not_compared: f64,
     /// Shades by which the worst pixel is beyond the shading's bound, negative if none is. Shadings that are linear on the
     /// screen have one, where the plan states how far linear shades are off.
+    #[cfg_attr(feature = "serde", serde(rename = "beyond_bound"))]
     pub excess: Option<f64>,
     /// Change of errors from a frame to the next, root mean square.
     pub swim: f64,
     /// True if no other shading is as near to `lit` and measurably faster.
     pub efficient: bool,
     /// Shadings whose time cannot be told from this one's.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::shadings"))]
     pub as_fast_as: Vec<Shading>,
     /// The first frame: indices of a ramp of 256 greys, row-major.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub picture: Vec<u8>,
     /// Its error against `lit` at each pixel; NaN where none was taken.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub error_map: Vec<f32>,
 }
 
 /// One budget.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BudgetRow {
     /// Shades of error that are accepted.
     pub max_error: f64,
@@ -147,30 +168,38 @@ pub struct BudgetRow {
     /// The root mean square of the errors.
     pub rms: f64,
     /// The pixels of the largest connected patch beyond it.
+    #[cfg_attr(feature = "serde", serde(rename = "largest_patch"))]
     pub patch: usize,
     /// Change of errors from a frame to the next, root mean square: what choices that change with the frame add is seen here.
     pub swim: f64,
     /// Time for a frame.
+    #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
     /// The cheapest shading with exact cover that keeps every pixel within; none may.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::maybe"))]
     pub best_single_shading: Option<Shading>,
     /// Its time for a frame, measured beside the budget's.
+    #[cfg_attr(feature = "serde", serde(rename = "best_single_ns"))]
     pub best_single: Option<Nanoseconds>,
     /// The budget's time as a ratio to that, and the ratio's 95 % interval.
     pub ratio: Option<(f64, (f64, f64))>,
     /// Triangles of all frames that each shading drew, those of none left out.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::triangles"))]
     pub triangles: Vec<(FaceShading, u64)>,
 }
 
 /// One time for a frame, by which the renderer chose the errors.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct TimeRow {
     /// The time for a frame.
+    #[cfg_attr(feature = "serde", serde(rename = "max_time_ns"))]
     pub max_time: f64,
     /// Frames that were drawn, those left out in which the errors were tried.
     pub frames: usize,
     /// The mean time of these.
+    #[cfg_attr(feature = "serde", serde(rename = "mean_time_ns"))]
     pub mean_time: f64,
     /// The share of these within 1.05 times `max_time`, 0 to 1.
     pub within: f64,
@@ -227,16 +256,20 @@ impl core::fmt::Display for Aspect {
 
 /// One choice of an aspect, all else as by default.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OptionRow {
     /// The aspect chosen.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]
     pub aspect: Aspect,
     /// Its name.
     pub name: String,
     /// Time for a frame.
+    #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
     /// The time as a ratio to that of the aspect's first row, and its 95 % interval.
     pub ratio: (f64, (f64, f64)),
     /// Against `gouraud-unrounded`.
+    #[cfg_attr(feature = "serde", serde(rename = "error_gouraud_unrounded"))]
     pub error: Errors,
     /// Pixels that show another face than they should, vertices unrounded.
     pub cover_errors: u64,
@@ -265,13 +298,47 @@ impl Verdict {
     }
 }
 
+impl core::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
 /// A claim that an old text makes, and what was measured.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Claim {
     /// The claim.
     pub claim: String,
     /// Result of measuring, with figures.
     pub measured: String,
     /// The verdict.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]
     pub verdict: Verdict,
+}
+
+/// Fields that are written by name.
+#[cfg(feature = "serde")]
+mod json {
+    use core::fmt::Display;
+
+    use serde::Serializer;
+
+    use super::{FaceShading, Shading};
+
+    pub(super) fn text<S: Serializer>(named: &impl Display, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(named)
+    }
+
+    pub(super) fn maybe<S: Serializer>(shading: &Option<Shading>, serializer: S) -> Result<S::Ok, S::Error> {
+        serde::Serialize::serialize(&shading.map(Shading::name), serializer)
+    }
+
+    pub(super) fn shadings<S: Serializer>(shadings: &[Shading], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(shadings.iter().map(|shading| shading.name()))
+    }
+
+    pub(super) fn triangles<S: Serializer>(of: &[(FaceShading, u64)], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(of.iter().map(|(shading, triangles)| (shading.name(), triangles)))
+    }
 }

@@ -8,7 +8,6 @@ mod explain;
 mod fuzz_corpus;
 mod light;
 mod polygons;
-mod record;
 mod report;
 mod show;
 mod time;

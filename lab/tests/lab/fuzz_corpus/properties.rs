@@ -24,13 +24,11 @@ use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKin
 use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h_assets::scene_file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h_assets::texture;
-use mode13h_lab::record::{Record, RecordErrorKind};
-use mode13h_lab::replay;
 
 /// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
-pub const PROPERTIES: [Property; 14] = [
+pub const PROPERTIES: [Property; 13] = [
     ("obj", obj),
     ("mtl", mtl),
     ("stl", stl),
@@ -42,7 +40,6 @@ pub const PROPERTIES: [Property; 14] = [
     ("palette_binary", palette_binary),
     ("scene", scene),
     ("words", words),
-    ("record", record),
     ("texture", texture),
     ("gif", gif),
 ];
@@ -443,35 +440,6 @@ pub fn words(bytes: &[u8]) {
     if let Some(format) = Format::of_file_name(&words) {
         let extension = words.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         assert!(format.extensions.contains(&extension.as_str()), "{words}");
-    }
-}
-
-/// A frame's record. One that was read is written, and reads as the same again; a small one is drawn by every method.
-pub fn record(bytes: &[u8]) {
-    match Record::read(bytes) {
-        Ok(record) => {
-            let mut file = Vec::new();
-            record.write(&mut file).expect("a vector takes all");
-            assert_eq!(Record::read(&file[..]).expect("what was written is well formed"), record);
-            if let Some(clip) = record.clip() {
-                assert!(clip.x1 <= record.width() && clip.y1 <= record.height());
-            }
-            let pixels = u64::from(record.width()) * u64::from(record.height());
-            if record.triangles.len() <= 8 && pixels <= 4096 {
-                let replay = replay::replay(&record);
-                assert!(!replay.comparisons.is_empty());
-                // Where triangles have no exact cover, methods that agree on others may differ.
-                let exact = record.triangles.iter().all(|(_, interpolation)| interpolation.has_exact_cover());
-                assert!(!exact || replay.failures.is_empty(), "{:?}", replay.failures);
-            }
-        }
-        Err(error) => {
-            assert_one_line(&error.to_string());
-            let lines = bytes.split(|byte| *byte == b'\n').count() as u64;
-            // One more where a line is missing.
-            assert!(error.line <= lines + 1, "{error}: of {lines} lines");
-            assert!(!matches!(error.kind, RecordErrorKind::Read(_)), "a slice can be read: {error}");
-        }
     }
 }
 
