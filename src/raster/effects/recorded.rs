@@ -106,7 +106,7 @@ fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: 
     draw_triangles::<S, _, true, false>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
 }
 
-/// The spans of faces of which none is unbatched, in a frame of 4,096 x 4,096 pixels.
+/// The spans of faces, none of them unbatched, in a frame of 4,096 × 4,096 pixels.
 pub(super) fn record(
     kernel: Kernel,
     triangles: &Triangles<'_>,
