@@ -1,4 +1,4 @@
-//! A material in its scene: what its shades are made with.
+//! A material in its scene: what its shades are computed with.
 
 use crate::fixed::U8F8;
 use crate::lanes::{each, three};
@@ -11,7 +11,7 @@ use crate::texture::Texture;
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
     pub(super) answer: Reflectance,
-    /// Place of one channel's shades: the material's entries; all 256 for an image or channels.
+    /// Range of one channel's shades: the material's entries; all 256 for an image or channels.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
     pub(super) texture_size: Option<[u32; 2]>,
@@ -32,7 +32,7 @@ impl SurfaceMaterial {
         let channels = stages.has_channels();
         let image = texture_size.is_some() || environment_size.is_some();
         let everywhere = stages.has_fog() || channels || stages.has_dither() || stages.lit_at == LitAt::Pixels;
-        // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
+        // Forced on, an effect runs on every surface, with neutral input where it has none.
         let forced = stages.neutral_image || stages.neutral_blend;
         Self {
             answer: Reflectance {
@@ -56,20 +56,20 @@ impl SurfaceMaterial {
         }
     }
 
-    /// A shade as the material's own answer to light has it.
+    /// A shade after the material's own response to light.
     #[inline]
     pub(super) fn respond(&self, shade: U8F8) -> U8F8 {
         self.response.as_ref().map_or(shade, |response| answered(response, shade, self.ramp))
     }
 
-    /// One channel as the material's own answer to light has it.
+    /// One channel after the material's own response to light.
     #[inline]
     pub(super) fn respond_on_channel(&self, channel: U8F8) -> U8F8 {
         self.response.as_ref().map_or(channel, |response| answered(response, channel, Ramp::WHOLE))
     }
 
-    /// The shade of an intensity. The one clamp is here; beyond f32 an intensity becomes infinite, which
-    /// is more than 1 too.
+    /// The shade of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite, which is more than
+    /// 1 too.
     #[inline]
     pub(super) fn shade(&self, intensity: f64) -> U8F8 {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
@@ -104,7 +104,7 @@ impl SurfaceMaterial {
     }
 }
 
-/// Answer of a response to a shade of a ramp.
+/// A response applied to a shade of a ramp.
 #[cold]
 fn answered(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
     // A ramp of one entry has one shade.
