@@ -14,7 +14,7 @@ pub struct DrawStats {
     pub tested: u32,
     /// Pixels that got a texel.
     pub textured: u32,
-    /// Pixels whose texel is of a level that was chosen for them, level 0 among them.
+    /// Pixels whose mipmap level was chosen, including those that got level 0.
     pub mipmapped: u32,
     /// Pixels that got a threshold of the dither pattern.
     pub dithered: u32,

@@ -162,7 +162,7 @@ impl<'a> Frame<'a> {
         (self.pixels, self.pitch)
     }
 
-    /// Sets every pixel that it holds to `index`; bytes between the rows stay.
+    /// Sets every pixel that it holds to `index`; bytes between the rows are left alone.
     pub fn clear(&mut self, index: u8) {
         for y in self.rows() {
             if let Some(row) = self.row_mut(y) {
@@ -186,7 +186,7 @@ impl<'a> Frame<'a> {
     pub fn bands(&mut self, rows_each: u32) -> impl Iterator<Item = Frame<'_>> {
         let (width, height, pitch, rows) = (self.width, self.height, self.pitch, self.rows.clone());
         let rows_each = rows_each.max(1);
-        // The last chunk may lack the bytes after the last pixel; it still holds width of them.
+        // The last chunk may lack the bytes after the last pixel; it still holds `width` bytes.
         self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
             let first = rows.start + band * rows_each;
             Frame::band(pixels, width, height, pitch, first..(first + rows_each).min(rows.end)).ok()

@@ -2,13 +2,13 @@
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// | shading | off from exact by less than | in |
+/// | shading | differs from exact by less than | in |
 /// |---|---|---|
 /// | `GouraudVintage` | – (from other vertices) | `vintage` |
 /// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | `shade` |
 /// | `GouraudReseeded` | ½ + ¼ | `shade` |
 /// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | `fixed16` |
-/// | `GouraudHyperbolic` | ½, or just that | `hyperbolic` |
+/// | `GouraudHyperbolic` | ½, or exactly that | `hyperbolic` |
 /// | `Float` | ½ + 1/8,192 | `float` |
 ///
 /// The exact shade is linear on the screen, and for the last two linear on the face.

@@ -27,7 +27,7 @@
 //! in two f64 quotients: for any integer q
 //!
 //! ```text
-//! q = nearest(n / A), or beside it        r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
+//! q = nearest(n / A), or a neighbour      r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
 //! ```
 //!
 //! (With an odd A there are no ties, and the half that A >> 1 drops changes no floor.) A small triangle's box is less

@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_falling_row_by_hand() {
-        // From 1 to 0 over 8 pixels: −32/256 a pixel, which 8.8 has; at the first centre 1 − 1/16 = 240/256. With half a
+        // From 1 to 0 over 8 pixels: −32/256 a pixel, exact in 8.8; at the first centre 1 − 1/16 = 240/256. With half a
         // shade 0x0170; after five 0x00d0.
         let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
             shade_trace(Interpolation::Gouraud, [1, 0, 1], 5)

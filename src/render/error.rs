@@ -58,7 +58,7 @@ impl core::error::Error for RenderError {}
 
 impl RenderError {
     internal! {
-    /// The fault of an object of the scene.
+    /// An error of an object of the scene.
     #[must_use]
     fn of_object(scene: &Scene, index: usize, what: &'static str) -> Self {
         let name = scene.objects().get(index).map_or_else(String::new, |object| object.name.clone());

@@ -86,7 +86,7 @@ impl Pace {
     /// The greatest error chosen, in shades, unless [`at_most`](Self::at_most) says otherwise.
     pub const MAX_ERROR: f32 = 16.0;
 
-    /// A pace of frames that take at most this time each.
+    /// A pace for frames that take at most this long each.
     #[must_use]
     pub fn new(max_time: Duration) -> Self {
         Self::in_milliseconds(max_time.as_secs_f32() * 1000.0, Self::MAX_ERROR)

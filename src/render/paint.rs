@@ -81,24 +81,24 @@ impl SurfaceMaterial {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), self.ramp.first(), self.ramp.entries())
     }
 
-    /// One channel of eight.
+    /// One channel of eight intensities.
     #[inline(always)]
     fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), 0, Ramp::WHOLE.entries())
     }
 
-    /// Each of three channels of eight.
+    /// Three channels of eight intensities each.
     #[inline(always)]
     pub(super) fn channels_of_eight([red, green, blue]: &[[f64; 8]; 3]) -> [[U8F8; 8]; 3] {
         [Self::channel_of_eight(red), Self::channel_of_eight(green), Self::channel_of_eight(blue)]
     }
 
-    /// The shade without any light but the ambient.
+    /// The shade in ambient light only.
     pub(super) fn constant(&self) -> U8F8 {
         self.shade(self.answer.ambient)
     }
 
-    /// The channels of an intensity on each; 0 to 255.
+    /// The channels of three intensities, each 0 to 255.
     pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
         three(intensities, |intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }

@@ -518,7 +518,7 @@ impl Faces<'_> {
         let first = first.unwrap_or(0);
         for part in polygon.part_corners() {
             stats.drawn += 1;
-            // Fewer than eight corners more.
+            // At most seven more than the first.
             added.triangle(three(part, |corner| first + corner as u32), face.index);
         }
     }

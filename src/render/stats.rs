@@ -37,7 +37,7 @@ pub struct Stats {
     pub lit: u64,
     /// Faces of all objects.
     pub faces: u64,
-    /// Faces cut by the near plane or the guard band, or wholly beyond them.
+    /// Faces cut by the near plane or the guard band, or entirely beyond them.
     pub clipped: u64,
     /// Back faces, and faces without area after clipping and rounding.
     pub culled: u64,

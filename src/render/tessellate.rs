@@ -45,7 +45,7 @@ pub(super) struct Tessellated {
     twins: Vec<u64>,
     /// True for each triangle whose edges have been examined and found straight enough.
     straight: Vec<bool>,
-    /// The light of each vertex, and the distance of each light from what the vertex mirrors.
+    /// The light of each vertex, and how far each light is from the direction that it mirrors.
     known: Known,
     /// The edges to be split, by their points, with the index of the new point.
     halved: EdgeMap,

@@ -4,7 +4,7 @@
 //! for every k:  row[k] = floor((n + k·dn) / (d + k·dd))
 //! ```
 //!
-//! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster makes them.
+//! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster ensures.
 
 use crate::fixed::{HAS_F64, nearest_whole};
 

@@ -78,7 +78,7 @@ impl<'a> Texels<'a> {
     fn place(self, u: u32, v: u32) -> usize {
         let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
-        // What a narrow usize cuts off the masks cut off anyway.
+        // What a narrow usize cuts off, the masks clear anyway.
         let column = (u >> 16) as usize & columns;
         // Shifted once instead of down and up.
         let row = (v >> (16 - self.ubits)) as usize & (last & !columns);

@@ -10,7 +10,7 @@ use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
 
-/// The most lit pixels of a span of which not all are lit, its end included, rounded up to those lit at once.
+/// The most lit pixels of a span that is lit only at some, its end included, rounded up to whole vectors.
 const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.

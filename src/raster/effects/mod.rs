@@ -4,8 +4,8 @@
 //! shades     from the shading, from a table of normals, or lit at every pixel
 //! texture    shade and texel, from a level of the image, looked up in a table; or red, green and blue mixed to an index
 //! fog        level and index looked up
-//! blend      index and what the frame holds looked up
-//! write      all of it, or where nearer
+//! blend      index and the frame's index looked up
+//! write      all pixels, or the nearer ones
 //! ```
 //!
 //! Faces of one [`PixelPipeline`] are picked, set up and listed like plain ones, eight at a time. A face too large for

@@ -33,7 +33,7 @@ pub enum ShadeSource<'a> {
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a row; shades are linear
     /// between.
     ///
-    /// The lit pixels are the row's first inside the frame, one per [`SampleSpacing`] from there on, and its last.
+    /// The lit pixels are the row's first inside the frame, some at equal distances from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): at the corners
     /// and at the midpoints of the edges. Clamped to these limits, one pair for each channel; a single shade uses the

@@ -23,7 +23,7 @@ use crate::span::texture::{
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
 
-/// An image, with its levels where one of them is chosen.
+/// An image, with its levels if one of them is to be chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 
 impl DirectTexture<'_> {
@@ -584,7 +584,7 @@ mod tests {
             bytes
         };
         for kernel in Kernel::available() {
-            // The shade alone, and an image on it; each over a frame of 0 and of 255 to see what is covered.
+            // Only the shade, and an image with it; each over a frame of 0 and one of 255, which shows what is covered.
             let sources = [Interpolation::Flat(77), Interpolation::Gouraud, Interpolation::GouraudHyperbolic];
             let mappings = [Mapping::Affine, Mapping::Perspective];
             for (source, mapping) in sources.into_iter().flat_map(|source| mappings.map(|mapping| (source, mapping))) {
@@ -653,7 +653,7 @@ mod tests {
             for (weights, sum) in [(weights.at(x, y), start[i]), (weights.per_column(), step[i])] {
                 let terms: i128 = weights.iter().zip(values).map(|(w, v)| (i128::from(*w) * i128::from(v)).abs()).sum();
                 let off = sum as i128 - exact(weights, values);
-                // Four parts in 2⁵³ of the terms; less than one for what `as` cuts off.
+                // Four parts in 2⁵³ of the terms, and less than one for the fraction that `as` drops.
                 prop_assert!((off.abs() - 1) << 51 <= terms, "{} off of {}", off, terms);
             }
         }

@@ -33,7 +33,7 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
     let (mut length, longest) = (64 * across.max(down), 181 * unit);
     let mut level = 0;
     while level < last && length > longest {
-        // Rounded up: it is then above `longest` just where the exact half is.
+        // Rounded up: it is then above `longest` exactly where the exact half is.
         length = length.div_ceil(2);
         level += 1;
     }

@@ -102,7 +102,7 @@ impl ShadePlane {
         (self.area.floor(self.numerator(x, y) + bias) + 128) as u16
     }
 
-    /// N at the pixel (`x`, `y`). Inside the triangle it is 0 to 2⁵⁸; the terms on the way stay below 2⁶¹.
+    /// N at the pixel (`x`, `y`). Inside the triangle it is 0 to 2⁵⁸; intermediate sums stay below 2⁶¹.
     #[inline]
     pub(in crate::raster) fn numerator(&self, x: i32, y: i32) -> i64 {
         self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)

@@ -148,7 +148,7 @@ fn floor(estimate: f64, n: i128, d: i128) -> i64 {
         // A mean of coordinates.
         return n.div_euclid(d) as i64;
     }
-    // The floor or the next number up.
+    // The floor or the next integer.
     let near = nearest_whole(estimate);
     near - i64::from(n < i128::from(near) * d)
 }

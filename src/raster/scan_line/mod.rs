@@ -120,7 +120,7 @@ struct Key(u64);
 impl Key {
     const NUMBER_BITS: u32 = 48;
 
-    /// `place` is a row or column of a frame or the one after its last. No slice of faces has 2⁴⁸.
+    /// `place` is a row or column of a frame or the one after its last. No slice has 2⁴⁸ faces.
     #[inline]
     fn new(place: i32, number: usize) -> Self {
         Self((place as u64) << Self::NUMBER_BITS | number as u64)

@@ -419,7 +419,7 @@ mod tests {
 
     use super::*;
 
-    /// Rows that do not lie wholly inside the pixels are left out, whatever the triangle.
+    /// Rows that do not lie entirely inside the pixels are left out, whatever the triangle.
     #[test]
     fn nothing_outside_the_pixels_is_written() {
         let Some(avx512) = Avx512::find() else {

@@ -87,7 +87,7 @@ pub(in super::super) mod neon {
     }
 }
 
-/// WebAssembly with vectors of 128 bits.
+/// WebAssembly with 128-bit vectors.
 #[cfg(simd_wasm)]
 pub(in super::super) mod wasm {
     use super::super::super::list::SpanList;
