@@ -1,8 +1,8 @@
-//! Levels of the processor, as values. A token exists only where the processor has its level, so code that takes one
-//! needs no other proof.
+//! Levels of the processor, as values. A token exists only if the processor has its level, so code that takes one needs
+//! no other proof.
 //!
-//! The span kernels use intrinsics of a level. All else is written once, over [`Lanes8`] or plain arrays of eight lanes, and
-//! is compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
+//! The span kernels use the intrinsics of a level. Everything else is written once, over [`Lanes8`] or plain arrays of
+//! eight lanes, and compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
 
 #![cfg_attr(simd_x86_64, expect(unsafe_code, reason = "code for processors found only when the program runs"))]
 
@@ -46,7 +46,7 @@ pub(crate) const SIMD128: wide128::Wide128<wasm::Simd128> = wide128::Wide128(was
 pub(crate) use NEON as BASELINE;
 #[cfg(simd_wasm)]
 pub(crate) use SIMD128 as BASELINE;
-/// Eight words of two numbers.
+/// Eight 16-bit words from two numbers.
 #[cfg(simd_x86_64)]
 #[inline(always)]
 const fn words_of([low, high]: [i64; 2]) -> [u16; 8] {
@@ -89,7 +89,7 @@ pub(crate) enum Level {
     /// 64-bit ARM, all of which has NEON.
     #[cfg(simd_neon)]
     Neon,
-    /// WebAssembly with vectors of 128 bits, known when it is compiled.
+    /// WebAssembly with 128-bit vectors, known at compile time.
     #[cfg(simd_wasm)]
     Wasm,
     /// See [`Avx2`].
@@ -101,7 +101,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// Its name, as in `--stats` and records.
+    /// Its name, as in `--stats` and in records.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -124,7 +124,7 @@ impl Level {
         }
     }
 
-    /// The proof of AVX2, if this level has it.
+    /// The proof of AVX2, if this level includes it.
     #[cfg(simd_x86_64)]
     #[inline]
     pub(crate) const fn avx2(self) -> Option<Avx2> {
@@ -145,14 +145,14 @@ impl Level {
     }
 }
 
-/// Proof that the processor has AVX2, FMA and POPCNT. (Nearly all that have AVX2 have the others.)
+/// Proof that the processor has AVX2, FMA and POPCNT. (Nearly all processors with AVX2 have the others.)
 #[cfg(simd_x86_64)]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx2(());
 
 #[cfg(simd_x86_64)]
 impl Avx2 {
-    /// The proof, if the processor has them.
+    /// The proof, if the processor has all three.
     pub(crate) fn find() -> Option<Self> {
         #[cfg(feature = "std")]
         let found = std::arch::is_x86_feature_detected!("avx2")
@@ -164,14 +164,14 @@ impl Avx2 {
     }
 }
 
-/// Proof that the processor has F, BW, DQ and VL of AVX-512, BMI2 and what [`Avx2`] stands for.
+/// Proof that the processor has AVX-512 F, BW, DQ and VL, BMI2, and everything that [`Avx2`] proves.
 #[cfg(simd_x86_64)]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Avx512(Avx2);
 
 #[cfg(simd_x86_64)]
 impl Avx512 {
-    /// The proof, if the processor has them.
+    /// The proof, if the processor has all of them.
     pub(crate) fn find() -> Option<Self> {
         #[cfg(feature = "std")]
         let found = std::arch::is_x86_feature_detected!("avx512f")
@@ -191,10 +191,11 @@ impl Avx512 {
     }
 }
 
-/// A function that is compiled for AVX2, too, and whose kernel says which of both runs.
+/// A function that is also compiled for AVX2; its kernel says which version runs.
 ///
-/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. What the body calls has to be inlined.
-/// (Not a closure: one of 3,000 instructions was not inlined, and so was compiled for no level.)
+/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. What the body calls must be
+/// inlined. (This takes a body and not a closure: one of 3,000 instructions was not inlined, so it was compiled for no
+/// level.)
 macro_rules! at_best_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {
@@ -210,7 +211,7 @@ macro_rules! at_best_level {
                 fn avx2<$($parameters)*>($($argument: $type),*) $(-> $result)? {
                     $body
                 }
-                // SAFETY: the processor has AVX2, says the proof.
+                // SAFETY: the token proves that the processor has AVX2.
                 return unsafe { avx2::<$($names)*>($($argument),*) };
             }
             let _ = $kernel;
@@ -220,9 +221,11 @@ macro_rules! at_best_level {
 }
 pub(crate) use at_best_level;
 
-/// Functions of a level that call one that is generic over [`Lanes8`], which is inlined and so compiled for each level.
+/// Functions, one for each level, that call one generic over [`Lanes8`], which is inlined and so compiled for each
+/// level.
 ///
-/// `fn name[parameters][their names](arguments) -> result = generic;` gives a function whose first argument is the level.
+/// `fn name[parameters][their names](arguments) -> result = generic;` defines a function whose first argument is the
+/// level.
 macro_rules! compiled_for_each_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {
@@ -245,9 +248,9 @@ macro_rules! compiled_for_each_level {
                     $generic::<_, $($names)*>(lanes, $($argument),*)
                 }
                 match level {
-                    // SAFETY: the processor has AVX-512, says the token.
+                    // SAFETY: the token proves that the processor has AVX-512.
                     Level::Avx512(lanes) => return unsafe { avx512::<$($names)*>(lanes, $($argument),*) },
-                    // SAFETY: the processor has AVX2, FMA and POPCNT, says the token.
+                    // SAFETY: the token proves that the processor has AVX2, FMA and POPCNT.
                     Level::Avx2(lanes) => return unsafe { avx2::<$($names)*>(lanes, $($argument),*) },
                     _ => {}
                 }

@@ -1,19 +1,18 @@
-//! Convex polygons: what clipping leaves of a triangle, and the triangles it is drawn in.
+//! Clipping of triangles to convex polygons, and the triangles these are drawn as.
 //!
-//! Both vertex paths clip by [`clip`]. The planes come in one fixed order, and each new point is
-//! computed from the end of its edge that is inside towards the end that is outside. So two
-//! triangles that share an edge, which run through it in opposite directions, cut it in the same
-//! point, to the bit: no crack.
+//! Both vertex paths clip with [`clip`]. The planes come in a fixed order, and each new point is computed from the
+//! inside end of its edge toward the outside end. Two triangles that share an edge traverse it in opposite directions,
+//! yet cut it at the same point, to the bit, so no crack opens.
 
 use super::vertex::Vertex;
 
-/// The planes that clipping cuts at: near, then left, right, top and bottom of the guard band.
+/// Number of clip planes: near, then left, right, top and bottom of the guard band.
 pub const PLANES: usize = 5;
 
-/// The most corners: a triangle's, and at most one more for every plane.
+/// Maximum number of corners: three, and at most one more for every plane.
 pub const MAX_CORNERS: usize = 3 + PLANES;
 
-/// The corners of a convex polygon before their division, of whatever kind the vertex path has.
+/// The corners of a convex polygon before the perspective division, in the type of either vertex path.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners<C> {
     corners: [C; MAX_CORNERS],
@@ -24,7 +23,7 @@ impl<C: Copy> Corners<C> {
     /// The corners, in order.
     #[must_use]
     pub fn as_slice(&self) -> &[C] {
-        // Never more than there are places.
+        // At most `MAX_CORNERS`.
         &self.corners[..self.count]
     }
 
@@ -35,7 +34,7 @@ impl<C: Copy> Corners<C> {
         }
     }
 
-    /// Every corner as a vertex; `None` if one has none.
+    /// Projects every corner to a vertex; `None` if one of them has none.
     #[must_use]
     pub fn project(&self, mut vertex: impl FnMut(&C) -> Option<Vertex>) -> Option<Clipped> {
         let mut polygon = Clipped { vertices: [Vertex::default(); MAX_CORNERS], count: self.count };
@@ -46,10 +45,10 @@ impl<C: Copy> Corners<C> {
     }
 }
 
-/// Clips a triangle by planes (Sutherland, Hodgman 1974); `None` if nothing is left.
+/// Clips a triangle against the planes (Sutherland, Hodgman 1974); `None` if nothing is left.
 ///
-/// `distance` is a corner's distance from a plane, 0 ([`Default`]) or more inside. `cut` is the point where
-/// an edge meets a plane; it is given the plane, the inside and the outside end, and their distances.
+/// `distance` is a corner's distance from a plane, 0 ([`Default`]) or more inside. `cut` returns the point where an
+/// edge meets a plane; it is given the plane, the inside and the outside end, and their distances.
 #[must_use]
 pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     [a, b, c]: [C; 3],
@@ -82,7 +81,7 @@ pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     Some(polygon)
 }
 
-/// A convex polygon, except for the rounding of its corners.
+/// A clipped polygon, convex except for the rounding of its corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Clipped {
     vertices: [Vertex; MAX_CORNERS],
@@ -90,7 +89,7 @@ pub struct Clipped {
 }
 
 impl Clipped {
-    /// The triangles of the fan from this corner: which corners each has.
+    /// The triangles of the fan around this corner, as indices of their corners.
     fn fan(&self, apex: usize) -> impl Iterator<Item = [usize; 3]> {
         let corner = move |i: usize| (apex + i) % self.count;
         (2..self.count).map(move |i| [corner(0), corner(i - 1), corner(i)])
@@ -99,29 +98,28 @@ impl Clipped {
     /// The corners.
     #[cfg(feature = "alloc")]
     pub(crate) fn vertices(&self) -> &[Vertex] {
-        // Never more than there are places.
+        // At most `MAX_CORNERS`.
         &self.vertices[..self.count]
     }
 
-    /// The triangle of these corners.
+    /// The triangle with these corners.
     #[must_use]
     pub fn triangle(&self, corners: [usize; 3]) -> [Vertex; 3] {
-        // Below the number of corners, which is no greater than that of places.
+        // Below `count`, which is at most `MAX_CORNERS`.
         corners.map(|i| self.vertices[i % MAX_CORNERS])
     }
 
-    /// Twice the area, as [`doubled_area`] has it of a triangle.
+    /// Twice the area, in the units and with the sign of [`doubled_area`].
     #[must_use]
     pub fn doubled_area(&self) -> i64 {
         self.fan(0).map(|part| doubled_area(&self.triangle(part))).sum()
     }
 
-    /// The polygon in triangles that turn the same way as the whole.
+    /// The polygon as triangles that turn the same way as the whole.
     ///
-    /// Where a cut lies near a corner, three corners in a row may be all but on a line, and rounding
-    /// may dent the polygon there. A fan from any other corner would then cover the dent twice; a
-    /// fan from the dent does not. Triangles that still turn the other way, of polygons that are
-    /// hardly more than a line, are left out.
+    /// Where a cut lies near a corner, three successive corners may be nearly collinear, and rounding may dent the
+    /// polygon there. A fan from any other corner would then cover the dent twice; a fan from the dent does not.
+    /// Triangles that still turn the other way, in polygons that are hardly more than a line, are left out.
     pub fn parts(&self) -> impl Iterator<Item = [Vertex; 3]> {
         self.part_corners().map(|corners| self.triangle(corners))
     }
@@ -136,8 +134,8 @@ impl Clipped {
     }
 }
 
-/// Twice the area on the screen in (1/256 pixel)²: exact, and negative where the face is turned
-/// towards the eye, for it is counter-clockwise seen from outside and the screen's y runs down.
+/// Twice the area on the screen in (1/256 pixel)²: exact, and negative for a face turned toward the eye, since it is
+/// counter-clockwise seen from outside and the screen's y points down.
 #[must_use]
 #[inline]
 pub fn doubled_area(vertices: &[Vertex; 3]) -> i64 {

@@ -1,8 +1,8 @@
-//! Triangles as indices into columns of vertex values: the form in which the raster takes them.
+//! Triangles as indices into columns of vertex values, the raster's input format.
 //!
-//! A triangle is three indices, always. Nothing copies it: culling, set-up and the pixel stages each read the values that
-//! they need from the columns. A [`Pick`] says which triangle to draw, which side of it is seen, and what class
-//! culling found it to be.
+//! A triangle is always three indices, and nothing copies it: culling, set-up and the pixel stages each read the values
+//! they need from the columns. A [`Pick`] says which triangle to draw, which of its sides is visible, and which class
+//! culling assigned to it.
 
 #[cfg(feature = "alloc")]
 use glam::Vec3;
@@ -13,14 +13,14 @@ use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 use crate::lanes::three;
 
-/// Place of a vertex on the screen: x and y in 1/256 pixel, in the guard band; or that it needs clipping. It is one
-/// number, so that it is read at once.
+/// Screen position of a vertex, x and y in 1/256 pixel within the guard band, or a mark that it needs clipping. Packed
+/// into one number, so that one load reads it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub(crate) struct ScreenPos(u64);
 
 impl ScreenPos {
-    /// The x of those that need clipping: far outside of the guard band.
+    /// The x of a vertex that needs clipping: far outside the guard band.
     pub(crate) const BEYOND: i32 = i32::MIN;
     #[cfg(any(feature = "alloc", test))]
     pub(crate) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
@@ -62,7 +62,7 @@ impl From<ScreenPos> for u64 {
     }
 }
 
-/// Values of vertices, an array for each. Those of effects are empty where nothing asks for them.
+/// Vertex values, one array for each. Arrays for effects are empty where nothing needs them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns<'a> {
     pub(crate) at: &'a [ScreenPos],
@@ -73,7 +73,7 @@ pub(crate) struct Columns<'a> {
     pub(crate) effects: EffectColumns<'a>,
 }
 
-/// Values that effects need.
+/// Vertex values for effects.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EffectColumns<'a> {
@@ -83,7 +83,7 @@ pub(crate) struct EffectColumns<'a> {
     pub(crate) fog: &'a [U8F8],
     /// Red, green and blue, front and back.
     pub(crate) channels: &'a [[[U8F8; 3]; 2]],
-    /// Column and row in a table of normals, of the front.
+    /// Column and row in a table of normals, for the front.
     pub(crate) slope: &'a [[U8F8; 2]],
     pub(crate) lit: LitColumn<'a>,
 }
@@ -103,13 +103,13 @@ pub struct Attributes {
     pub slope: [U8F8; 2],
     /// Input of [`Lighting`](super::effects::Lighting): a normal and a position.
     ///
-    /// For [`ShadeSource::Curved`](super::effects::ShadeSource::Curved) it is the shade at the corner, or its three channels, and then those at the middle
-    /// (on the screen) of the edge opposite to it. They are in 8.8, and may lie beyond what can be shown, where the
-    /// limits cut them off.
+    /// For [`ShadeSource::Curved`](super::effects::ShadeSource::Curved) these are the shade at the corner, or its three
+    /// channels, and then the shade or channels at the midpoint (on the screen) of the opposite edge. They are in 8.8
+    /// and may exceed the displayable range; the limits clamp them.
     pub lit: [f32; 6],
 }
 
-/// A value of 0 to 0xFF00 that is linear over a triangle, beside its shade.
+/// A value other than the shade that is linear over a triangle, 0 to 0xFF00.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Value {
@@ -123,10 +123,10 @@ pub(crate) enum Value {
 
 #[cfg(feature = "alloc")]
 impl Value {
-    /// Values that one pipeline asks for, at most.
+    /// The most values that one pipeline asks for.
     pub(crate) const MAX_COUNT: usize = 4;
 
-    /// Its place among those of a pipeline, which has channels or a table of normals.
+    /// Index among the values of a pipeline, which has either channels or a table of normals.
     #[inline(always)]
     pub(crate) const fn slot(self) -> usize {
         match self {
@@ -138,7 +138,7 @@ impl Value {
 
 #[cfg(feature = "alloc")]
 impl EffectColumns<'_> {
-    /// A value at a vertex as one side sees it.
+    /// A value at a vertex, as seen from one side.
     #[inline(always)]
     pub(crate) fn value(&self, value: Value, vertex: usize, side: usize) -> u16 {
         match value {
@@ -149,13 +149,13 @@ impl EffectColumns<'_> {
     }
 }
 
-/// Input of light at the pixels.
+/// Input of per-pixel lighting.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LitColumn<'a> {
-    /// Normals, of the front, and positions, of a mesh.
+    /// Normals (of the front) and positions of a mesh.
     Points(&'a [Vec3], &'a [Vec3]),
-    /// Normal and position, or a curve, of the side that is seen; see [`Attributes::lit`].
+    /// Normal and position, or a curve, for the visible side; see [`Attributes::lit`].
     Values(&'a [[f32; 6]]),
 }
 
@@ -168,7 +168,7 @@ impl Default for LitColumn<'_> {
 
 #[cfg(feature = "alloc")]
 impl LitColumn<'_> {
-    /// The values at a vertex as one side sees them.
+    /// The values at a vertex, as seen from one side.
     #[inline]
     pub(crate) fn get(&self, vertex: usize, side: usize) -> [f32; 6] {
         match self {
@@ -182,7 +182,7 @@ impl LitColumn<'_> {
     }
 }
 
-/// Triangles of vertices in columns.
+/// Triangles as indices into columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangles<'a> {
     pub(crate) columns: Columns<'a>,
@@ -192,14 +192,14 @@ pub(crate) struct Triangles<'a> {
 /// Triangles to be drawn, in order. None of them needs clipping.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Picks<'a> {
-    /// A [`Pick`] each.
+    /// One [`Pick`] per triangle.
     pub(crate) picks: &'a [u32],
-    /// The one shade of each triangle, or its three channels; empty where the corners have their own.
+    /// The single shade of each triangle, or its three channels; empty where the corners have their own.
     pub(crate) flat: &'a [[U8F8; 3]],
 }
 
 impl<'a> Picks<'a> {
-    /// Picks `first` to `end`, which are there.
+    /// Picks `first` to `end`, which must exist.
     #[inline(always)]
     pub(crate) fn range(&self, first: usize, end: usize) -> Self {
         let flat = if self.flat.is_empty() { self.flat } else { &self.flat[first..end] };
@@ -212,7 +212,7 @@ impl<'a> Picks<'a> {
         Pick(self.picks[k])
     }
 
-    /// The one shade of pick `k`, if its triangle has one.
+    /// The single shade of pick `k`, if its triangle has one.
     #[inline(always)]
     pub(crate) fn flat_shade(&self, k: usize) -> Option<U8F8> {
         if self.flat.is_empty() { None } else { Some(self.flat[k][0]) }
@@ -220,7 +220,7 @@ impl<'a> Picks<'a> {
 }
 
 impl Triangles<'_> {
-    /// None at all.
+    /// No triangles.
     #[cfg(feature = "alloc")]
     pub(crate) const NONE: Self = {
         let lit = LitColumn::Values(&[]);
@@ -234,7 +234,7 @@ impl Triangles<'_> {
         three(self.indices[pick.index()], |i| i as usize)
     }
 
-    /// The most pieces, each of which starts anew, of a row of a triangle that is not larger than the lanes take.
+    /// The most reseeded pieces in a row of a triangle that fits the eight-lane set-up.
     #[inline(always)]
     pub(crate) fn pieces(&self, pick: Pick) -> usize {
         let [a, b, c] = three(self.corners(pick), |i| self.columns.at[i].x());
@@ -253,7 +253,7 @@ impl Triangles<'_> {
 }
 
 impl Columns<'_> {
-    /// Vertex `i`, which needs no clipping, as one side sees it, or with another shade.
+    /// Vertex `i`, which needs no clipping, as seen from one side, or with another shade.
     #[inline]
     pub(crate) fn vertex(&self, i: usize, side: usize, shade: Option<U8F8>) -> Vertex {
         let at = self.at[i];
@@ -261,7 +261,8 @@ impl Columns<'_> {
         Vertex::of_projected(I24F8::from_bits(at.x()), I24F8::from_bits(at.y()), shade, self.depth[i])
     }
 
-    /// The values of vertex `i` beyond those as one side sees them, those that there are, with `lit` the input of light, too.
+    /// The remaining values of vertex `i` as seen from one side, where there are any; the input of lighting only with
+    /// `lit`.
     #[cfg(feature = "alloc")]
     pub(crate) fn attributes(&self, i: usize, side: usize, lit: bool) -> Attributes {
         let EffectColumns { texture, fog, channels, slope, lit: points } = self.effects;
@@ -275,7 +276,7 @@ impl Columns<'_> {
     }
 }
 
-/// Column and row in a table of normals from one side: the back sees the normal from behind.
+/// A column and row in a table of normals, as seen from one side: the back sees the normal from behind.
 #[cfg(feature = "alloc")]
 #[inline]
 pub(crate) fn seen_slope(slope: [U8F8; 2], side: usize) -> [U8F8; 2] {

@@ -1,5 +1,5 @@
-//! Culling of many triangles at a time, by the positions of their corners alone: back faces, and triangles that cover no
-//! pixel centre. Most of a fine model's triangles end here. The others get the class that they are set up by.
+//! Culls many triangles at a time by the positions of their corners alone: back faces, and triangles that cover no
+//! pixel centre. Most triangles of a fine model end here. The others get the class they are set up by.
 
 use super::columns::ScreenPos;
 use super::frame::Rect;
@@ -9,30 +9,30 @@ use crate::fixed::HAS_F64;
 use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 
-/// The longer side of the box of a triangle whose pixels are looked at one by one.
+/// The longest box side, in pixels, of a triangle whose pixels are tested one by one.
 pub(crate) const TINY_SIDE: i32 = 2;
 
-/// Results for up to 64 triangles: a bit for each, the first lowest.
+/// Results for up to 64 triangles, one bit each, the first lowest.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) struct CullMasks {
     /// A corner needs clipping. The other bits of such a triangle are 0.
     pub(crate) clipped: u64,
-    /// Turned towards the eye.
+    /// Turned toward the eye.
     pub(crate) front: u64,
-    /// Back faces. A triangle that is neither has no area.
+    /// Turned away from the eye. A triangle in neither mask has no area.
     pub(crate) back: u64,
-    /// A pixel centre of the clip rectangle lies in the triangle's box, its left and top sides included; and if the box has
-    /// only 2 × 2, one of them in the triangle.
+    /// The triangle's box, left and top sides included, holds a pixel centre of the clip rectangle; and if the box is
+    /// only 2 × 2 pixels, one of them lies in the triangle.
     pub(crate) covers: u64,
-    /// The class; of those that cover nothing it means nothing.
+    /// The class; meaningless for triangles that cover nothing.
     pub(crate) large: u64,
     pub(crate) crosses: u64,
     pub(crate) unbatched: u64,
 }
 
 compiled_for_each_level! {
-    /// Culls up to 64 triangles. The cover of pixels is found for those that have an area, and if it `culls`, only for those
-    /// that are turned towards the eye.
+    /// Culls up to 64 triangles. Coverage is found only for triangles with an area, and if it `culls`, only for those
+    /// turned toward the eye.
     ///
     /// # Panics
     /// If a triangle has a corner that is not in `at`.
@@ -41,7 +41,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks {
-    // Not by f64, so that a chip's program holds no soft-float code.
+    // Without f64, so that a microcontroller's program contains no soft-float code.
     if !HAS_F64 {
         return cull_in_integers(at, triangles, culls);
     }
@@ -60,7 +60,7 @@ fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect
     masks
 }
 
-/// Culls up to 64 triangles by the side that they show. All that are seen may cover something, and are drawn one by one.
+/// Culls up to 64 triangles by the side they show. Every visible one may cover something, and is drawn by itself.
 fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> CullMasks {
     let mut masks = CullMasks::default();
     for (i, triangle) in triangles.iter().take(CHUNK).enumerate() {
@@ -81,12 +81,12 @@ fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> Cu
     masks
 }
 
-/// Bits of eight triangles, in the order of the fields of [`CullMasks`].
+/// The bits of eight triangles, in the order of the fields of [`CullMasks`].
 #[inline(always)]
 fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], clip: Rect, culls: bool) -> [u32; 7] {
     let [a, b, c] = s.gather(at, triangles);
     let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
-    // The mark is the least number there is. Of such a triangle the other numbers mean nothing.
+    // The mark is the smallest i32. The other values of such a triangle are meaningless.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
     let clipped = s.to_bitmask(s.is_equal(least, s.splat_i32(ScreenPos::BEYOND)));
     // Exact in f64: differences are at most 2²¹, products 2⁴².
@@ -96,7 +96,7 @@ fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], 
     let zero = s.splat_f64(0.0);
     let front = s.to_bitmask(s.is_less(area, zero)) & !clipped;
     let back = s.to_bitmask(s.is_less(zero, area)) & !clipped;
-    // Neighbours mostly turn the same way.
+    // Neighbours usually face the same way.
     let seen = if culls { front } else { front | back };
     if seen == 0 {
         return [clipped, front, back, 0, 0, 0, 0];
@@ -108,13 +108,13 @@ fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], 
     let covers = s.to_bitmask(bounds.but_empty(s, covers, x, y));
     let small = s.to_bitmask(bounds.are_small(s));
     let crosses = s.to_bitmask(bounds.cross(s, clip));
-    // Neighbours are mostly of one size.
+    // Neighbours are usually of similar size.
     let large = if covers & (!small | crosses) == 0 { 0xFF } else { s.to_bitmask(bounds.are_batched(s)) };
     [clipped, front, back, covers, large & !small & !crosses, large & crosses, !large & 0xFF]
 }
 
 impl CullMasks {
-    /// Puts in bits of up to eight triangles, from number `first` on.
+    /// Inserts the bits of up to eight triangles, the first at bit `first`.
     #[inline(always)]
     fn add(&mut self, first: usize, are_triangles: u64, found: [u32; 7]) {
         let [clipped, front, back, covers, large, crosses, unbatched] = found;
@@ -146,11 +146,11 @@ impl CullMasks {
     }
 }
 
-/// Room for at most `N` − 8 picks.
+/// A list of at most `N` − 8 picks.
 pub(crate) type PickList<const N: usize> = Packed<N>;
 
 compiled_for_each_level! {
-    /// Puts those of 64 triangles behind the other picks whose bits are set in `chosen`, from index `first` on.
+    /// Appends to the list, of the 64 triangles from index `first` on, those whose bits are set in `chosen`.
     pub(crate) fn pick[const N: usize][N](list: &mut PickList<N>, first: u32, masks: &CullMasks, chosen: u64) = pick_by;
 }
 
@@ -175,7 +175,7 @@ fn pick_by<S: Lanes8, const N: usize>(s: S, list: &mut PickList<N>, first: u32, 
     }
 }
 
-/// `value` where the bits of a part are set.
+/// `value` in the lanes whose bits of this part are set, 0 in the others.
 #[inline(always)]
 fn bit<S: Lanes8>(s: S, bits: u64, part: usize, value: u32) -> S::I32 {
     // The low byte.
@@ -183,8 +183,8 @@ fn bit<S: Lanes8>(s: S, bits: u64, part: usize, value: u32) -> S::I32 {
     s.select_i32(mask, s.splat_i32(value.cast_signed()), s.splat_i32(0))
 }
 
-/// The bounds of eight triangles: of their corners in 1/256 pixel, and the box of pixel centres between these, its ends
-/// excluded.
+/// The bounds of eight triangles: of their corners in 1/256 pixel, and the box of the pixel centres between them, with
+/// exclusive ends.
 struct Bounds<S: Lanes8> {
     x: [S::I32; 2],
     y: [S::I32; 2],
@@ -201,7 +201,7 @@ impl<S: Lanes8> Bounds<S> {
         Self { x, y, columns, rows }
     }
 
-    /// A pixel centre of the rectangle, which lies inside a frame, is in the box.
+    /// Where a pixel centre of the rectangle, which lies inside a frame, is in the box.
     #[inline(always)]
     fn overlap(&self, s: S, clip: Rect) -> S::Mask {
         // Sides are at most 4,096.
@@ -212,7 +212,7 @@ impl<S: Lanes8> Bounds<S> {
         s.and(in_columns, s.is_greater(s.min_i32(self.rows[1], side(clip.y1)), first))
     }
 
-    /// The box does not lie inside the rectangle.
+    /// Where the box does not lie inside the rectangle.
     #[inline(always)]
     fn cross(&self, s: S, clip: Rect) -> S::Mask {
         let side = |side: u32| s.splat_i32(side as i32);
@@ -230,7 +230,7 @@ impl<S: Lanes8> Bounds<S> {
         s.and(few_columns, s.is_greater(s.splat_i32(MAX_ROWS + 1), s.sub_i32(self.rows[1], self.rows[0])))
     }
 
-    /// They are small enough for set-up in f64.
+    /// Where the triangles are small enough for set-up in f64.
     #[inline(always)]
     fn are_batched(&self, s: S) -> S::Mask {
         // Differences are at most 2²¹.
@@ -242,8 +242,8 @@ impl<S: Lanes8> Bounds<S> {
         s.and(sides, s.is_greater(s.splat_i32(MAX_AREA_4X4 + 1), squares))
     }
 
-    /// Those of `triangles` that cover a pixel, as far as it is found out: if a box has at most 2 × 2 pixels, one of them
-    /// lies in the triangle.
+    /// Removes from `triangles` those found to cover no pixel: if a box has at most 2 × 2 pixels, one of them must lie
+    /// in the triangle.
     #[inline(always)]
     fn but_empty(&self, s: S, triangles: S::Mask, x: [S::I32; 3], y: [S::I32; 3]) -> S::Mask {
         let end = s.splat_i32(TINY_SIDE + 1);
@@ -271,14 +271,14 @@ fn ends<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 2] {
     [s.min_i32(s.min_i32(a, b), c), s.max_i32(s.max_i32(a, b), c)]
 }
 
-/// Triangles that have none of four pixels: that at the origin, the next, and the two below. The answer is right only where
-/// corners are less than 1,024 units away.
+/// Triangles that cover none of four pixels: the one at the origin, its right neighbour, and the two below. The result
+/// is right only if the corners are less than 1,024 units away.
 ///
 /// ```text
 /// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
-/// A point on an edge lies inside if the edge is a left or a top one; otherwise one step of E more makes it negative.
+/// A point on an edge lies inside if the edge is a left or a top one; otherwise E minus 1 makes it negative.
 #[inline(always)]
 fn cover_none_of_four<S: Lanes8>(s: S, a: (S::I32, S::I32), b: (S::I32, S::I32), c: (S::I32, S::I32)) -> S::Mask {
     let (ab, bc, ca) = (cross(s, a, b), cross(s, b, c), cross(s, c, a));
@@ -294,13 +294,13 @@ fn cover_none_of_four<S: Lanes8>(s: S, a: (S::I32, S::I32), b: (S::I32, S::I32),
     s.is_greater(s.splat_i32(0), none)
 }
 
-/// An edge at the origin.
+/// The edge function at the origin.
 #[inline(always)]
 fn cross<S: Lanes8>(s: S, (ax, ay): (S::I32, S::I32), (bx, by): (S::I32, S::I32)) -> S::I32 {
     s.sub_i32(s.mul_i32(ax, by), s.mul_i32(ay, bx))
 }
 
-/// An edge at the four pixels, negative where they lie outside.
+/// The edge function at the four pixels, negative outside.
 #[inline(always)]
 fn at_four<S: Lanes8>(s: S, e: S::I32, from: (S::I32, S::I32), to: (S::I32, S::I32), turned: S::I32) -> [S::I32; 4] {
     let dx = turn(s, s.sub_i32(to.0, from.0), turned);
@@ -345,11 +345,11 @@ mod tests {
     }
 
     fn kernels() -> Vec<Kernel> {
-        // Every level that the processor has, the lower ones too: `simd` alone is the highest.
+        // Every level the processor has, lower ones included: `simd` alone is the highest.
         Kernel::available().collect()
     }
 
-    /// The sides of random triangles in integers are those of the lanes.
+    /// Random triangles show the same sides in integers as in the lanes.
     #[test]
     fn sides_in_integers_are_those_of_lanes() {
         let mut seed = 1_u64;
@@ -374,8 +374,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every kernel finds the sign of the raster's area of every face, and leaves out no face that the raster draws
-        /// a pixel of.
+        /// Every kernel finds the same sign of each face's area as the raster, and leaves out no face of which the
+        /// raster draws a pixel.
         #[test]
         fn what_is_left_out_covers_nothing(
             culls: bool,

@@ -1,5 +1,4 @@
-//! Depth buffers. What the depth of a triangle is at a pixel is defined by
-//! [`DepthPlane`](super::reference::depth::DepthPlane).
+//! Depth buffers. [`DepthPlane`](super::reference::depth::DepthPlane) defines the depth of a triangle at a pixel.
 
 use super::error::RasterError;
 use super::frame::Frame;
@@ -8,8 +7,8 @@ use super::frame::Rect;
 pub(crate) use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
-/// A depth buffer over the rows of a frame: a u32 a pixel, or a u16 on small machines (`Cell` says
-/// what that loses); greater is nearer, 0 is farthest. The slice is the caller's.
+/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines (`Cell` says what that
+/// loses); greater is nearer, 0 is farthest. The slice is the caller's.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],
@@ -33,15 +32,15 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         }
     }
 
-    /// Everything as far away as can be.
+    /// Sets every depth to the farthest.
     pub fn clear(&mut self) {
         self.values.fill(D::default());
     }
 
-    /// Makes everything as far away as can be in a rectangle that the buffer holds.
+    /// Sets every depth in a rectangle that the buffer holds to the farthest.
     #[cfg(feature = "alloc")]
     pub(super) fn clear_within(&mut self, Rect { x0, y0, x1, y1 }: Rect) {
-        // Whole rows are one piece.
+        // Whole rows are contiguous.
         if x1 - x0 == self.width {
             let (first, end) = ((y0 - self.first_row) * self.width, (y1 - self.first_row) * self.width);
             return self.values[first as usize..end as usize].fill(D::default());
@@ -53,7 +52,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         }
     }
 
-    /// Returns whether it was laid over a frame of this width that holds these rows.
+    /// Returns whether it was laid over a frame of this width and these rows.
     pub(super) fn holds(&self, width: u32, rows: &core::ops::Range<u32>) -> bool {
         let values = u64::from(width) * u64::from(rows.end - rows.start);
         self.width == width && self.first_row == rows.start && self.values.len() as u64 == values
@@ -65,7 +64,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         D::cells(self.values)
     }
 
-    /// The depths from column `x` of row `y` on, those of later rows among them, or `None` if the buffer does not hold the row.
+    /// The depths from column `x` of row `y` to the end of the buffer, or `None` if the buffer does not hold the row.
     #[cfg(feature = "alloc")]
     #[inline]
     pub(super) fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [D]> {
@@ -77,7 +76,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     #[must_use]
     #[inline]
     pub fn row_mut(&mut self, y: u32) -> Option<&mut [D]> {
-        // The index of a row far beyond the last may be more than a 32-bit processor counts.
+        // The offset of a row far beyond the last may overflow usize on a 32-bit processor.
         let width = self.width as usize;
         let start = (y.checked_sub(self.first_row)? as usize).checked_mul(width)?;
         self.values.get_mut(start..start.checked_add(width)?)
@@ -88,7 +87,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 mod tests {
     use super::*;
 
-    /// Cells outside the rectangle stay, also where whole rows are cleared and in a band.
+    /// Cells outside the rectangle do not change, even where whole rows are cleared and in a band.
     #[test]
     fn a_rectangle_is_cleared_and_no_more() {
         for (x0, x1) in [(0, 5), (1, 4)] {

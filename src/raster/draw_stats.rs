@@ -4,27 +4,27 @@
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub struct DrawStats {
-    /// Spans handed to a pixel loop, pieces between two starts counted each.
+    /// Spans handed to a pixel loop; reseeded pieces of a row count separately.
     pub spans: u32,
     /// Pixels covered inside the clip rectangle.
     pub covered: u32,
-    /// Pixels written: those covered, less those behind what the depth buffer holds.
+    /// Pixels written: the covered ones, minus those hidden by the depth buffer.
     pub pixels: u32,
     /// Pixels whose depth was compared with the depth buffer's.
     pub tested: u32,
     /// Pixels that got a texel.
     pub textured: u32,
-    /// Pixels whose texel is of a level that was chosen for them, level 0 among them.
+    /// Pixels whose mipmap level was chosen, including those that got level 0.
     pub mipmapped: u32,
     /// Pixels that got a threshold of the dither pattern.
     pub dithered: u32,
     /// Pixels looked up in a fog table.
     pub fogged: u32,
-    /// Pixels looked up in a table with what was behind them.
+    /// Pixels blended with the frame through a table.
     pub blended: u32,
     /// Pixels mixed from three channels.
     pub mixed: u32,
-    /// Pixels that were lit each for itself.
+    /// Pixels that were lit individually.
     pub lit: u32,
 }
 

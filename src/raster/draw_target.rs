@@ -53,7 +53,7 @@ impl DrawTarget for Frame<'_> {
     type Color = Index;
     type Error = Infallible;
 
-    /// Pixels outside the frame, or in rows that this band does not hold, are left out.
+    /// Pixels outside the frame, or in rows that this band does not hold, are skipped.
     fn draw_iter<I: IntoIterator<Item = Pixel<Index>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         for Pixel(at, Index(index)) in pixels {
             let (Ok(x), Ok(y)) = (usize::try_from(at.x), u32::try_from(at.y)) else { continue };
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// A filled rectangle is those of its pixels that the band holds, put in one by one.
+        /// A filled rectangle gives the same bytes as setting each of its pixels that the band holds.
         #[test]
         fn a_filled_rectangle_is_its_pixels(
             (x, y) in (-12_i32..20, -12_i32..20),
@@ -111,7 +111,7 @@ mod tests {
             prop_assert_eq!(filled, expected);
         }
 
-        /// Pixels that the band holds are drawn, a later one over an earlier; others are left out.
+        /// Pixels in the band are drawn, later ones over earlier ones; others are skipped.
         #[test]
         fn pixels_are_drawn_where_the_band_holds_them(
             places in prop::collection::vec(((-3_i32..16, -3_i32..15), 1_u8..), 0..60),

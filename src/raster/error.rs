@@ -7,7 +7,7 @@ use crate::fixed::{I24F8, U8F8};
 /// The most columns or rows of a frame.
 pub(super) const MAX_SIDE: u32 = 4096;
 
-/// Error of what the raster was given: a frame, a depth buffer or a vertex.
+/// A frame, depth buffer or vertex that the raster refuses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RasterError {
@@ -41,7 +41,7 @@ pub enum RasterError {
         /// Bytes needed.
         needed: usize,
     },
-    /// There are fewer depths than the frame has columns times rows that it holds.
+    /// There are fewer depths than the frame's columns times the rows it holds.
     Depths {
         /// Depths given.
         given: usize,

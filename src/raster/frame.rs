@@ -19,10 +19,10 @@ pub struct Rect {
 }
 
 impl Rect {
-    /// Without a pixel; its hull with another is the other.
+    /// An empty rectangle whose hull with another is the other.
     #[cfg(feature = "alloc")]
     pub(crate) const NOWHERE: Self = Self { x0: u32::MAX, y0: u32::MAX, x1: 0, y1: 0 };
-    /// A rectangle that holds all of any frame.
+    /// A rectangle that contains every frame.
     #[cfg(feature = "alloc")]
     pub(crate) const EVERYWHERE: Self = Self { x0: 0, y0: 0, x1: u32::MAX, y1: u32::MAX };
 
@@ -37,7 +37,7 @@ impl Rect {
         }
     }
 
-    /// The least rectangle that holds both. The corners of an empty one count, too.
+    /// The smallest rectangle that contains both. The corners of an empty one count too.
     #[cfg(feature = "alloc")]
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
@@ -55,9 +55,8 @@ impl Rect {
     }
 }
 
-/// A frame of bytes, row-major, borrowed from whoever owns them. It may hold all rows or a band of
-/// them; coordinates are those of the whole frame either way, and drawing in bands gives the same
-/// bytes as drawing the whole.
+/// A frame of bytes, row-major, borrowed from their owner. It may hold all rows or a band of them; coordinates are
+/// always those of the whole frame, and drawing in bands gives the same bytes as drawing the whole.
 #[derive(Debug)]
 pub struct Frame<'a> {
     pixels: &'a mut [u8],
@@ -79,8 +78,8 @@ impl<'a> Frame<'a> {
         Self::band(pixels, width, height, pitch, 0..height)
     }
 
-    /// The band `rows` of a frame of `width × height`: `pixels` holds those rows alone. A chip with
-    /// 5 KiB to spare draws 320 × 200 as thirteen bands.
+    /// The band `rows` of a frame of `width × height`: `pixels` holds only those rows. A microcontroller with 5 KiB to
+    /// spare draws 320 × 200 as thirteen bands.
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and a band that is empty or reaches beyond the frame.
@@ -127,7 +126,7 @@ impl<'a> Frame<'a> {
         self.rows.clone()
     }
 
-    /// All pixels that it holds.
+    /// The rectangle of the pixels that it holds.
     #[must_use]
     pub fn bounds(&self) -> Rect {
         Rect { x0: 0, y0: self.rows.start, x1: self.width, y1: self.rows.end }
@@ -149,7 +148,7 @@ impl<'a> Frame<'a> {
         self.pixels.get_mut(start..start + self.width as usize)
     }
 
-    /// The pixels from column `x` of row `y` on, those of later rows among them, or `None` if the frame does not hold the row.
+    /// The pixels from column `x` of row `y` to the end, or `None` if the frame does not hold the row.
     #[cfg(feature = "alloc")]
     #[inline]
     pub(super) fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [u8]> {
@@ -163,7 +162,7 @@ impl<'a> Frame<'a> {
         (self.pixels, self.pitch)
     }
 
-    /// Sets every pixel that it holds to `index`; bytes between the rows stay.
+    /// Sets every pixel that it holds to `index`; bytes between the rows are left alone.
     pub fn clear(&mut self, index: u8) {
         for y in self.rows() {
             if let Some(row) = self.row_mut(y) {
@@ -183,11 +182,11 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Parts the frame into bands of `rows_each` rows (at least 1), the last perhaps shorter.
+    /// Splits the frame into bands of `rows_each` rows (at least 1); the last may be shorter.
     pub fn bands(&mut self, rows_each: u32) -> impl Iterator<Item = Frame<'_>> {
         let (width, height, pitch, rows) = (self.width, self.height, self.pitch, self.rows.clone());
         let rows_each = rows_each.max(1);
-        // The last chunk may lack the bytes after the last pixel; it still holds width of them.
+        // The last chunk may lack the bytes after the last pixel; it still holds `width` bytes.
         self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
             let first = rows.start + band * rows_each;
             Frame::band(pixels, width, height, pitch, first..(first + rows_each).min(rows.end)).ok()

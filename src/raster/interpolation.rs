@@ -1,48 +1,49 @@
-//! Interpolation of shades over a triangle: a list to which one can add a row.
+//! Interpolation of shades over a triangle.
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// | shading | off from exact by less than | in |
+/// | shading | differs from exact by less than | in |
 /// |---|---|---|
 /// | `GouraudVintage` | – (from other vertices) | `vintage` |
 /// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | `shade` |
 /// | `GouraudReseeded` | ½ + ¼ | `shade` |
 /// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | `fixed16` |
-/// | `GouraudHyperbolic` | ½, or just that | `hyperbolic` |
+/// | `GouraudHyperbolic` | ½, or exactly that | `hyperbolic` |
 /// | `Float` | ½ + 1/8,192 | `float` |
 ///
-/// Exact is linear on the screen, and for the last two linear on the face.
+/// The exact shade is linear on the screen, and for the last two linear on the face.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Interpolation {
-    /// One byte for the whole triangle; the shades of the vertices are not looked at.
+    /// One byte for the whole triangle; the shades of the vertices are ignored.
     Flat(u8),
-    /// Gouraud's shading as the sources print it: vertices on whole pixels, slopes and steps cut, no half added.
+    /// Gouraud's shading as the sources print it: vertices on whole pixels, slopes and steps truncated, no half added.
     ///
-    /// It has no exact cover. Where another method says which pixels, it gives the shades alone.
+    /// It has no exact coverage. Where another method determines the pixels, it contributes only the shades.
     GouraudVintage,
-    /// Linear between the vertices, each row of the triangle one span: the start exact, one
-    /// addition a pixel from there on.
+    /// Linear between the vertices, each row of the triangle one span: the start is exact, with one addition per pixel
+    /// from there on.
     Gouraud,
-    /// Linear between the vertices, each row of the triangle started anew every 64 pixels.
+    /// Linear between the vertices, each row of the triangle reseeded every 64 pixels.
     ///
-    /// Each start is exact, with one addition a pixel from there on.
+    /// Each start is exact, with one addition per pixel from there on.
     #[default]
     GouraudReseeded,
     /// Linear between the vertices in 16.16, each row of the triangle one span.
     Gouraud1616,
-    /// Linear on the face in space, so perspective-correct: a quotient for every pixel, the nearest
-    /// shade to exact. It takes the depths of the vertices for 1/w.
+    /// Linear on the face in space, so perspective-correct: one quotient per pixel, the shade nearest to exact. It uses
+    /// the depths of the vertices as 1/w.
     GouraudHyperbolic,
-    /// Linear on the face in space in f32: shade/w and 1/w linear, a division a pixel.
+    /// Linear on the face in space in f32: shade/w and 1/w linear, one division per pixel.
     ///
-    /// It is there only with an allocator, so that the raster of a chip without floating point holds no routine for it.
+    /// It exists only with an allocator, so that the raster of a microcontroller without floating point links no
+    /// routine for it.
     #[cfg(feature = "alloc")]
     Float,
 }
 
 impl Interpolation {
-    /// Interpolations between the vertices, all of them.
+    /// All interpolations between the vertices.
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,
         Self::Gouraud,
@@ -75,7 +76,7 @@ impl Interpolation {
         !matches!(self, Self::GouraudVintage)
     }
 
-    /// Returns whether shades are linear on the face in space, and not on the screen.
+    /// Returns whether shades are linear on the face in space rather than on the screen.
     #[must_use]
     pub const fn is_linear_on_the_face(self) -> bool {
         match self {
@@ -86,7 +87,7 @@ impl Interpolation {
         }
     }
 
-    /// Summand of a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
+    /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
     pub const fn rounding(self) -> u8 {
         match self {

@@ -1,31 +1,29 @@
 //! The raster: from projected vertices to bytes, exact where it counts.
 //!
-//! A projected coordinate has been rounded once, to 1/256 pixel. From there on everything is
-//! integer, and **cover is exact**: a pixel is drawn if and only if its centre, at
-//! (x + ½, y + ½), lies inside the triangle or on a top or left edge. Two triangles that share an
-//! edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies within
-//! `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither is reached by
-//! clamping pixels: `reference::edge` walks the edges with quotient and remainder,
-//! `reference::shade` says why no sum can leave the range. One [`Interpolation`] has neither:
-//! that of the sources, `vintage`.
+//! A projected coordinate has been rounded once, to 1/256 pixel. From there on everything is integer, and **coverage is
+//! exact**: a pixel is drawn if and only if its centre, at (x + ½, y + ½), lies inside the triangle or on a top or left
+//! edge. Two triangles that share an edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies
+//! within `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither relies on clamping pixels:
+//! `reference::edge` walks the edges with quotient and remainder, and `reference::shade` explains why no sum can leave
+//! the range. One [`Interpolation`] guarantees neither: `vintage`, the one printed in the sources.
 //!
-//! The stages, in the order in which a triangle passes them:
+//! The files, in the order in which a triangle passes through them:
 //!
 //! | file | what |
 //! |---|---|
-//! | `vertex` | what may enter: a [`Vertex`] is checked when it is made |
-//! | `clip` | what clipping before the projection leaves of a triangle, in triangles |
+//! | `vertex` | what may enter: a [`Vertex`] is checked on construction |
+//! | `clip` | what clipping before the projection leaves of a triangle, as triangles |
 //! | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
 //! | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
-//! | `interpolation` | the shadings there are |
-//! | `vintage` | both as the sources print them |
+//! | `interpolation` | the list of shadings |
+//! | `vintage` | coverage and shades as the sources print them |
 //! | `depth` | depth buffers |
-//! | `shade_trace` | start, step and sum of a single pixel, for those who ask |
+//! | `shade_trace` | start, step and sum of a single pixel, for inspection |
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
-//! | `triangle` | all of it for one triangle: [`Raster::triangle`] |
+//! | `triangle` | one triangle from vertices to bytes: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
-//! | `triangles` | the same by vertices: [`Raster::triangles`] |
-//! | `scan_line` | all of it for a frame of triangles, each pixel once |
+//! | `triangles` | many triangles given as vertices: [`Raster::triangles`] |
+//! | `scan_line` | a whole frame of triangles, each pixel written once |
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};

@@ -1,6 +1,6 @@
 //! Painting of a triangle's rows: the choice of the pixel loop and of its start.
 //!
-//! Every way to draw a triangle paints its rows here, whole or in parts, so all give the same bytes.
+//! Every method of drawing a triangle paints its rows here, whole or in parts, so all give the same bytes.
 
 use core::ops::Range;
 
@@ -64,7 +64,7 @@ impl RowShader {
         }
     }
 
-    /// Apart, so that the loops that draw linear shades hold no more than these.
+    /// Separate, so that the loops for linear shades contain nothing else.
     #[inline(never)]
     fn of_another_kind(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {
@@ -73,7 +73,7 @@ impl RowShader {
             Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
             Interpolation::Float => Self::Float(FloatPlane::of_values(triangle, values)),
-            // These are made above.
+            // Handled above.
             Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded => {
                 Self::of_values(triangle, values, interpolation)
             }
@@ -146,7 +146,7 @@ impl RowShader {
         }
     }
 
-    /// The bytes from column `x` of `row` on, of those that have one loop for as many pixels as there are.
+    /// The bytes from column `x` of `row` on, for the kinds with one loop for any number of pixels.
     #[inline]
     fn fill(&self, row: &Row, x: i32, pixels: &mut [u8]) {
         match self {
@@ -158,7 +158,7 @@ impl RowShader {
                 float::fill_float(pixels, x - at.start, at.n, at.d, at.range);
             }
             Self::Flat(index) => pixels.fill(*index),
-            // Their rows are cut where they start anew.
+            // Their rows are split where they are reseeded.
             Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
         }
     }
@@ -167,8 +167,8 @@ impl RowShader {
 /// Shading for the stages of `effects`.
 #[cfg(feature = "alloc")]
 impl RowShader {
-    /// The bytes of `piece`, which begins at column `x` of `row` and has no start but there. With dither, the
-    /// thresholds of the row take the place of the half.
+    /// The bytes of `piece`, which begins at column `x` of `row` and contains no further start. With dither, the
+    /// thresholds of the row replace the half.
     pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&ThresholdRow>, kernel: Kernel) {
         // A column.
         let column = x as usize;
@@ -181,7 +181,7 @@ impl RowShader {
                 let start = if *reseeded {
                     plane.start(x, row.y)
                 } else {
-                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+                    // Columns are below 4,096; the sum is modulo 2¹⁶.
                     let steps = (x - row.origin) as u16;
                     plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
                 };
@@ -202,12 +202,12 @@ impl RowShader {
         }
     }
 
-    /// The shades from column `x` of `row` on in 8.8, cut off, of those that dither has no loop for.
+    /// The truncated 8.8 shades from column `x` of `row` on, for the kinds without a dithering loop.
     fn shades(&self, row: &Row, x: i32, shades: &mut [u16]) {
-        // Each is 0 to 0xFF00, by cover.
+        // Each is 0 to 0xFF00, because the pixel is covered.
         match self {
             Self::Fixed16(plane) => {
-                // Less the half.
+                // Without the half.
                 let mut sum = fixed16_start(plane, row, x).wrapping_sub(0x8000);
                 for shade in shades {
                     *shade = (sum >> 8) as u16;
@@ -232,10 +232,10 @@ impl RowShader {
     }
 }
 
-/// Shades of 8.8 to the nearest bytes.
+/// Rounds 8.8 shades to the nearest bytes.
 #[cfg(feature = "alloc")]
 pub(super) fn to_nearest_bytes(shades: &[u16], bytes: &mut [u8]) {
-    // Eight by eight, so that the compiler makes vectors of it. A shade is at most 0xFF00.
+    // Eight at a time, so that the compiler vectorizes it. A shade is at most 0xFF00.
     let n = bytes.len().min(shades.len());
     let (eights, rest) = bytes[..n].as_chunks_mut::<LANES>();
     let (shades, rest_shades) = shades[..n].as_chunks::<LANES>();
@@ -247,7 +247,7 @@ pub(super) fn to_nearest_bytes(shades: &[u16], bytes: &mut [u8]) {
     }
 }
 
-/// Shades of 8.8 to bytes: the threshold added, the fraction dropped.
+/// Turns 8.8 shades into bytes: adds the threshold, drops the fraction.
 #[cfg(feature = "alloc")]
 pub(super) fn to_bytes(shades: &[u16], thresholds: &ThresholdRow, column: usize, bytes: &mut [u8]) {
     // A shade is at most 0xFF00.
@@ -268,11 +268,11 @@ pub(super) fn to_bytes(shades: &[u16], thresholds: &ThresholdRow, column: usize,
 /// The sum at column `x`: it starts at the row's origin.
 #[inline]
 fn fixed16_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
-    // Columns are below 4,096; the sum is meant modulo 2³².
+    // Columns are below 4,096; the sum is modulo 2³².
     plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
 }
 
-/// Hands the pixels of a span to its loop, and counts them.
+/// Passes the pixels of a span to its loop, and counts them.
 #[inline]
 fn span(pixels: &mut [u8], range: Range<usize>, drawn: &mut DrawStats, fill: impl FnOnce(&mut [u8])) {
     if let Some(pixels) = pixels.get_mut(range) {
@@ -293,7 +293,7 @@ struct Tested<'a, D> {
 }
 
 impl<D: Cell> Tested<'_, D> {
-    /// Hands the pixels and depths of a span to its loop, which gives the number of pixels written.
+    /// Passes the pixels and depths of a span to its loop, which returns the number of pixels written.
     #[inline]
     fn span(&mut self, range: Range<usize>, fill: impl FnOnce(&mut [u8], &mut [D], i64, i64) -> u32) {
         // A column is below 4,096.
@@ -314,9 +314,9 @@ impl<D: Cell> Tested<'_, D> {
     }
 }
 
-/// Cuts a row into spans, each with its start. Exact starts lie at the row's origin and, if
-/// `reseeded`, every 64 pixels from there; a row whose drawn part begins later continues from the
-/// last start at or left of it, so that the clip rectangle changes no byte.
+/// Splits a row into spans, each with its start. Exact starts lie at the row's origin and, if `reseeded`, every 64
+/// pixels from there; a row whose drawn part begins later continues from the last start at or left of it, so that the
+/// clip rectangle changes no byte.
 #[inline]
 fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Range<usize>, u16)) {
     let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
@@ -327,8 +327,8 @@ fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Ra
     pieces(row, |seed, x, end| span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed)));
 }
 
-/// Cuts the drawn part of a row every 64 pixels from its origin on. `piece` gets the column of each cut, or of the origin, and
-/// the columns from and to which its pixels are drawn.
+/// Splits the drawn part of a row every 64 pixels from its origin. `piece` gets the column of each split, or of the
+/// origin, and the columns between which its pixels are drawn.
 #[inline]
 fn pieces(row: &Row, mut piece: impl FnMut(i32, i32, i32)) {
     let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
@@ -348,7 +348,7 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
 
-    /// Tests that every kind is painted as without depths where nothing is nearer.
+    /// Where the depth buffer holds nothing nearer, every kind is painted as without depths.
     #[test]
     fn rows_where_nearer_are_rows() {
         const WIDTH: u32 = 200;

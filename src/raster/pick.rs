@@ -1,42 +1,42 @@
-//! Triangles that are to be drawn, each in one number; and what bounds their sizes.
+//! Triangles to be drawn, each packed into one number, and the limits on their sizes.
 
 use super::reference::shade::RESEED;
 use crate::lanes::LANES;
 
-/// Triangles that are culled at a time.
+/// Triangles culled at a time.
 pub(crate) const CHUNK: usize = 64;
-/// The widest that a small triangle is, in pixels: a span of that many has no start but its first.
+/// The greatest width of a small triangle, in pixels: a span of that length has no start but its first.
 pub(super) const MAX_COLUMNS: i32 = 64;
-/// The highest.
+/// The greatest height of a small triangle, in rows.
 pub(super) const MAX_ROWS: i32 = 16;
-/// The widest that the box of a large triangle is, in 1/256 pixel, and the highest.
+/// The greatest width of a large triangle's box, in 1/256 pixel, and its greatest height.
 pub(super) const MAX_WIDTH: i32 = 1_024 * 256;
-/// Pieces of a row, each of which starts anew.
+/// The most reseeded pieces of a row.
 pub(super) const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
 pub(super) const MAX_HEIGHT: i32 = 4_096 * 256;
-/// The most squares of four pixels a side that the box has, sides rounded up: 2³⁴ units.
+/// The most squares of 4 × 4 pixels in the box, sides rounded up: 2³⁴ units.
 pub(super) const MAX_AREA_4X4: i32 = 1 << 14;
 
 /// The class of a triangle, by its size and position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum SizeClass {
-    /// Lies inside the clip rectangle, and is small enough for a span of each row.
+    /// Lies inside the clip rectangle, and is small enough for one span per row.
     Small,
-    /// Lies inside the clip rectangle. Its rows are of up to 1,024 pixels.
+    /// Lies inside the clip rectangle, with rows of up to 1,024 pixels.
     Large,
-    /// Reaches over the clip rectangle's edge, and is no larger than `Large` allows.
+    /// Crosses the clip rectangle's edge, and is no larger than `Large` allows.
     CrossesClip,
     /// Too large for set-up in f64.
     Unbatched,
 }
 
-/// A triangle that is to be drawn: its index, the side that is seen, and its class for one clip rectangle.
+/// A triangle to be drawn: its index, its visible side, and its class for one clip rectangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[repr(transparent)]
 pub(crate) struct Pick(pub(crate) u32);
 
 impl Pick {
-    /// Triangles that a list of them may have at most.
+    /// The most triangles in a list.
     #[cfg(feature = "alloc")]
     pub(crate) const MAX_COUNT: usize = 1 << 28;
 
@@ -44,7 +44,7 @@ impl Pick {
     pub(super) const LARGE: u32 = 1 << 28;
     pub(super) const CROSSES_CLIP: u32 = 2 << 28;
     pub(super) const UNBATCHED: u32 = 4 << 28;
-    /// The back is seen.
+    /// The back is visible.
     pub(super) const BACK: u32 = 1 << 31;
 
     /// The index of the triangle.
@@ -53,7 +53,7 @@ impl Pick {
         (self.0 & Self::INDEX) as usize
     }
 
-    /// The side that is seen: 0 the front, 1 the back.
+    /// The visible side: 0 for the front, 1 for the back.
     #[inline(always)]
     pub(crate) const fn side(self) -> usize {
         (self.0 >> 31) as usize
@@ -72,10 +72,10 @@ impl Pick {
 
     const CLASS: u32 = Self::LARGE | Self::CROSSES_CLIP | Self::UNBATCHED;
 
-    /// Counts those, from the first on, that are not unbatched.
+    /// Counts the leading picks that are not unbatched.
     #[inline(always)]
     pub(super) fn count_batched(picks: &[u32]) -> usize {
-        // Mostly all, so eight at a time.
+        // Usually all, so eight at a time.
         let none = |eight: &&[u32; LANES]| eight.iter().fold(0, |any, pick| any | pick) & Self::UNBATCHED == 0;
         let first = picks.as_chunks::<LANES>().0.iter().take_while(none).count() * LANES;
         first + picks[first..].iter().take_while(|pick| **pick & Self::UNBATCHED == 0).count()

@@ -1,11 +1,12 @@
-//! Rows of triangles that are set up: where each begins and ends, and its first shade and depth.
+//! Rows of triangles after set-up: where each begins and ends, and its first shade and depth.
 //!
-//! One row of each of eight triangles, or eight rows of one: both are lanes of the same formula, and [`Lane`] says which.
+//! One row of each of eight triangles, or eight rows of one: both are lanes of the same formula, and [`Lane`] says
+//! which.
 //!
 //! What fills a span is a parameter: [`Shades8`].
 //!
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
-//! lies left of the other in exact arithmetic, and rounding up keeps their order.
+//! lies left of the other in exact arithmetic, and rounding up preserves their order.
 
 use super::frame::Rect;
 use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
@@ -14,7 +15,7 @@ use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
-/// Most rows of eight small triangles that are found row by row, and put into the triangles' order afterwards.
+/// The most rows of eight small triangles that are found row by row and sorted by triangle afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
 
 /// What the eight lanes of a vector are.
@@ -22,7 +23,7 @@ pub(super) trait Lane<S: Lanes8>: Copy {
     fn load_f64(self, s: S, from: &Floats) -> S::F64;
     fn load_i32(self, s: S, from: &Ints) -> S::I32;
     fn load_i64(self, s: S, from: &[i64; LANES]) -> S::I64;
-    /// The triangles' numbers.
+    /// The indices of the triangles.
     fn numbers(self, s: S) -> S::I32;
 }
 
@@ -49,7 +50,7 @@ impl<S: Lanes8> Lane<S> for EachTriangle {
     }
 }
 
-/// Lanes are eight rows of this triangle, whose number is below 8.
+/// Lanes are eight rows of this triangle, whose index is below 8.
 #[derive(Clone, Copy)]
 struct OneTriangle(usize);
 
@@ -73,31 +74,32 @@ impl<S: Lanes8> Lane<S> for OneTriangle {
     }
 }
 
-/// Drawn parts of eight rows, in columns from the box's first on, as sums with `ROUND_MAGIC`.
+/// Drawn parts of eight rows, in columns relative to the box's first, as sums with `ROUND_MAGIC`.
 pub(super) struct Parts<S: Lanes8> {
     /// The row's first covered pixel inside the frame, ...
     pub(super) row: S::F64,
-    /// ... and the one behind its last.
+    /// ... and the one after its last.
     pub(super) end: S::F64,
-    /// Where the row starts anew, ...
+    /// The column of the exact start, ...
     pub(super) seed: S::F64,
     /// ... and the first pixel that is drawn.
     pub(super) start: S::F64,
 }
 
-/// A shade, with its step above it, this number of pixels on.
+/// A shade, with its step in the upper half, advanced by this many pixels.
 #[inline(always)]
 pub(super) fn advance<S: Lanes8>(s: S, paint: S::I32, pixels: S::I32) -> S::I32 {
     let step = s.and_i32(paint, s.splat_i32(!0xFFFF));
-    // Both in upper halves, as the step is.
+    // Both in upper halves, like the step.
     let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, pixels));
     s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step)
 }
 
-/// Batches of eight triangles whose planes are kept until their spans are drawn. A face is counted from the first of batch 0.
+/// Batches of eight triangles whose planes are stored until their spans are drawn. Faces are counted from the first of
+/// batch 0.
 #[derive(Clone, Copy)]
 pub(super) struct Batches {
-    /// The one that is set up.
+    /// The batch being set up.
     current: usize,
     /// The index of the first pick of batch 0.
     pub(super) first: usize,
@@ -118,14 +120,14 @@ impl Batches {
         self.current + 1 >= Self::COUNT
     }
 
-    /// Begins the batch from pick `first` on; batch 0 where the spans of all have been drawn.
+    /// Begins the batch from pick `first` on; batch 0 once the spans of all have been drawn.
     #[inline(always)]
     pub(super) fn begin(&mut self, first: usize) {
         let starts_anew = first == 0 || self.are_full();
         *self = if starts_anew { Self { current: 0, first } } else { Self { current: self.current + 1, ..*self } };
     }
 
-    /// The one that is set up.
+    /// The batch being set up.
     #[inline(always)]
     pub(super) fn current(&self) -> usize {
         self.current % Self::COUNT
@@ -144,7 +146,7 @@ impl Batches {
         (face / LANES % Self::COUNT, face % LANES)
     }
 
-    /// The faces of the lanes of the batch that is set up: below 64.
+    /// The faces in the lanes of the batch being set up: below 64.
     #[inline(always)]
     pub(super) fn faces<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> S::I32 {
         s.add_i32(s.splat_i32((self.current() * LANES) as i32), lane.numbers(s))
@@ -153,10 +155,10 @@ impl Batches {
 
 /// Shades of eight triangles, and of spans in their rows.
 pub(super) trait Shades8 {
-    /// True where a shade with its step above it is all that fills a span.
+    /// True if a shade and its step are all that fills a span.
     const IS_LINEAR: bool;
 
-    /// Columns of eight spans beyond that.
+    /// Further columns of eight spans.
     type Columns<S: Lanes8>: SpanColumns<S>;
 
     /// Returns whether spans have to be drawn before eight more triangles are set up.
@@ -165,10 +167,10 @@ pub(super) trait Shades8 {
     /// Begins the eight triangles from pick `first` on.
     fn begin(&mut self, first: usize);
 
-    /// Sets up eight triangles. Their edges and linear shades are set up.
+    /// Sets up eight triangles whose edges and linear shades are already set up.
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
 
-    /// What fills spans of the rows `j`: the list's columns for it.
+    /// What fills the spans of rows `j`, as columns of the list.
     fn fill_of<S: Lanes8>(
         &self,
         s: S,
@@ -178,7 +180,7 @@ pub(super) trait Shades8 {
         parts: &Parts<S>,
     ) -> (S::I32, Self::Columns<S>);
 
-    /// Puts eight spans into a list.
+    /// Appends eight spans to a list.
     fn append<S: Lanes8, const DEPTHS: bool>(
         &mut self,
         s: S,
@@ -187,10 +189,10 @@ pub(super) trait Shades8 {
         dz: DepthSteps<S>,
     );
 
-    /// Sets up what is left to do of triangle `i` of the eight, which is no small one.
+    /// Completes the set-up of triangle `i` of the eight, which is not a small one.
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
 
-    /// Draws the spans of a list, with `DEPTHS` where they are nearer than the target's cells. The list is then empty.
+    /// Draws the spans of a list and empties it; with `DEPTHS` only where they are nearer than the target's cells.
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
 }
 
@@ -246,7 +248,7 @@ impl Shades8 for Linear {
 
 /// The ends of eight rows.
 pub(super) struct RowEnds<S: Lanes8> {
-    /// Columns from the box's first on, as sums with `ROUND_MAGIC`: the first pixel, and the one behind the last.
+    /// Columns relative to the box's first, as sums with `ROUND_MAGIC`: the first pixel, and the one after the last.
     pub(super) left: S::F64,
     right: S::F64,
     /// The numerator of the shade at the box's first column.
@@ -254,7 +256,7 @@ pub(super) struct RowEnds<S: Lanes8> {
 }
 
 impl<S: Lanes8> RowEnds<S> {
-    /// Rows of these numbers, as f64 and as i32. Beyond a triangle's last row they have any ends.
+    /// The rows with these indices, as f64 and as i32. Beyond a triangle's last row the ends are arbitrary.
     #[inline(always)]
     fn of(s: S, lane: impl Lane<S>, setup: &TriangleSetup8, j: S::F64, number: S::I32) -> Self {
         let long = edge(s, lane, &setup.long, j);
@@ -270,7 +272,7 @@ impl<S: Lanes8> RowEnds<S> {
         numerator_at(s, lane, &setup.shade, self.shade_n, columns)
     }
 
-    /// The shade at these columns, and above it the step.
+    /// The shade at these columns, with the step in the upper half.
     #[inline(always)]
     pub(super) fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
         value_at(s, lane, (&setup.shade, &setup.inverse), self.shade_n, columns)
@@ -283,7 +285,7 @@ fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, n: S
     s.mul_add(lane.load_f64(s, &planes.per_column), s.sub(columns, s.splat_f64(ROUND_MAGIC)), n)
 }
 
-/// A value at these columns of rows `j`, and above it the step.
+/// A value at these columns of rows `j`, with the step in the upper half.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(super) fn value_of<S: Lanes8>(
@@ -297,7 +299,7 @@ pub(super) fn value_of<S: Lanes8>(
     value_at(s, lane, (planes, inverse), n, columns)
 }
 
-/// A value at these columns, and above it the step, from the numerator at the first column.
+/// A value at these columns, with the step in the upper half, from the numerator at the first column.
 #[inline(always)]
 fn value_at<S: Lanes8>(
     s: S,
@@ -336,7 +338,7 @@ impl<S: Lanes8> RowCursor8<S> {
         }
     }
 
-    /// Row `number`, and goes on to the next.
+    /// Returns row `number`, and advances to the next.
     #[inline(always)]
     fn row<P: Shades8, const DEPTHS: bool>(
         &mut self,
@@ -375,7 +377,8 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Lists all rows of eight small triangles of at most [`MAX_SHORT_ROWS`] rows each, triangle by triangle. There is room.
+/// Lists all rows of eight small triangles of at most [`MAX_SHORT_ROWS`] rows each, triangle by triangle. The list must
+/// have room.
 #[inline(always)]
 pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
@@ -421,10 +424,10 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
 }
 
-/// The ends of eight rows, their numbers, and the rows as spans.
+/// The ends of eight rows, their indices, and the rows as spans.
 type EightRows<S, P> = (RowEnds<S>, <S as Lanes8>::F64, Spans8<S, <P as Shades8>::Columns<S>>);
 
-/// Eight rows of triangle `i` from number `first` on. Beyond its last row they have no length.
+/// Eight rows of triangle `i` from row `first` on. Rows beyond its last have no length.
 #[inline(always)]
 fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
@@ -460,7 +463,7 @@ fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     (ends, j, spans)
 }
 
-/// Lists eight rows of small triangle `i` from number `first` on. There is room for eight.
+/// Lists eight rows of small triangle `i` from row `first` on. The list must have room for eight.
 #[inline(always)]
 pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
@@ -473,8 +476,8 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
-/// Lists eight rows of triangle `i` from number `first` on, each in so many pieces of up to `longest` pixels, which begin
-/// anew. Parts outside `clip`, if there is one, are left out. There is room for eight spans a piece.
+/// Lists eight rows of triangle `i` from row `first` on, each split into reseeded pieces of up to `longest` pixels.
+/// Parts outside `clip`, if there is one, are left out. The list must have room for eight spans per piece.
 #[inline(always)]
 pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
@@ -488,11 +491,11 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let lane = OneTriangle(i);
     let (ends, j, rows) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
-    // Columns of the frame from the box's first on. All are below 4,096.
+    // Columns of the frame relative to the box's first. All are below 4,096.
     let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
     let (mut left, mut last) = (ends.left, ends.right);
     if let Some(clip) = clip {
-        // A row that begins left of the frame begins anew at its side.
+        // A row that begins left of the frame is seeded at the frame's side.
         left = s.max(left, side(0));
         last = s.min(last, side(width));
         let number = s.add_i32(s.splat_i32(setup.row[i % LANES] + first), s.load_i32(&NUMBERS));
@@ -511,7 +514,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         let parts = Parts { row: row_origin, end: last, seed: left, start };
         let (mut paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
         if P::IS_LINEAR && clip.is_some() {
-            // A piece that begins left of the rectangle goes on from its start.
+            // A piece that begins left of the rectangle continues from its start.
             paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
         }
         let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));

@@ -1,22 +1,22 @@
 //! Set-up of eight triangles: edges, shade planes and depth planes from their corners.
 //!
-//! Coordinates are taken from the centre of the box's first pixel, so all numbers are small, and f64 holds every
-//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin:
-//! for integers n and d
+//! Coordinates are relative to the centre of the box's first pixel, so all numbers are small, and f64 holds every
+//! numerator exactly. A quotient is a product with the divisor's reciprocal, and its floor is exact by a margin: for
+//! integers n and d
 //!
 //! ```text
 //! floor(n / d) = nearest((n + ½ − d/2) / d)
 //! ```
 //!
-//! where what is rounded lies at least 1/(2d) from the middle between two integers. The reciprocal and the
-//! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most
-//! 2¹⁸ pixels has 2³⁴ square units, and twice the area is no more, so the margin is at least 2⁻³⁵. A column is below 2¹⁰,
-//! its divisor at most 2²⁸: margin 2⁻²⁹, off by 2⁻⁴². (n + ½ − d/2 is exact: a multiple of ½ below 2⁵². A gradient's
-//! numerator is below 2¹⁶ times the box's height or width, so each of the terms of n, and n at any pixel of the
-//! triangle, is below 2⁵⁰; and no more than three are ever in a sum.) A step has any size, but below 2⁴⁴ / d, so it is
-//! off by less than 2⁻⁸ / d. The integer is found by adding 1.5 · 2⁵², which leaves it in the low bits. So there is no
-//! correction, no branch, and the same result on every processor; a sum of a product that is rounded once, where the
-//! level has FMA, is nearer than one that is rounded twice.
+//! where the argument of the rounding is at least 1/(2d) from the middle between two integers. The reciprocal and the
+//! product are each off by at most one part in 2⁵³: for a shade, below 2¹⁶, by 2⁻³⁶ together. A box of at most 2¹⁸
+//! pixels has 2³⁴ square units, and twice the area is no more, so the margin is at least 2⁻³⁵. A column is below 2¹⁰
+//! and its divisor at most 2²⁸: the margin is 2⁻²⁹, the error 2⁻⁴². (n + ½ − d/2 is exact: a multiple of ½ below 2⁵². A
+//! gradient's numerator is below 2¹⁶ times the box's height or width, so each term of n, and n at any pixel of the
+//! triangle, is below 2⁵⁰; and no sum has more than three of them.) A step may have any size, but is below 2⁴⁴ / d, so
+//! it is off by less than 2⁻⁸ / d. The integer is found by adding 1.5 · 2⁵², which leaves it in the low bits. So there
+//! is no correction, no branch, and the same result on every processor; where the level has FMA, a sum with a product
+//! is rounded once, which is more accurate than rounding twice.
 //!
 //! Depth planes are those of [`DepthPlane`], whose gradients are
 //!
@@ -24,16 +24,17 @@
 //! g = floor((2²⁴·n + (A >> 1)) / A)        n: the numerator, A: twice the area
 //! ```
 //!
-//! in two quotients of f64: for any integer q
+//! in two f64 quotients: for any integer q
 //!
 //! ```text
-//! q = nearest(n / A), or beside it        r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
+//! q = nearest(n / A), or a neighbour      r = n − q·A        g = 2²⁴·q + nearest(2²⁴·r / A), halves upward
 //! ```
 //!
-//! (An odd A has no halves, and the half of it that is dropped changes no floor.) A small triangle's box is less
-//! than 65 × 17 pixels, so A is below 2²⁶·¹² and |n| below 2⁴⁸: n, q·A and r are exact, and |r| is at most 0.52·A. The last
-//! quotient is taken of 2²⁴·r + ¼, which is exact, too, so that what is rounded lies at least 1/(4A), more than 2⁻²⁸·¹², from
-//! the middle between two integers. It is below 2²³·¹, and off by at most 2⁻⁵² of that: less than 2⁻²⁸·⁹.
+//! (With an odd A there are no ties, and the half that A >> 1 drops changes no floor.) A small triangle's box is less
+//! than 65 × 17 pixels, so A is below 2²⁶·¹² and |n| below 2⁴⁸: n, q·A and r are exact, and |r| is at most 0.52·A. The
+//! last quotient is taken of 2²⁴·r + ¼, which is exact too, so that the argument of the rounding is at least 1/(4A),
+//! more than 2⁻²⁸·¹², from the middle between two integers. The quotient is below 2²³·¹, and off by at most 2⁻⁵² of
+//! that: less than 2⁻²⁸·⁹.
 
 use super::columns::{Columns, Picks, Triangles};
 use super::pick::Pick;
@@ -58,14 +59,14 @@ pub(super) struct FrameLayout {
 pub(super) type Floats = [f64; LANES];
 pub(super) type Ints = [i32; LANES];
 
-/// Corners of eight triangles. Lanes without a triangle hold any values.
+/// Corners of eight triangles. Lanes without a triangle hold arbitrary values.
 pub(super) struct Corners8 {
     /// A [`ScreenPos`](super::columns::ScreenPos) each.
     at: [[i64; LANES]; 3],
     pub(super) shade: [Ints; 3],
     /// The bits of u32.
     pub(super) depth: [Ints; 3],
-    /// True if the first corner's shade is that of all.
+    /// True if all corners have the shade of the first.
     are_flat: bool,
 }
 
@@ -77,7 +78,7 @@ impl Corners8 {
     #[inline(always)]
     pub(super) fn gather<const DEPTHS: bool>(&mut self, triangles: &Triangles<'_>, picks: &Picks<'_>) {
         let Columns { at, depth, shade, .. } = triangles.columns;
-        // Cut to one length, so that a vertex's index is compared with it once.
+        // Sliced to one length, so that a vertex's index is bounds-checked once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
         self.are_flat = !picks.flat.is_empty();
@@ -116,8 +117,8 @@ impl Edges {
     /// Sets up the edges from `(x, y)` over `(dx, dy)`.
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, (x, y): (S::F64, S::F64), (dx, dy): (S::F64, S::F64)) {
-        // x = (ax·dy + dx·(256·j − ay)) / (256·dy), rounded up: the floor of one unit less, plus one.
-        // Along a row, where dy is 0, what comes out is not used.
+        // x = (ax·dy + dx·(256·j − ay)) / (256·dy), rounded up: the floor of one unit less, plus one. For a horizontal
+        // edge, where dy is 0, the result is not used.
         let n = s.mul_add(dy, s.splat_f64(128.0), s.splat_f64(-0.5));
         let n = s.mul_add(x, dy, n);
         s.store_f64(s.neg_mul_add(dx, y, n), &mut self.n);
@@ -135,7 +136,7 @@ pub(super) struct ValuePlanes8 {
     pub(super) n: Floats,
     pub(super) per_row: Floats,
     pub(super) per_column: Floats,
-    /// Change from a pixel to the next one, in the upper half.
+    /// Change per pixel, in the upper half.
     pub(super) step: Ints,
 }
 
@@ -143,7 +144,7 @@ impl ValuePlanes8 {
     pub(super) const NONE: Self =
         Self { n: [0.0; LANES], per_row: [0.0; LANES], per_column: [0.0; LANES], step: [0; LANES] };
 
-    /// Sets up the planes of one value for each triangle.
+    /// Sets up the planes of a constant value for each triangle.
     #[inline(always)]
     fn set_up_constant<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, values: &Ints) {
         let (area, zero) = (basis.area, s.splat_f64(0.0));
@@ -163,9 +164,9 @@ impl ValuePlanes8 {
         let ([x, y], area) = (basis.first, basis.area);
         let value = s.to_f64(v0);
         let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(v1, v0)), s.to_f64(s.sub_i32(v2, v0))]);
-        // +0 and no −0: its sign chooses the rounding.
+        // +0, not −0: its sign chooses the rounding.
         let gx = s.add(gx, s.splat_f64(0.0));
-        // `ShadePlane::start`: the floor, or the ceiling of falling values, and half a shade.
+        // `ShadePlane::start`: the floor, or the ceiling of falling values, plus half a shade.
         let half = s.mul_add(area, s.splat_f64(0.5), s.splat_f64(-0.5));
         let n = s.mul(s.add(value, s.splat_f64(128.0)), area);
         let n = s.neg_mul_add(gx, x, n);
@@ -224,7 +225,7 @@ impl TriangleSetup8 {
         split: [0; LANES],
     };
 
-    /// Puts the depth plane of triangle `i`, which is too large for eight at a time, in its place.
+    /// Stores the depth plane of triangle `i`, which is too large for eight at a time.
     pub(super) fn put_depth_plane(&mut self, i: usize, plane: &DepthPlane) {
         let (column, row) = (self.column[i], self.row[i]);
         let z = plane.fixed_at(column, row);
@@ -254,8 +255,8 @@ impl TriangleSetup8 {
         }
     }
 
-    /// Sets up eight triangles of which no box has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones, too.
-    /// Returns what other planes are set up from.
+    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones
+    /// too. Returns what other planes are set up from.
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(
         &mut self,
@@ -266,8 +267,8 @@ impl TriangleSetup8 {
         let [ax, ay] = s.halves_of_i64(s.load_i64(&corners.at[0]));
         let [bx, by] = s.halves_of_i64(s.load_i64(&corners.at[1]));
         let [cx, cy] = s.halves_of_i64(s.load_i64(&corners.at[2]));
-        // The box of culling, found again by eight operations for eight triangles. To hand it on, culling would pack three
-        // more lists, and these would be gathered here.
+        // The box that culling found, recomputed in eight operations for eight triangles. To pass it on, culling would
+        // have to pack three more lists, and these would be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
         let bottom = s.max_i32(s.max_i32(ay, by), cy);
         let column = first_centre(s, s.min_i32(s.min_i32(ax, bx), cx));
@@ -283,7 +284,7 @@ impl TriangleSetup8 {
             s.store_i32(s.add_i32(s.mul_i32(down, width), column), &mut self.cell);
         }
 
-        // Top, middle and bottom corner. Which of two at the same height comes first is of no matter here.
+        // Top, middle and bottom corner. Ties may go either way here.
         let order = Order {
             first_is_a: s.is_equal(ay, top),
             first_is_b: s.is_equal(by, top),
@@ -295,7 +296,7 @@ impl TriangleSetup8 {
         let above = s.add_i32(s.shl_i32(row, 8), half);
         let [x0, x1, x2] = order.sort(s, [ax, bx, cx]);
         let [y0, y1, y2] = order.sort(s, [ay, by, cy]);
-        // From the first pixel's centre, within ±2²⁰.
+        // Relative to the first pixel's centre, within ±2²⁰.
         let (x0, x1, x2) = (s.sub_i32(x0, left), s.sub_i32(x1, left), s.sub_i32(x2, left));
         let (y0, y1, y2) = (s.sub_i32(y0, above), s.sub_i32(y1, above), s.sub_i32(y2, above));
         s.store_i32(s.shr_i32(s.add_i32(y1, s.splat_i32(255)), 8), &mut self.split);
@@ -317,7 +318,7 @@ impl TriangleSetup8 {
             self.shade.set_up(s, &basis, &corners.shade);
         }
         s.store_f64(inverse, &mut self.inverse);
-        // Without an area no rows.
+        // No rows without an area.
         let has_area = s.is_less(s.splat_f64(0.0), area);
         s.store_i32(s.select_i32(has_area, rows, s.splat_i32(0)), &mut self.rows);
 
@@ -330,7 +331,7 @@ impl TriangleSetup8 {
             let [nx, ny] = basis.gradient(s, [dd1, dd2]);
             let gx = depth_gradient(s, nx, area, inverse);
             let gy = depth_gradient(s, ny, area, inverse);
-            // The plane is that through the first corner by (y, x).
+            // The plane goes through the first corner by (y, x).
             let is_second = s.and(s.is_equal(y0, y1), s.is_greater(x0, x1));
             let (x, d) = (s.select_i32(is_second, x1, x0), s.select_i32(is_second, d1, d0));
             let z = s.add_i64(s.shl_i64(s.unsigned_to_i64(d), 24), s.splat_i64(1 << 23));
@@ -344,12 +345,12 @@ impl TriangleSetup8 {
     }
 }
 
-/// Numbers that planes over eight triangles are set up from. All numbers are integers, but for the last.
+/// What planes over eight triangles are set up from. All values except the last are integers.
 pub(super) struct Basis<S: Lanes8> {
     pub(super) order: Order<S>,
-    /// The first corner by height, from the centre of the box's first pixel, ...
+    /// The first corner by height, relative to the centre of the box's first pixel, ...
     pub(super) first: [S::F64; 2],
-    /// ... and the others from there.
+    /// ... and the others relative to it.
     pub(super) second: [S::F64; 2],
     pub(super) third: [S::F64; 2],
     /// Twice the area, negative if the second corner lies left of the edge from the first to the third.
@@ -359,7 +360,8 @@ pub(super) struct Basis<S: Lanes8> {
 }
 
 impl<S: Lanes8> Basis<S> {
-    /// `SortedTriangle::gradient` of a value, by its differences from the first corner to the second and to the third.
+    /// `SortedTriangle::gradient` of a value, from its differences between the first corner and the second and the
+    /// third.
     #[inline(always)]
     pub(super) fn gradient(&self, s: S, [d1, d2]: [S::F64; 2]) -> [S::F64; 2] {
         let ([dx1, dy1], [dx2, dy2]) = (self.second, self.third);
@@ -367,13 +369,13 @@ impl<S: Lanes8> Basis<S> {
         [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
-    /// Change of a corner's weight from 1/256 pixel to the next; and its weight at the box's first pixel, with its change from
-    /// a row and from a column to the next. All are whole numbers, exact. Corners are counted by height.
+    /// Change of a corner's weight per 1/256 pixel; then its weight at the box's first pixel, with its change per row
+    /// and per column. All are exact whole numbers. Corners are counted by height.
     #[inline(always)]
     pub(super) fn weight(&self, s: S, corner: usize) -> (S::F64, [S::F64; 3]) {
         let ([x, y], pixel, zero) = (self.first, s.splat_f64(256.0), s.splat_f64(0.0));
         let (one, minus_one) = (s.splat_f64(1.0), s.splat_f64(-1.0));
-        // How it differs at the second and the third from that at the first.
+        // Its difference at the second and the third corner from that at the first.
         let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
         let [gx, gy] = self.gradient(s, differences[corner % 3]);
         let at_first = if corner == 0 { self.area } else { zero };
@@ -391,12 +393,12 @@ pub(super) struct Order<S: Lanes8> {
 }
 
 impl<S: Lanes8> Order<S> {
-    /// A number of each corner, in the order of heights.
+    /// A value of each corner, in the order of heights.
     #[inline(always)]
     pub(super) fn sort(&self, s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 3] {
         let first = s.select_i32(self.first_is_a, a, s.select_i32(self.first_is_b, b, c));
         let last = s.select_i32(self.last_is_c, c, s.select_i32(self.last_is_b, b, a));
-        // What is left. Sums wrap.
+        // The remaining one. Sums wrap.
         let middle = s.sub_i32(s.sub_i32(s.add_i32(s.add_i32(a, b), c), first), last);
         [first, middle, last]
     }
@@ -408,15 +410,14 @@ pub(super) fn first_centre<S: Lanes8>(s: S, units: S::I32) -> S::I32 {
     s.shr_i32(s.add_i32(units, s.splat_i32(127)), 8)
 }
 
-/// Gradients with 24 fraction bits from numerators, areas and the inverses of these; any number for a triangle without
-/// area.
+/// Gradients with 24 fraction bits from numerators, areas and their inverses; arbitrary for a triangle without area.
 #[inline(always)]
 fn depth_gradient<S: Lanes8>(s: S, n: S::F64, area: S::F64, inverse: S::F64) -> S::I64 {
     let magic = s.splat_f64(ROUND_MAGIC);
     let integer = s.mul_add(n, inverse, magic);
     let rest = s.neg_mul_add(s.sub(integer, magic), area, n);
     let part = s.mul_add(s.mul_add(rest, s.splat_f64(16_777_216.0), s.splat_f64(0.25)), inverse, magic);
-    // Of the first sum the bits of the magic number are shifted out. Wrapping is intended: see `raster::depth`.
+    // The magic number's bits are shifted out of the first sum. Wrapping is intended: see `raster::depth`.
     s.add_i64(s.shl_i64(s.bits(integer), 24), s.sub_i64(s.bits(part), s.bits(magic)))
 }
 
@@ -454,7 +455,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// Depths and steps are those of the plane that is worked out in integers, to the bit, by every level.
+        /// Depths and steps equal those of the plane computed in integers, to the bit, at every level.
         #[test]
         fn eight_planes_are_each_its_own(triangles in prop::collection::vec(triangle(), LANES), width in 1_u32..=4_096) {
             let mut corners = Corners8::NONE;

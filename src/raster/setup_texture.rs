@@ -1,12 +1,13 @@
 //! Texture coordinates of eight small triangles: planes from their corners, and the starts of their rows.
 //!
-//! Coordinates that are linear on the screen are set up as shades are, by the quotients of [`setup`](super::setup). Where
-//! those of a triangle differ by less than 2²², 64 texels, gradients are below 2³⁹, no sum of terms reaches 2⁵², and f64
-//! holds all multiples of ½ below that. A quotient is below 2²² and off by 2⁻³⁰, its margin at least 2⁻²⁷·¹².
+//! Coordinates that are linear on the screen are set up like shades, with the quotients of [`setup`](super::setup).
+//! Where a triangle's coordinates differ by less than 2²², 64 texels, gradients are below 2³⁹, no sum of terms reaches
+//! 2⁵², and f64 holds all multiples of ½ below that. A quotient is below 2²² and off by 2⁻³⁰, its margin at least
+//! 2⁻²⁷·¹².
 //!
-//! For coordinates that are linear on the face there are the sums of an exact start: the weights of the corners, which are
-//! whole numbers below 2⁴⁴, times values that are rounded once each. So a sum is off by at most 4 parts in 2⁵³ of what
-//! its terms are without their signs.
+//! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
+//! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
+//! its terms' magnitudes.
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
@@ -16,8 +17,8 @@ use crate::fixed::ROUND_MAGIC;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
 
-/// Texture coordinates, u and v, of each corner of up to eight triangles, in texels with 16 fraction bits. Lanes without a
-/// triangle have 0.
+/// Texture coordinates u and v of each corner of up to eight triangles, in texels with 16 fraction bits; 0 in lanes
+/// without a triangle.
 #[inline(always)]
 pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -> [[Ints; 3]; 2] {
     let mut gathered = [[[0; LANES]; 3]; 2];
@@ -41,9 +42,9 @@ pub(super) struct AffinePlanes8 {
     inverse: Floats,
     /// The coordinate of the first corner by height.
     first: [Ints; 2],
-    /// Change from a pixel to the next one, where a row has more than one.
+    /// Change per pixel, where a row has more than one.
     step: [Ints; 2],
-    /// A bit for each triangle whose corners lie near enough to each other.
+    /// A bit for each triangle whose corners' coordinates are close enough together.
     pub(super) fits: u32,
 }
 
@@ -58,7 +59,7 @@ impl AffinePlanes8 {
         fits: 0,
     };
 
-    /// The difference from which on corners lie too far from each other.
+    /// The difference from which on corners are too far apart.
     const TOO_FAR: i32 = 1 << 22;
 
     #[inline(always)]
@@ -79,7 +80,7 @@ impl AffinePlanes8 {
             s.store_i32(first, &mut self.first[i]);
             let differences = [s.to_f64(s.sub_i32(second, first)), s.to_f64(s.sub_i32(third, first))];
             let [gx, gy] = basis.gradient(s, differences);
-            // +0 and no −0: its sign chooses the rounding.
+            // +0, not −0: its sign chooses the rounding.
             let gx = s.add(gx, s.splat_f64(0.0));
             // `AffinePlane::start`: the floor, or the ceiling where coordinates fall.
             let half = s.xor_sign(s.mul_add(basis.area, s.splat_f64(0.5), s.splat_f64(-0.5)), gx);
@@ -103,14 +104,14 @@ impl AffinePlanes8 {
         for (of, start) in starts.iter_mut().enumerate() {
             let n = s.mul_add(lane.load_f64(s, &self.per_row[of]), j, lane.load_f64(s, &self.n[of]));
             let n = s.mul_add(lane.load_f64(s, &self.per_column[of]), i, n);
-            // The low bits; the sum is meant modulo 2³².
+            // The low bits; the sum is modulo 2³².
             let change = s.low_bits(s.mul_add(n, inverse, s.splat_f64(ROUND_MAGIC)));
             *start = s.add_i32(change, lane.load_i32(s, &self.first[of]));
         }
         starts
     }
 
-    /// Changes from a pixel of each lane to the next one.
+    /// Changes per pixel, in each lane.
     #[inline(always)]
     pub(super) fn steps<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> [S::I32; 2] {
         [lane.load_i32(s, &self.step[0]), lane.load_i32(s, &self.step[1])]
@@ -121,11 +122,11 @@ impl AffinePlanes8 {
 /// times values.
 #[derive(Clone, Debug)]
 pub(super) struct PerspectivePlanes8 {
-    /// The weights of the corners, by height: at the box's first pixel, from a row to the next, from a column to the next.
+    /// The weights of the corners, by height: at the box's first pixel, their change per row, and per column.
     weights: [[Floats; 3]; 3],
     /// u, v and 1 of each corner, times its depth.
     values: [[Floats; 3]; 3],
-    /// Change of the sums from a pixel to the next one.
+    /// Change of the sums per pixel.
     step: [Floats; 3],
 }
 
@@ -154,7 +155,7 @@ impl PerspectivePlanes8 {
                 s.store_f64(weight[i], to);
             }
             let [_, _, per_column] = weight;
-            // A depth counts as 1 at least.
+            // A depth counts as at least 1.
             let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
             let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
             for i in 0..3 {
@@ -182,7 +183,7 @@ impl PerspectivePlanes8 {
         sums
     }
 
-    /// Change of the sums of triangle `lane` from a pixel to the next one.
+    /// Change of the sums of triangle `lane` per pixel.
     #[inline(always)]
     pub(super) fn step(&self, lane: usize) -> [f64; 3] {
         let lane = lane % LANES;

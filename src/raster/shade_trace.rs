@@ -1,7 +1,7 @@
-//! Trace of one pixel of a triangle to its byte: the start and the step of its span, and the sum up to it.
+//! Traces a pixel of a triangle to its byte: the start and the step of its span, and the sum up to it.
 //!
-//! The loops of [`span`](crate::span) keep none of this. It is worked out again here for a single pixel, from the
-//! planes that the loops start from.
+//! The loops of [`span`](crate::span) store none of this. It is recomputed here for a single pixel, from the planes
+//! that the loops start from.
 
 use alloc::vec::Vec;
 
@@ -18,9 +18,9 @@ use crate::span::float::{fill_float, quotient};
 /// An exact number: a fraction.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Ratio {
-    /// Number above the line.
+    /// The numerator.
     pub numerator: i128,
-    /// Number below the line; above 0.
+    /// The denominator, above 0.
     pub denominator: i128,
 }
 
@@ -32,7 +32,7 @@ impl Ratio {
     }
 }
 
-/// Progression of a value along the row to a pixel.
+/// How a value progresses along the row to a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Progression {
     /// One byte for the whole triangle.
@@ -57,12 +57,12 @@ pub enum Progression {
 /// A start, and additions of one step.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Accumulator {
-    /// The row's first covered pixel in the frame; of [`GouraudVintage`](Interpolation::GouraudVintage) Ax, which may lie left
-    /// of it.
+    /// The row's first covered pixel in the frame; for [`GouraudVintage`](Interpolation::GouraudVintage) Ax, which may
+    /// lie left of it.
     pub first: i32,
-    /// The pixel where the sum is a start: `first`, or so many times 64 pixels after it.
+    /// The pixel where the sum is a start: `first`, or a multiple of 64 pixels after it.
     pub start_at: i32,
-    /// The sum there, what is added for rounding included; of `fraction_bits + 8` bits.
+    /// The sum there, including what is added for rounding; it has `fraction_bits + 8` bits.
     pub start: u32,
     /// The step; the loop adds it modulo 2¹⁶ (2³² in 16.16).
     pub step: i64,
@@ -70,15 +70,15 @@ pub struct Accumulator {
     pub steps: i32,
     /// 8, or 16.
     pub fraction_bits: u32,
-    /// Part of the start that is there for rounding: half a shade, or nothing.
+    /// The part of the start added for rounding: half a shade, or nothing.
     pub half: u32,
 }
 
 impl Accumulator {
-    /// The sum after so many steps: what AX holds, or EAX.
+    /// The sum after this many steps: what AX holds, or EAX.
     #[must_use]
     pub fn after(&self, steps: i32) -> u32 {
-        // The wraps are meant: the loop's register has as many bits.
+        // Wrapping is intended: the loop's register has this many bits.
         let sum = i64::from(self.start).wrapping_add(self.step.wrapping_mul(i64::from(steps)));
         (sum & ((1 << (self.fraction_bits + 8)) - 1)) as u32
     }
@@ -96,10 +96,10 @@ impl Accumulator {
 pub struct ShadeTrace {
     /// Progression along the row.
     pub way: Progression,
-    /// The exact value at the pixel's centre, in 1/256 shade: linear on the screen or, where the shading is, on the face.
-    /// `None` of a flat triangle.
+    /// The exact value at the pixel's centre, in 1/256 shade: linear on the screen or, if the shading is, on the face.
+    /// `None` for a flat triangle.
     pub exact: Option<Ratio>,
-    /// The byte: the nearest shade, or what is left when the fraction is cut off.
+    /// The byte: the nearest shade, or the truncated one.
     pub byte: u8,
 }
 
@@ -143,7 +143,7 @@ impl ShadeTrace {
             }
             Interpolation::GouraudVintage => {
                 let ramp = VintageTriangle::new(triangle, values).ramp(y);
-                // Beyond the row's own pixels the nearest of them counts.
+                // Beyond the row's own pixels the nearest one counts.
                 let steps = x.min(ramp.x1 - 1).max(ramp.x0) - ramp.x0;
                 let step = i64::from(ramp.step as i16);
                 let (first, start) = (ramp.x0, ramp.shade.into());
@@ -181,7 +181,7 @@ fn on_face(plane: &HyperbolicPlane, x: i32, y: i32) -> Ratio {
     Ratio { numerator, denominator }
 }
 
-/// The row of a pixel that a triangle draws in a frame of so many columns: by exact cover, or as `interpolation` covers.
+/// The row of a pixel that a triangle draws in a frame this wide: by exact coverage, or by that of `interpolation`.
 pub fn row_of(
     triangle: &SortedTriangle,
     interpolation: Option<Interpolation>,
@@ -194,7 +194,7 @@ pub fn row_of(
     found
 }
 
-/// All rows that it draws in a frame of so many columns and rows.
+/// All rows that it draws in a frame of this size.
 pub fn rows_of(triangle: &SortedTriangle, interpolation: Option<Interpolation>, width: u32, height: u32) -> Vec<Row> {
     let mut rows = Vec::new();
     each_row(triangle, interpolation, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
@@ -261,7 +261,7 @@ mod tests {
             panic!("sums")
         };
         assert_eq!((vintage.start, vintage.step, vintage.sum(), byte), (0x2800, 0x1400, 0x6400, 100));
-        // Depths are alike, so the perspective changes nothing.
+        // Depths are equal, so the perspective changes nothing.
         for interpolation in [Interpolation::GouraudHyperbolic, Interpolation::Float] {
             assert_eq!(shade_trace(interpolation, [40, 200, 40], 3).byte, 110);
         }
@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_falling_row_by_hand() {
-        // From 1 to 0 over 8 pixels: −32/256 a pixel, which 8.8 has; at the first centre 1 − 1/16 = 240/256. With half a
+        // From 1 to 0 over 8 pixels: −32/256 a pixel, exact in 8.8; at the first centre 1 − 1/16 = 240/256. With half a
         // shade 0x0170; after five 0x00d0.
         let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
             shade_trace(Interpolation::Gouraud, [1, 0, 1], 5)

@@ -1,4 +1,4 @@
-//! Shades of eight triangles that are more than a linear shade in 8.8: set-up, starts of rows, and the bytes of spans.
+//! Shadings of eight triangles other than a linear shade in 8.8: set-up, starts of rows, and the bytes of spans.
 //!
 //! | shading | a row starts with | its bytes |
 //! |---|---|---|
@@ -8,28 +8,29 @@
 //!
 //! # 16.16 in two quotients
 //!
-//! With N the numerator of a shade in 1/256, half a shade included, A twice the area, and h = A/2 − ½ with the sign of the
-//! shade's change, the start is N · 256 / A, rounded down, or up where shades fall. The set-up of linear shades
-//! has M = N − h, and
+//! With N the numerator of a shade in 1/256, half a shade included, A twice the area, and h = A/2 − ½ with the sign of
+//! the shade's change, the start is N · 256 / A, rounded down, or up where shades fall. The set-up of linear shades has
+//! M = N − h, and
 //!
 //! ```text
 //! q = nearest(M / A)        r = M − q·A        256·q + nearest((256·r + 255·h) / A)
 //! ```
 //!
-//! since 256·N − h = 256·(M + h) − h. M is a multiple of ½ below 2⁵², q·A as well, so r is exact; it is at most 0.51·A, and
-//! 256·r + 255·h is below 2⁴³ and exact, too. The last quotient is below 2⁹, so it is off by 2⁻⁴³, and what is rounded lies
-//! at least 1/(2A) ≥ 2⁻³⁶ from the middle between two integers. A step is found in the same way, toward zero.
+//! since 256·N − h = 256·(M + h) − h. M is a multiple of ½ below 2⁵², and so is q·A, so r is exact; it is at most
+//! 0.51·A, and 256·r + 255·h is below 2⁴³ and exact too. The last quotient is below 2⁹, so it is off by 2⁻⁴³, and the
+//! argument of the rounding is at least 1/(2A) ≥ 2⁻³⁶ from the middle between two integers. A step is found in the same
+//! way, toward zero.
 //!
 //! # Perspective-correct shades
 //!
-//! Weights of corners are whole numbers below 2⁴⁴ in a box of 2¹⁸ pixels, and so exact, whatever pixel they are counted from.
-//! The estimate's bound in [`hyperbolic`](super::reference::hyperbolic) asks for no more than three products and two sums, each
-//! rounded at most once.
+//! The corners' weights are whole numbers below 2⁴⁴ in a box of 2¹⁸ pixels, so they are exact whichever pixel they are
+//! computed from. The estimate's bound in [`hyperbolic`](super::reference::hyperbolic) requires no more than three
+//! products and two sums, each rounded at most once.
 //!
-//! Bytes in f32 depend on the order in which three products are added: that of the corners by height, and of two at one
-//! height the left one first. Which of the first two comes first does not matter to their sum. No product is fused
-//! with a sum. The changes from a pixel to the next are exact sums: of a small triangle, whose differences of y are at most
-//! 2¹², in 64 bits, as products of depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
+//! Bytes in f32 depend on the order in which three products are added: corners by height, and at equal heights the left
+//! one first. The order of the first two does not change their sum. No product is fused with a sum. The changes per
+//! pixel are exact sums: for a small triangle, whose differences of y are at most 2¹², in 64 bits, as products of
+//! depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
 
 use super::columns::{Picks, Triangles};
 use super::interpolation::Interpolation;
@@ -72,7 +73,7 @@ impl Kind {
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 struct Steps8 {
-    /// Changes of the numerator and of the divisor, from a pixel to the next.
+    /// Changes of the numerator and of the divisor per pixel.
     sums: [Floats; 2],
     /// Steps in 16.16.
     fixed16: Ints,
@@ -113,8 +114,7 @@ pub(super) struct Shaded8<'a> {
     /// 16.16: 255·h, and A.
     fraction: Floats,
     area: Floats,
-    /// The weight of each corner, by height: at the box's first pixel, its change from a row to the next, and from a column to
-    /// the next.
+    /// The weight of each corner, by height: at the box's first pixel, its change per row, and per column.
     weights: [[Floats; 3]; 3],
     /// Each corner's depth times its shade, and its depth.
     values: [[Floats; 2]; 3],
@@ -166,7 +166,7 @@ impl<'a> Shaded8<'a> {
         for corner in 0..3 {
             let gradient;
             (gradient, weights[corner]) = basis.weight(s, corner);
-            // A depth counts as 1 at least.
+            // A depth counts as at least 1.
             let depth = s.max(s.unsigned_to_f64(depths[corner]), one);
             let shade = s.mul(s.add(s.to_f64(shades[corner]), half), scale);
             values[corner] = [s.mul(shade, depth), depth];
@@ -177,13 +177,14 @@ impl<'a> Shaded8<'a> {
         }
         let [first, second, third] = values;
         if !is_estimate {
-            // Of two last corners at one height the left one comes first.
+            // If the last two corners are at the same height, the left one comes first.
             let is_last_second =
                 s.and_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
             swap_where(s, is_last_second, &mut weights);
             swap_where(s, is_last_second, &mut values);
         }
-        // Once: what is swapped in memory the compiler stores by `vmaskmovpd`, which takes AMD's processors 20 cycles.
+        // Stored once: the compiler would store a swap in memory with `vmaskmovpd`, which takes 20 cycles on AMD
+        // processors.
         for corner in 0..3 {
             for (i, to) in self.weights[corner].iter_mut().enumerate() {
                 s.store_f64(weights[corner][i], to);
@@ -208,7 +209,7 @@ impl<'a> Shaded8<'a> {
                 ),
                 &mut exact,
             );
-            // 2⁸ for a pixel's width, and of shades 2⁻⁸ for their unit: no rounding but the first.
+            // 2⁸ for a pixel's width, and for shades 2⁻⁸ for their unit: no rounding but the first.
             for (step, exact) in sums.iter_mut().zip(exact) {
                 *step = f64::from(exact as f32 * unit);
             }
@@ -231,7 +232,7 @@ impl<'a> Shaded8<'a> {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
                 let ((length, paint), starts) = (list.fill_of(k), self.starts.of(k));
-                // Its halves.
+                // The face in the lower half, the first pixel in the upper.
                 let fill = Fill {
                     face: (paint & 0xFFFF) as usize,
                     #[cfg(feature = "alloc")]
@@ -251,7 +252,7 @@ impl<'a> Shaded8<'a> {
     }
 }
 
-/// `256·q + nearest((256·r + 255·h) / A)`, modulo 2³²: see the module's head.
+/// `256·q + nearest((256·r + 255·h) / A)`, modulo 2³²: see the module's documentation.
 #[inline(always)]
 fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), fraction: S::F64, magic: S::F64) -> S::I32 {
     let whole = s.mul_add(n, inverse, magic);
@@ -260,7 +261,7 @@ fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), frac
     s.add_i32(s.shl_i32(s.low_bits(whole), 8), s.low_bits(part))
 }
 
-/// Swaps the numbers of the second and the third corner in the lanes that are set.
+/// Swaps the values of the second and the third corner in the lanes that are set.
 #[inline(always)]
 fn swap_where<S: Lanes8, const N: usize>(s: S, lanes: S::Mask, [_, second, third]: &mut [[S::F64; N]; 3]) {
     for i in 0..N {
@@ -354,7 +355,7 @@ impl Shades8 for Shaded8<'_> {
         self.starts.put(s, places, spans.columns);
     }
 
-    /// The exact steps in f32 of a triangle that is too large for sums of 64 bits.
+    /// The exact steps in f32 of a triangle too large for sums of 64 bits.
     #[inline(never)]
     fn set_up_large(&mut self, i: usize, _: &TriangleSetup8) {
         #[cfg(feature = "alloc")]
@@ -385,9 +386,9 @@ impl Shades8 for Shaded8<'_> {
 
 /// What fills a span.
 struct Fill {
-    /// The triangle, among those whose steps are kept.
+    /// The triangle, among those whose steps are stored.
     face: usize,
-    /// The number of its first pixel, counted from where its sums are.
+    /// The index of its first pixel, counted from where its sums are.
     #[cfg(feature = "alloc")]
     first: i32,
     starts: [i64; 2],
@@ -399,11 +400,12 @@ type Bytes = [u8; SpanBytes::LENGTH];
 
 /// A pixel stage: the bytes of a span.
 trait Stage {
-    /// The bytes of a span, and anything behind them in blocks of eight. Returns false where it cannot decide on all of them.
+    /// The bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if it cannot decide
+    /// all of them.
     fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
 }
 
-/// Blocks of eight that hold so many bytes.
+/// The blocks of eight that hold this many bytes.
 #[inline(always)]
 fn blocks(bytes: &mut Bytes, length: usize) -> impl Iterator<Item = &mut [u8; LANES]> {
     bytes.as_chunks_mut().0.iter_mut().take(length.div_ceil(LANES))
@@ -440,14 +442,14 @@ impl Stage for Hyperbolic {
     }
 }
 
-/// Bytes of a span in exact arithmetic, perspective-correct.
+/// The bytes of a perspective-correct span in exact arithmetic.
 #[cold]
 #[inline(never)]
 fn exact_bytes(all: &Listed<'_>, span: &Fill, offset: u32, bytes: &mut Bytes) {
     let triangle = all.triangle(span.face);
     let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
     let FrameLayout { first_row, pitch, .. } = all.layout;
-    // Of a frame: below 4,096.
+    // In a frame: below 4,096.
     let (x, y) = ((offset % pitch) as i32, (first_row + offset / pitch) as i32);
     plane.fill(x, y, &mut bytes[..span.length]);
 }
@@ -462,7 +464,7 @@ impl Stage for Float {
         let (batch, lane) = Batches::of_face(span.face);
         let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[batch];
         let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
-        // Rounded once: a division by 256 changes no bit of them.
+        // Rounded once: dividing by 256 changes no bit of them.
         let (n_and_step, d_and_step) = ([(n0 / 256.0) as f32, dn[lane] as f32], [d0 as f32, dd[lane] as f32]);
         let range = [least[lane] as f32 / 256.0, greatest[lane] as f32 / 256.0];
         let mut first = span.first;

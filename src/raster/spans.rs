@@ -1,21 +1,21 @@
-//! Triangles that were picked become spans, eight at a time.
+//! Turns picked triangles into spans, eight at a time.
 //!
-//! Half of the triangles of a fine model cover no pixel centre, and most of the others a few. So a triangle's own
-//! work has to be small: no sorting by branches, no division for itself, no loop for a row of one pixel. It is culled once,
-//! set up once, and becomes spans once:
+//! Half of the triangles of a fine model cover no pixel centre, and most of the others a few. So the work per triangle
+//! has to be small: no sorting by branches, no division of its own, no loop for a row of one pixel. A triangle is
+//! culled once, set up once, and becomes spans once:
 //!
 //! | stage | lanes | what |
 //! |---|---|---|
-//! | `cull` | triangles | which have a pixel centre in their box, and if that is tiny in themselves; their size class |
+//! | `cull` | triangles | which have a pixel centre in their box, and if that is tiny, in the triangle; their size class |
 //! | `setup` | triangles | edges, shade plane and depth plane |
 //! | `rows` | triangles, or rows of one | ends and first shades of rows, into a list of spans |
 //! | `span::list`, or `shaded` | pixels | the bytes |
 //!
-//! Each stage is one function over `simd::Lanes8`, compiled for each level of the processor; only the last
-//! one, the span kernel, is a level's own.
+//! Each stage is one function over `simd::Lanes8`, compiled for each level of the processor; only the last, the span
+//! kernel, is written separately for each level.
 //!
-//! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of a call of
-//! it for each triangle in turn.
+//! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of
+//! calling it for each triangle in turn.
 
 use super::columns::{Picks, Triangles};
 use super::depth::{Cell, DepthBuffer};
@@ -34,7 +34,7 @@ use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
-/// Triangles, and whether their rows are cut into pieces of 64 pixels, with which linear shades start anew.
+/// Triangles, and whether their rows are split into pieces of 64 pixels, with which linear shades are reseeded.
 #[derive(Clone, Copy)]
 pub(super) struct Drawn<'a> {
     pub(super) triangles: &'a Triangles<'a>,
@@ -62,8 +62,8 @@ impl Drawn<'_> {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws triangles that were picked inside the clip rectangle, one after the other: the bytes, depths and counts are
-    /// those of [`triangle`](Self::triangle) called for each.
+    /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are those of
+    /// calling [`triangle`](Self::triangle) for each.
     pub(crate) fn picks(
         &mut self,
         triangles: &Triangles<'_>,
@@ -97,7 +97,7 @@ impl<D: Cell> Raster<'_, D> {
                 continue;
             }
             let (pixels, _) = self.frame.pixels_mut();
-            // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+            // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel };
             let place = (layout, self.clip);
@@ -114,8 +114,8 @@ impl<D: Cell> Raster<'_, D> {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Returns whether lists hold the places of spans: offsets of pixels are kept in 32 bits, and a depth buffer has to hold the
-    /// frame's rows and no others.
+    /// Returns whether lists can hold the positions of spans: offsets of pixels have 32 bits, and a depth buffer must
+    /// hold exactly the frame's rows.
     pub(super) fn fits_lists(&mut self) -> bool {
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
@@ -148,7 +148,7 @@ fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Tar
 }
 
 compiled_for_each_level! {
-    /// Draws triangles by another shading than a linear one in 8.8, where there are cells those that are nearer.
+    /// Draws triangles with a shading other than a linear one in 8.8; if there are cells, only where they are nearer.
     #[inline(never)]
     fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats
         = draw_shaded_by;
@@ -164,7 +164,7 @@ fn draw_shaded_by<S: Lanes8>(s: S, of: Drawn<'_>, kind: Kind, place: Place, targ
     draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, &mut { SpanList::NONE })
 }
 
-/// Draws triangles, with `DEPTHS` where they are nearer than the target's cells; the list has depths if they are `LISTED`.
+/// Draws triangles, with `DEPTHS` where they are nearer than the target's cells; with `LISTED` the list has depths.
 #[inline(always)]
 pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
     s: S,
@@ -174,12 +174,12 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
     shades: &mut P,
     list: &mut SpanList,
 ) -> DrawStats {
-    // Unreachable without f64: this keeps routines of soft floats out of a chip's program.
+    // Unreachable without f64; this keeps soft-float routines out of a microcontroller's program.
     if !HAS_F64 {
         return DrawStats::default();
     }
     let of_pixels = (target.pixels.len(), layout.pitch);
-    // Depths without cells are not looked at.
+    // Depths without cells are not used.
     let has_cells = target.cells.is_some();
     list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
     let mut setup = TriangleSetup8::NONE;
@@ -194,8 +194,8 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
         shades.begin(number * LANES);
         let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout);
         shades.set_up(s, &basis, &corners, &setup);
-        // The next before this one's rows enter the list: vectors that are read just after their numbers were stored
-        // one by one wait for these. (3 to 6 % of the time of triangles of 0.6 pixels.)
+        // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
+        // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
         corners.gather::<DEPTHS>(triangles, &picks.range(count.min((number + 1) * LANES), count));
         setup.rows[eight.len().min(LANES)..].fill(0);
         if !list.has_room(LANES * LANES) {

@@ -1,4 +1,4 @@
-//! A triangle, from three vertices to bytes.
+//! One triangle, from three vertices to bytes.
 
 use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
@@ -12,8 +12,8 @@ use super::vintage::VintageTriangle;
 use crate::fixed::HAS_F64;
 use crate::span::Kernel;
 
-/// Draws triangles into a frame: inside a clip rectangle, with a depth buffer if there is one, with
-/// a span kernel of choice.
+/// Draws triangles into a frame: inside a clip rectangle, with an optional depth buffer, and with a choice of span
+/// kernel.
 #[derive(Debug)]
 pub struct Raster<'a, D: Cell = u32> {
     pub(super) frame: Frame<'a>,
@@ -29,7 +29,7 @@ impl<'a> Raster<'a> {
         Self { clip: frame.bounds(), frame, depth: None, kernel: Kernel::default() }
     }
 
-    /// Draws with a depth buffer of its own, cleared, in `values`, which is made as long as needed.
+    /// Draws with a depth buffer of its own, cleared, in `values`, which grows as needed.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub fn with_cleared_depth<D: Cell>(self, values: &'a mut alloc::vec::Vec<D>) -> Raster<'a, D> {
@@ -42,8 +42,8 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// Draws with a depth buffer of its own in `values`, which is made as long as needed and cleared in `within` alone.
-    /// This is for where nothing is drawn but in `within`: elsewhere `values` stay as they are.
+    /// Draws with a depth buffer of its own in `values`, which grows as needed and is cleared only in `within`. Nothing
+    /// may be drawn outside `within`, where `values` are not touched.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {
@@ -61,8 +61,8 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// Draws only what is nearer than `depth` holds. It is laid over this frame's rows
-    /// ([`DepthBuffer::new`]); rows that it lacks are not drawn.
+    /// Draws only what is nearer than `depth`, which must be laid over this frame's rows ([`DepthBuffer::new`]); rows
+    /// that it lacks are not drawn.
     #[must_use]
     pub fn with_depth<D: Cell>(self, depth: DepthBuffer<'a, D>) -> Raster<'a, D> {
         let Self { frame, clip, depth: _, kernel } = self;
@@ -70,8 +70,8 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Height of a triangle, in 256ths of a pixel, from which on its rows are worth the eight-lane set-up: 32 pixels. (With AVX2,
-/// of 19 rows 200 ns by rows and 228 ns together, of 100 rows 1,320 and 690.)
+/// Height of a triangle, in 256ths of a pixel, from which on its rows are worth the eight-lane set-up: 32 pixels. (With
+/// AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows 1,320 and 690 ns.)
 const TALL: i64 = 32 << 8;
 
 impl<'a, D: Cell> Raster<'a, D> {
@@ -83,14 +83,14 @@ impl<'a, D: Cell> Raster<'a, D> {
         self
     }
 
-    /// Draws with `kernel`. All give the same bytes.
+    /// Draws with `kernel`. All kernels give the same bytes.
     #[must_use]
     pub fn with_kernel(mut self, kernel: Kernel) -> Self {
         self.kernel = kernel;
         self
     }
 
-    /// The rectangle that is drawn in.
+    /// The clip rectangle.
     #[cfg(feature = "alloc")]
     pub(crate) fn clip(&self) -> Rect {
         self.clip
@@ -107,8 +107,7 @@ impl<'a, D: Cell> Raster<'a, D> {
         self.frame.reborrow()
     }
 
-    /// Draws a triangle. The order of the vertices and their winding make no difference; a triangle
-    /// without area draws nothing.
+    /// Draws a triangle. The order and winding of the vertices do not matter; a triangle without area draws nothing.
     #[inline]
     pub fn triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         let [a, b, c] = vertices.map(|vertex| i64::from(vertex.y().to_bits()));
@@ -118,7 +117,7 @@ impl<'a, D: Cell> Raster<'a, D> {
         self.triangle_by_rows(vertices, interpolation)
     }
 
-    /// Draws a triangle row by row, as the definition has it.
+    /// Draws a triangle row by row, following the definition.
     #[inline]
     pub(super) fn triangle_by_rows(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         let triangle = SortedTriangle::new(vertices);
@@ -126,7 +125,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             return self.draw_vintage(&triangle);
         }
         let mut drawn = DrawStats::default();
-        // Made when the first row is there: half of the triangles of a fine model cover no pixel.
+        // Created for the first row: half of the triangles of a fine model cover no pixel.
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
         let draw = |row: Row| {
@@ -134,7 +133,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             let y = row.y as u32;
             let Some(pixels) = self.frame.row_mut(y) else { return };
             let paint = paint.get_or_insert_with(|| RowShader::new(&triangle, interpolation));
-            // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+            // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let Some(depth) = depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
@@ -147,8 +146,8 @@ impl<'a, D: Cell> Raster<'a, D> {
         drawn
     }
 
-    /// Draws a triangle with rows, and shades in each, as the sources have them.
-    /// Depths are those of the triangle's plane, beyond its edges too, where they may wrap.
+    /// Draws a triangle with rows and shades as the sources print them. Depths are those of the triangle's plane, also
+    /// beyond its edges, where they may wrap.
     #[inline(never)]
     fn draw_vintage(&mut self, triangle: &SortedTriangle) -> DrawStats {
         let mut drawn = DrawStats::default();

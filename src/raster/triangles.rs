@@ -1,4 +1,4 @@
-//! Many triangles at once, by vertices.
+//! Many triangles at once, given as vertices.
 
 use super::columns::{Columns, Picks, ScreenPos, Triangles};
 use super::cull::{PickList, cull, pick};
@@ -14,7 +14,7 @@ use crate::lanes::LANES;
 /// The corners of all triangles of a batch.
 const CORNERS: usize = 3 * Batch::CAPACITY;
 
-/// The indices of triangles whose corners follow each other.
+/// The indices of triangles whose corners are consecutive.
 #[expect(clippy::cast_possible_truncation, reason = "no more than 384")]
 const INDICES: [[u32; 3]; Batch::CAPACITY] = {
     let mut indices = [[0; 3]; Batch::CAPACITY];
@@ -27,7 +27,7 @@ const INDICES: [[u32; 3]; Batch::CAPACITY] = {
     indices
 };
 
-/// Triangles to be drawn one after the other.
+/// Triangles to be drawn in order.
 #[derive(Clone, Debug)]
 pub struct Batch {
     count: usize,
@@ -38,10 +38,10 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// The most triangles.
+    /// The most triangles it holds.
     pub const CAPACITY: usize = 128;
 
-    /// Without a triangle.
+    /// An empty batch.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -53,15 +53,15 @@ impl Batch {
         }
     }
 
-    /// Returns whether triangles of this shading can be put into a batch: those that have exact cover.
+    /// Returns whether triangles of this shading can be put into a batch: only shadings with exact coverage can.
     #[must_use]
     #[inline]
     pub const fn takes(interpolation: Interpolation) -> bool {
         interpolation.has_exact_cover()
     }
 
-    /// Puts a triangle behind the others. Returns `false`, and leaves it out, if the batch is full or does not
-    /// [take](Self::takes) this shading.
+    /// Appends a triangle. Returns `false`, and leaves it out, if the batch is full or does not [take](Self::takes)
+    /// this shading.
     #[inline]
     pub fn push(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> bool {
         if self.count >= Self::CAPACITY || !Self::takes(interpolation) {
@@ -99,14 +99,14 @@ impl Batch {
         self.count == Self::CAPACITY
     }
 
-    /// Takes all triangles out.
+    /// Empties the batch.
     #[inline]
     pub const fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// The end of the triangles from `first` on that are drawn together, and the shading of all of them: a flat one is like
-    /// one whose rows do not start anew.
+    /// The end of the triangles from `first` on that are drawn together, and their common shading: flat ones are drawn
+    /// like ones whose rows are not reseeded.
     fn run(&self, first: usize) -> (usize, Interpolation) {
         let drawn_by = |at: usize| drawn_by(self.interpolation[at]);
         let of_first = drawn_by(first);
@@ -115,7 +115,7 @@ impl Batch {
     }
 }
 
-/// A corner's shade. A flat triangle is one whose corners agree: the nearest of a whole shade is that shade.
+/// A corner's shade. A flat triangle has equal corners: the byte nearest to a whole shade is that shade.
 #[inline]
 fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
     match interpolation {
@@ -124,7 +124,7 @@ fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
     }
 }
 
-/// The shading by which a triangle is drawn: a flat one is like one whose rows do not start anew.
+/// The shading with which a triangle is drawn: a flat one like one whose rows are not reseeded.
 fn drawn_by(interpolation: Interpolation) -> Interpolation {
     match interpolation {
         Interpolation::Flat(_) => Interpolation::Gouraud,
@@ -139,9 +139,9 @@ impl Default for Batch {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws triangles in the order in which they come: bytes, depths and counts are those of
-    /// [`triangle`](Self::triangle) called for each. All but vintage ones are culled 128 and set up eight at a time, which is
-    /// several times as fast where they are small.
+    /// Draws triangles in the order given: bytes, depths and counts are those of calling [`triangle`](Self::triangle)
+    /// for each. All but vintage ones are culled 128 and set up eight at a time, which is several times as fast for
+    /// small ones.
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
@@ -162,7 +162,7 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         let (mut drawn, mut batch) = (DrawStats::default(), Batch::new());
         for (vertices, interpolation) in triangles {
-            // On a fine model most are such: they are not worth the storing.
+            // Most triangles of a fine model are like that, and not worth storing.
             if Batch::takes(interpolation) && misses_centres(vertices) {
                 continue;
             }
@@ -179,7 +179,7 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    /// Draws one triangle of many rows, eight of these at a time.
+    /// Draws one triangle of many rows, eight rows at a time.
     #[inline(never)]
     pub(super) fn tall_triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         const INDICES: [[u32; 3]; 1] = [[0, 1, 2]];
@@ -202,8 +202,8 @@ impl<D: Cell> Raster<'_, D> {
     }
 
     internal! {
-    /// Draws the triangles of a batch, one after the other: the bytes, depths and counts are those of
-    /// [`triangle`](Self::triangle) called for each.
+    /// Draws the triangles of a batch in order: bytes, depths and counts are those of calling
+    /// [`triangle`](Self::triangle) for each.
     fn batch(&mut self, batch: &Batch) -> DrawStats {
         let mut drawn = DrawStats::default();
         let columns = Columns {
@@ -246,14 +246,14 @@ mod tests {
     use crate::raster::frame::{Frame, Rect};
     use crate::span::Kernel;
 
-    /// Rows of several pieces, and a pitch of its own.
+    /// Rows of several pieces, and a pitch that differs from the width.
     const WIDTH: u32 = 400;
     const PITCH: usize = 411;
     /// The rows of the frame, and those that a band of it holds.
     const HEIGHT: u32 = 90;
     const BAND: Range<u32> = 17..71;
 
-    /// A vertex near the frame, on a pixel's centre or not, or as far out as there is one.
+    /// A vertex near the frame, on a pixel's centre or not, or as far out as possible.
     fn vertex() -> impl Strategy<Value = Vertex> {
         let near = || -(60 << 8)..460_i32 << 8;
         let at =
@@ -265,7 +265,7 @@ mod tests {
         })
     }
 
-    /// Draws on one way or the other; returns counts, bytes and cells.
+    /// Draws by one method or the other; returns counts, bytes and cells.
     fn drawn<D: Cell>(
         (triangles, interpolation): (&[[Vertex; 3]], Interpolation),
         (clip, kernel): (Rect, Kernel),
@@ -286,8 +286,8 @@ mod tests {
         (counts, bytes, cells)
     }
 
-    /// What [`Raster::triangles`] leaves out draws nothing, at every side of a box and of a centre; and whatever draws nothing by
-    /// its box alone is left out.
+    /// What [`Raster::triangles`] leaves out draws nothing, at every side of a box and of a centre; and every triangle
+    /// whose box alone shows that it draws nothing is left out.
     #[test]
     fn triangles_that_miss_all_centres_draw_nothing() {
         let coordinates = [-129_i32, -128, -127, 0, 127, 128, 129, 255, 384];
@@ -307,7 +307,8 @@ mod tests {
                 }
             }
         }
-        // Between centres lie the first two, the next four and the last three: all corners in one such interval, for x or y.
+        // The first two, the next four and the last three each lie between the same centres: all corners in one such
+        // interval, for x or y.
         let of_one = [2_usize, 4, 3].map(|n| n.pow(3)).iter().sum::<usize>();
         let of_all = coordinates.len().pow(3);
         assert_eq!(left_out, 2 * of_one * of_all - of_one * of_one);
@@ -316,7 +317,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
 
-        /// Both ways on which [`Raster::triangle`] draws give equal bytes, depths and counts.
+        /// Both methods by which [`Raster::triangle`] draws give equal bytes, depths and counts.
         #[test]
         fn rows_together_are_rows_by_themselves(
             triangles in prop::collection::vec([vertex(), vertex(), vertex()], 1..6),

@@ -3,8 +3,8 @@
 use super::error::RasterError;
 use crate::fixed::{I24F8, U8F8};
 
-/// A projected vertex: position in 1/256 pixel, shade, depth. One that exists is legal, so the
-/// raster itself has nothing to refuse.
+/// A projected vertex: position in 1/256 pixel, shade, depth. Every vertex is valid, so the raster itself has nothing
+/// to refuse.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Vertex {
     x: i32,
@@ -13,7 +13,7 @@ pub struct Vertex {
     depth: u32,
 }
 
-/// The nearest 1/256, halves upward; what is too large is cut off at the ends of i32, and what is no number counts as 0.
+/// The nearest 1/256, halves upward; saturates at the ends of i32, and NaN counts as 0.
 #[inline]
 fn nearest(x: f32) -> i32 {
     let most = if x < 0.0 { i32::MIN } else { i32::MAX };
@@ -44,9 +44,9 @@ impl Vertex {
         Ok(Self { x: h, y: v, shade: shade.to_bits(), depth })
     }
 
-    /// A vertex at (`x`, `y`) in pixels, x to the right and y down, with a shade of 0 to 255; its depth is 0. Pixel centres
-    /// lie at halves. Each number is rounded to the nearest 1/256, and one beyond the guard band or the shades is cut off
-    /// there; what is not a number counts as 0.
+    /// A vertex at (`x`, `y`) in pixels, x to the right and y down, with a shade of 0 to 255; its depth is 0. Pixel
+    /// centres lie at halves. Each value is rounded to the nearest 1/256 and clamped to the guard band or the range of
+    /// shades; NaN counts as 0.
     ///
     /// ```
     /// use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
@@ -58,7 +58,7 @@ impl Vertex {
     /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
     /// # Ok::<(), mode13h::raster::RasterError>(())
     /// ```
-    // Compiled where it is called, so that programs for a chip without floating point hold no float.
+    // Compiled where it is called, so that programs for a microcontroller without floating point contain no float code.
     #[must_use]
     #[inline]
     pub fn at(x: f32, y: f32, shade: f32) -> Self {
@@ -75,7 +75,7 @@ impl Vertex {
         Self { depth, ..self }
     }
 
-    /// A vertex that has been one before, or is legal by the way it was made.
+    /// A vertex known to be valid: it was one before, or is valid by construction.
     #[inline]
     pub(crate) fn of_projected(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Self {
         debug_assert!(Self::new(x, y, shade, depth).is_ok(), "({x:?}, {y:?}), {shade:?}");
@@ -119,15 +119,15 @@ impl Vertex {
     }
 }
 
-/// Returns whether the box of these corners holds no pixel centre, its left and top sides included and the others not: a
-/// triangle with exact cover then draws nothing.
+/// Returns whether the box of these corners, its left and top sides included and the others excluded, holds no pixel
+/// centre: a triangle with exact coverage then draws nothing.
 #[inline]
 pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
     let [a, b, c] = corners;
-    // The first pixel whose centre lies at a coordinate or behind it. At most 2²⁰ and 127: no overflow.
+    // The first pixel whose centre is at or after a coordinate. At most 2²⁰ and 127: no overflow.
     let first = |coordinate: I24F8| (coordinate.to_bits() + 127) >> 8;
     let no_centre = |[a, b, c]: [I24F8; 3]| first(a.min(b).min(c)) == first(a.max(b).max(c));
-    // Both, as a branch for each would be guessed wrong twice as often.
+    // Both without a branch, as one for each would be mispredicted twice as often.
     no_centre([a.x(), b.x(), c.x()]) | no_centre([a.y(), b.y(), c.y()])
 }
 
@@ -149,7 +149,7 @@ mod tests {
         ] {
             let vertex = Vertex::at(x, y, shade);
             assert_eq!(bits(vertex), expected, "{x}, {y}, {shade}");
-            // It is one that `new` accepts.
+            // `new` accepts it too.
             assert_eq!(Vertex::new(vertex.x(), vertex.y(), vertex.shade(), 0), Ok(vertex));
             assert_eq!(vertex.with_depth(7).depth(), 7);
         }

@@ -1,4 +1,4 @@
-//! Triangles as all texts but the Polish lecture print them: what all else is measured against.
+//! Triangles as all texts but the Polish lecture print them: the baseline that everything else is measured against.
 //!
 //! ```text
 //! vertices:   X = floor(x + ½), Y = floor(y + ½)          on whole pixels
@@ -7,31 +7,31 @@
 //! pixels:     from Ax to the last before Bx: the integer part of As + k·StepX
 //! ```
 //!
-//! Every quotient is cut toward zero; there is one addition a scan line and edge, one a pixel, and no half is
-//! added anywhere. A row is taken at its upper edge and a pixel at its left one. So vertices are off by up
-//! to half a pixel both ways, edges by as much again, neighbours overlap or part, shades lag behind from
-//! row to row and from pixel to pixel, and each byte is half a shade too dark in the mean.
+//! Every quotient is truncated toward zero; there is one addition per scan line and edge and one per pixel, and no half
+//! is added anywhere. A row is sampled at its upper edge and a pixel at its left one. So vertices are off by up to half
+//! a pixel in both directions, edges by as much again, neighbours overlap or leave gaps, shades lag behind from row to
+//! row and from pixel to pixel, and each byte is half a shade too dark on average.
 //!
-//! Where the sources slip it is done right, or it would not run:
+//! Mistakes of the sources that would keep it from running are corrected:
 //!
-//! - The Russian textbook's count, Dx − Cx + 1, is zero or less where a row has no pixel, and its loop then writes all
-//!   of the video memory. Here the count is Bx − Ax, and no row is drawn that has none.
-//! - The Russian textbook divides by Bx − Ax, which may be 0 or next to it. Here both are whole pixels, and the
-//!   quotient is taken where there is a pixel: it is no more than 255 shades.
-//! - The Hungarian tutorial asks for `sar`, not `shr`: a shift of a negative number rounds toward minus infinity, as
-//!   the cut of x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x and the
+//! - The Russian textbook's count, Dx − Cx + 1, is zero or less for a row without pixels, and its loop then overwrites
+//!   all of video memory. Here the count is Bx − Ax, and rows without pixels are not drawn.
+//! - The Russian textbook divides by Bx − Ax, which may be 0 or close to it. Here both are whole pixels, and the
+//!   quotient is computed only if there is a pixel: it is at most 255 shades.
+//! - The Hungarian tutorial asks for `sar`, not `shr`: shifting a negative number rounds toward minus infinity, as
+//!   truncating x to its pixel does here, left of the frame too; a division (`idiv`) rounds toward zero. So x and the
 //!   shade on an edge stay between its ends.
 //!
-//! No cover and no range is promised. That bytes do stay in the range from min >> 8 to max >> 8 of the vertices is
-//! because all quotients are cut toward zero; the Russian textbook's own fractions of Ax and Bx would lose it. The
-//! order of the vertices, clip rectangles and bands make no difference: a byte depends on its place and the three
-//! vertices alone, and so does the pixel's being drawn.
+//! Neither coverage nor range is guaranteed. Bytes do stay in the range from min >> 8 to max >> 8 of the vertices,
+//! because all quotients are truncated toward zero; the Russian textbook's own fractions of Ax and Bx would lose that.
+//! The order of the vertices, clip rectangles and bands make no difference: whether a pixel is drawn, and its byte,
+//! depend only on its position and the three vertices.
 //!
-//! # Where others say which pixels
+//! # Where other methods determine the pixels
 //!
-//! The scan-line method and the stages of `effects` work by exact cover. There a pixel gets the shade that
-//! this triangle's nearest row has at its nearest pixel. A triangle without area on whole pixels gives the shade
-//! of its top vertex.
+//! The scan-line method and the stages of `effects` use exact coverage. There a pixel gets the shade that this
+//! triangle's nearest row has at its nearest pixel. A triangle without area on whole pixels gives the shade of its top
+//! vertex.
 
 use core::ops::Range;
 
@@ -59,7 +59,7 @@ struct Edge {
 }
 
 impl Edge {
-    /// The edge from `a` down to `b`, at the row of `a`. The steps of one without rows are not used.
+    /// The edge from `a` down to `b`, at the row of `a`. If it has no rows, its steps are not used.
     #[inline]
     fn new(a: Corner, b: Corner) -> Self {
         let rows = (b.y - a.y).max(1);
@@ -68,10 +68,10 @@ impl Edge {
         Self { y: a.y, x, step_x: dx / rows, shade: a.shade, step_shade: (b.shade - a.shade) / rows }
     }
 
-    /// The edge at row `y` of its rows: the value after that many additions.
+    /// The edge at row `y` of its rows: its values after that many additions.
     #[inline]
     fn at(&self, y: i32) -> Self {
-        // A cut quotient times no more than its divisor is no more than the dividend.
+        // A truncated quotient times at most its divisor is at most the dividend.
         let rows = y - self.y;
         Self { y, x: self.x + self.step_x * rows, shade: self.shade + self.step_shade * rows, ..*self }
     }
@@ -101,8 +101,8 @@ pub(super) struct VintageTriangle {
 }
 
 impl VintageTriangle {
-    /// Makes one with these shades, 0 to 0xFF00, at its vertices. The order of the vertices stays: a vertex above
-    /// another in 1/256 pixel is not below it in pixels.
+    /// A triangle with these shades, 0 to 0xFF00, at its vertices. The order of the vertices is preserved: a vertex
+    /// above another in 1/256 pixel is not below it in pixels.
     #[inline]
     pub(super) fn new(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let corner = |i: usize| {
@@ -123,8 +123,8 @@ impl VintageTriangle {
         }
     }
 
-    /// Calls `row` for every row that has a pixel inside `clip`, from the top down, with its shades.
-    /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
+    /// Calls `row` for every row with a pixel inside `clip`, from the top down, with its shades. `frame_width` is the
+    /// whole frame's; `clip` lies inside the frame.
     #[inline]
     pub(super) fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row, Ramp)) {
         // A clip rectangle lies inside a frame of at most 4,096 pixels a side.
@@ -152,7 +152,7 @@ impl VintageTriangle {
         }
     }
 
-    /// The shades of row `y`, or of the nearest row that there is.
+    /// The shades of row `y`, or of the nearest existing row.
     #[inline]
     pub(super) fn ramp(&self, y: i32) -> Ramp {
         if self.doubled_area == 0 {
@@ -168,7 +168,7 @@ impl VintageTriangle {
         // `sar`: toward minus infinity.
         let (x0, x1) = (left.x >> 16, right.x >> 16);
         let step = if x0 < x1 { (right.shade - left.shade) / (x1 - x0) } else { 0 };
-        // A shade is 0 to 0xFF00; a step is kept modulo 2¹⁶, as BX has it.
+        // A shade is 0 to 0xFF00; a step is stored modulo 2¹⁶, as in BX.
         Ramp { x0, x1, shade: left.shade as u16, step: step as u16 }
     }
 }
@@ -178,7 +178,7 @@ impl VintageTriangle {
 pub(super) struct Ramp {
     /// Ax: the first pixel.
     pub(super) x0: i32,
-    /// Bx: the one after the last; there is none if it is not after `x0`, and the step is then 0.
+    /// Bx: the one after the last; if it is not after `x0` there are no pixels, and the step is 0.
     pub(super) x1: i32,
     /// AX at the first pixel.
     pub(super) shade: u16,
@@ -187,11 +187,11 @@ pub(super) struct Ramp {
 }
 
 impl Ramp {
-    /// Calls `span` with the columns, the first shade and the step of each span that `columns` falls into:
-    /// those of the row's pixels, and those before and behind, which have the shade of the nearest.
+    /// Calls `span` with the columns, the first shade and the step of each span within `columns`: the row's pixels, and
+    /// those before and after, which get the shade of the nearest.
     #[inline]
     pub(super) fn spans(&self, columns: Range<i32>, mut span: impl FnMut(Range<usize>, u16, u16)) {
-        // Few columns: the product is meant modulo 2¹⁶.
+        // Few columns: the product is modulo 2¹⁶.
         let at = |x: i32| self.shade.wrapping_add(self.step.wrapping_mul((x - self.x0) as u16));
         let from = self.x0.clamp(columns.start, columns.end);
         let to = self.x1.clamp(from, columns.end);

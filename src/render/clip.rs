@@ -1,9 +1,8 @@
 //! Clipping in homogeneous space: the near plane first, then the guard band, in f64.
 //!
-//! Only what the raster cannot take is cut off: what lies nearer than the near plane, and what is
-//! projected more than 4,096 pixels away. The screen's edges need no clipping, the raster leaves
-//! out what lies beyond them exactly. [`raster::clip`](crate::raster::clip) goes through the
-//! planes in an order that leaves no crack.
+//! Only what the raster cannot take is clipped: what lies nearer than the near plane, and what is projected more than
+//! 4,096 pixels away. The screen's edges need no clipping, since the raster leaves out exactly what lies beyond them.
+//! [`raster::clip`](crate::raster::clip) goes through the planes in an order that leaves no crack.
 
 use crate::fixed::U8F8;
 use crate::raster::clip::{Clipped, Corners, clip as clip_triangle};
@@ -11,16 +10,16 @@ use crate::raster::effects::Attributes;
 use crate::raster::{Interpolation, Vertex};
 use crate::view::{Homogeneous, ObjectView};
 
-/// Place of a cut on an edge, as the part of the way from one end to the other.
+/// Position of a cut on an edge, as a fraction of the distance from one end to the other.
 #[derive(Clone, Copy, Debug)]
 struct Parts {
     /// Along the edge in space.
     on_face: f64,
     /// On the screen.
     on_screen: f64,
-    /// That of the two that shades are linear along.
+    /// The one of these two along which shades are linear.
     of_shades: f64,
-    /// That of the two that texture coordinates are linear along.
+    /// The one of these two along which texture coordinates are linear.
     of_texture: f64,
 }
 
@@ -59,14 +58,14 @@ pub(super) struct Progressions {
     pub(super) affine: bool,
 }
 
-/// A corner of the polygon that is being clipped.
+/// A corner of the polygon being clipped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) at: Homogeneous,
     /// In 1/256 shade, 0 to 0xFF00.
     pub(super) shade: f64,
-    /// The projected vertex, of a corner of the mesh that needs no clipping. It is kept as it is,
-    /// because a neighbour that needs none either draws with it.
+    /// The projected vertex, for a corner of the mesh that needs no clipping. It is reused unchanged, because an
+    /// unclipped neighbour draws with it too.
     pub(super) vertex: Option<Vertex>,
     pub(super) attributes: Attributes,
 }
@@ -83,16 +82,15 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
         3 => y + (limit + cy) * w,
         _ => (limit - cy) * w - y,
     };
-    // A vertex that was projected counts as inside whatever the rounding here says.
+    // A projected vertex counts as inside, whatever the rounding here says.
     if corner.vertex.is_some() { distance.max(0.0) } else { distance }
 }
 
 /// The point where an edge meets a plane.
 ///
-/// It is the mean of the two ends, each weighted with the other's distance: of numbers of one sign,
-/// as w is, no digit is lost however far apart they are. The coordinate that the plane fixes is not
-/// interpolated at all. With ends at opposite sides, 10³⁸ away, that would leave nothing of it, and
-/// the next plane would throw the point away, and the face with it.
+/// It is the mean of the two ends, each weighted with the other's distance: for numbers of one sign, as w is, no digit
+/// is lost however far apart they are. The coordinate that the plane fixes is not interpolated at all: with ends 10³⁸
+/// away on opposite sides, nothing of it would be left, and the next plane would drop the point, and the face with it.
 fn cut(
     view: &ObjectView,
     progressions: Progressions,
@@ -119,8 +117,8 @@ fn cut(
         4 => (limit - cy) * w,
         _ => between(a.y, b.y),
     };
-    // On the edge's projection the point lies at t·wb / w. Where the other end has no projection, beyond the near
-    // plane, what is linear on the screen is linear along the edge.
+    // On the edge's projection the point lies at t·wb / w. If the other end has no projection, beyond the near plane,
+    // values that are linear on the screen are linear along the edge.
     let on_face = d_inside / whole;
     let on_screen = if plane == 0 { on_face } else { on_face * b.w / w };
     let of_shades = if progressions.interpolation.is_linear_on_the_face() { on_face } else { on_screen };
@@ -162,7 +160,7 @@ pub(super) fn clip(
 mod tests {
     use super::*;
 
-    /// Coordinates and shades of a cut are the nearest to the exact ones; halves go up.
+    /// Coordinates and shades of a cut are the nearest to the exact ones; halves round up.
     #[test]
     fn attributes_of_a_cut_are_the_nearest() {
         let corner =

@@ -1,4 +1,4 @@
-//! An object's vertices, lit and projected, in columns; and those that a frame adds, by clipping or for a curve of shades.
+//! An object's vertices, lit and projected, in columns; and those that a frame adds by clipping or for curved shades.
 
 use alloc::vec::Vec;
 
@@ -9,11 +9,11 @@ pub(super) use crate::raster::columns::ScreenPos;
 use crate::raster::columns::{Columns, EffectColumns, LitColumn, Triangles};
 use crate::raster::effects::Attributes;
 
-/// Values of all vertices of an object. Those of effects are there only where the plan asks for them.
+/// Values of all vertices of an object. Those for effects exist only if the plan asks for them.
 #[derive(Debug, Default)]
 pub(super) struct VertexColumns {
     pub(super) at: Vec<ScreenPos>,
-    /// 0 of those that need clipping.
+    /// 0 for vertices that need clipping.
     pub(super) depth: Vec<u32>,
     /// Front and back.
     pub(super) shade: Vec<[U8F8; 2]>,
@@ -23,12 +23,12 @@ pub(super) struct VertexColumns {
     pub(super) fog: Vec<U8F8>,
     /// Red, green and blue, front and back.
     pub(super) channels: Vec<[[U8F8; 3]; 2]>,
-    /// Column and row in a table of normals, of the front.
+    /// Column and row in a table of normals, for the front.
     pub(super) slope: Vec<[U8F8; 2]>,
 }
 
 impl VertexColumns {
-    /// Makes room for `count` vertices of which nothing is known yet. They are to be put on the screen, and lit or left
+    /// Makes room for `count` vertices with unknown values. They must then be put on the screen, and lit or left
     /// without light.
     pub(super) fn begin(&mut self, count: usize) {
         self.at.resize(count, ScreenPos::NEEDS_CLIPPING);
@@ -40,12 +40,12 @@ impl VertexColumns {
         self.slope.clear();
     }
 
-    /// Leaves vertices without shades: faces or pixels are lit.
+    /// Leaves vertices without shades, if faces or pixels are lit.
     pub(super) fn leave_without_light(&mut self) {
         self.shade.fill([U8F8::default(); 2]);
     }
 
-    /// Puts a vertex on the screen, or says that it needs clipping.
+    /// Stores a vertex's position on the screen, or that it needs clipping.
     #[inline]
     pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
         (self.at[i], self.depth[i]) = match vertex {
@@ -54,7 +54,7 @@ impl VertexColumns {
         };
     }
 
-    /// The values, with input of light at the pixels.
+    /// The values, with the input of per-pixel lighting.
     #[inline]
     pub(super) fn columns<'a>(&'a self, lit: LitColumn<'a>) -> Columns<'a> {
         let Self { at, depth, shade, texture, fog, channels, slope } = self;
@@ -68,7 +68,7 @@ impl VertexColumns {
         Triangles { columns: self.columns(lit), indices: geometry.triangles }
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         let Self { at, depth, shade, texture, fog, channels, slope } = self;
         at.capacity() * size_of::<ScreenPos>()
@@ -81,8 +81,8 @@ impl VertexColumns {
     }
 }
 
-/// Triangles whose vertices are no mesh's: parts of faces that were clipped, faces whose shades are a curve, and those of
-/// the 16.16 path. Their values are those of the side that is seen.
+/// Triangles with vertices that are not a mesh's: parts of clipped faces, faces with curved shades, and those of the
+/// 16.16 path. Their values are for the visible side.
 #[derive(Debug, Default)]
 pub(super) struct AddedTriangles {
     vertices: VertexColumns,
@@ -95,12 +95,12 @@ pub(super) struct AddedTriangles {
 }
 
 impl AddedTriangles {
-    /// Added triangles from which on the pending ones are drawn. The parts of one more face may come on top.
+    /// Number of added triangles at which the pending ones are drawn. The parts of one more face may come on top.
     pub(super) const MAX_WAITING: usize = 64;
-    /// Corners and triangles that one face adds at most, see `raster::clip`.
+    /// The most corners and triangles that one face adds, see `raster::clip`.
     pub(super) const MAX_OF_FACE: usize = 8;
 
-    /// Takes memory for as many as may wait.
+    /// Allocates memory for the most triangles that may be pending.
     pub(super) fn make_room(&mut self) {
         let most = 3 * Self::MAX_WAITING + Self::MAX_OF_FACE;
         let Self { vertices, lit, indices, faces, .. } = self;
@@ -123,7 +123,7 @@ impl AddedTriangles {
     /// Adds a vertex, and returns its index.
     pub(super) fn vertex(&mut self, vertex: &Vertex, attributes: &Attributes) -> u32 {
         let Self { vertices, lit, .. } = self;
-        // Fewer than 2³²: memory for as many is not there.
+        // Fewer than 2³²: there is no memory for that many.
         let index = vertices.at.len() as u32;
         vertices.at.push(ScreenPos::of(vertex));
         vertices.depth.push(vertex.depth());
@@ -136,7 +136,7 @@ impl AddedTriangles {
         index
     }
 
-    /// Adds a triangle of vertices that were added, part of this face.
+    /// Adds a triangle of added vertices, part of this face.
     pub(super) fn triangle(&mut self, corners: [u32; 3], face: u32) {
         self.indices.push(corners);
         self.faces.push(face);
@@ -147,7 +147,7 @@ impl AddedTriangles {
         self.indices.len()
     }
 
-    /// Triangles that have been added since others were kept or taken out.
+    /// Triangles added since others were kept or removed.
     pub(super) fn waiting(&self) -> usize {
         self.indices.len() - self.kept.1
     }
@@ -162,12 +162,12 @@ impl AddedTriangles {
         &self.faces
     }
 
-    /// Keeps all until the frame is drawn.
+    /// Keeps all of them until the frame is drawn.
     pub(super) fn keep(&mut self) {
         self.kept = (self.vertices.at.len(), self.indices.len());
     }
 
-    /// Takes those out that are not kept.
+    /// Removes those that are not kept.
     pub(super) fn drop_waiting(&mut self) {
         let (vertices, triangles) = self.kept;
         let VertexColumns { at, depth, shade, texture, fog, channels, slope } = &mut self.vertices;
@@ -183,13 +183,13 @@ impl AddedTriangles {
         self.faces.truncate(triangles);
     }
 
-    /// Takes all out.
+    /// Removes all of them.
     pub(super) fn clear(&mut self) {
         self.kept = (0, 0);
         self.drop_waiting();
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.vertices.bytes()
             + self.lit.capacity() * size_of::<[f32; 6]>()

@@ -1,4 +1,4 @@
-//! Every triangle of a frame with all that the raster would get, for the laboratory.
+//! Every triangle of a frame with everything the raster would get, for the laboratory.
 
 use super::pick::Look;
 use super::pipelines::PipelineKey;
@@ -8,17 +8,17 @@ use crate::raster::effects::{Attributes, PixelPipeline};
 use crate::raster::{DrawStats, Interpolation, Vertex};
 use crate::scene::Scene;
 
-/// A triangle that is to be drawn.
+/// A triangle to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnTriangle<'a> {
     /// The object's index in the scene.
     pub object: usize,
-    /// The face's index in the object's mesh, or in what splitting made of it. Parts of a face that was clipped share its
-    /// index. `None` on the 16.16 path, which does not tell.
+    /// The face's index in the object's mesh, or in the mesh that splitting made of it. Parts of a clipped face share
+    /// its index. `None` on the 16.16 path, which does not report it.
     pub face: Option<usize>,
     /// The corners, projected and lit.
     pub vertices: &'a [Vertex; 3],
-    /// Interpolation of its shades, where they come from its corners.
+    /// Interpolation of its shades, if they come from its corners.
     pub interpolation: Interpolation,
     /// The palette entries of its surface's shades; `None` on the 16.16 path.
     pub ramp: Option<Ramp>,
@@ -29,18 +29,18 @@ pub struct DrawnTriangle<'a> {
 /// Stages that the pixels of a triangle pass through.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnEffects<'a> {
-    /// Attributes of the corners beside their shades.
+    /// Attributes of the corners besides their shades.
     pub attributes: &'a [Attributes; 3],
-    /// True if it shines through, and is drawn after all that does not.
+    /// True if it is transparent, and drawn after everything opaque.
     pub transparent: bool,
     /// The stages.
     pub pipeline: &'a PixelPipeline<'a>,
 }
 
 impl Renderer {
-    /// Hands every triangle that [`draw`](Self::draw) would draw to `visit`, in the order of
-    /// [`for_each_triangle`](Self::for_each_triangle), with all that the raster would get. Nothing is drawn, and the frames
-    /// that are drawn after it are those that would have been drawn without it.
+    /// Passes every triangle that [`draw`](Self::draw) would draw to `visit`, in the order of
+    /// [`for_each_triangle`](Self::for_each_triangle), with everything the raster would get. Nothing is drawn, and
+    /// frames drawn afterwards are the same as without it.
     pub(crate) fn each_triangle(
         &mut self,
         scene: &Scene,

@@ -1,11 +1,11 @@
-//! A number for each of some edges: a table that keeps its memory from frame to frame.
+//! Map from edges to numbers: a hash table that keeps its memory from frame to frame.
 //!
-//! Open addressing: an edge stands at the first free place from where its hash points to, and the table is never
-//! more than half full. It is only asked for edges, never read in order, so no byte depends on the hash.
+//! Open addressing: an edge is in the first free slot from the one its hash gives, and the table is never more than
+//! half full. It is only looked up, never iterated, so no byte depends on the hash.
 
 use alloc::vec::Vec;
 
-/// No edge: both its ends would be one.
+/// No edge: both its ends would be equal.
 const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 
 /// Map from an edge, two different numbers, to a number.
@@ -17,7 +17,7 @@ pub(super) struct EdgeMap {
 }
 
 impl EdgeMap {
-    /// Forgets all edges.
+    /// Removes all edges.
     pub(super) fn clear(&mut self) {
         self.places.fill((FREE, 0));
         self.count = 0;
@@ -27,13 +27,13 @@ impl EdgeMap {
         self.count == 0
     }
 
-    /// The number of an edge that has one.
+    /// The number of an edge, if it has one.
     pub(super) fn get(&self, edge: (u32, u32)) -> Option<u32> {
         let (known, number) = *self.places.get(self.place(edge)?)?;
         (known == edge).then_some(number)
     }
 
-    /// Gives an edge its number, in place of what it may have had.
+    /// Sets the number of an edge, replacing an earlier one.
     pub(super) fn insert(&mut self, edge: (u32, u32), number: u32) {
         if 2 * (self.count + 1) > self.places.len() {
             self.grow();
@@ -44,26 +44,26 @@ impl EdgeMap {
         }
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.places.capacity() * size_of::<((u32, u32), u32)>()
     }
 
-    /// Place where an edge stands, or would; nowhere in a table without places.
+    /// The slot of an edge, or the one where it would be; `None` in a table without slots.
     fn place(&self, (a, b): (u32, u32)) -> Option<usize> {
         let last = self.places.len().checked_sub(1)?;
         // Knuth's multiplicative hash (The Art of Computer Programming, 6.4), 2⁶⁴ over the golden ratio. Its upper
         // half is the better one, and 32 bits fit a `usize`.
         let hash = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let mut place = hash as usize & last;
-        // Half of the places are free.
+        // Half of the slots are free.
         while self.places[place].0 != FREE && self.places[place].0 != (a, b) {
             place = (place + 1) & last;
         }
         Some(place)
     }
 
-    /// Twice as many places.
+    /// Doubles the number of slots.
     #[cold]
     fn grow(&mut self) {
         let places = (2 * self.places.len()).max(16);
@@ -85,7 +85,7 @@ mod tests {
         assert_eq!((map.get((0, 1)), map.is_empty()), (None, true));
         let mut random = 1_u64;
         for number in 0..20_000 {
-            // Knuth's generator for MMIX; edges come up more than once.
+            // Knuth's generator for MMIX; edges occur more than once.
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let (a, b) = ((random >> 33) as u32 % 90, (random >> 45) as u32 % 90 + 90);
             assert_eq!(map.get((a, b)), naive.get(&(a, b)).copied());

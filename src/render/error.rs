@@ -11,18 +11,18 @@ use crate::scene::Scene;
 pub enum RenderError {
     /// The camera.
     Camera(&'static str),
-    /// An object, by its place in the scene.
+    /// An object, by its index in the scene.
     Object {
-        /// Its place, from 0.
+        /// Its index, from 0.
         index: usize,
         /// Its name, which may be empty.
         name: String,
         /// The fault.
         what: &'static str,
     },
-    /// A light, by its place in the scene.
+    /// A light, by its index in the scene.
     Light {
-        /// Its place, from 0.
+        /// Its index, from 0.
         index: usize,
         /// The fault.
         what: &'static str,
@@ -33,7 +33,7 @@ pub enum RenderError {
     Fog(&'static str),
     /// The palette's animation.
     PaletteAnimation(&'static str),
-    /// The settings, those of the scene or the renderer's.
+    /// The settings: the scene's or the renderer's.
     Settings(&'static str),
 }
 
@@ -58,7 +58,7 @@ impl core::error::Error for RenderError {}
 
 impl RenderError {
     internal! {
-    /// The fault of an object of the scene.
+    /// An error of an object of the scene.
     #[must_use]
     fn of_object(scene: &Scene, index: usize, what: &'static str) -> Self {
         let name = scene.objects().get(index).map_or_else(String::new, |object| object.name.clone());

@@ -1,4 +1,4 @@
-//! Input for the faces of an object, and the light of those that are lit each as one.
+//! Input for the faces of an object, and the light of flat-shaded faces.
 
 use alloc::vec::Vec;
 
@@ -19,10 +19,10 @@ use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::view::ObjectView;
 
-/// A face of the geometry that is drawn.
+/// A face of the geometry being drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
-    /// Its index in the mesh, or in what splitting made of it.
+    /// Its index in the mesh, or in the mesh that splitting made of it.
     pub(super) index: u32,
     /// Its vertices.
     pub(super) indices: [u32; 3],
@@ -30,14 +30,14 @@ pub(super) struct Face {
     pub(super) back_facing: bool,
 }
 
-/// The point of a face at which it is lit as one: its middle, and its normal there.
+/// The point at which a flat-shaded face is lit: its middle, and its normal there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FacePoint {
     normal: Vec3,
     centre: Vec3,
 }
 
-/// One object in one frame: what its faces are made from.
+/// One object in one frame: what its faces are drawn from.
 pub(super) struct Faces<'a> {
     pub(super) shading: Shading,
     pub(super) geometry: Geometry<'a>,
@@ -48,23 +48,23 @@ pub(super) struct Faces<'a> {
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
     pub(super) face_points: &'a [FacePoint],
-    /// True if back faces are left out.
+    /// True if back faces are culled.
     pub(super) culls: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does. As a back face it
-    /// is left out even where others show their backs: the other one has the same depth, and looks toward the eye.
+    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there are none. As a back
+    /// face it is culled even where others show their backs: the other one has the same depth, and faces the eye.
     pub(super) twins: &'a [u64],
-    /// True if its shades run; otherwise each surface has one.
+    /// True if its shades vary; otherwise each surface has a single one.
     pub(super) runs: bool,
     /// True if there are lamps or highlights.
     pub(super) full: bool,
-    /// True if faces are lit, each on one channel or on three, and not vertices.
+    /// True if faces rather than vertices are lit, each on one channel or on three.
     pub(super) lit_by_face: bool,
     pub(super) channels: bool,
     /// True if texture coordinates are linear on the screen.
     pub(super) affine: bool,
-    /// True if pixels may be lit each for itself.
+    /// True if pixels may be lit individually.
     pub(super) lights_pixels: bool,
-    /// Kernel for the light where a face is decided on.
+    /// Kernel for the light that decides on a face.
     pub(super) kernel: Kernel,
 }
 
@@ -74,7 +74,7 @@ impl<'a> Faces<'a> {
         self.columns.triangles(&self.geometry)
     }
 
-    /// The one shade of a face, or its three channels: at its middle, by its own normal.
+    /// The single shade of a face, or its three channels: at its middle, by its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
         let FacePoint { normal, centre } = self.face_points[face.index as usize];
         let paint = &self.paints[usize::from(face.surface)];
@@ -103,7 +103,7 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// The surface of eight faces, if they have one.
+    /// The surface of eight faces, if they share one.
     #[inline(always)]
     pub(super) fn surface_of_all(&self, faces: &[Pick; LANES]) -> Option<u16> {
         if self.paints.len() == 1 {
@@ -114,7 +114,7 @@ impl<'a> Faces<'a> {
         faces.iter().all(|face| surface(face) == first).then_some(first)
     }
 
-    /// The one shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
+    /// The single shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
     pub(super) fn shade_faces<const CULLS: bool>(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
         if self.channels {
             for (flat, &pick) in flat.iter_mut().zip(picks) {
@@ -132,7 +132,7 @@ impl<'a> Faces<'a> {
     /// [`shade_faces`](Self::shade_faces) with lamps and highlights.
     fn shade_in_full_light(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
         for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
-            // Without a face the last one's.
+            // Lanes without a face repeat the last one.
             let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
             let Some(surface) = self.surface_of_all(&of) else {
                 for (flat, &pick) in flat.iter_mut().zip(eight) {
@@ -144,7 +144,7 @@ impl<'a> Faces<'a> {
             let mut points = [[0.0; LANES]; 6];
             for (lane, face) in of.iter().enumerate() {
                 let FacePoint { normal, centre } = self.face_points[face.index()];
-                // Of the side that is seen.
+                // For the visible side.
                 let n = normal * [1.0, -1.0][face.side()];
                 for (axis, value) in [n.x, n.y, n.z, centre.x, centre.y, centre.z].into_iter().enumerate() {
                     points[axis][lane] = value;
@@ -159,7 +159,7 @@ impl<'a> Faces<'a> {
 }
 
 compiled_for_each_level! {
-    /// The shades of picked faces, each lit as one by its own normal: suns, no highlights, and one channel.
+    /// The shades of picked flat-shaded faces, each by its own normal: suns, no highlights, and one channel.
     fn light_faces[const BOTH: bool][BOTH](
         faces: &Faces<'_>,
         picks: &[u32],
@@ -170,7 +170,7 @@ compiled_for_each_level! {
 #[inline(always)]
 fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
     for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
-        // Without a face the last one's.
+        // Lanes without a face repeat the last one.
         let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
         let Some(surface) = faces.surface_of_all(&of) else {
             for (flat, &pick) in flat.iter_mut().zip(eight) {
@@ -189,14 +189,14 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
     }
 }
 
-/// The points at which faces are lit. One without area has no normal, but rounded it may still cover a pixel: it gets that of
-/// its first corner.
+/// The points at which faces are lit. A face without area has no normal, but rounded it may still cover a pixel: it
+/// gets the normal of its first corner.
 pub(super) fn face_points(geometry: &Geometry<'_>, points: &mut Vec<FacePoint>) {
     points.clear();
     points.extend(geometry.triangles.iter().map(|indices| {
         let [a, b, c] = three(*indices, |i| geometry.positions[i as usize]);
         let normal = face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize]);
-        // Each third by itself: the sum of three might overflow.
+        // Each third separately: the sum of three might overflow.
         FacePoint { normal, centre: a / 3.0 + b / 3.0 + c / 3.0 }
     }));
 }

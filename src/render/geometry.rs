@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-/// Geometry drawn of an object: its mesh, or the result of tessellation.
+/// Geometry that is drawn for an object: its mesh, or the result of tessellation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Geometry<'a> {
     pub(super) positions: &'a [Vec3],

@@ -1,4 +1,4 @@
-//! The ways to visible surfaces: the faces of a frame drawn as they come, far to near, or row by row.
+//! The methods for hidden surfaces: the faces of a frame drawn in their order, far to near, or row by row.
 
 use alloc::vec::Vec;
 
@@ -16,28 +16,28 @@ use crate::raster::scan_line::Lists;
 use crate::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
 use crate::scene::Scene;
 
-/// Memory that drawing takes, and whose contents between two frames do not matter.
+/// Memory for drawing, whose contents between two frames do not matter.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     depths: Vec<u32>,
     effects: EffectScratch,
     pick: PickScratch,
     integer: IntegerScratch,
-    /// The faces of a frame that must be known whole before it is drawn, ...
+    /// The faces of a frame that must be known completely before it is drawn, ...
     faces: Vec<DeferredFace>,
-    /// ... those that shine through, ...
+    /// ... the transparent ones, ...
     transparent: Vec<DeferredFace>,
-    /// ... and the sum of a face's depths with its index: what is painted far to near.
+    /// ... and the sum of a face's depths with its index: what is sorted to draw far to near.
     far_to_near: Vec<(u64, usize)>,
-    /// The faces as the scan-line method takes them.
+    /// The faces as input of the scan-line method.
     triangles: Vec<([Vertex; 3], Interpolation)>,
     lists: Lists,
-    /// Faces of each object by the shading that a budget chose when it was drawn last.
+    /// Faces of each object by the shading that a budget chose when it was last drawn.
     pub(super) counts: Vec<Shares>,
 }
 
 impl Scratch {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.depths.capacity() * 4
             + self.effects.bytes()
@@ -52,7 +52,8 @@ impl Scratch {
 }
 
 impl Scratch {
-    /// Hands every face to `visit` by its object, in runs of one look: object by object, each in the order of its faces.
+    /// Passes every face to `visit` with its object, in runs of one look: object by object, each in the order of its
+    /// faces.
     pub(super) fn each_run(
         &mut self,
         scene: &Scene,
@@ -66,7 +67,7 @@ impl Scratch {
     }
 }
 
-/// A face that is drawn when all are known.
+/// A face that is drawn once all are known.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DeferredFace {
     object: u32,
@@ -93,7 +94,7 @@ impl DeferredFace {
         (self.object, self.look, self.has_flat) == (other.object, other.look, other.has_flat)
     }
 
-    /// The triangles that it is one of.
+    /// The triangles that include it.
     fn triangles<'a>(&self, scene: &'a Scene, cache: &'a Cache, added: Triangles<'a>) -> Triangles<'a> {
         if self.look.added { added } else { cache.triangles(scene, self.object as usize).unwrap_or(added) }
     }
@@ -150,7 +151,7 @@ impl Painter<'_, '_> {
 }
 
 impl Renderer {
-    /// Draws the frame that is prepared, over what `frame` holds.
+    /// Draws the prepared frame over the contents of `frame`.
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, frame: Frame<'_>) {
         let Self { kernel, cache, scratch, .. } = self;
         let Scratch { depths, effects, pick, integer, faces, transparent, far_to_near, triangles, lists, counts } =
@@ -162,7 +163,7 @@ impl Renderer {
         }
         let deferred = match method {
             HiddenSurfaces::BackFaces | HiddenSurfaces::DepthBuffer => false,
-            // Chosen, the objects lie far to near, and in a convex one no face hides another.
+            // If the plan chose it, the objects are sorted far to near, and in a convex one no face hides another.
             HiddenSurfaces::PainterOrder => !cache.plan.is_chosen(),
             HiddenSurfaces::ScanLine => true,
         };
@@ -205,13 +206,13 @@ impl Renderer {
         }
         pick.added.clear();
         stats.raster += drawn;
-        // Those of the 16.16 path are not counted one by one.
+        // Faces of the 16.16 path are not counted one by one.
         stats.shares.complete(stats.shading.into(), stats.drawn);
     }
 }
 
-/// Hands the faces of a frame to `draw`, by their object, in runs that are drawn together: object by object, each in the
-/// order of its faces. Triangles that the frame adds stay if `keeps` says so, or if they shine through.
+/// Passes the faces of a frame to `draw` with their object, in runs that are drawn together: object by object, each in
+/// the order of its faces. Triangles that the frame adds are kept if `keeps` says so, or if they are transparent.
 fn each_run(
     scene: &Scene,
     cache: &Cache,

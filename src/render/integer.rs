@@ -1,8 +1,8 @@
-//! A scene for the integer path: its floats become 16.16 here, and nowhere further on.
+//! Converts a scene for the integer path: its floats become 16.16 here, and there are none further on.
 //!
-//! Powers of two bring everything into range. A mesh is taken about its pivot and scaled until its
-//! farthest coordinate lies between 16,384 and 32,767: 30 bits, whatever its size. The scene is scaled,
-//! with the eye as its origin, until its farthest object does.
+//! Powers of two bring everything into range. A mesh is scaled about its pivot until its farthest coordinate lies
+//! between 16,384 and 32,767: 30 bits, whatever its size. The scene is scaled about the eye until its farthest object
+//! does too.
 
 use alloc::vec::Vec;
 
@@ -24,10 +24,10 @@ use crate::settings::Shading;
 /// The farthest coordinate.
 const REACH: f64 = 32_767.0;
 
-/// The nearest near plane, in units of the scaled scene: there W is still right to one part in 8,192.
+/// The nearest near plane, in units of the scaled scene: there W is still accurate to one part in 8,192.
 const NEAREST: f64 = 1.0 / 16.0;
 
-/// A mesh in 16.16. The one that it was made from is kept, so that nothing else can be at its address.
+/// A mesh in 16.16. It holds the mesh that it was converted from, so that no other can be at the same address.
 #[derive(Debug)]
 struct Converted {
     mesh: Shared<Mesh>,
@@ -35,9 +35,9 @@ struct Converted {
     up_axis: UpAxis,
     positions: Vec<Vector>,
     normals: Vec<Vector>,
-    /// Its coordinates count 2^exponent of the object's.
+    /// Its coordinates are in units of 2^exponent of the object's.
     exponent: i32,
-    /// No vertex is farther from the pivot, in 1/65,536 of its own unit.
+    /// No vertex is farther from the pivot, in 1/65,536 of the mesh's own unit.
     radius: u64,
     in_use: bool,
 }
@@ -85,7 +85,7 @@ impl Converted {
     }
 }
 
-/// The greatest power of two that takes `farthest` no farther than 32,767; 0 for 0.
+/// The greatest power of two that scales `farthest` to at most 32,767; 0 for 0.
 fn exponent_to_reach(farthest: f64) -> i32 {
     if farthest <= 0.0 {
         return 0;
@@ -122,7 +122,7 @@ fn paint(material: &Material, scene: &Scene) -> Option<Paint> {
     })
 }
 
-/// An object of the scene at hand.
+/// An object of the current scene.
 #[derive(Debug)]
 struct Prepared {
     converted: usize,
@@ -131,19 +131,19 @@ struct Prepared {
     paints: core::ops::Range<usize>,
 }
 
-/// The integer path's part of a renderer: meshes that were converted, and the scene at hand.
+/// The integer path's part of a renderer: converted meshes, and the current scene.
 #[derive(Debug, Default)]
 pub(super) struct IntegerPath {
     meshes: Vec<Converted>,
     view: Option<View>,
-    /// What the view was made of.
+    /// The input of the view.
     camera: Option<(Camera, [I16F16; 2])>,
     objects: Vec<Prepared>,
     paints: Vec<Paint>,
     suns: Vec<Sun>,
 }
 
-/// Memory of the vertices of an object.
+/// Memory for the vertices of an object.
 #[derive(Debug, Default)]
 pub(super) struct IntegerScratch {
     lit: Vec<LitVertex>,
@@ -151,14 +151,14 @@ pub(super) struct IntegerScratch {
 }
 
 impl IntegerScratch {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.lit.capacity() * size_of::<LitVertex>() + self.beams.capacity() * size_of::<Beam>()
     }
 }
 
 impl IntegerPath {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         let vectors = |mesh: &Converted| mesh.positions.capacity() + mesh.normals.capacity();
         self.meshes.capacity() * size_of::<Converted>()
@@ -168,10 +168,10 @@ impl IntegerPath {
             + self.suns.capacity() * size_of::<Sun>()
     }
 
-    /// Converts a scene whose numbers are finite. A scene that passes can be drawn.
+    /// Converts a scene with finite numbers. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
-        // Lamps, spot lights among them, are left out: the plan says so.
+        // Lamps, including spot lights, are left out: the plan reports it.
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
@@ -180,7 +180,7 @@ impl IntegerPath {
         }
         self.convert(scene.objects());
 
-        // Everything as seen from the eye.
+        // Everything relative to the eye.
         let eye = scene.camera.eye;
         let from_eye = |p: Vec3| {
             let (p, eye) = (p.to_array(), eye.to_array());
@@ -241,8 +241,7 @@ impl IntegerPath {
         Ok(())
     }
 
-    /// Finds the objects' meshes among those converted; converts those that are new, and lets go of
-    /// those that are no longer there.
+    /// Finds the objects' meshes among those converted; converts new ones, and drops those that are no longer used.
     fn convert(&mut self, objects: &[scene::Object]) {
         self.meshes.iter_mut().for_each(|mesh| mesh.in_use = objects.iter().any(|object| mesh.is_of(object)));
         self.meshes.retain(|mesh| mesh.in_use);
@@ -268,7 +267,7 @@ impl IntegerPath {
         Some(Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] })
     }
 
-    /// Hands the triangles of an object of the prepared scene to `triangle`.
+    /// Passes the triangles of an object of the prepared scene to `triangle`.
     pub(super) fn triangles(
         &self,
         shading: Shading,
@@ -284,7 +283,7 @@ impl IntegerPath {
         beams.resize(self.suns.len(), Beam::default());
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
-        // `prepare` has checked the object, and here is room for all.
+        // `prepare` has checked the object, and there is room for everything.
         let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, lit, beams) else {
             return;
         };
@@ -301,7 +300,7 @@ impl IntegerPath {
 
 fn fixed_mesh<'a>(meshes: &'a [Converted], prepared: &Prepared, object: &'a scene::Object) -> FixedMesh<'a, u32> {
     let converted = &meshes[prepared.converted];
-    // Sound, as the mesh that it was made from is.
+    // Valid, because the mesh it was converted from is.
     FixedMesh {
         positions: &converted.positions,
         normals: &converted.normals,

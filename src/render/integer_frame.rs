@@ -9,27 +9,27 @@ use crate::scene::Scene;
 use crate::settings::HiddenSurfaces;
 use crate::settings::Shading;
 
-/// A frame of the 16.16 path before its vertices are made.
+/// A frame of the 16.16 path before its vertices are computed.
 #[derive(Clone, Debug)]
 pub struct IntegerFrame<'a> {
     /// A shading of this path.
     pub shading: Shading,
-    /// True if depths are needed: the order of the objects alone does not do.
+    /// True if depths are needed because the order of the objects does not suffice.
     pub is_depth_tested: bool,
     /// The entry that the frame is cleared to.
     pub background: u8,
-    /// The camera, in a scene that is scaled into range with the eye as its origin.
+    /// The camera, in a scene scaled into range with the eye as its origin.
     pub camera: Camera,
     /// The focal lengths in pixels, across and down.
     pub focal: [I16F16; 2],
     /// The suns.
     pub suns: &'a [Sun],
-    /// The objects in the order in which they are drawn, with the index of each in the scene.
+    /// The objects in drawing order, each with its index in the scene.
     pub objects: Vec<(usize, Object<'a, u32>)>,
 }
 
 impl Renderer {
-    /// Prepares a frame by the 16.16 path, draws nothing, and returns its numbers.
+    /// Prepares a frame with the 16.16 path, draws nothing, and returns its numbers.
     pub(crate) fn integer_frame<'a>(
         &'a mut self,
         scene: &'a Scene,

@@ -2,22 +2,22 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `object` | the state kept of an object: its vertices, and their inputs |
-//! | `vertex`, `columns` | the stages of vertices: projected, lit, given values for effects; their results, in columns |
-//! | `tessellate`, `edge_map` | faces split along their edges; a number for each edge |
+//! | `object` | the cached state of an object: its vertices, and their inputs |
+//! | `vertex`, `columns` | the vertex stages: projected, lit, given values for effects; their results, in columns |
+//! | `tessellate`, `edge_map` | faces split along their edges; a map from edges to numbers |
 //! | `faces` | the input for an object's faces |
 //! | `pick` | which faces are drawn, and how, with `clip`: near plane and guard band |
 //! | `budget` | the error budget: the shading for each triangle |
-//! | `hidden_surfaces` | the ways to visible surfaces: faces drawn as they come, far to near, or row by row |
+//! | `hidden_surfaces` | the methods for hidden surfaces: faces drawn in their order, far to near, or row by row |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `integer` | a scene in 16.16 |
-//! | `pace` | the least error that fits in a time, beside the renderer |
+//! | `pace` | the least error that fits in a time, independent of the renderer |
 //! | `stats` | counts of a frame |
-//! | `each_triangle` | every triangle of a frame with all that the raster would get, for the laboratory |
+//! | `each_triangle` | every triangle of a frame with everything the raster would get, for the laboratory |
 //!
-//! The [`plan`] says which stages an object goes through: its vertices are transformed,
-//! lit and rounded, each once, or are last frame's; its faces pick theirs, are clipped where they must
-//! be and left out where they are back faces; the [`raster`](crate::raster) draws what is left.
+//! The [`plan`] says which stages an object goes through: its vertices are transformed, lit and rounded, each once, or
+//! are reused from the last frame; its faces are culled, clipped where necessary, and get their shading; the
+//! [`raster`](crate::raster) draws the rest.
 
 mod budget;
 mod clip;
@@ -63,7 +63,7 @@ use error::check;
 pub use pace::Pace;
 pub use stats::{Shares, Stats};
 
-/// Inputs of the last frame that was drawn, beside its objects.
+/// Inputs of the last frame drawn, besides its objects.
 #[derive(Clone, PartialEq, Debug)]
 struct Drawing {
     screen: Screen,
@@ -71,14 +71,14 @@ struct Drawing {
     hidden_surfaces: HiddenSurfaces,
     settings: Settings,
     order: Vec<usize>,
-    /// The palette: tables are made from it, and ramps lie in it.
+    /// The palette: tables are computed from it, and ramps are ranges of it.
     palette: Option<Palette>,
 }
 
-/// Bits after the point of what the raster takes.
+/// Fraction bits of the raster's input.
 const VERTEX_BITS: u32 = 8;
 
-/// What is kept from frame to frame: the plan, vertices, tables, and what they were made from.
+/// What is cached from frame to frame: the plan, vertices, tables, and their inputs.
 #[derive(Debug, Default)]
 struct Cache {
     views: Vec<ObjectView>,
@@ -96,14 +96,14 @@ impl Cache {
         Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel }
     }
 
-    /// The triangles of an object, if its vertices were made.
+    /// The triangles of an object, if its vertices were computed.
     fn triangles<'a>(&'a self, scene: &'a Scene, object: usize) -> Option<Triangles<'a>> {
         let of_scene = scene.objects().get(object)?;
         self.states.get(object)?.triangles(of_scene)
     }
 
-    /// Faces of the objects of which `counts` holds, whether they are seen in this frame or in one to come: room for
-    /// so many is enough until a plane cuts some in parts.
+    /// The number of faces of the objects that `counts` selects, seen in this frame or only in a later one: room for
+    /// that many is enough until a plane cuts some into parts.
     fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan) -> bool) -> usize {
         let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
         let counted = objects.filter(|(_, plan)| counts(plan));
@@ -111,8 +111,8 @@ impl Cache {
     }
 }
 
-/// Draws scenes. It keeps the memory that the next frame will need too, and the vertices of objects that
-/// do not change; the bytes are those of a new renderer.
+/// Draws scenes. It reuses its memory from frame to frame, and the vertices of objects that do not change; the bytes
+/// are those of a new renderer.
 ///
 /// ```
 /// use mode13h::render::Renderer;
@@ -124,17 +124,17 @@ impl Cache {
 /// ```
 #[derive(Debug)]
 pub struct Renderer {
-    /// How to draw; the scene's own settings decide what is `None` here.
+    /// How to draw; the scene's own settings apply where this is `None`.
     pub settings: Settings,
     /// Kernel that fills spans; the fastest by default. All give equal bytes.
     pub kernel: Kernel,
-    /// Effects that are switched by hand.
+    /// Effects that are forced on or off.
     overrides: Overrides,
-    /// Bits after the point of projected vertices; 8 as the raster has them.
+    /// Fraction bits of projected vertices; the raster uses 8.
     vertex_bits: u32,
     cache: Cache,
     scratch: Scratch,
-    /// The machine's stamp after the last frame, and what it came to.
+    /// The machine's stamp after the last frame, and that frame's counts.
     last: Option<(u64, Stats)>,
 }
 
@@ -153,54 +153,54 @@ impl Renderer {
         }
     }
 
-    /// A new renderer that is set as this one and draws the same bytes, for another thread.
+    /// A new renderer with the same settings, which draws the same bytes, for another thread.
     #[must_use]
     pub fn with_same_settings(&self) -> Self {
         Self { settings: self.settings, kernel: self.kernel, overrides: self.overrides.clone(), ..Self::new() }
     }
 
-    /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
-    /// with 0. Points that clipping makes stay as they are. For those who measure what rounding costs.
+    /// Rounds projected vertices once more, to this many fraction bits: 8, the default, or fewer, with 0 for whole
+    /// pixels. Points that clipping adds are not rounded. For measuring what rounding costs.
     pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
         self.vertex_bits = bits.min(VERTEX_BITS);
-        // Vertices that are kept are rounded otherwise.
+        // Cached vertices are rounded differently.
         self.cache.states.clear();
     }
 
-    /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
+    /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Effects that save work give the same bytes on or off. That of hidden surfaces is switched by
-    /// [`Settings::hidden_surfaces`]. Where an effect that changes the picture is
-    /// switched on and there is nothing that it could show, it runs on neutral input (no amplitude, an
-    /// image that changes nothing). Clipping stays on where the plan calls for it.
+    /// Effects that save work give the same bytes on or off. The method for hidden surfaces is set by
+    /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
+    /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.overrides.set(effect, on);
     }
 
-    /// Switches an effect on or off for one object, by its index in the scene, whatever holds for every object. `None`
-    /// takes that back. Palette animation is on as soon as it is for one. Otherwise like [`force`](Self::force).
+    /// Forces an effect on or off for one object, by its index in the scene, overriding what holds for every object.
+    /// `None` takes that back. Palette animation is on if it is on for any object. Otherwise like
+    /// [`force`](Self::force).
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.overrides.set_for(object, effect, on);
     }
 
-    /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the
-    /// palette; with `None`, as a new renderer has it, they are mixed. For those who measure shades.
+    /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to a palette entry; with `None`,
+    /// the default, they are mixed. For measuring shades.
     pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
         self.cache.tables.only_channel = channel;
-        // The machine holds another picture.
+        // The machine holds another image.
         self.last = None;
     }
 
-    /// The plan that was made last: of the frame that was drawn last, or by [`make_plan`](Self::make_plan).
+    /// The latest plan: of the last frame drawn, or by [`make_plan`](Self::make_plan).
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.cache.plan
     }
 
-    /// The plan of the frame that was drawn last, in words: [`Plan::rows`] of `scene`, which it must have
-    /// been drawn from, and how far the picture may be off where light at every pixel or splitting is not
-    /// on. That is worked out here, face by face, and only here. For an object that is drawn within an error
-    /// budget, it says how many of its triangles each shading got.
+    /// The plan of the last frame drawn, as text: [`Plan::rows`] of `scene`, which it must have been drawn from, and
+    /// how far the image may be off where neither per-pixel lighting nor splitting is on. That is computed here, face
+    /// by face, and only here. For an object drawn within an error budget, it says how many of its triangles got each
+    /// shading.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.cache.plan.rows_with(scene, |object| Findings {
@@ -215,9 +215,8 @@ impl Renderer {
     }
 
     /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
-    /// intensity and rounding aside, from normals, lights and vertices, for the frame that was drawn last.
-    /// `object` is its index. `None` if the object has one shade a face, or is not there, or on the
-    /// 16.16 path.
+    /// intensity, not counting rounding, from normals, lights and vertices, for the last frame drawn. `object` is its
+    /// index. `None` if the object is flat-shaded, does not exist, or is on the 16.16 path.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
@@ -230,8 +229,8 @@ impl Renderer {
         Some(faces.linear_error())
     }
 
-    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. The frames that are
-    /// drawn after it are those that would have been drawn without it.
+    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. Frames drawn
+    /// afterwards are the same as without it.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -247,22 +246,21 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw), except for numbers that 16.16 can't hold, which show only when it is drawn.
+    /// Those of [`draw`](Self::draw), except for numbers that 16.16 cannot hold, which are found only when it is drawn.
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
         Ok(&self.cache.plan)
     }
 
-    /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its
-    /// pixels and draws.
+    /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its pixels and draws.
     ///
-    /// Where nothing has changed since this renderer's last frame, and nobody has touched the machine's
-    /// memory, that frame is left as it is.
+    /// If nothing has changed since this renderer's last frame, and nobody has modified the machine's memory, that
+    /// frame is left as it is.
     ///
     /// # Errors
-    /// A number in the scene that is not finite or not in its range; on the integer path one that 16.16
-    /// can't hold beside the others. The machine is then left as it was.
+    /// A number in the scene that is not finite or out of range; on the integer path one that 16.16 cannot hold
+    /// together with the others. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let before = self.bytes();
@@ -289,10 +287,10 @@ impl Renderer {
         Ok(stats)
     }
 
-    /// Draws `scene` into any frame, or into a band of one, whose pixels have this width to height.
+    /// Draws `scene` into any frame, or into a band of one, with this ratio of pixel width to height.
     ///
     /// # Errors
-    /// As [`draw`](Self::draw). The frame is then left as it was.
+    /// Those of [`draw`](Self::draw). The frame is then left unchanged.
     pub fn draw_frame(
         &mut self,
         scene: &Scene,
@@ -302,8 +300,8 @@ impl Renderer {
         self.draw_into(scene, frame, pixel_aspect, true)
     }
 
-    /// Draws `scene` over what the frame holds, a sky or stars: like [`draw_frame`](Self::draw_frame), but nothing is
-    /// cleared. Glass and fog mix with the entries that are there, as if they were those of the background.
+    /// Draws `scene` over the contents of the frame, such as a sky or stars: like [`draw_frame`](Self::draw_frame), but
+    /// without clearing. Glass and fog mix with the entries there, as if they were the background.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -319,7 +317,7 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// As [`draw`](Self::draw). The frame is then left as it was.
+    /// Those of [`draw`](Self::draw). The frame is then left unchanged.
     pub fn draw_over(
         &mut self,
         scene: &Scene,
@@ -349,13 +347,12 @@ impl Renderer {
         Ok(stats)
     }
 
-    /// Hands every triangle that is to be drawn to `triangle`, as the raster would get it: object by
-    /// object, far to near where the scene calls for that, each in the order of its faces; a forced
-    /// painter's order does not sort them here. Attributes for effects are left out. The counts of the
-    /// work are returned, without the raster's.
+    /// Passes every triangle to be drawn to `triangle`, as the raster would get it: object by object, far to near if
+    /// the scene requires it, each in the order of its faces; a forced painter's order does not sort them here.
+    /// Attributes for effects are left out. Returns the counts of the work, without the raster's.
     ///
     /// # Errors
-    /// As [`draw`](Self::draw), before the first triangle.
+    /// Those of [`draw`](Self::draw), before the first triangle.
     pub fn for_each_triangle(
         &mut self,
         scene: &Scene,
@@ -373,15 +370,15 @@ impl Renderer {
         Ok(stats)
     }
 
-    /// Makes the plan and the vertices of a frame, and draws nothing. For those who measure what that takes.
+    /// Makes the plan and the vertices of a frame, and draws nothing. For measuring what that takes.
     pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.prepare(scene, screen, None, true)?;
         self.last = None;
         Ok(())
     }
 
-    /// Checks the scene, makes the plan, and the vertices by it. Says whether anything has changed that
-    /// the picture depends on.
+    /// Checks the scene, makes the plan, and the vertices that it requires. Returns whether anything has changed that
+    /// the image depends on.
     fn prepare(
         &mut self,
         scene: &Scene,
@@ -405,7 +402,7 @@ impl Renderer {
         let mut changed = !same;
         if !same {
             let (screen, background, hidden_surfaces, settings) = drawing;
-            // The list that is there is used again.
+            // The existing list is reused.
             let mut order = self.cache.drawing.take().map_or_else(Vec::new, |last| last.order);
             order.clone_from(&self.cache.plan.order);
             let palette = palette.cloned();
@@ -443,14 +440,14 @@ impl Renderer {
         Ok((stats, changed))
     }
 
-    /// The view of a scene in which nothing is wrong.
+    /// The view of a valid scene.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
         self.settings.or(&scene.settings).check().map_err(RenderError::Settings)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }
 
-    /// Makes the plan of a scene that has been checked. Returns what it is drawn by.
+    /// Makes the plan of a scene that has been checked. Returns the settings it is drawn with.
     fn decide(&mut self, scene: &Scene, view: &View, whole: bool) -> Settings {
         self.cache.views.clear();
         let placed = |(i, object)| ObjectView::placed(view, object, &scene.placement(i));
@@ -475,12 +472,12 @@ impl Renderer {
         settings
     }
 
-    /// Returns whether what is there may stay where nothing has changed.
+    /// Returns whether the last frame may stay if nothing has changed.
     fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
     }
 
-    /// Bytes that the renderer holds.
+    /// The renderer's size in bytes.
     fn bytes(&self) -> usize {
         let Cache { views, states, tables, integer, .. } = &self.cache;
         views.capacity() * size_of::<ObjectView>()

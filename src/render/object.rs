@@ -1,5 +1,5 @@
-//! Objects as a renderer keeps them from frame to frame: vertices, lit and projected, and what they
-//! were made from. As long as that stays, so do they.
+//! Objects as a renderer caches them from frame to frame: vertices, lit and projected, and their inputs. The vertices
+//! stay valid as long as the inputs do not change.
 
 use alloc::vec::Vec;
 
@@ -29,7 +29,7 @@ use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
 use crate::view::{ObjectView, View};
 
-/// Inputs of an object's vertices, beside the plan.
+/// Inputs of an object's vertices, besides the plan.
 #[derive(Clone, PartialEq, Debug)]
 struct VertexInputs {
     mesh: Shared<Mesh>,
@@ -38,7 +38,7 @@ struct VertexInputs {
     lamps: Vec<LampBeam>,
     materials: Vec<Material>,
     ambient: f32,
-    /// The number of the palette's ramps, on which the materials' ramps depend.
+    /// The version of the palette's ramps, on which the materials' ramps depend.
     ramps: usize,
     fog: Option<Fog>,
     accuracy: Accuracy,
@@ -46,8 +46,8 @@ struct VertexInputs {
 }
 
 impl VertexInputs {
-    /// Takes on what the object is now. Says whether that is another thing than before. Nothing is
-    /// allocated as long as there are no more lights or materials than before.
+    /// Updates to the object's current state. Returns whether it has changed. Nothing is allocated unless there are
+    /// more lights or materials than before.
     fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> bool {
         let mut changed = false;
         if !Shared::ptr_eq(&self.mesh, object.shared_mesh()) {
@@ -68,7 +68,7 @@ impl VertexInputs {
         changed | replace(&mut self.tolerance, settings.tolerance())
     }
 
-    /// The light that falls on it, as its plan has it: of the lamps those that are given.
+    /// The light on the object according to its plan; of the lamps, only the given ones.
     fn lights<'a>(&'a self, lamps: &'a [LampBeam], plan: &ObjectPlan) -> Lights<'a> {
         let suns = if plan.stages().is_lit() { self.suns.as_slice() } else { &[] };
         Lights { suns, lamps, eye: self.view.eye() }
@@ -99,14 +99,14 @@ fn replace_all<T: PartialEq>(list: &mut Vec<T>, new: impl Iterator<Item = T>) ->
     changed
 }
 
-/// A sun as the object of `view` sees it.
+/// A sun in the object space of `view`.
 fn sun(light: &Light, view: &ObjectView) -> Option<Beam> {
     let Light::Sun { direction, intensity, color } = *light else { return None };
     let towards = view.direction_in_object(direction)?;
     Some(Beam { towards, intensity: light.brightness(), channels: color.map(|c| c * intensity) })
 }
 
-/// A lamp as the object of `view` sees it.
+/// A lamp in the object space of `view`.
 pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     let Light::Lamp { position, intensity, range, color, cone } = *light else { return None };
     // In the object's units.
@@ -124,7 +124,7 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     })
 }
 
-/// Inputs of making an object's vertices.
+/// Inputs for computing an object's vertices.
 struct Made<'a> {
     scene: &'a Scene,
     object: &'a Object,
@@ -137,34 +137,34 @@ struct Made<'a> {
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
     source: Option<VertexInputs>,
-    /// True if the source has changed since the vertices were made.
+    /// True if the source has changed since the vertices were computed.
     stale: bool,
-    /// The plan that the vertices were made by, its reasons aside.
+    /// The plan that the vertices were computed by, without its reasons.
     made_by: Option<Stages>,
     paints: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
     columns: VertexColumns,
-    /// True if a vertex may have another shade than 0.
+    /// True if a vertex may have a shade other than 0.
     has_shades: bool,
     tessellated: Tessellated,
-    /// True if the tessellated mesh is drawn. Otherwise it stays for when it is again.
+    /// True if the tessellated mesh is drawn. Otherwise it is cached for later.
     is_tessellated: bool,
-    /// The mesh and the number of each vertex's point, for tessellation.
+    /// The mesh and the index of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
-    /// The normal of each face, and the mesh whose they are, where faces are lit.
+    /// The normal of each face, and the mesh they belong to, if faces are lit.
     face_points: Option<(Shared<Mesh>, Vec<FacePoint>)>,
-    /// One for each surface, and what they were made from.
+    /// One for each surface, with its inputs.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
-    /// Lights that the vertices would be made from now.
+    /// Lights that the vertices would be computed from now.
     beams: Vec<Beam>,
-    /// Data of a budget's decisions, and the faces that got each shading when the object was drawn last.
+    /// Data for a budget's decisions, and the faces that got each shading when the object was last drawn.
     budget: Budget,
     has_budget: bool,
 }
 
 impl ObjectState {
-    /// Takes on what the object is now, and what it is drawn by. Says what became of it since its vertices were made.
+    /// Updates to the object's current state and settings. Returns how it has changed since its vertices were computed.
     pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> Change {
         match &mut self.source {
             Some(source) => self.stale |= source.renew(scene, object, view, settings),
@@ -202,7 +202,7 @@ impl ObjectState {
         self.made_by = None;
     }
 
-    /// Makes the vertices, if they are not those of last frame. Returns whether it did.
+    /// Computes the vertices, unless last frame's are valid. Returns whether it did.
     pub(super) fn vertices(
         &mut self,
         scene: &Scene,
@@ -213,7 +213,7 @@ impl ObjectState {
         stats: &mut Stats,
     ) -> bool {
         let mut stages = *plan.stages();
-        // Neither says that vertices would be others.
+        // Neither means that the vertices would differ.
         (stages.vertices, stages.nearest) = (VertexStage::Make, 0.0);
         if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) {
             return false;
@@ -234,7 +234,7 @@ impl ObjectState {
         true
     }
 
-    /// The materials as they are in the scene, and the lamps that fall on the object.
+    /// The scene's current materials, and the lamps that light the object.
     fn take_materials_and_lamps(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         self.paints.clear();
@@ -255,7 +255,7 @@ impl ObjectState {
         self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
     }
 
-    /// The faces, split where that is on.
+    /// The faces, split if that is on.
     fn split_faces(&mut self, &Made { object, plan, .. }: &Made<'_>) {
         self.is_tessellated = plan.stages().tessellates();
         let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
@@ -282,7 +282,7 @@ impl ObjectState {
         if !self.has_effects() {
             return;
         }
-        // Those that the plan asks for, also where an effect is forced to run on input that changes nothing.
+        // Those that the plan asks for, also where an effect is forced to run on neutral input.
         let VertexColumns { texture, fog, channels, .. } = &mut self.columns;
         let image = plan.stages().has_texture() || plan.stages().has_environment();
         if image || plan.stages().neutral_image {
@@ -296,12 +296,12 @@ impl ObjectState {
         }
     }
 
-    /// The vertices' shades, or their channels, where it is vertices that are lit.
+    /// The vertices' shades, or their channels, if vertices are lit.
     fn light_vertices(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         let (lights, stages) = (source.lights(&self.lamps, plan), plan.stages());
-        // Of a closed body nobody sees the back.
+        // Nobody sees the back of a closed object.
         let both = !plan.stages().culls();
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += geometry.positions.len() as u64;
@@ -349,7 +349,7 @@ impl ObjectState {
         }
     }
 
-    /// Makes the points at which faces are lit, if these are lit and the mesh is another one.
+    /// Computes the points at which faces are lit, if they are and the mesh has changed.
     fn keep_face_points(&mut self, &Made { object, plan, .. }: &Made<'_>) {
         let is_known = matches!(&self.face_points, Some((mesh, _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
         if plan.stages().lit_at != LitAt::Faces || (is_known && !self.is_tessellated) {
@@ -372,7 +372,7 @@ impl ObjectState {
         self.budget.renew((max_error, kernel), &geometry, mesh, lights);
     }
 
-    /// Prepares light for the pixels, where all are lit.
+    /// Prepares per-pixel lighting, if all pixels are lit.
     fn prepare_pixels(&mut self, &Made { scene, object, view, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         if plan.stages().lit_at != LitAt::Pixels {
@@ -388,11 +388,11 @@ impl ObjectState {
         }
     }
 
-    /// The tables of shades by normal, as the eye sees them: they stay while the object turns.
+    /// The tables of shades by normal in eye space, which stay valid while the object turns.
     fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {
-            // A lamp counts as a sun where the object is: a table knows no places.
+            // A lamp counts as a sun at the object's position: a table knows no positions.
             let (towards, share) = match *light {
                 Light::Sun { direction, .. } => (direction, 1.0),
                 Light::Lamp { position, range, cone, .. } => {
@@ -445,13 +445,13 @@ impl ObjectState {
         &self.paints
     }
 
-    /// The light that falls on it, as its plan has it.
+    /// The light on the object according to its plan.
     pub(super) fn lights(&self, plan: &ObjectPlan) -> Lights<'_> {
         let none = Lights { suns: &[], lamps: &self.lamps, eye: [0.0; 3] };
         self.source.as_ref().map_or(none, |source| source.lights(&self.lamps, plan))
     }
 
-    /// Its triangles, if their vertices were made.
+    /// Its triangles, if their vertices were computed.
     pub(super) fn triangles<'a>(&'a self, object: &'a Object) -> Option<Triangles<'a>> {
         self.made_by?;
         Some(self.columns.triangles(&drawn_geometry(self.is_tessellated, &self.tessellated, object)))
@@ -465,7 +465,7 @@ impl ObjectState {
     /// Its faces, ready to be drawn.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
         let stages = plan.stages();
-        // Vertices that were not made, or are of no use, have none.
+        // Without computed vertices there are none.
         self.made_by?;
         let source = self.source.as_ref()?;
         Some(Faces {
@@ -488,12 +488,12 @@ impl ObjectState {
         })
     }
 
-    /// Budget that its faces are decided on by, if that is done for each.
+    /// The budget that decides on its faces one by one, if there is one.
     pub(super) fn budget(&self) -> Option<&Budget> {
         self.has_budget.then_some(&self.budget)
     }
 
-    /// Its faces, seen or not.
+    /// The number of its faces, visible or not.
     pub(super) fn most_faces(&self, object: &Object) -> usize {
         drawn_geometry(self.is_tessellated, &self.tessellated, object).triangles.len()
     }
@@ -503,7 +503,7 @@ impl ObjectState {
         self.paints.iter().any(|paint| paint.has_effects)
     }
 
-    /// Counts the faces by the way in which they were shaded, by a budget's choices; `None` without a budget.
+    /// Counts the faces by the shading that a budget chose; `None` without a budget.
     pub(super) fn face_counts(&self, object: &Object, counts: &Shares) -> Option<FaceCounts> {
         self.has_budget.then(|| {
             let drawn: Vec<(FaceShading, u64)> = (*counts).into_iter().collect();
@@ -514,7 +514,7 @@ impl ObjectState {
         })
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.columns.bytes()
             + self.paints.capacity() * size_of::<SurfaceMaterial>()
@@ -528,7 +528,7 @@ impl ObjectState {
     }
 }
 
-/// Geometry drawn of an object: its mesh, or the result of splitting it.
+/// Geometry that is drawn for an object: its mesh, or the result of splitting it.
 fn drawn_geometry<'a>(is_tessellated: bool, tessellated: &'a Tessellated, object: &'a Object) -> Geometry<'a> {
     if is_tessellated { tessellated.geometry() } else { mesh_geometry(object) }
 }

@@ -1,43 +1,45 @@
-//! The least error that fits in a time: the error budget of the next frames, from the times of the frames before them.
+//! The least error that fits in a time: chooses the error budget of the next frames from the times of earlier ones.
 //!
-//! Frames are taken in blocks of eight that are drawn within one error. A block's mean time is what its error takes, and it
-//! scales the times of the other errors, as a pose that takes longer at one error takes longer at each. First each error has a
-//! block of its own, from the greatest on. From then on each block is drawn within the least error whose time fits.
+//! Frames are grouped in blocks of eight drawn within the same error. A block's mean time is the cost of its error, and
+//! it scales the costs of the other errors, since a pose that takes longer at one error takes longer at each. First
+//! each error gets a block of its own, from the greatest on. From then on each block is drawn within the least error
+//! whose time fits.
 //!
-//! A frame of twice the block's median or more counts as the median: another program ran. A block whose time is spent ends at
-//! once, so a load that comes suddenly is met within a few frames. An error that fits is kept as long as it takes no more than
-//! a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors alternate.
+//! A frame of twice the block's median or more counts as the median: another program ran. A block whose time is used up
+//! ends at once, so a sudden load is met within a few frames. An error that fits is kept as long as it takes no more
+//! than a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors
+//! alternate.
 
 use core::time::Duration;
 
 use super::Stats;
 use crate::settings::Accuracy;
 
-/// Errors that are chosen from, in shades.
+/// The available errors, in shades.
 const ERRORS: [f32; 6] = [Pace::MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
 
 /// Frames of a block.
 const BLOCK: usize = 8;
 
-/// Share of the time up to which an error that is drawn is kept. To be chosen anew it must fit.
+/// Share of the time up to which the current error is kept. A newly chosen one must fit.
 const TOLERANCE: f32 = 1.05;
 
-/// Ratio of a block's time to the one before it from which on that is no noise.
+/// Ratio of a block's time to the one before it above which the difference is not noise.
 const JUMP: f32 = 1.2;
 
-/// Ratio of a time to the median from which on another program is to blame.
+/// Ratio of a time to the median above which another program is to blame.
 const OUTLIER: f32 = 2.0;
 
 /// Frames without a change before a smaller error is chosen.
 const HOLD: usize = 32;
 
-/// Frames without a change before a smaller error is tried that did not fit: its time was that of other poses. Each trial
-/// that fails doubles it, up to 16 times this.
+/// Frames without a change before trying a smaller error that did not fit: its time was that of other poses. Each
+/// failed trial doubles it, up to 16 times this.
 const PATIENCE: usize = 128;
 
-/// Chooses the [error budget](Accuracy::WithinError) of the next frame, so that frames take no longer than they may.
+/// Chooses the [error budget](Accuracy::WithinError) of the next frame so that frames stay within a time.
 ///
-/// It follows from the times alone that it is told: the engine reads no clock. Errors go from 16 shades down to half a shade.
+/// It uses only the times reported to it: the engine reads no clock. Errors go from 16 shades down to half a shade.
 ///
 /// ```
 /// use mode13h::Angle;
@@ -63,35 +65,35 @@ const PATIENCE: usize = 128;
 pub struct Pace {
     /// In milliseconds.
     max_time: f32,
-    /// The greatest error. The smaller ones are those of [`ERRORS`].
+    /// The greatest error. The smaller ones come from [`ERRORS`].
     max_error: f32,
-    /// What a frame takes within each error; infinite where nothing is known.
+    /// The time of a frame within each error; infinite if unknown.
     costs: [f32; ERRORS.len() + 1],
     at: usize,
     /// Times of the block's frames that were drawn.
     times: [f32; BLOCK],
     drawn: usize,
-    /// Frames of the block, those too that stayed as they were.
+    /// Frames of the block, unchanged ones included.
     frames: usize,
     /// Frames of the blocks since the last change.
     held: usize,
     patience: usize,
-    /// True if the error is tried against what is known of it.
+    /// True if the error is being tried although it is not known to fit.
     is_trial: bool,
 }
 
 impl Pace {
-    /// The greatest error that is chosen, in shades, unless [`at_most`](Self::at_most) says otherwise.
+    /// The greatest error chosen, in shades, unless [`at_most`](Self::at_most) says otherwise.
     pub const MAX_ERROR: f32 = 16.0;
 
-    /// A pace of frames that take at most this time each.
+    /// A pace for frames that take at most this long each.
     #[must_use]
     pub fn new(max_time: Duration) -> Self {
         Self::in_milliseconds(max_time.as_secs_f32() * 1000.0, Self::MAX_ERROR)
     }
 
-    /// Accepts at most this error, in shades: above 0 and finite, or the renderer refuses it. Forgets the times that it was
-    /// told.
+    /// Accepts at most this error, in shades: above 0 and finite, or the renderer refuses it. Discards the times
+    /// reported so far.
     #[must_use]
     pub fn at_most(self, max_error: f32) -> Self {
         Self::in_milliseconds(self.max_time, max_error)
@@ -112,19 +114,19 @@ impl Pace {
         }
     }
 
-    /// Errors that are smaller than the greatest.
+    /// Errors smaller than the greatest.
     fn smaller(&self) -> impl Iterator<Item = f32> {
         let max_error = self.max_error;
         ERRORS.into_iter().filter(move |error| *error < max_error)
     }
 
-    /// The error that the next frame is to be drawn within, in shades.
+    /// The error for the next frame, in shades.
     #[must_use]
     pub fn error(&self) -> f32 {
         self.at.checked_sub(1).and_then(|at| self.smaller().nth(at)).unwrap_or(self.max_error)
     }
 
-    /// The accuracy that the next frame is to be drawn with: [`error`](Self::error), for a renderer's settings.
+    /// The accuracy for the next frame: [`error`](Self::error), for a renderer's settings.
     #[must_use]
     pub fn accuracy(&self) -> Accuracy {
         Accuracy::WithinError(self.error())
@@ -136,22 +138,22 @@ impl Pace {
         self.at > 0 || self.is_kept()
     }
 
-    /// Returns whether the error may be drawn further.
+    /// Returns whether the error may be kept.
     fn is_kept(&self) -> bool {
         let cost = self.costs[self.at];
         cost.is_infinite() || cost <= TOLERANCE * self.max_time
     }
 
-    /// Takes how long the last frame took, and what it came to: a frame that was [not drawn again](Stats::redrawn) says
-    /// nothing about times.
+    /// Reports the time and the counts of the last frame: a frame that was [not redrawn](Stats::redrawn) says nothing
+    /// about times.
     pub fn report(&mut self, stats: &Stats, time: Duration) {
         self.took(stats.redrawn.then_some(time.as_secs_f32() * 1000.0));
     }
 
-    /// Takes the time of the last frame in milliseconds; `None` for a frame that stayed as it was.
+    /// Records the time of the last frame in milliseconds; `None` for a frame that did not change.
     fn took(&mut self, time: Option<f32>) {
         if let Some(time) = time {
-            // A clock may stand still.
+            // The clock may not have advanced.
             self.times[self.drawn] = time.max(1e-6);
             self.drawn += 1;
         }
@@ -162,7 +164,7 @@ impl Pace {
         }
     }
 
-    /// The sum of the block's times, what another program made late as long as the median.
+    /// The sum of the block's times, with frames delayed by another program counted as the median.
     fn sum(&self) -> f32 {
         let mut times = self.times;
         let times = &mut times[..self.drawn];
@@ -176,12 +178,12 @@ impl Pace {
         if moves {
             let (cost, known) = (self.sum() / self.drawn as f32, self.costs[self.at]);
             if self.held > 0 && known.is_finite() {
-                // Half of the way, so that noise changes little; all of it where the load is another.
+                // Half of the difference, so that noise changes little; all of it if the load has changed.
                 let ratio = cost / known;
                 let ratio = if (1.0 / JUMP..JUMP).contains(&ratio) { 0.5 + 0.5 * ratio } else { ratio };
                 self.costs.iter_mut().for_each(|other| *other *= ratio);
             } else {
-                // What was known of an error that is drawn anew may be old.
+                // The cost of an error that was not drawn for a while may be outdated.
                 self.costs[self.at] = cost;
             }
         }
@@ -201,7 +203,8 @@ impl Pace {
         }
     }
 
-    /// The place of the least error that fits: a greater one at once if this one does not, a smaller one only after a while.
+    /// The index of the least error that fits: a greater one at once if the current one does not, a smaller one only
+    /// after a while.
     fn choose(&self) -> usize {
         let costs = &self.costs[..=self.smaller().count()];
         if let Some(untried) = costs.iter().position(|cost| cost.is_infinite()) {
@@ -215,7 +218,7 @@ impl Pace {
         }
     }
 
-    /// The place of the cheapest of the smaller errors, if there is any.
+    /// The index of the cheapest of the smaller errors, if there is any.
     fn to_be_tried(&self) -> Option<usize> {
         (self.at + 1..=self.smaller().count()).min_by(|a, b| self.costs[*a].total_cmp(&self.costs[*b]))
     }
@@ -233,7 +236,7 @@ mod tests {
     /// Frames in which each error is tried.
     const TRIED: usize = BLOCK * ERRORS.len();
 
-    /// Errors and times of so many frames, by a clock that says what `cost` says of a frame's number and error.
+    /// Errors and times of this many frames, with a clock that gives `cost` of a frame's index and error.
     fn run(budget: &mut Pace, frames: usize, mut cost: impl FnMut(usize, f32) -> Option<f32>) -> Vec<(f32, f32)> {
         let frame = |number| {
             let error = budget.error();
@@ -244,7 +247,7 @@ mod tests {
         (0..frames).map(frame).collect()
     }
 
-    /// Normal noise of this deviation, by twelve uniform numbers.
+    /// Normal noise of this deviation, from twelve uniform numbers.
     fn noise(chance: &mut u64, deviation: f32) -> f32 {
         let mut sum = -6.0;
         for _ in 0..12 {
@@ -259,8 +262,8 @@ mod tests {
         numbers.map(f64::from).sum::<f64>() / count
     }
 
-    /// Tests that changes to a smaller error lie at least [`HOLD`] frames after the change before, so that no two errors
-    /// alternate, once all were tried.
+    /// Tests that changes to a smaller error come at least [`HOLD`] frames after the previous change, so that no two
+    /// errors alternate, once all have been tried.
     fn assert_steady(frames: &[(f32, f32)]) {
         let mut changed = None;
         for (i, pair) in frames.windows(2).enumerate() {
@@ -274,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Times that a frame takes within each of six errors: mostly rising, some equal, some even falling.
+    /// Times of a frame within each of six errors: usually rising, some equal, some even falling.
     fn times() -> impl Strategy<Value = [f32; 6]> {
         (0.3_f32..6.0, prop::array::uniform6(prop_oneof![Just(1.0_f32), 0.9_f32..1.6])).prop_map(|(first, ratios)| {
             let mut time = first;
@@ -289,8 +292,9 @@ mod tests {
         ERRORS.iter().position(|of| *of == error).expect("of the list")
     }
 
-    /// What a frame takes within each error, in milliseconds: on a duck, a football and a torus, as `mode13h cost` found it; and
-    /// where errors hardly change the time, where only the least does, and where the time does not always rise.
+    /// The time of a frame within each error, in milliseconds: for a duck, a football and a torus, as measured by
+    /// `mode13h cost`; and where errors hardly change the time, where only the least does, and where the time does not
+    /// always rise.
     const MODELS: [[f32; 6]; 6] = [
         [0.765, 0.838, 0.892, 1.006, 1.228, 1.226],
         [0.443, 0.571, 0.686, 1.222, 1.504, 2.077],
@@ -300,12 +304,12 @@ mod tests {
         [2.00, 2.30, 3.10, 2.90, 3.60, 3.30],
     ];
 
-    /// Eight poses all over a turn, one after the other, as the study draws them; each has its share of the time.
+    /// Eight successive poses around a full turn, as the study draws them; each with its share of the time.
     const POSES: [f32; 8] = [0.8, 1.0, 1.3, 1.1, 0.7, 0.9, 1.2, 1.0];
 
-    /// On every model, with a first frame that takes thrice as long and a machine whose frames are late by a few percent, and
-    /// one in fifty by far: the error falls as the time grows, and is no greater than the least whose time fits, but for trials
-    /// and noise, nor smaller than what fits within [`TOLERANCE`].
+    /// On every model, with a first frame that takes three times as long, and a machine whose frames are late by a few
+    /// percent, and one in fifty by far: the error falls as the time grows, and is no greater than the least whose time
+    /// fits, except for trials and noise, nor smaller than what fits within [`TOLERANCE`].
     #[test]
     fn the_error_falls_as_the_time_grows() {
         for (model, deviation) in MODELS.iter().flat_map(|model| [0.0, 0.01, 0.03].map(|deviation| (model, deviation)))
@@ -333,8 +337,8 @@ mod tests {
     }
 
     proptest! {
-        /// A scene that takes the same time again and again gets the least error that fits, or the greatest, which says
-        /// so.
+        /// A scene with a constant time gets the least error that fits, or the greatest, which is then reported not to
+        /// fit.
         #[test]
         fn a_steady_scene_gets_the_least_error_that_fits(times in times()) {
             let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
@@ -347,7 +351,7 @@ mod tests {
             prop_assert_eq!(Pace { at: 0, ..budget }.fits(), fits(0, TOLERANCE));
         }
 
-        /// Whatever times there are, no two errors alternate, and the error is one of those that are accepted.
+        /// Whatever the times, no two errors alternate, and the error is one of the accepted ones.
         #[test]
         fn no_two_errors_alternate(
             times in times(),
@@ -368,8 +372,8 @@ mod tests {
         }
     }
 
-    /// A load that comes at once is met within the frames that the time of one block is enough for, and one block more: from
-    /// then on each block's frames fit in the mean.
+    /// A sudden load is met within the frames that fit in the time of one block, and one block more: from then on each
+    /// block's frames fit on average.
     #[test]
     fn a_sudden_load_is_met_within_two_blocks() {
         for (load, model) in [1.1, 1.3, 2.0, 3.0].into_iter().flat_map(|load| MODELS.map(|model| (load, model))) {
@@ -383,7 +387,7 @@ mod tests {
         }
     }
 
-    /// Frames that another program makes late change nothing, if there is one among eight: they take ten times as long.
+    /// A late frame among eight, delayed tenfold by another program, changes nothing.
     #[test]
     fn a_late_frame_changes_nothing() {
         let times = [1.0, 1.5, 2.2, 2.9, 3.6, 5.0];
@@ -392,12 +396,12 @@ mod tests {
             Some(times[place(error)] * if frame % BLOCK == 5 { 10.0 } else { 1.0 })
         });
         let trials = frames[TRIED..].iter().filter(|(error, _)| *error != 1.0).count();
-        // A trial of half a shade after 128 frames, after 256 more, and after 512.
+        // Trials of half a shade after 128 frames, after 256 more, and after 512.
         assert!(trials <= 3 * BLOCK, "{trials}: {:?}", &frames[TRIED..200]);
     }
 
-    /// A scene that turns: its times rise and fall by a half, slowly. Most frames are drawn within the least error that fits,
-    /// and no more than one of ten is late: the load grows by up to 4 % from a block to the next.
+    /// A scene that turns: its times slowly rise and fall by a half. Most frames are drawn within the least error that
+    /// fits, and at most one in ten is late: the load grows by up to 4 % from one block to the next.
     #[test]
     fn a_turn_is_followed() {
         let times = [1.6, 2.0, 2.5, 3.1, 3.8, 4.5];
@@ -417,7 +421,7 @@ mod tests {
         assert!(near * 10 >= frames.len() * 9, "{near} of {}", frames.len());
     }
 
-    /// Where the error changes no time there is nothing to gain by a great one.
+    /// If the error does not change the time, nothing is gained by a great one.
     #[test]
     fn a_scene_whose_time_the_error_does_not_change_gets_the_least_error() {
         let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
@@ -428,7 +432,7 @@ mod tests {
         assert!(frames[TRIED..].iter().all(|(error, _)| *error == Pace::MAX_ERROR) && !budget.fits());
     }
 
-    /// What is known is wrong now, as the scene is another: smaller errors are tried again, seldom, until they fit.
+    /// Known times are wrong, as the scene has changed: smaller errors are retried, rarely, until they fit.
     #[test]
     fn old_times_are_tried_again() {
         let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
@@ -441,7 +445,7 @@ mod tests {
         assert_eq!(budget.error(), 0.5);
     }
 
-    /// A picture that stands still is refined to the least error, and drawn again only for that.
+    /// A still image is refined to the least error, and redrawn only for that.
     #[test]
     fn a_still_picture_is_refined() {
         let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
@@ -456,7 +460,7 @@ mod tests {
         assert!(drawn <= 8, "{drawn} drawn");
     }
 
-    /// The fewest frames: one time, no time, and none at all.
+    /// Edge cases: one time, no time, and no frame at all.
     #[test]
     fn a_clock_that_stands_still_chooses_the_least_error() {
         let mut budget = Pace::in_milliseconds(T, 3.0);

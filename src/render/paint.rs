@@ -1,4 +1,4 @@
-//! A material in its scene: what its shades are made with.
+//! A material in its scene: what its shades are computed with.
 
 use crate::fixed::U8F8;
 use crate::lanes::{each, three};
@@ -11,7 +11,7 @@ use crate::texture::Texture;
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
     pub(super) answer: Reflectance,
-    /// Place of one channel's shades: the material's entries; all 256 for an image or channels.
+    /// Range of one channel's shades: the material's entries; all 256 for an image or channels.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
     pub(super) texture_size: Option<[u32; 2]>,
@@ -32,7 +32,7 @@ impl SurfaceMaterial {
         let channels = stages.has_channels();
         let image = texture_size.is_some() || environment_size.is_some();
         let everywhere = stages.has_fog() || channels || stages.has_dither() || stages.lit_at == LitAt::Pixels;
-        // Switched on by hand, an effect runs on every surface, with neutral input where it has none.
+        // Forced on, an effect runs on every surface, with neutral input where it has none.
         let forced = stages.neutral_image || stages.neutral_blend;
         Self {
             answer: Reflectance {
@@ -56,20 +56,20 @@ impl SurfaceMaterial {
         }
     }
 
-    /// A shade as the material's own answer to light has it.
+    /// A shade after the material's own response to light.
     #[inline]
     pub(super) fn respond(&self, shade: U8F8) -> U8F8 {
         self.response.as_ref().map_or(shade, |response| answered(response, shade, self.ramp))
     }
 
-    /// One channel as the material's own answer to light has it.
+    /// One channel after the material's own response to light.
     #[inline]
     pub(super) fn respond_on_channel(&self, channel: U8F8) -> U8F8 {
         self.response.as_ref().map_or(channel, |response| answered(response, channel, Ramp::WHOLE))
     }
 
-    /// The shade of an intensity. The one clamp is here; beyond f32 an intensity becomes infinite, which
-    /// is more than 1 too.
+    /// The shade of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite, which is more than
+    /// 1 too.
     #[inline]
     pub(super) fn shade(&self, intensity: f64) -> U8F8 {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
@@ -81,30 +81,30 @@ impl SurfaceMaterial {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), self.ramp.first(), self.ramp.entries())
     }
 
-    /// One channel of eight.
+    /// One channel of eight intensities.
     #[inline(always)]
     fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), 0, Ramp::WHOLE.entries())
     }
 
-    /// Each of three channels of eight.
+    /// Three channels of eight intensities each.
     #[inline(always)]
     pub(super) fn channels_of_eight([red, green, blue]: &[[f64; 8]; 3]) -> [[U8F8; 8]; 3] {
         [Self::channel_of_eight(red), Self::channel_of_eight(green), Self::channel_of_eight(blue)]
     }
 
-    /// The shade without any light but the ambient.
+    /// The shade in ambient light only.
     pub(super) fn constant(&self) -> U8F8 {
         self.shade(self.answer.ambient)
     }
 
-    /// The channels of an intensity on each; 0 to 255.
+    /// The channels of three intensities, each 0 to 255.
     pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
         three(intensities, |intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }
 }
 
-/// Answer of a response to a shade of a ramp.
+/// A response applied to a shade of a ramp.
 #[cold]
 fn answered(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
     // A ramp of one entry has one shade.

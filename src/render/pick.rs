@@ -1,5 +1,5 @@
-//! Picking: which faces of an object are drawn, and how. Each is culled or clipped where it must be, and gets a shading:
-//! the object's, or within an error budget the one that is decided for it.
+//! Picking: which faces of an object are drawn, and how. Faces are culled or clipped where necessary, and get a
+//! shading: the object's, or within an error budget one decided for each.
 
 use alloc::vec::Vec;
 
@@ -28,28 +28,28 @@ const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has it
 /// Number of pending picks above which they are drawn.
 const CAPACITY: usize = 512;
 
-/// Room for picks: at the capacity 64 faces more may come, of which the last has eight parts.
+/// Room for picks: at the capacity 64 more faces may come, the last of which has eight parts.
 const ROOM: usize = CAPACITY + CHUNK + AddedTriangles::MAX_OF_FACE;
 
 /// What faces that are drawn together have in common.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Look {
-    /// The surface, where pixels pass through stages; otherwise it does not matter.
+    /// The surface, if pixels pass through stages; otherwise it does not matter.
     pub(super) surface: u16,
     pub(super) shading: FaceShading,
     /// True if pixels pass through stages.
     pub(super) effects: bool,
     pub(super) transparent: bool,
-    /// True if each has one shade for all of its pixels.
+    /// True if each face has one shade for all of its pixels.
     pub(super) one_shade: bool,
-    /// True if they are triangles that the frame adds, and not the object's.
+    /// True if the triangles are added by the frame, rather than the object's.
     pub(super) added: bool,
 }
 
 impl Look {
     /// The interpolation of the corners' shades.
     pub(super) fn interpolation(&self) -> Interpolation {
-        // Between corners that agree any will do.
+        // With equal corners any will do.
         if self.one_shade { Interpolation::Gouraud } else { self.shading.interpolation() }
     }
 }
@@ -73,7 +73,7 @@ impl Run<'_> {
         (vertices, interpolation)
     }
 
-    /// The values of a pick's corners beyond their shades.
+    /// The values of a pick's corners besides their shades.
     pub(super) fn attributes(&self, k: usize) -> [Attributes; 3] {
         let pick = self.picks.get(k);
         let attributes = three(self.triangles.corners(pick), |i| {
@@ -85,21 +85,21 @@ impl Run<'_> {
         }
     }
 
-    /// The picks' faces by their index in the mesh, or in what splitting made of it.
+    /// The picks' faces, by their index in the mesh or in the mesh that splitting made of it.
     pub(super) fn face(&self, k: usize) -> usize {
         let index = self.picks.get(k).index();
         if self.look.added { self.faces[index] as usize } else { index }
     }
 }
 
-/// Culling of triangles that cover no pixel: the pixels that are drawn, and the level that decides.
+/// Culling of triangles that cover no pixel: the drawn rectangle, and the level that decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Culler {
     pub(super) clip: Rect,
     pub(super) kernel: Kernel,
 }
 
-/// Memory of picking. It is taken when it is first needed, and is then enough.
+/// Memory for picking. It is allocated when first needed, and is then sufficient.
 #[derive(Debug, Default)]
 pub(super) struct PickScratch {
     picks: PickList<{ ROOM + LANES }>,
@@ -110,7 +110,7 @@ pub(super) struct PickScratch {
 }
 
 impl PickScratch {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.flat.capacity() * size_of::<[U8F8; 3]>()
             + self.runs.capacity() * size_of::<(usize, Look)>()
@@ -118,14 +118,14 @@ impl PickScratch {
     }
 }
 
-/// Collects picks, and has them drawn when there are enough.
+/// Collects picks, and draws them when there are enough.
 pub(super) struct Picker<'a> {
-    /// `None` where all faces are asked for.
+    /// `None` if all faces are wanted.
     culler: Option<Culler>,
-    /// True if triangles that are added stay until the frame is drawn.
+    /// True if added triangles are kept until the frame is drawn.
     keeps: bool,
     scratch: &'a mut PickScratch,
-    /// The look of triangles that are no mesh's and not yet culled, and the first of them.
+    /// The look of added triangles that are not yet culled, and the first of them.
     pending: Option<(Look, usize)>,
     draw: &'a mut dyn FnMut(&Run<'_>),
 }
@@ -142,9 +142,9 @@ impl<'a> Picker<'a> {
         Self { culler, keeps, scratch, pending: None, draw }
     }
 
-    /// Culls up to 64 triangles. `exact_cover` is false where those that cover no pixel centre may draw something.
+    /// Culls up to 64 triangles. `exact_cover` is false if those that cover no pixel centre may draw something.
     fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
-        // Nowhere a pixel is covered.
+        // No pixel is covered.
         const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
         let (level, clip) =
             self.culler.map_or((Kernel::PORTABLE.simd_level(), NOWHERE), |c| (c.kernel.simd_level(), c.clip));
@@ -152,7 +152,7 @@ impl<'a> Picker<'a> {
         if self.culler.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
 
-    /// Begins a run of another look, if it is another.
+    /// Begins a run, if the look is another one.
     fn begin(&mut self, look: Look) {
         let end = self.scratch.picks.as_slice().len();
         if self.scratch.runs.last().is_none_or(|(_, last)| *last != look) {
@@ -160,7 +160,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Ends the last run behind the last pick.
+    /// Ends the last run after the last pick.
     #[inline]
     fn end(&mut self) {
         let end = self.scratch.picks.as_slice().len();
@@ -169,7 +169,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds those of 64 faces whose bits are set, all of one look.
+    /// Adds those of 64 faces whose bits are set, all of the same look.
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
         self.begin(look);
@@ -204,7 +204,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds a triangle that is no mesh's.
+    /// Adds a triangle that is not a mesh's.
     pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: FaceShading) {
         let flat = match interpolation {
             Interpolation::Flat(index) => Some(U8F8::from(index)),
@@ -224,7 +224,7 @@ impl<'a> Picker<'a> {
         added.triangle(corners, 0);
     }
 
-    /// Picks those among the triangles that are no mesh's.
+    /// Picks the pending triangles that are not a mesh's.
     fn push_pending(&mut self) {
         if let Some((look, first)) = self.pending.take() {
             self.push_added(look, first, None);
@@ -232,7 +232,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Draws triangles that are no mesh's.
+    /// Draws the triangles that are not a mesh's.
     pub(super) fn finish_vertices(&mut self) {
         self.push_pending();
         self.finish(&Triangles::NONE);
@@ -243,7 +243,7 @@ impl<'a> Picker<'a> {
         &mut self.scratch.added
     }
 
-    /// Draws what waits if there is no room for 64 more, or for the parts of one more face.
+    /// Draws what is pending if there is no room for 64 more, or for the parts of one more face.
     #[inline]
     fn make_space(&mut self, triangles: &Triangles<'_>) {
         if self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
@@ -252,7 +252,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Draws what waits. `triangles` are the object's.
+    /// Draws what is pending. `triangles` are the object's.
     #[inline(never)]
     pub(super) fn finish(&mut self, triangles: &Triangles<'_>) {
         let (mut first, mut keeps) = (0, self.keeps);
@@ -278,7 +278,8 @@ impl<'a> Picker<'a> {
 }
 
 impl Faces<'_> {
-    /// Picks the faces that are to be drawn. Within a budget the shading of each is decided on; returns the counts of that.
+    /// Picks the faces to be drawn. Within a budget the shading of each is decided; returns the counts of these
+    /// decisions.
     pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
         stats.faces += self.geometry.triangles.len() as u64;
         if self.lit_by_face {
@@ -291,7 +292,7 @@ impl Faces<'_> {
     fn each<const CULLS: bool>(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         let all = self.triangles();
-        // Every shading that a budget chooses has exact cover, and one shade has.
+        // Every shading that a budget chooses has exact coverage, and so has a single shade.
         let has_one_shade = self.lit_by_face || !self.runs;
         let exact_cover = budget.is_some() || has_one_shade || self.shading.interpolation().has_exact_cover();
         let common = if budget.is_some() { LINEAR } else { self.shading.into() };
@@ -357,14 +358,14 @@ impl Faces<'_> {
         counts
     }
 
-    /// Finds those of a chunk of up to 64 triangles that lie back to back with others.
+    /// The bits of triangles, in a chunk of up to 64, that lie back to back with others.
     #[inline]
     fn twins_of(&self, chunk: usize) -> u64 {
         self.twins.get(chunk).copied().unwrap_or(0)
     }
 
-    /// Those of up to 64 faces that are to be drawn, those that need clipping included. A face that covers no pixel centre
-    /// is left out, though it counts as drawn.
+    /// The bits of faces to be drawn, among up to 64, including those that need clipping. A face that covers no pixel
+    /// centre is left out, though it counts as drawn.
     #[inline]
     fn drawn<const CULLS: bool>(&self, chunk: usize, count: usize, masks: &CullMasks, stats: &mut Stats) -> u64 {
         let drawn = if CULLS { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
@@ -375,7 +376,7 @@ impl Faces<'_> {
         (drawn & masks.covers) | masks.clipped
     }
 
-    /// What faces of a surface have in common that are drawn by one shading.
+    /// The look of faces of a surface that are drawn with one shading.
     #[inline]
     fn look(&self, surface: u16, shading: FaceShading, is_decided: bool) -> Look {
         let material = &self.paints[usize::from(surface)];
@@ -390,13 +391,13 @@ impl Faces<'_> {
         }
     }
 
-    /// That of all faces, if they have one.
+    /// The look of all faces, if they share one.
     fn one_look(&self, shading: FaceShading, is_decided: bool) -> Option<Look> {
         let plain = self.paints.iter().all(|material| !material.has_effects);
         (self.paints.len() == 1 || (plain && !self.paints.is_empty())).then(|| self.look(0, shading, is_decided))
     }
 
-    /// The one shade of a face, or its channels, if that is what is lit.
+    /// The single shade of a face, or its channels, if faces are lit.
     #[inline]
     fn lit_face(&self, face: Face, stats: &mut Stats) -> Option<[U8F8; 3]> {
         if !self.lit_by_face {
@@ -406,7 +407,7 @@ impl Faces<'_> {
         Some(self.flat(face))
     }
 
-    /// Lights the faces that were picked last, each as one.
+    /// Lights the most recently picked faces, each as a whole.
     #[inline(never)]
     fn light_faces<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
@@ -414,13 +415,13 @@ impl Faces<'_> {
         let first = flat.len();
         let picks = &picks.as_slice()[first..];
         stats.lit += picks.len() as u64;
-        // There is room: it was reserved.
+        // Room has been reserved.
         flat.resize(first + picks.len(), Default::default());
         self.shade_faces::<CULLS>(kernel, picks, &mut flat[first..]);
     }
 
-    /// A face that bounds alone do not make linear on the screen. `error` is its bound, if it is not linear on the face
-    /// either.
+    /// A face that bounds alone do not show to be linear on the screen. `error` is its bound, if it is not linear on
+    /// the face either.
     #[inline(never)]
     fn decided(
         &self,
@@ -439,7 +440,7 @@ impl Faces<'_> {
             picker.push(look, pick, None);
             return fit.shading;
         }
-        // A curve of its own.
+        // The face gets a curve of its own.
         let curve = self.curve(face.surface, &fit.nodes);
         let first = picker.added().len();
         let mut corners = [0; 3];
@@ -453,7 +454,7 @@ impl Faces<'_> {
         fit.shading
     }
 
-    /// A face that reaches beyond the near plane or the guard band. Apart: it is rare.
+    /// A face that reaches beyond the near plane or the guard band. Separate, because it is rare.
     #[cold]
     #[inline(never)]
     fn clipped(
@@ -480,7 +481,7 @@ impl Faces<'_> {
         shading
     }
 
-    /// Adds the triangles that clipping leaves of a face.
+    /// Adds the triangles into which clipping turns a face.
     fn add_parts(
         &self,
         (face, at): (Face, [Homogeneous; 3]),
@@ -517,19 +518,20 @@ impl Faces<'_> {
         let first = first.unwrap_or(0);
         for part in polygon.part_corners() {
             stats.drawn += 1;
-            // Fewer than eight corners more.
+            // At most seven more than the first.
             added.triangle(three(part, |corner| first + corner as u32), face.index);
         }
     }
 
-    /// Attributes of a vertex as one side sees them, those that there are, with its normal and position if pixels are lit.
+    /// Attributes of a vertex as seen from one side, where there are any, with its normal and position if pixels are
+    /// lit.
     fn attributes(&self, vertex: u32, back: bool, lights_pixels: bool) -> Attributes {
         self.triangles().columns.attributes(vertex as usize, usize::from(back), lights_pixels)
     }
 }
 
-/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume
-/// between the eye and the three corners.
+/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume between the eye and the
+/// three corners.
 fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
     let [a, b, c] = at;
     let volume = a.w * (b.x * c.y - c.x * b.y) + b.w * (c.x * a.y - a.x * c.y) + c.w * (a.x * b.y - b.x * a.y);

@@ -1,4 +1,4 @@
-//! Pixel pipelines of surfaces: the plan, the material and the tables, put together.
+//! Pixel pipelines of surfaces, assembled from the plan, the material and the tables.
 
 use super::budget::limits;
 use super::object::ObjectState;
@@ -18,10 +18,10 @@ use crate::span::Kernel;
 use crate::span::dither::Thresholds;
 use crate::span::texture::Texels;
 
-/// One texel, for an image that changes nothing.
+/// A single texel, for an image that changes nothing.
 const ONE_TEXEL: [u8; 1] = [0];
 
-/// The image of a surface, if one is on: its own, or what it mirrors.
+/// The image of a surface, if one is on: its own, or the environment it mirrors.
 fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
     let (texture, has_levels) = if paint.texture_size.is_some() {
         (&material.texture, plan.stages().has_mipmaps())
@@ -72,7 +72,7 @@ pub(super) fn ensure_tables(
     }
 }
 
-/// The surface and the shading that a pixel pipeline is made for.
+/// The surface and the shading that a pixel pipeline is for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct PipelineKey {
     pub(super) object: usize,
@@ -100,7 +100,7 @@ impl Pipelines<'_> {
         self.paint(object, surface).map(|paint| paint.ramp)
     }
 
-    /// Hands the pixel pipeline of an object's surface to `draw`. A surface that is not there is not drawn.
+    /// Passes the pixel pipeline of an object's surface to `draw`. A surface that does not exist is not drawn.
     pub(super) fn with(
         &self,
         PipelineKey { object, surface, shading }: PipelineKey,

@@ -1,4 +1,4 @@
-//! Light at every pixel: the Russian article's Phong, and the table that stood in for it in 1994.
+//! Per-pixel lighting: the Russian article's Phong shading, and the table that stood in for it in 1994.
 
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
@@ -8,9 +8,9 @@ use crate::palette::Lut64K;
 use crate::raster::effects::Lighting;
 use crate::span::Kernel;
 
-/// One surface of an object, lit pixel by pixel in the object's own space.
+/// One surface of an object, lit pixel by pixel in object space.
 ///
-/// Where the normals of two ends cancel there is none: no light falls there but the ambient.
+/// Where the normals of two ends cancel, there is none, and only ambient light remains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
@@ -41,19 +41,19 @@ impl Lighting for PixelLight<'_> {
     }
 }
 
-/// Fills `table` with the shade for every normal that the eye may see: column and row are the normal's x and y, from −1 to
-/// 1; the rest of its length points towards the eye. Beyond the circle the normal on its rim counts.
+/// Fills `table` with the shade of every normal that the eye may see: column and row are the normal's x and y, from −1
+/// to 1; its z points toward the eye and completes unit length. Beyond the circle the normal on its rim is used.
 ///
-/// `lights` are in the eye's space, the eye far away on z.
+/// `lights` are in eye space, with the eye far away on z.
 #[inline(never)]
 pub(super) fn fill_normal_table(table: &mut Lut64K, lights: &Lights<'_>, paint: &SurfaceMaterial) {
     let mut eight = [0; LANES];
     table.fill(|row, column| {
         let at = |step: u8| (f32::from(step) - 127.5) / 127.5;
-        // By rows: the columns of one after the other, eight at a time.
+        // Row by row, eight columns at a time.
         let lane = usize::from(column) % LANES;
         if lane == 0 {
-            // 248 + 7 at most.
+            // At most 248 + 7.
             let x: Lanes<f32> = core::array::from_fn(|lane| at(column + lane as u8));
             let y = at(row);
             let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));

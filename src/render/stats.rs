@@ -13,35 +13,35 @@ use crate::span::Kernel;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Stats {
-    /// The shading that shaded, where no error was accepted.
+    /// The shading, if no error was accepted.
     pub shading: Shading,
     /// Accepted error in shades.
     pub max_error: Option<f32>,
-    /// The way from mesh to vertices.
+    /// The path from mesh to vertices.
     pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
     pub kernel: &'static str,
     /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// True if anything was drawn: where nothing changed, the last frame is left as it is.
+    /// True if anything was drawn: if nothing changed, the last frame is left as it is.
     pub redrawn: bool,
-    /// Objects whose vertices are last frame's.
+    /// Objects whose vertices were reused from the last frame.
     pub kept: u64,
-    /// Objects whose faces were drawn by the choices of an error budget.
+    /// Objects whose faces were drawn as an error budget decided.
     pub decided: u64,
     /// Bytes allocated for this frame.
     pub allocated: u64,
     /// Vertices transformed.
     pub vertices: u64,
-    /// Vertices lit; or, where shading is flat, faces, less those that were found to cover no pixel before.
+    /// Vertices lit; for flat shading faces, except those already found to cover no pixel.
     pub lit: u64,
     /// Faces of all objects.
     pub faces: u64,
-    /// Faces cut by the near plane or the guard band, or wholly beyond them.
+    /// Faces cut by the near plane or the guard band, or entirely beyond them.
     pub clipped: u64,
-    /// Back faces, and those without area once clipped and rounded.
+    /// Back faces, and faces without area after clipping and rounding.
     pub culled: u64,
-    /// Triangles handed to the raster: faces, and the parts of those that were clipped.
+    /// Triangles passed to the raster: faces, and the parts of clipped ones.
     pub drawn: u64,
     /// Shares of the shadings.
     pub shares: Shares,
@@ -49,7 +49,7 @@ pub struct Stats {
     pub raster: DrawStats,
 }
 
-/// Counts of triangles by the way in which they were shaded.
+/// Counts of triangles by their shading.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Shares([u64; FaceShading::ALL.len()]);
 
@@ -59,13 +59,13 @@ impl Shares {
         self.0[shading.index()] += triangles;
     }
 
-    /// Counts those that were not counted yet, of `drawn`.
+    /// Counts those of `drawn` that have not been counted.
     pub(super) fn complete(&mut self, shading: FaceShading, drawn: u64) {
         self.add(shading, drawn - self.0.iter().sum::<u64>());
     }
 }
 
-/// The number of triangles that were shaded so.
+/// The number of triangles with a shading.
 impl<S: Into<FaceShading>> Index<S> for Shares {
     type Output = u64;
 
@@ -74,7 +74,7 @@ impl<S: Into<FaceShading>> Index<S> for Shares {
     }
 }
 
-/// Each way in which any were shaded, from cheap to exact, and how many.
+/// Each shading that was used, from cheap to exact, with its number of triangles.
 impl IntoIterator for Shares {
     type Item = (FaceShading, u64);
     type IntoIter = Flatten<array::IntoIter<Option<Self::Item>, { FaceShading::ALL.len() }>>;

@@ -1,5 +1,5 @@
-//! The tables that effects look things up in. Each is made when something first needs it, and anew when
-//! the palette, or what else it was made from, has changed; a table that nothing needs is not there.
+//! The lookup tables of effects. Each is computed when first needed, and again when the palette or another of its
+//! inputs has changed; a table that nothing needs does not exist.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -20,7 +20,7 @@ pub(super) struct Image<'a> {
     pub(super) has_levels: bool,
 }
 
-/// Table that was made for an image.
+/// A table computed for an image.
 #[derive(Debug)]
 struct Made<T> {
     texture: Shared<Texture>,
@@ -34,21 +34,21 @@ pub(super) struct Tables {
     palette: Option<Palette>,
     fog: Option<(Rgb, Lut64K)>,
     nearest: Option<InverseColormap>,
-    /// They hold for every palette.
+    /// Valid for every palette.
     mipmaps: Vec<(Shared<Texture>, Mipmap)>,
     shades: Vec<Made<Lut64K>>,
     channels: Vec<Made<[Lut64K; 3]>>,
     blends: Vec<(Blend, Lut64K)>,
-    /// The row itself: an image that changes no shade.
+    /// Each entry is its row: an image that changes no shade.
     neutral_shades: Option<Lut64K>,
-    /// The column itself: fog that hides nothing.
+    /// Each entry is its column: fog that hides nothing.
     neutral_fog: Option<Lut64K>,
-    /// The channel that is shown instead of what the three are mixed to.
+    /// The channel that is shown instead of the mix of the three.
     pub(super) only_channel: Option<usize>,
 }
 
 impl Tables {
-    /// Tables are from now on for this palette. Says whether it is another one than before.
+    /// Switches the tables to this palette. Returns whether it differs from the one before.
     pub(super) fn use_palette(&mut self, palette: &Palette) -> bool {
         if self.palette.as_ref() == Some(palette) {
             return false;
@@ -62,7 +62,7 @@ impl Tables {
         self.palette.as_ref().unwrap_or(&crate::palette::BIOS)
     }
 
-    /// Makes a table of fog in this colour, if there is none; of no colour, one that changes nothing.
+    /// Creates a table of fog in this colour, if there is none; for `None`, one that changes nothing.
     pub(super) fn ensure_fog(&mut self, color: Option<Rgb>) {
         match color {
             None if self.neutral_fog.is_none() => self.neutral_fog = Some(Lut64K::from_fn(|_, index| index)),
@@ -86,7 +86,7 @@ impl Tables {
         }
     }
 
-    /// The cube needs no table.
+    /// How channels are mixed; the cube needs no table.
     pub(super) fn mix(&self, dither: bool) -> Mix<'_> {
         match (self.only_channel, &self.nearest) {
             (Some(channel), _) => Mix::Only(channel),
@@ -97,7 +97,7 @@ impl Tables {
         }
     }
 
-    /// Makes the smaller copies of an image, if it has some.
+    /// Computes the smaller copies of an image that has them.
     pub(super) fn ensure_levels(&mut self, image: Image<'_>) {
         if image.has_levels && self.mipmap(image).is_none() {
             self.mipmaps.push((Shared::clone(image.texture), Mipmap::new(image.texture)));
@@ -114,7 +114,7 @@ impl Tables {
         self.mipmap(image).map(Mipmap::levels)
     }
 
-    /// The colours of an image, those of its smaller copies among them.
+    /// The colours of an image, including those of its smaller copies.
     fn colors<'a>(&'a self, image: Image<'a>) -> &'a [Rgb; 256] {
         self.mipmap(image).map_or(image.texture.colors(), Mipmap::colors)
     }
@@ -138,8 +138,8 @@ impl Tables {
         table.map(|table| [table.as_array(); 3])
     }
 
-    /// Makes the tables of channels of an image: row a channel's shade, column a texel, entry the channel of
-    /// the lit texel.
+    /// Computes the tables of channels of an image: the row is a channel's shade, the column a texel, the entry the lit
+    /// texel's channel.
     pub(super) fn ensure_channels(&mut self, image: Image<'_>) {
         if find(&self.channels, image).is_none() {
             let colors = self.colors(image);
@@ -175,7 +175,7 @@ impl Tables {
         self.blends.iter().find(|(of, _)| *of == blend).map(|(_, table)| table.as_array())
     }
 
-    /// Bytes of all tables.
+    /// Size of all tables in bytes.
     pub(super) fn bytes(&self) -> usize {
         let tables = usize::from(self.fog.is_some())
             + self.shades.len()
@@ -194,7 +194,7 @@ impl<T> Made<T> {
     }
 }
 
-/// Finds the table of an image: for the very same texture, not for one that looks alike.
+/// Finds the table of an image: for the same texture object, not for an equal one.
 fn find<'a, T>(all: &'a [Made<T>], image: Image<'_>) -> Option<&'a T> {
     let is_of = |made: &&Made<T>| Shared::ptr_eq(&made.texture, image.texture) && made.has_levels == image.has_levels;
     all.iter().find(is_of).map(|made| &made.made)

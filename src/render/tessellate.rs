@@ -1,17 +1,17 @@
-//! Faces split along their edges until shades that are linear between the vertices fit the light.
+//! Splits faces along their edges until shades that are linear between the vertices fit the light.
 //!
-//! The Russian textbook: Gouraud shading cannot show a highlight inside a face, nor a lamp near the middle of a large
-//! one; many small faces can. A split is decided for each **edge**, from its two ends alone, and wherever the
-//! edge is part of a face, that face is split there: no corner of one face lies on an edge of another,
-//! so there is no crack. The new vertex lies half-way, is made once, and is projected and rounded once.
+//! As the Russian textbook says, Gouraud shading cannot show a highlight inside a face, nor a lamp near the middle of a
+//! large one; many small faces can. A split is decided for each **edge**, from its two ends alone, and every face with
+//! that edge is split there. No corner of one face lies on an edge of another, so there is no crack. The new vertex is
+//! the midpoint; it is created once, and projected and rounded once.
 //!
-//! Over an edge of length L a function whose second derivative is at most c is off by at most L²·c/8 if
-//! it is taken to be linear. Three things bend light along an edge:
+//! Over an edge of length L a function whose second derivative is at most c differs from a linear one by at most
+//! L²·c/8. Three things bend light along an edge:
 //!
-//! - a lamp at the distance h from it: n·l is h/√(h² + x²), which bends by at most 1/h², and the fall-off
-//!   within a range R by at most 4/R² more;
+//! - a lamp at the distance h from it: n·l is h/√(h² + x²), which bends by at most 1/h², and the fall-off within a
+//!   range R by at most 4/R² more;
 //! - a highlight at the distance h from what it mirrors: cos^s, which bends by at most s/h²;
-//! - normals that turn along the edge, as on a round body: found by lighting the middle.
+//! - normals that turn along the edge, as on a round object: found by lighting the middle.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -24,13 +24,13 @@ use super::paint::SurfaceMaterial;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
 
-/// Greatest number of halvings of an edge: 64 pieces.
+/// The most halvings of an edge: 64 pieces.
 const DEPTH: usize = 6;
 
-/// Splitting ends where there are so many triangles.
+/// Splitting ends at this number of triangles.
 const MAX_TRIANGLES: usize = 1 << 18;
 
-/// A mesh that was split.
+/// A split mesh.
 #[derive(Debug, Default)]
 pub(super) struct Tessellated {
     positions: Vec<Vec3>,
@@ -39,34 +39,33 @@ pub(super) struct Tessellated {
     vertex_surfaces: Vec<u16>,
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
-    /// The number of each vertex's point: vertices in one place have the same.
+    /// The index of each vertex's point: vertices at the same position share it.
     points: Vec<u32>,
-    /// A bit for each triangle whose mesh's triangle lies back to back with another; empty if there is none.
+    /// A bit for each triangle whose original triangle lies back to back with another; empty if there is none.
     twins: Vec<u64>,
-    /// True if each triangle's edges have been looked at, and none of them bent.
+    /// True for each triangle whose edges have been examined and found straight enough.
     straight: Vec<bool>,
-    /// The light of each vertex, and how far what it mirrors is from each light.
+    /// The light of each vertex, and how far each light is from the direction that it mirrors.
     known: Known,
-    /// The edges that are split, by their points, and the number of the new point.
+    /// The edges to be split, by their points, with the index of the new point.
     halved: EdgeMap,
-    /// Vertices half-way between two vertices: of a crease each side has its own.
+    /// Midpoint vertices by their two end vertices: at a crease each side has its own.
     middles: EdgeMap,
 }
 
-/// Light at the vertices, found out once for each.
+/// Light at the vertices, computed once for each.
 #[derive(Debug, Default)]
 struct Known {
     /// Intensities of front and back.
     light: Vec<(f64, f64)>,
-    /// One for each sun and each lamp, if any surface has a highlight: the angle between the eye and the light,
-    /// mirrored.
+    /// One for each sun and each lamp, if any surface has a highlight: the angle between the eye and the mirrored
+    /// light.
     angles: Vec<f64>,
 }
 
 impl Tessellated {
-    /// Splits `geometry`, whose vertices lie at the points of these numbers and whose triangles are marked that lie back to
-    /// back, until linear shades are off
-    /// by no more than `tolerance` shades, of which 255 are full intensity.
+    /// Splits `geometry` until linear shades are off by at most `tolerance` shades, of which 255 are full intensity.
+    /// `points` are the indices of the vertices' points, `twins` marks triangles that lie back to back.
     #[inline(never)]
     pub(super) fn split(
         &mut self,
@@ -105,7 +104,7 @@ impl Tessellated {
         }
     }
 
-    /// The mesh as it has become.
+    /// The mesh in its current state.
     pub(super) fn geometry(&self) -> Geometry<'_> {
         Geometry {
             positions: &self.positions,
@@ -117,13 +116,13 @@ impl Tessellated {
         }
     }
 
-    /// Triangles that lie back to back with others, as [`Mesh::twins`](crate::mesh::Mesh::twins) has it: parts of two
-    /// such triangles may be cut differently, but lie in one plane, and show their backs together.
+    /// Triangles that lie back to back with others, see [`Mesh::twins`](crate::mesh::Mesh::twins): parts of two such
+    /// triangles may be split differently, but lie in one plane, and show their backs together.
     pub(super) fn twins(&self) -> &[u64] {
         &self.twins
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.positions.capacity() * size_of::<Vec3>()
             + self.normals.capacity() * size_of::<Vec3>()
@@ -139,8 +138,7 @@ impl Tessellated {
             + self.middles.bytes()
     }
 
-    /// The edge between two vertices, whichever way it is run through, and whichever vertices at its two
-    /// points are meant.
+    /// The edge between two vertices, regardless of its direction and of which vertices at its two points are given.
     fn edge(&self, a: u32, b: u32) -> (u32, u32) {
         let (a, b) = (self.points[a as usize], self.points[b as usize]);
         if a < b { (a, b) } else { (b, a) }
@@ -151,17 +149,17 @@ impl Tessellated {
         self.light(bend);
         let mut halved = mem::take(&mut self.halved);
         halved.clear();
-        // Below 2³¹, as a mesh's vertices are, and splitting ends before there are twice as many.
+        // Below 2³¹, like a mesh's vertices, and splitting ends before there are twice as many.
         let mut points = self.points.iter().max().map_or(0, |last| last + 1);
         for (&[a, b, c], straight) in self.triangles.iter().zip(&self.straight) {
-            // What did not bend does not bend now.
+            // An edge that did not bend does not bend now.
             if *straight {
                 continue;
             }
             for (a, b) in [(a, b), (b, c), (c, a)] {
                 let edge = self.edge(a, b);
-                // Two faces that meet at a crease have normals of their own there: it is enough that one
-                // of them needs the split.
+                // Two faces that meet at a crease have normals of their own there: it is enough that one of them needs
+                // the split.
                 if edge.0 != edge.1 && halved.get(edge).is_none() && bend.is_too_great(self, a, b) {
                     halved.insert(edge, points);
                     points += 1;
@@ -228,7 +226,7 @@ impl Tessellated {
         self.middles = middles;
     }
 
-    /// Lights the vertices that are new.
+    /// Lights the new vertices.
     fn light(&mut self, bend: &Bend<'_>) {
         for vertex in self.known.light.len()..self.positions.len() {
             let (position, normal) = (self.positions[vertex], self.normals[vertex]);
@@ -242,7 +240,7 @@ impl Tessellated {
 
     fn add_middle(&mut self, a: u32, b: u32, point: u32) -> u32 {
         let (a, b) = (a as usize, b as usize);
-        // Half of each, as their sum might overflow. The same from both ends.
+        // Half of each, as their sum might overflow. The result is the same from both ends.
         self.positions.push(self.positions[a] * 0.5 + self.positions[b] * 0.5);
         let sum = self.normals[a] + self.normals[b];
         self.normals.push(unit(sum).unwrap_or(self.normals[a]));
@@ -266,13 +264,13 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
     [Some([a, ab, c]), Some([ab, b, bc]), Some([ab, bc, c])]
 }
 
-/// Bend of light along an edge.
+/// Decides how much light bends along an edge.
 struct Bend<'a> {
     lights: &'a Lights<'a>,
     paints: &'a [SurfaceMaterial],
-    /// The greatest error that is allowed, as a share of full intensity.
+    /// The greatest allowed error, as a share of full intensity.
     tolerance: f64,
-    /// True if any surface has one.
+    /// True if any surface has a highlight.
     has_highlights: bool,
 }
 
@@ -299,7 +297,7 @@ impl Bend<'_> {
                 }
             }
         }
-        // A highlight, of which the eye sees something here.
+        // A highlight that the eye may see here.
         if paint.answer.specular != 0.0 && self.mirrors(mesh, [a, b], paint, square, eight) {
             return true;
         }
@@ -336,7 +334,7 @@ impl Bend<'_> {
         let angles = |light: usize| edge.map(|vertex| mesh.known.angles[vertex * count + light]);
         let eye = to_segment(self.lights.eye, ends);
         let shininess = paint.answer.shininess.max(1.0);
-        // What its normals turn by, twice.
+        // Twice the turn of its normals.
         let turned = 2.0 * libm::acos(f64::from(normals[0].dot(normals[1])).clamp(-1.0, 1.0));
         let strong = |nearest: f64, angles: [f64; 2], intensity: f64| {
             let strength = paint.answer.specular.abs() * intensity;
@@ -344,8 +342,8 @@ impl Bend<'_> {
             if !bends {
                 return false;
             }
-            // Along the edge the mirrored direction turns by no more than the edge is seen under, from
-            // the eye and from the lamp, and twice what its normals turn by.
+            // Along the edge the mirrored direction turns by at most the angle that the edge subtends at the eye and at
+            // the lamp, plus twice the turn of its normals.
             let turn = libm::sqrt(square / nearest.max(f64::MIN_POSITIVE)) + turned;
             let angle = (angles[0].min(angles[1]) - turn).max(0.0);
             let most = if angle < core::f64::consts::FRAC_PI_2 { libm::pow(libm::cos(angle), shininess) } else { 0.0 };
@@ -381,7 +379,7 @@ fn distance_squared(a: [f64; 3], b: [f64; 3]) -> f64 {
     dot(sub(a, b), sub(a, b))
 }
 
-/// The square of the distance from a point to the nearest point between two ends.
+/// The square of the distance from a point to the nearest point of a segment.
 fn to_segment(point: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
     let (along, from) = (sub(b, a), sub(point, a));
     let part = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! [`Lanes8`] by AVX2 and FMA: two halves of 64-bit lanes.
+//! [`Lanes8`] with AVX2 and FMA: 64-bit lanes in two halves.
 
 use core::arch::x86_64::*;
 
@@ -9,15 +9,15 @@ use glam::Vec3;
 use super::singles::{F32Lanes8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
 
-// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
-// the proof that the processor has them.
+// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token
+// proves that the processor has them.
 macro_rules! lanes {
     ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
         $(
             #[inline(always)]
             fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the processor has the instructions, says `self`. Loads and stores go to whole arrays, and ask for no
-                // alignment.
+                // SAFETY: `self` proves that the processor has the instructions. Loads and stores go to whole arrays,
+                // and require no alignment.
                 unsafe { $body }
             }
         )*
@@ -27,7 +27,7 @@ macro_rules! lanes {
 type F64 = [__m256d; 2];
 type I64 = [__m256i; 2];
 
-/// A function of each half.
+/// A pair of values, one for each half.
 macro_rules! halves {
     ($half:ident => $value:expr) => {{
         let of = {
@@ -39,7 +39,7 @@ macro_rules! halves {
     }};
 }
 
-/// Masks of 32-bit lanes as those of the two halves' 64-bit lanes.
+/// Masks of 32-bit lanes, widened to those of the 64-bit lanes of both halves.
 #[inline(always)]
 unsafe fn wide(mask: __m256i) -> F64 {
     // SAFETY: the caller has AVX2.
@@ -59,7 +59,7 @@ unsafe fn low(from: F64) -> __m256i {
     }
 }
 
-/// Numbers of the lanes that are set in each mask of eight, then zeros: a byte each, the first lowest.
+/// Indices of the set lanes for each mask of eight, then zeros: a byte each, the first lowest.
 static SET_LANES: [u64; 256] = {
     let mut all = [0; 256];
     let mut mask = 0;
@@ -76,7 +76,7 @@ static SET_LANES: [u64; 256] = {
     }
     all
 };
-/// Numbers of the halves of the 64-bit lanes that are set in each mask of four, then zeros: a byte each.
+/// Indices of the 32-bit halves of the set 64-bit lanes for each mask of four, then zeros: a byte each.
 static SET_PAIRS: [u64; 16] = {
     let mut all = [0; 16];
     let mut mask = 0;
@@ -98,7 +98,7 @@ impl Lanes8 for Avx2 {
     type F64 = F64;
     type I32 = __m256i;
     type I64 = I64;
-    /// −1 in the lanes that are set, otherwise 0.
+    /// −1 in the set lanes, 0 in the others.
     type Mask = __m256i;
 
     lanes! {
@@ -128,7 +128,7 @@ impl Lanes8 for Avx2 {
             [_mm256_cvtepi32_pd(_mm256_castsi256_si128(from)), _mm256_cvtepi32_pd(_mm256_extracti128_si256::<1>(from))]
         }
         fn unsigned_to_f64(from: __m256i) -> F64 {
-            // Less 2³¹, and that added again: both are exact.
+            // Subtracts 2³¹, and adds it again: both are exact.
             let signed = _mm256_xor_si256(from, _mm256_set1_epi32(i32::MIN));
             let (low, high) = (_mm256_castsi256_si128(signed), _mm256_extracti128_si256::<1>(signed));
             let more = _mm256_set1_pd(2_147_483_648.0);
@@ -180,7 +180,7 @@ impl Lanes8 for Avx2 {
         fn add_i64(a: I64, b: I64) -> I64 { halves!(h => _mm256_add_epi64(a[h], b[h])) }
         fn sub_i64(a: I64, b: I64) -> I64 { halves!(h => _mm256_sub_epi64(a[h], b[h])) }
         fn mul_i64(a: I64, b: I64) -> I64 {
-            // The products of lower halves, and of lower and upper ones.
+            // The products of the lower halves, and of lower and upper ones.
             halves!(h => {
                 let (a, b) = (a[h], b[h]);
                 let upper = _mm256_add_epi64(
@@ -232,7 +232,7 @@ impl Lanes8 for Avx2 {
         // Eight bits.
         let set = SET_LANES[self.to_bitmask(mask) as usize % 256].cast_signed();
         for (i, to) in to.into_iter().enumerate() {
-            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
+            // SAFETY: `self` proves that the processor has the instructions; the store goes to a whole array.
             unsafe {
                 let front = _mm256_permutevar8x32_epi32(from[i], _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(set)));
                 _mm256_storeu_si256(to.as_mut_ptr().cast(), front);
@@ -245,8 +245,8 @@ impl Lanes8 for Avx2 {
         let set = [SET_PAIRS[bits % 16].cast_signed(), SET_PAIRS[bits / 16 % 16].cast_signed()];
         let low = (bits % 16).count_ones() as usize;
         for (i, to) in to.into_iter().enumerate() {
-            // SAFETY: the processor has the instructions, says `self`. The first store goes to the first four of eight, the
-            // second to the four that begin behind up to four of them.
+            // SAFETY: `self` proves that the processor has the instructions. The first store goes to the first four of
+            // eight, the second to the four that begin behind up to four of them.
             unsafe {
                 let to = to.as_mut_ptr();
                 for (half, to) in [to, to.add(low)].into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! [`Lanes8`] by AVX-512: 512 bits of 64-bit lanes, 256 of 32-bit ones.
+//! [`Lanes8`] with AVX-512: 512 bits for 64-bit lanes, 256 for 32-bit ones.
 
 use core::arch::x86_64::*;
 
@@ -9,15 +9,15 @@ use glam::Vec3;
 use super::singles::{F32Lanes8, singles_of_256_bits};
 use super::{Avx512, Lanes8};
 
-// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token is
-// the proof that the processor has them.
+// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token
+// proves that the processor has them.
 macro_rules! lanes {
     ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
         $(
             #[inline(always)]
             fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the processor has the instructions, says `self`. Loads and stores go to whole arrays, and ask for no
-                // alignment.
+                // SAFETY: `self` proves that the processor has the instructions. Loads and stores go to whole arrays,
+                // and require no alignment.
                 unsafe { $body }
             }
         )*
@@ -122,15 +122,15 @@ impl Lanes8 for Avx512 {
     #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
-            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array. (`vpcompressd` to
-            // memory is slow on Zen 4.)
+            // SAFETY: `self` proves that the processor has the instructions; the store goes to a whole array.
+            // (`vpcompressd` to memory is slow on Zen 4.)
             unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, from[i])) }
         }
     }
     #[inline(always)]
     fn compress_i64<const N: usize>(self, mask: __mmask8, from: [__m512i; N], to: [&mut [i64; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
-            // SAFETY: the processor has the instructions, says `self`; the store goes to a whole array.
+            // SAFETY: `self` proves that the processor has the instructions; the store goes to a whole array.
             unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(mask, from[i])) }
         }
     }

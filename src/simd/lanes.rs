@@ -1,7 +1,7 @@
-//! Eight lanes of numbers: the operations that the batches are written in, once for all levels.
+//! Eight lanes of numbers: the operations in which the batches are written, once for all levels.
 //!
-//! A token that implements [`Lanes8`] is the proof that the processor has its level. Each operation works lane by lane.
-//! Lanes 0 to 7 are in the order of the arrays that they come from.
+//! A token that implements [`Lanes8`] proves that the processor has its level. Each operation works lane by lane. Lanes
+//! 0 to 7 are in the order of the arrays they are loaded from.
 
 /// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
 ///
@@ -23,7 +23,7 @@ pub(crate) trait Lanes8: Copy {
     fn sub(self, a: Self::F64, b: Self::F64) -> Self::F64;
     fn mul(self, a: Self::F64, b: Self::F64) -> Self::F64;
     fn div(self, a: Self::F64, b: Self::F64) -> Self::F64;
-    /// `a·b + c`. It is rounded once where the level has FMA, otherwise twice: callers allow for both.
+    /// `a·b + c`. It is rounded once if the level has FMA, otherwise twice: callers allow for both.
     fn mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64;
     /// `c − a·b`, rounded like [`mul_add`](Self::mul_add).
     fn neg_mul_add(self, a: Self::F64, b: Self::F64, c: Self::F64) -> Self::F64;
@@ -37,7 +37,7 @@ pub(crate) trait Lanes8: Copy {
     /// `a` where the mask is set, otherwise `b`.
     fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64;
     fn to_f64(self, from: Self::I32) -> Self::F64;
-    /// The lanes taken as u32.
+    /// Converts the lanes as u32.
     fn unsigned_to_f64(self, from: Self::I32) -> Self::F64;
     /// The lower halves of the bits.
     fn low_bits(self, from: Self::F64) -> Self::I32;
@@ -46,14 +46,15 @@ pub(crate) trait Lanes8: Copy {
     fn load_i32(self, from: &[i32; 8]) -> Self::I32;
     fn splat_i32(self, value: i32) -> Self::I32;
     fn store_i32(self, from: Self::I32, to: &mut [i32; 8]);
-    /// The lowest byte of each.
+    /// The lowest byte of each lane.
     #[inline(always)]
     fn low_bytes(self, from: Self::I32) -> [u8; 8] {
         let mut lanes = [0; 8];
         self.store_i32(from, &mut lanes);
         crate::lanes::each!(lane => lanes[lane] as u8)
     }
-    /// The lower halves of each, out of a vector and not through memory where the level can do so: each may be an index.
+    /// The lower half of each lane, extracted from a vector and not through memory where the level can: each may be an
+    /// index.
     #[inline(always)]
     fn low_words(self, from: Self::I32) -> [u16; 8] {
         let mut lanes = [0; 8];
@@ -91,7 +92,7 @@ pub(crate) trait Lanes8: Copy {
     /// Shifts left by a constant.
     fn shl_i64(self, a: Self::I64, by: i32) -> Self::I64;
     fn to_i64(self, from: Self::I32) -> Self::I64;
-    /// The lanes taken as u32.
+    /// Converts the lanes as u32.
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
     /// The lower and the upper halves.
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
@@ -101,7 +102,7 @@ pub(crate) trait Lanes8: Copy {
     /// Reads `from[rows[lane][column]]` for each of three columns.
     ///
     /// # Panics
-    /// If one of them is not there.
+    /// If one of them does not exist.
     #[inline(always)]
     fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [Self::I64; 3] {
         let mut lanes = [[0; 8]; 3];
@@ -118,12 +119,12 @@ pub(crate) trait Lanes8: Copy {
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `a` and not `b`.
     fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// A bit for each lane, that of lane 0 lowest.
+    /// A bit for each lane, lane 0 lowest.
     fn to_bitmask(self, mask: Self::Mask) -> u32;
-    /// The mask of such bits.
+    /// The mask with these bits.
     fn mask_from_bits(self, bits: u8) -> Self::Mask;
-    /// Writes the lanes whose mask is set to the front, in order, and anything behind them.
+    /// Packs the lanes whose mask is set to the front, in order; what follows them is arbitrary.
     fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
-    /// [`compress_i32`](Self::compress_i32) of 64-bit lanes.
+    /// [`compress_i32`](Self::compress_i32) for 64-bit lanes.
     fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
 }

@@ -1,4 +1,4 @@
-//! [`Vector128`] by NEON, which every 64-bit ARM has.
+//! [`Vector128`] with NEON, which every 64-bit ARM processor has.
 
 use core::arch::aarch64::*;
 
@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::wide128::Singles128;
 use super::wide128::Vector128;
 
-/// The level that the target has.
+/// The level of the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neon;
 
@@ -18,7 +18,7 @@ macro_rules! vectors {
         $(
             #[inline(always)]
             fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the target has NEON. Loads and stores go to whole arrays, and ask for no alignment.
+                // SAFETY: the target has NEON. Loads and stores go to whole arrays, and require no alignment.
                 unsafe { $body }
             }
         )*
@@ -105,7 +105,7 @@ impl Singles128 for Neon {
         fn splat_f32(value: f32) -> float32x4_t { vdupq_n_f32(value) }
         fn vectors(from: &[Vec3; 4]) -> [float32x4_t; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
-            // 12 f32: `Vec3` is three in this order, without anything between.
+            // 12 f32: a `Vec3` is three of them in this order, without padding.
             let float32x4x3_t(x, y, z) = vld3q_f32(from.as_ptr().cast());
             [x, y, z]
         }

@@ -1,8 +1,8 @@
-//! Lists of numbers that are put in eight at a time, under a mask.
+//! Lists of numbers that are appended eight at a time, under a mask.
 
 use super::Lanes8;
 
-/// Up to `N` − 8 numbers, one after the other.
+/// Up to `N` − 8 contiguous numbers.
 #[derive(Debug)]
 pub(crate) struct Packed<const N: usize> {
     numbers: [u32; N],
@@ -16,7 +16,7 @@ impl<const N: usize> Default for Packed<N> {
 }
 
 impl<const N: usize> Packed<N> {
-    /// Those behind the last are written over.
+    /// The last eight elements only make room for whole stores.
     const CAPACITY: usize = N - 8;
 
     #[inline(always)]
@@ -24,7 +24,7 @@ impl<const N: usize> Packed<N> {
         Self { numbers: [0; N], count: 0 }
     }
 
-    /// Puts those of eight numbers whose mask is set behind the others. Those for which there is no room are left out.
+    /// Appends those of eight numbers whose mask is set. Those for which there is no room are left out.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8>(&mut self, s: S, mask: S::Mask, numbers: S::I32) {
         let count = self.count.min(Self::CAPACITY);
@@ -34,7 +34,7 @@ impl<const N: usize> Packed<N> {
         }
     }
 
-    /// Puts a number behind the others, if there is room.
+    /// Appends a number, if there is room.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn push(&mut self, number: u32) {
@@ -45,7 +45,7 @@ impl<const N: usize> Packed<N> {
         }
     }
 
-    /// Takes all out.
+    /// Removes all numbers.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn clear(&mut self) {

@@ -1,4 +1,4 @@
-//! [`Lanes8`] by plain arrays, for every processor.
+//! [`Lanes8`] with plain arrays, for every processor.
 
 use super::Lanes8;
 use crate::lanes::each;
@@ -15,7 +15,7 @@ impl Lanes8 for Portable {
     type F64 = F64;
     type I32 = I32;
     type I64 = I64;
-    /// −1 in the lanes that are set, otherwise 0.
+    /// −1 in the set lanes, 0 in the others.
     type Mask = I32;
 
     #[inline(always)]
@@ -237,7 +237,7 @@ impl Lanes8 for Portable {
         let mut count = 0;
         for (lane, set) in mask.into_iter().enumerate() {
             for (i, to) in to.iter_mut().enumerate() {
-                // Fewer than eight come before it.
+                // At most seven come before it.
                 to[count % 8] = from[i][lane].cast_unsigned();
             }
             count += (set & 1) as usize;

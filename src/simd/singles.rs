@@ -1,4 +1,4 @@
-//! Eight lanes of f32 beside those of [`Lanes8`]: what the stages of vertices and the light at points are written in.
+//! Eight lanes of f32 besides those of [`Lanes8`], for the vertex stages and light at points.
 
 use glam::Vec3;
 
@@ -6,7 +6,7 @@ use super::{Lanes8, Portable};
 use crate::fixed::whole_part;
 use crate::lanes::each;
 
-/// Operations on eight lanes of f32. Each rounds once, like the operation on one number.
+/// Operations on eight lanes of f32. Each rounds once, like the operation on a single number.
 pub(crate) trait F32Lanes8: Lanes8 {
     /// Eight f32.
     type F32: Copy;
@@ -18,24 +18,24 @@ pub(crate) trait F32Lanes8: Lanes8 {
     fn sub_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
     fn mul_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
     fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// `a` where it is greater than `b`, otherwise `b`: also where one is NaN.
+    /// `a` where it is greater than `b`, otherwise `b`, also if one is NaN.
     fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// `a` where it is less than `b`, otherwise `b`: also where one is NaN.
+    /// `a` where it is less than `b`, otherwise `b`, also if one is NaN.
     fn min_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
-    /// NaN is at least nothing.
+    /// False where one is NaN.
     fn is_at_least(self, a: Self::F32, b: Self::F32) -> Self::Mask;
     fn bits_of_f32(self, from: Self::F32) -> Self::I32;
     fn widen(self, from: Self::F32) -> Self::F64;
-    /// To the nearest f32, halves to even.
+    /// Rounds to the nearest f32, halves to even.
     fn narrow(self, from: Self::F64) -> Self::F32;
-    /// The whole parts of values of at least 0 and below 2³¹; of others some number.
+    /// The integer parts of values of at least 0 and below 2³¹; arbitrary for others.
     fn whole(self, from: Self::F64) -> Self::I32;
     fn load_f32(self, from: &[f32; 8]) -> Self::F32;
-    /// The number nearest to the root.
+    /// The correctly rounded square root.
     fn sqrt(self, of: Self::F64) -> Self::F64;
-    /// `value` where `a` is less than `b`, otherwise 0: also where one is NaN.
+    /// `value` where `a` is less than `b`, otherwise 0, also if one is NaN.
     fn if_less(self, a: Self::F64, b: Self::F64, value: Self::F64) -> Self::F64;
-    /// Returns whether all are 0, of values of which none is −0.
+    /// Returns whether all values are 0; none of them may be −0.
     fn is_zero(self, values: Self::F64) -> bool;
 }
 
@@ -100,7 +100,7 @@ impl F32Lanes8 for Portable {
     }
     #[inline(always)]
     fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
-        // Both give the same number. The compiler makes vectors of the first.
+        // Both give the same number. The compiler vectorises the first.
         #[cfg(feature = "std")]
         return each!(i => of[i].sqrt());
         #[cfg(not(feature = "std"))]
@@ -121,8 +121,8 @@ impl F32Lanes8 for Portable {
     }
 }
 
-/// Four vectors' x, y and z, from three vectors of four numbers that hold them in their order. `$shuffle::<N>(a, b)` takes two
-/// numbers of each, by two bits of `N` each, the lowest first; wider vectors do so in each 128 bits.
+/// x, y and z of four vectors, from three vectors of four numbers that hold them in order. `$shuffle::<N>(a, b)` takes
+/// two numbers from each, by two bits of `N` for each number, the lowest first; wider vectors do so in each 128 bits.
 #[cfg(simd_x86_64)]
 macro_rules! apart {
     ($shuffle:ident, $a:expr, $b:expr, $c:expr) => {{
@@ -136,7 +136,7 @@ macro_rules! apart {
 #[cfg(simd_x86_64)]
 pub(super) use apart;
 
-/// The operations of AVX2 and AVX-512 that are the same: on 256 bits.
+/// The operations that AVX2 and AVX-512 share: on 256 bits.
 #[cfg(simd_x86_64)]
 macro_rules! singles_of_256_bits {
     ($($rest:tt)*) => {
@@ -146,8 +146,8 @@ macro_rules! singles_of_256_bits {
             fn splat_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
             fn vectors(from: &[Vec3; 8]) -> [__m256; 3] {
                 const { assert!(size_of::<Vec3>() == 12) };
-                // 24 f32: `Vec3` is three in this order, without anything between. Four each are loaded from numbers 0, 4, 8,
-                // 12, 16 and 20 on.
+                // 24 f32: a `Vec3` is three of them in this order, without padding. Four each are loaded from indices
+                // 0, 4, 8, 12, 16 and 20 on.
                 let from: *const f32 = from.as_ptr().cast();
                 let a = _mm256_set_m128(_mm_loadu_ps(from.add(12)), _mm_loadu_ps(from));
                 let b = _mm256_set_m128(_mm_loadu_ps(from.add(16)), _mm_loadu_ps(from.add(4)));

@@ -1,4 +1,4 @@
-//! [`Vector128`] by SSE2, which every x86-64 has.
+//! [`Vector128`] with SSE2, which every x86-64 processor has.
 
 use core::arch::x86_64::*;
 
@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::wide128::Singles128;
 use super::wide128::Vector128;
 
-/// The level that every x86-64 has.
+/// The level of every x86-64 processor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sse2;
 
@@ -18,7 +18,7 @@ macro_rules! vectors {
         $(
             #[inline(always)]
             fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: every x86-64 has SSE2. Loads and stores go to whole arrays, and ask for no alignment.
+                // SAFETY: every x86-64 has SSE2. Loads and stores go to whole arrays, and require no alignment.
                 unsafe { $body }
             }
         )*
@@ -102,7 +102,7 @@ impl Singles128 for Sse2 {
         fn splat_f32(value: f32) -> __m128 { _mm_set1_ps(value) }
         fn vectors(from: &[Vec3; 4]) -> [__m128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
-            // 12 f32: `Vec3` is three in this order, without anything between.
+            // 12 f32: a `Vec3` is three of them in this order, without padding.
             let from: *const f32 = from.as_ptr().cast();
             let (a, b, c) = (_mm_loadu_ps(from), _mm_loadu_ps(from.add(4)), _mm_loadu_ps(from.add(8)));
             super::singles::apart!(_mm_shuffle_ps, a, b, c)

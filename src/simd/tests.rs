@@ -1,4 +1,4 @@
-//! Every level's operations against those of plain arrays, lane by lane and bit by bit.
+//! Compares every level's operations with those of plain arrays, lane by lane and bit by bit.
 
 use super::*;
 use crate::random::Random;
@@ -26,13 +26,13 @@ impl Numbers {
         self.i64s().map(|n| if n % 7 == 0 { ends[n.rem_euclid(5) as usize] } else { n as i32 })
     }
 
-    /// Integers, so that a product and a sum round alike in one step and in two.
+    /// Integers, for which a product with a sum rounds equally in one step and in two.
     fn f64s(&mut self) -> [f64; 8] {
         self.i64s().map(|n| (n % (1 << 24)) as f64)
     }
 }
 
-/// A value of each type, in both levels.
+/// Compares the values of each type between two levels.
 struct Checker<S> {
     s: S,
     name: &'static str,
@@ -193,7 +193,7 @@ impl<S: F32Lanes8> Checker<S> {
         let mut lanes = [0; 8];
         self.s.store_i32(self.s.bits_of_f32(found), &mut lanes);
         for (found, expected) in lanes.into_iter().zip(expected) {
-            // Which NaN it is says no level.
+            // The levels may differ in which NaN it is.
             let found = f32::from_bits(found.cast_unsigned());
             let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
             assert!(same, "{what} of {}: {found:?} for {expected:?}", self.name);
@@ -227,7 +227,7 @@ fn check_singles<S: F32Lanes8>(s: S, name: &'static str) {
         c.mask("is_at_least, equal", s.is_at_least(fa, fa), p.is_at_least(a, a));
         let numbers = a.map(|x| if x.is_nan() { 1.0 } else { x });
         c.f64s("widen", s.widen(apart(numbers)), p.widen(numbers));
-        // Halves between two f32, and what is beyond them all.
+        // Halves between two f32, and values beyond all of them.
         let wide: [f64; 8] = core::array::from_fn(|i| {
             let next = f64::from(f32::from_bits(numbers[i].to_bits() + 1));
             if next.is_finite() { f64::midpoint(numbers[i].into(), next) } else { f64::MAX }

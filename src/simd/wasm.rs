@@ -1,4 +1,4 @@
-//! [`Vector128`] by WebAssembly's vectors.
+//! [`Vector128`] with WebAssembly's vectors.
 
 use core::arch::wasm32::*;
 
@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::wide128::Singles128;
 use super::wide128::Vector128;
 
-/// The level that the target has.
+/// The level of the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simd128;
 
@@ -19,7 +19,7 @@ macro_rules! vectors {
             #[inline(always)]
             #[allow(unused_unsafe, reason = "loads and stores alone are unsafe")]
             fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the target has simd128. Loads and stores go to whole arrays, and ask for no alignment.
+                // SAFETY: the target has simd128. Loads and stores go to whole arrays, and require no alignment.
                 unsafe { $body }
             }
         )*
@@ -91,7 +91,7 @@ impl Singles128 for Simd128 {
         fn splat_f32(value: f32) -> v128 { f32x4_splat(value) }
         fn vectors(from: &[Vec3; 4]) -> [v128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
-            // 12 f32: `Vec3` is three in this order, without anything between. x y z x | y z x y | z x y z
+            // 12 f32: a `Vec3` is three of them in this order, without padding. x y z x | y z x y | z x y z
             let from: *const v128 = from.as_ptr().cast();
             let (a, b, c) = (v128_load(from), v128_load(from.add(1)), v128_load(from.add(2)));
             [
@@ -104,7 +104,7 @@ impl Singles128 for Simd128 {
         fn sub_f32(a: v128, b: v128) -> v128 { f32x4_sub(a, b) }
         fn mul_f32(a: v128, b: v128) -> v128 { f32x4_mul(a, b) }
         fn div_f32(a: v128, b: v128) -> v128 { f32x4_div(a, b) }
-        // Of `pmax(x, y)` y is taken where it is greater, otherwise x.
+        // `pmax(x, y)` is y if that is greater, otherwise x.
         fn max_f32(a: v128, b: v128) -> v128 { f32x4_pmax(b, a) }
         fn min_f32(a: v128, b: v128) -> v128 { f32x4_pmin(b, a) }
         fn is_at_least(a: v128, b: v128) -> v128 { f32x4_ge(a, b) }

@@ -1,4 +1,5 @@
-//! [`Lanes8`] by vectors of 128 bits: four of 64-bit lanes, two of 32-bit ones. One body for SSE2, NEON and wasm.
+//! [`Lanes8`] with 128-bit vectors: four for 64-bit lanes, two for 32-bit ones. One implementation for SSE2, NEON and
+//! wasm.
 
 #[cfg(feature = "alloc")]
 use glam::Vec3;
@@ -7,9 +8,9 @@ use super::Lanes8;
 #[cfg(feature = "alloc")]
 use super::singles::F32Lanes8;
 
-/// Vectors of 128 bits: a pair of f64, or four i32, or two i64.
+/// 128-bit vectors: a pair of f64, four i32, or two i64.
 ///
-/// The value of such a type is the proof that the processor has them.
+/// A value of such a type proves that the processor has them.
 pub(crate) trait Vector128: Copy {
     type F: Copy;
     /// Four i32 or two i64. Sums, differences and products wrap.
@@ -32,7 +33,7 @@ pub(crate) trait Vector128: Copy {
     fn is_less(self, a: Self::F, b: Self::F) -> Self::I;
     fn bits(self, from: Self::F) -> Self::I;
     fn of_bits(self, from: Self::I) -> Self::F;
-    /// The first two of four i32.
+    /// Converts the first two of four i32.
     fn low_to_f64(self, from: Self::I) -> Self::F;
 
     fn load(self, from: &[i32; 4]) -> Self::I;
@@ -78,7 +79,7 @@ pub(crate) trait Vector128: Copy {
     fn interleave_high_i64(self, a: Self::I, b: Self::I) -> Self::I;
 }
 
-/// Vectors of four f32 beside them. What is said of [`F32Lanes8`] holds here, too.
+/// Vectors of four f32 as well. The rules of [`F32Lanes8`] hold here too.
 #[cfg(feature = "alloc")]
 pub(crate) trait Singles128: Vector128 {
     type S: Copy;
@@ -93,9 +94,9 @@ pub(crate) trait Singles128: Vector128 {
     fn min_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn is_at_least(self, a: Self::S, b: Self::S) -> Self::I;
     fn bits_of_f32(self, from: Self::S) -> Self::I;
-    /// The first two of four.
+    /// Widens the first two of four.
     fn widen_low(self, from: Self::S) -> Self::F;
-    /// The last two.
+    /// Widens the last two.
     fn widen_high(self, from: Self::S) -> Self::F;
     fn narrow(self, low: Self::F, high: Self::F) -> Self::S;
     fn whole(self, low: Self::F, high: Self::F) -> Self::I;
@@ -103,11 +104,11 @@ pub(crate) trait Singles128: Vector128 {
     fn sqrt(self, of: Self::F) -> Self::F;
 }
 
-/// Four vectors for eight lanes of 64 bits, two for eight of 32.
+/// Four vectors for eight 64-bit lanes, two for eight 32-bit ones.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide128<V>(pub(crate) V);
 
-/// A function of each of four vectors.
+/// An array of four values, one for each of four vectors.
 macro_rules! each4 {
     ($i:ident => $value:expr) => {{
         let $i = 0;
@@ -121,7 +122,7 @@ macro_rules! each4 {
     }};
 }
 
-/// A function of each of two vectors.
+/// An array of two values, one for each of two vectors.
 macro_rules! each2 {
     ($i:ident => $value:expr) => {{
         let $i = 0;
@@ -131,7 +132,7 @@ macro_rules! each2 {
     }};
 }
 
-/// Numbers 2·`i` and the next of eight.
+/// Numbers 2·`i` and 2·`i` + 1 of eight.
 #[inline(always)]
 fn pair<T>(eight: &[T; 8], i: usize) -> &[T; 2] {
     &eight.as_chunks::<2>().0[i]
@@ -149,7 +150,7 @@ impl<V: Vector128> Wide128<V> {
         self.0.or(self.0.and(a, mask), self.0.and_not(b, mask))
     }
 
-    /// Each of eight lanes of 32 bits beside another: lanes of 64 bits, of which they are the lower and the upper halves.
+    /// Pairs eight 32-bit lanes with eight others: they become the lower and the upper halves of 64-bit lanes.
     #[inline(always)]
     fn with_upper(self, lower: [V::I; 2], upper: [V::I; 2]) -> [V::I; 4] {
         let v = self.0;
@@ -166,7 +167,7 @@ impl<V: Vector128> Lanes8 for Wide128<V> {
     type F64 = [V::F; 4];
     type I32 = [V::I; 2];
     type I64 = [V::I; 4];
-    /// −1 in the lanes that are set, otherwise 0.
+    /// −1 in the set lanes, 0 in the others.
     type Mask = [V::I; 2];
 
     #[inline(always)]
@@ -242,7 +243,7 @@ impl<V: Vector128> Lanes8 for Wide128<V> {
     }
     #[inline(always)]
     fn unsigned_to_f64(self, from: Self::I32) -> Self::F64 {
-        // Less 2³¹, and that added again: both are exact.
+        // Subtracts 2³¹, and adds it again: both are exact.
         let highest = self.0.splat(i32::MIN);
         let signed = self.to_f64(each2!(i => self.0.xor(from[i], highest)));
         self.add(signed, self.splat_f64(2_147_483_648.0))
@@ -409,7 +410,7 @@ impl<V: Vector128> Lanes8 for Wide128<V> {
     }
     #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], mut to: [&mut [u32; 8]; N]) {
-        // There is no such instruction for all of these levels: lane by lane out of arrays.
+        // These levels do not all have such an instruction: lane by lane from arrays.
         let bits = self.to_bitmask(mask);
         let mut lanes = [[0; 8]; N];
         for (i, lanes) in lanes.iter_mut().enumerate() {
@@ -418,7 +419,7 @@ impl<V: Vector128> Lanes8 for Wide128<V> {
         let (mut count, mut lane) = (0, 0);
         while lane < 8 {
             for (i, to) in to.iter_mut().enumerate() {
-                // Fewer than eight come before it.
+                // At most seven come before it.
                 to[count % 8] = lanes[i][lane].cast_unsigned();
             }
             count += (bits >> lane & 1) as usize;

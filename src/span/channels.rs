@@ -1,7 +1,7 @@
-//! Three rows of shades, red, green and blue, to one row of palette indices, with ordered dither.
+//! Mixes three rows of shades, red, green and blue, into one row of palette indices, with ordered dither.
 //!
 //! Each loop writes as many pixels as the shortest of its rows has. `thresholds` and `x` are as in
-//! [`dither`](super::dither): 0 to 255 by the pixel's place in the frame.
+//! [`dither`](super::dither): 0 to 255 by the pixel's position in the frame.
 
 use super::dither::ThresholdRow;
 use crate::palette::{cube, dac6_to_8};
@@ -17,12 +17,12 @@ const LEVELS: [u8; 6] = {
     levels
 };
 
-/// Place of a channel value among the levels.
+/// Position of a channel value among the levels.
 #[derive(Clone, Copy)]
 struct Between {
-    /// The number of the highest level that is not above the value.
+    /// The index of the highest level that is not above the value.
     level: u8,
-    /// Threshold below which it takes the next level; 0 where it is a level itself.
+    /// Threshold below which it takes the next level; 0 if it is a level itself.
     next_below: u8,
 }
 
@@ -57,10 +57,10 @@ static BETWEEN: [Between; 256] = {
 ///            a   else
 /// ```
 ///
-/// so a value that is a level stays what it is at every threshold. At a threshold of 128 throughout each
-/// value goes to the nearest level, of two equally near to the lower, which is
-/// [`nearest_mixture`](crate::palette::cube::nearest_mixture); at 127 it is the same, but of two equally
-/// near (26 and 229 are the only such values) the higher.
+/// so a value that is a level does not change at any threshold. With a threshold of 128 throughout, each value goes to
+/// the nearest level, and to the lower of two equally near ones, which is
+/// [`nearest_mixture`](crate::palette::cube::nearest_mixture); with 127 it is the same, but to the higher of two
+/// equally near ones (26 and 229 are the only such values).
 #[inline(never)]
 pub fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &ThresholdRow, x: usize) {
     #[cfg(feature = "simd")]
@@ -92,15 +92,15 @@ mod blocks {
     /// Pixels per iteration.
     const BLOCK: usize = 16;
 
-    /// The mixture without a table: a value's level is the number of switches that it has passed.
+    /// The mixture without a table: a value's level is the number of switches that it exceeds.
     ///
     /// ```text
     /// switch i:   a + (t·(b − a) >> 8)        a and b being levels i and i + 1
     /// level(c) =  number of i with c > switch i
     /// ```
     ///
-    /// 256·(c − a) > t·(b − a) says the same as c > switch, c being whole. Switch i lies at or above a and
-    /// below b, so a value has passed those of the levels below its own, and none of those above.
+    /// 256·(c − a) > t·(b − a) is equivalent to c > switch, because c is an integer. Switch i lies at or above a and
+    /// below b, so a value exceeds the switches of the levels below its own, and none of those above.
     pub(super) fn mix_cube(row: &mut [u8], red: &[u8], green: &[u8], blue: &[u8], thresholds: &ThresholdRow, x: usize) {
         let n = row.len().min(red.len()).min(green.len()).min(blue.len());
         let (blocks, rest) = row[..n].as_chunks_mut::<BLOCK>();
@@ -138,12 +138,11 @@ mod blocks {
 /// row[k] = map[(r' >> 3) << 10 | (g' >> 3) << 5 | b' >> 3]
 /// ```
 ///
-/// `map` holds an entry for every colour of 5 bits a channel, red on top. `spread` is how far the
-/// thresholds move a value, from the lowest to the highest: about the distance of neighbouring colours in
-/// the palette; 0 is no dither.
+/// `map` holds an entry for every colour of 5 bits per channel, red on top. `spread` is how far the thresholds move a
+/// value, from the lowest to the highest: about the distance of neighbouring colours in the palette; 0 is no dither.
 ///
-/// Blocks of plain arrays, places first and then the look-ups, take 44 ns at 64 pixels where this takes
-/// 104. A palette that is not the cube is for few programs, and the list of loops is short.
+/// Blocks of plain arrays, with indices first and then the look-ups, take 44 ns at 64 pixels where this takes 104. But
+/// few programs use a palette other than the cube, and the list of loops is short.
 #[expect(clippy::too_many_arguments, reason = "three rows in, one out, and what the pixels share")]
 #[inline(never)]
 pub fn mix_nearest(

@@ -1,19 +1,19 @@
-//! Shades that are quadratic along a row. A pass that writes no pixel.
+//! Shades that are quadratic along a row. This pass writes no pixel.
 
 use super::Kernel;
 use crate::simd::at_best_level;
 
-/// Shades in 8.8 on a parabola, held between two, which are at most 0xFF00:
+/// Shades in 8.8 on a parabola, clamped between two limits of at most 0xFF00:
 ///
 /// ```text
 /// shades[k] = nearest(min(max(a + k·(b + k·c), least), most))
 /// ```
 ///
-/// in f32, products and sums each rounded once and in this order; a half goes to the even one, and what is no number
-/// is `least`. k is at most 4,095.
+/// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k is
+/// at most 4,095.
 ///
-/// So is a quadratic function over a triangle along a row (G. Bishop and D. Weimer, *Fast Phong shading*, 1986, who
-/// take two additions a pixel for it; from its own k every pixel is as near as the first).
+/// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast Phong shading*,
+/// 1986, use two additions per pixel for it; computed from its own k, every pixel is as accurate as the first.)
 #[inline]
 pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
     curve_inlined(shades, parabola, least, most);
@@ -21,7 +21,7 @@ pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
 
 #[inline(always)]
 fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16) {
-    // With 2²³ added the last bit of an f32 is worth 1, and so the sum is rounded to the nearest whole number.
+    // With 2²³ added the last bit of an f32 is worth 1, so the sum is rounded to the nearest integer.
     const WHOLE: f32 = 8_388_608.0;
     let (least, most) = (f32::from(least), f32::from(most));
     // An index loop, as in `light::lanes`.
@@ -29,10 +29,10 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
     while pixel < shades.len() {
         let k = pixel as i32 as f32;
         let value = a + k * (b + k * c);
-        // In this form not a number is `least`, and each is one instruction.
+        // In this form NaN becomes `least`, and each is one instruction.
         let value = if value > least { value } else { least };
         let value = if value < most { value } else { most };
-        // The lower half of the bits: the number itself.
+        // The lower half of the bits is the number itself.
         shades[pixel] = (value + WHOLE).to_bits() as u16;
         pixel += 1;
     }
@@ -40,7 +40,7 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
 
 impl Kernel {
     internal! {
-    /// [`curve`] as the kernel's processor does it best: the same numbers.
+    /// [`curve`], compiled for the kernel's processor: the same numbers.
     #[inline]
     fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
         curve_at_best(self, shades, parabola, least, most);

@@ -5,8 +5,8 @@
 //!               if d > depth[k] { depth[k] = d; row[k] = ((shade + k·step) mod 65,536) >> 8 }
 //! ```
 //!
-//! The first that was drawn of equal depths stays. A cell of the buffer may be narrower than a depth:
-//! then `d` is narrowed first ([`Cell`]).
+//! At equal depths the first one drawn stays. A cell of the buffer may be narrower than a depth: then `d` is narrowed
+//! first ([`Cell`]).
 
 mod sealed {
     /// Cells of a depth buffer, of either width.
@@ -43,18 +43,17 @@ impl Cells<'_> {
     }
 }
 
-/// Cell of a depth buffer, one for each pixel: greater is nearer, 0 is nothing yet.
+/// Cell of a depth buffer, one for each pixel: greater is nearer, 0 is empty.
 ///
 /// | cell | holds | what is lost |
 /// |---|---|---|
 /// | `u32` | d | nothing |
-/// | `u16` | min(⌈d / 2¹⁴⌉, 65,535) | which of two depths is nearer, if they lie within 2¹⁴ of each other: the first drawn then stays |
+/// | `u16` | min(⌈d / 2¹⁴⌉, 65,535) | which of two depths within 2¹⁴ of each other is nearer: the first drawn stays |
 ///
-/// In the engine d is at most 2³⁰, so a u16 holds the upper 16 of its 30 bits. They are rounded up:
-/// whatever is drawn with u32 cells (d ≥ 1) hides the background here too, however far it is. At a
-/// distance w two surfaces are told apart that lie w² / (2¹⁶·near) from each other, in front of one
-/// another: at 100 times the near distance that is 0.15 of the near distance. The two nearest values
-/// are the same, of which one would be d = 2³⁰ alone.
+/// In the engine d is at most 2³⁰, so a u16 holds the upper 16 of its 30 bits. They are rounded up, so whatever is
+/// drawn with u32 cells (d ≥ 1) hides the background here too, however far away it is. At a distance w two surfaces,
+/// one in front of the other, are distinguished if they are w² / (2¹⁶·near) apart: at 100 times the near distance that
+/// is 0.15 of the near distance. The two nearest values coincide; one of them would be for d = 2³⁰ alone.
 pub trait Cell: Copy + Ord + Default + sealed::Sealed + 'static {
     /// The cell's value for a depth.
     fn of_depth(depth: u32) -> Self;
@@ -75,10 +74,10 @@ impl Cell for u16 {
     }
 }
 
-/// Fills `row` where the depth at a pixel is greater than in `depth`, and keeps the greater depth.
+/// Fills `row` where the depth at a pixel is greater than in `depth`, and stores the greater depth.
 ///
-/// `shade` and `step` are 8.8, `z` and `dz` depths with 24 fraction bits; both sums wrap.
-/// Returns the number of pixels written. Pixels beyond the shorter of the two slices are left alone.
+/// `shade` and `step` are 8.8, `z` and `dz` depths with 24 fraction bits; both sums wrap. Returns the number of pixels
+/// written. Pixels beyond the shorter of the two slices are left alone.
 #[inline]
 pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u16, z: i64, dz: i64) -> u32 {
     let mut ax = shade;
@@ -105,14 +104,14 @@ pub(crate) fn fill_nearer_16_16<D: Cell>(
     })
 }
 
-/// Fills `row` with what `next` gives for each pixel, where it is nearer.
+/// Fills `row` with what `next` returns for each pixel, where it is nearer.
 #[inline(always)]
 fn fill_by<D: Cell>(row: &mut [u8], depth: &mut [D], mut z: i64, dz: i64, mut next: impl FnMut() -> u8) -> u32 {
     let n = row.len().min(depth.len());
     let (row, depth, mut i, mut written) = (&mut row[..n], &mut depth[..n], 0, 0);
     while i < n {
         let byte = next();
-        // Depths are u32: what lies above bit 56 is not there within a triangle.
+        // Depths are u32: within a triangle no bits from 56 up are set.
         let d = D::of_depth((z >> 24) as u32);
         if d > depth[i] {
             depth[i] = d;
@@ -125,7 +124,7 @@ fn fill_by<D: Cell>(row: &mut [u8], depth: &mut [D], mut z: i64, dz: i64, mut ne
     written
 }
 
-/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, and keeps the greater depth.
+/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, and stores the greater depth.
 #[inline]
 pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     let n = row.len().min(depth.len()).min(bytes.len());
@@ -139,9 +138,9 @@ pub fn copy_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], bytes: &[u8], z: i6
     })
 }
 
-/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, which keeps what it holds.
+/// Copies `bytes` to `row` where the depth at a pixel is greater than in `depth`, which does not change.
 ///
-/// This is for faces that one sees through, of which many may lie before one another.
+/// This is for transparent faces, many of which may overlap.
 #[inline]
 pub fn copy_nearer_keep_depth<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8], z: i64, dz: i64) -> u32 {
     let n = row.len().min(depth.len()).min(bytes.len());
@@ -149,7 +148,7 @@ pub fn copy_nearer_keep_depth<D: Cell>(row: &mut [u8], depth: &[D], bytes: &[u8]
     copy_where(&mut row[..n], &bytes[..n], z, dz, |i, d: D| d > depth[i])
 }
 
-/// Copies as many bytes as there are pixels where `nearer` says so of a pixel's index and depth.
+/// Copies a byte to each pixel for which `nearer`, given its index and depth, returns true.
 #[inline]
 fn copy_where<D: Cell>(row: &mut [u8], bytes: &[u8], z: i64, dz: i64, mut nearer: impl FnMut(usize, D) -> bool) -> u32 {
     let (n, mut i, mut z, mut written) = (row.len().min(bytes.len()), 0, z, 0);

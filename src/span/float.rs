@@ -5,13 +5,13 @@
 //!                     row[i] = nearest(clamp((n + k·dn) / (d + k·dd)))
 //! ```
 //!
-//! k is exact in f32; the rest are two products, two sums and a quotient, each rounded once and in this order, so the same
-//! on every processor. A quotient that is not a number counts as the least of the range.
+//! k is exact in f32; the rest is two products, two sums and a quotient, each rounded once and in this order, so the
+//! result is the same on every processor. NaN counts as the least of the range.
 //!
-//! Floats are what it is about, so a processor without them pays for calling it (and only then: it is
-//! compiled where it is called).
+//! The loop is floating-point by nature, so a processor without it pays for calling this (and only then: it is compiled
+//! where it is called).
 
-/// The shade at k, within `range`: what [`fill_float`] rounds.
+/// The shade at k, clamped to `range`: what [`fill_float`] rounds.
 #[inline]
 pub(crate) fn quotient(k: i32, [n, dn]: [f32; 2], [d, dd]: [f32; 2], [low, high]: [f32; 2]) -> f32 {
     // Below 2²⁴: exact.
@@ -22,14 +22,14 @@ pub(crate) fn quotient(k: i32, [n, dn]: [f32; 2], [d, dd]: [f32; 2], [low, high]
     if shade < high { shade } else { high }
 }
 
-/// Fills `row` with the shades nearest to the quotients of two numbers that change linearly along it, held in
+/// Fills `row` with the shades nearest to the quotients of two numbers that change linearly along it, clamped to
 /// `range`.
 ///
-/// `n` and `d` are the values at k = 0, each with what it changes by from one pixel to the next; the row's first
-/// pixel is k = `first`, and all are within ±2²⁴. `range` is the least and the greatest shade, 0 to 255, multiples of 1/256.
+/// `n` and `d` are the values at k = 0, each with its change per pixel; the row's first pixel is k = `first`, and all
+/// are within ±2²⁴. `range` is the least and the greatest shade, 0 to 255, multiples of 1/256.
 ///
-/// A sum of 256.5 to 511.5 has 15 bits behind the point, so its integer part lies in bits 15 to 22 of the float: three
-/// times as fast at 64 pixels as a cast, which checks for numbers out of range (28 ns against 90).
+/// A sum of 256.5 to 511.5 has 15 fraction bits, so its integer part lies in bits 15 to 22 of the float: three times as
+/// fast at 64 pixels as a cast, which checks for numbers out of range (28 ns against 90).
 ///
 /// ```
 /// use mode13h::internals::span::float::fill_float;

@@ -4,14 +4,14 @@
 //! for every k:  row[k] = floor((n + k·dn) / (d + k·dd))
 //! ```
 //!
-//! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster makes them.
+//! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster ensures.
 
 use crate::fixed::{HAS_F64, nearest_whole};
 
 /// Fills `row` with the quotients of two numbers that change linearly along it.
 ///
-/// `n` and `d` are those of the first pixel, `dn` and `dd` the changes from one to the next; each
-/// |value| along the row is below 2¹²⁶, `d` positive.
+/// `n` and `d` are the values at the first pixel, `dn` and `dd` their changes per pixel; each |value| along the row is
+/// below 2¹²⁶, `d` positive.
 #[inline]
 pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
     let (mut n, mut d) = (n, d);
@@ -23,11 +23,11 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
     }
 }
 
-/// Fills `row` by quotients in f64, where these are sure to decide nearly always.
+/// Fills `row` with quotients in f64, for rows in which these nearly always decide.
 ///
-/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, off by less than ½ as it is computed: a
-/// product and a sum above and below, and a quotient. Rounded to a whole number it is less than 1 off, so the
-/// upper 8 of its bits are the byte unless the lower 16 are 0; there `exact` gives it.
+/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of less than ½: a
+/// product and a sum above and below, and a quotient. Rounded to an integer it is less than 1 off, so its upper 8 bits
+/// are the byte unless the lower 16 are 0; there `exact` gives it.
 #[inline]
 pub(crate) fn fill_estimated_quotients(
     row: &mut [u8],
@@ -59,11 +59,10 @@ pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {
     if !HAS_F64 {
         return n.div_euclid(d) as i64;
     }
-    // Three roundings of one part in 2⁵³ each, and one to a whole number: within 0.6 of n / d, so it is the
-    // floor or the next number up, and the exact remainder says which. Not by a cast, which rounds toward
-    // zero: −2 − δ may have an estimate a hair above −2, which became −1, two above the floor.
-    // Whether a 128-bit division takes longer depends on the processor: on one of 2023 it takes 5 to 8 ns
-    // where this takes 9.
+    // Three roundings of one part in 2⁵³ each, and one to an integer: within 0.6 of n / d, so it is the floor or the
+    // next integer, and the exact remainder says which. A cast would not do, since it rounds toward zero: −2 − δ may
+    // have an estimate a hair above −2, which becomes −1, two above the floor. Whether a 128-bit division takes longer
+    // depends on the processor: on one of 2023 it takes 5 to 8 ns where this takes 9.
     let near = nearest_whole(n as f64 / d as f64);
     let rest = n - i128::from(near) * d;
     near - i64::from(rest < 0)
@@ -73,7 +72,7 @@ pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {
 mod tests {
     use super::*;
 
-    /// Tests whole quotients of either sign, and one part of the divisor beside them.
+    /// Tests whole quotients of either sign, and their neighbours one part of the divisor away.
     #[test]
     fn floors_are_exact() {
         for bits in 0..78 {

@@ -1,11 +1,11 @@
-//! Lists of spans, drawn by one call: those of the triangles of a batch.
+//! Lists of spans, drawn by one call: the spans of a batch of triangles.
 //!
 //! ```text
 //! for every span of the list:  fill(pixels[at .. at + length], shade, step)
 //! ```
 //!
-//! or, with a depth test, `fill_nearer`. The rows of triangles are put in eight at a time; lanes without a pixel, and spans
-//! that do not lie inside the pixels, are left out by compression, so no branch asks how many there are.
+//! or, with a depth test, `fill_nearer`. Rows of triangles are appended eight at a time; lanes without pixels, and
+//! spans that do not lie inside the pixels, are dropped by compression, so no branch depends on how many there are.
 
 use core::ops::Range;
 
@@ -14,7 +14,7 @@ use super::depth::{Cell, Cells, copy_nearer, fill_nearer};
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable};
 
-/// Spans that a list has room for.
+/// Number of spans that a list can hold.
 const CAPACITY: usize = 128;
 
 type Numbers = [u32; CAPACITY + LANES];
@@ -25,12 +25,12 @@ type Depths = [i64; CAPACITY + LANES];
 pub(crate) struct SpanList {
     /// Offsets of the first pixels.
     at: Numbers,
-    /// Offsets of the first cells, with depths and unless they are those of the pixels.
+    /// Offsets of the first cells, with depths and only if they differ from those of the pixels.
     cell: Numbers,
     length: Numbers,
-    /// The shade, and above it the step.
+    /// The shade, with the step in the upper half.
     paint: Numbers,
-    /// Depths, the integer parts in the upper halves, modulo 2⁶⁴.
+    /// Depths, with the integer part in the upper half, modulo 2⁶⁴.
     z: Depths,
     dz: Depths,
     count: usize,
@@ -41,7 +41,7 @@ pub(crate) struct SpanList {
     pub(crate) pitch: i32,
     /// ... and cells.
     pub(crate) width: i32,
-    /// Pixels of all spans there have been, in eight parts.
+    /// Pixels of all spans so far, as eight partial sums.
     covered: [i32; LANES],
     /// Spans that have been drawn.
     drawn: u32,
@@ -49,13 +49,13 @@ pub(crate) struct SpanList {
     nearer: u32,
 }
 
-/// Columns of eight spans beyond a linear shade.
+/// Columns of eight spans besides a linear shade.
 pub(crate) trait SpanColumns<S: Lanes8>: Copy {
     /// Interleaves the columns: span 0 of both, span 1 of both, and so on.
     fn zip(self, s: S, other: Self) -> [Self; 2];
 }
 
-/// Nothing.
+/// No columns.
 impl<S: Lanes8> SpanColumns<S> for () {
     #[inline(always)]
     fn zip(self, _: S, (): Self) -> [Self; 2] {
@@ -63,23 +63,23 @@ impl<S: Lanes8> SpanColumns<S> for () {
     }
 }
 
-/// Eight spans. Those of no length are none.
+/// Eight spans. A span of no length is absent.
 pub(crate) struct Spans8<S: Lanes8, C> {
     pub(crate) at: S::I32,
     pub(crate) cell: S::I32,
     pub(crate) length: S::I32,
-    /// The shade, and above it the step.
+    /// The shade, with the step in the upper half.
     pub(crate) paint: S::I32,
-    /// Depths, as those of the list.
+    /// Depths, as in the list.
     pub(crate) z: S::I64,
     pub(crate) columns: C,
 }
 
-/// The changes of depth of eight spans from one pixel to the next, as those of the list.
+/// The change of depth of eight spans per pixel, as in the list.
 #[derive(Clone, Copy)]
 pub(crate) enum DepthSteps<S: Lanes8> {
     Each(S::I64),
-    /// One for all: those of one triangle.
+    /// One for all: that of one triangle.
     All(i64),
 }
 
@@ -112,7 +112,7 @@ impl<S: Lanes8, C: SpanColumns<S>> Spans8<S, C> {
 }
 
 impl SpanList {
-    /// Spans that a list has room for.
+    /// Number of spans that a list can hold.
     #[cfg(feature = "alloc")]
     pub(crate) const CAPACITY: usize = CAPACITY;
 
@@ -138,7 +138,7 @@ impl SpanList {
         }
     };
 
-    /// An empty list for these numbers of pixels and cells, and of those from one row to the next.
+    /// An empty list for these numbers of pixels and cells, each with the number of them from one row to the next.
     #[inline(always)]
     pub(crate) fn new(pixels: (usize, u32), cells: (usize, u32)) -> Self {
         let mut list = Self::NONE;
@@ -146,44 +146,46 @@ impl SpanList {
         list
     }
 
-    /// Empties the list, for other pixels and cells, and begins to count anew.
+    /// Empties the list, for other pixels and cells, and resets its counts.
     #[inline(always)]
     pub(crate) fn begin(&mut self, (pixels, pitch): (usize, u32), (cells, width): (usize, u32)) {
-        // Offsets beyond are never those of a frame.
+        // No frame has offsets beyond that.
         let most = |length: usize| length.min(i32::MAX as usize) as i32;
         (self.pixels, self.pitch) = (most(pixels), pitch as i32);
         (self.cells, self.width) = (most(cells), width as i32);
         (self.count, self.covered, self.drawn, self.nearer) = (0, [0; LANES], 0, 0);
     }
 
-    /// Spans, pixels that they cover, and those that were nearer, of all that was drawn.
+    /// Counts of everything drawn: spans, the pixels that they cover, and those that were nearer.
     pub(crate) fn counts(&self) -> (u32, u32, u32) {
         (self.drawn, self.covered.iter().sum::<i32>().cast_unsigned(), self.nearer)
     }
 
-    /// Counts spans and their pixels that were drawn without the list.
+    /// Counts spans that were drawn without the list, and their pixels.
     #[cfg(simd_x86_64)]
     pub(crate) fn count_drawn(&mut self, (spans, covered): (u32, u32)) {
         self.drawn = self.drawn.wrapping_add(spans);
         self.covered[0] = self.covered[0].wrapping_add(covered.cast_signed());
     }
 
-    /// Returns whether there is room for so many more.
+    /// Returns whether there is room for this many more.
     #[inline(always)]
     pub(crate) fn has_room(&self, spans: usize) -> bool {
         self.count + spans <= CAPACITY
     }
 
-    /// Rows of pixels and of cells have one length, and so pixels and their cells one offset.
+    /// Returns whether rows of pixels and of cells have the same length, so that pixels and their cells have the same
+    /// offset.
     #[inline(always)]
     fn cells_are_pixels(&self) -> bool {
         self.pitch == self.width
     }
 
-    /// Those of eight spans that have a length, and lie inside.
+    /// The spans, of these eight, that have a length and lie inside.
     #[inline(always)]
     fn inside<S: Lanes8, C, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S, C>) -> S::Mask {
-        // Each is negative where a span has no length, begins before the pixels, ends behind 2³¹, or ends behind them.
+        // Each is negative if a span has no length, begins before the pixels, ends beyond 2³¹, or ends beyond the
+        // pixels.
         let end = s.add_i32(spans.at, spans.length);
         let mut sign = s.or_i32(s.sub_i32(spans.length, s.splat_i32(1)), s.or_i32(spans.at, end));
         sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.pixels), end));
@@ -199,8 +201,8 @@ impl SpanList {
         s.is_greater(sign, s.splat_i32(-1))
     }
 
-    /// Puts those of eight spans that have a length, and lie inside, behind the others. Without room for eight, some are
-    /// left out. Returns which they are, and the number of the first.
+    /// Appends those of eight spans that have a length and lie inside. Without room for eight, some are left out.
+    /// Returns which were appended, and the index of the first.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8, C, const DEPTHS: bool>(
         &mut self,
@@ -236,8 +238,8 @@ impl SpanList {
         (mask, count)
     }
 
-    /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. With fewer pixels or cells than
-    /// the list was made for, nothing is drawn.
+    /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. If there are fewer pixels
+    /// or cells than the list was made for, nothing is drawn.
     #[inline(always)]
     pub(crate) fn draw_by<const DEPTHS: bool>(&mut self, Target { pixels, cells, kernel }: &mut Target<'_>) {
         if self.count == 0 {
@@ -250,7 +252,7 @@ impl SpanList {
             }
             _ => kernel.fill_spans(pixels, self),
         }
-        // At most 2⁷ at a time; the sum is meant modulo 2³², as `DrawStats`.
+        // At most 2⁷ at a time; the sum is modulo 2³², like those of `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
         self.count = 0;
     }
@@ -261,15 +263,15 @@ impl SpanList {
         self.count.min(CAPACITY)
     }
 
-    /// The length and the paint of span `k`, which is below [`count`](Self::count).
+    /// The length of span `k`, which is below [`count`](Self::count), and its shade with the step in the upper half.
     #[inline(always)]
     pub(crate) fn fill_of(&self, k: usize) -> (usize, u32) {
         let k = k.min(CAPACITY);
         (self.length[k] as usize, self.paint[k])
     }
 
-    /// Puts a span without a depth behind the others, if it lies inside and there is room. Its pixels and its cells have one
-    /// offset. Returns its number.
+    /// Appends a span without a depth, if it lies inside and there is room. Its pixels and its cells have the same
+    /// offset. Returns its index.
     #[cfg(feature = "alloc")]
     pub(crate) fn push(&mut self, (at, length): (usize, usize), paint: u32) -> Option<usize> {
         let end = at.checked_add(length)?;
@@ -291,7 +293,7 @@ impl SpanList {
         if self.cells_are_pixels() {
             return self.offset(k) as usize;
         }
-        // Of a frame: neither is negative.
+        // In a frame neither is negative.
         (row as usize - first_row as usize) * self.width as usize + column as usize
     }
 
@@ -301,7 +303,7 @@ impl SpanList {
         self.at[k.min(CAPACITY)]
     }
 
-    /// Empties the list, whose spans have been drawn, with so many pixels that were nearer.
+    /// Empties the list after its spans have been drawn, which wrote `nearer` pixels.
     pub(crate) fn clear(&mut self, nearer: u32) {
         // As in `draw_by`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
@@ -373,28 +375,28 @@ impl SpanList {
         SpanDepth { cell: self.cell()[k], z: self.z[k], dz: self.dz[k] }
     }
 
-    /// Fills each by this function.
+    /// Fills each span with this function.
     #[inline(always)]
     pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
         for Span { at, length, paint } in self.spans() {
             // No overflow: both are below 2³¹.
             if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
-                // Its halves.
+                // The shade in the lower half, the step in the upper.
                 fill(row, paint as u16, (paint >> 16) as u16);
             }
         }
     }
 
-    /// Fills each where it is nearer. Returns the number of pixels written.
+    /// Fills each span where it is nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
         self.each_tested(0..self.count(), pixels, cells, |_, paint, row, cells, [z, dz]| {
-            // Its halves.
+            // The shade in the lower half, the step in the upper.
             fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z, dz)
         })
     }
 
-    /// Copies the bytes of some where they are nearer. Returns the number of pixels written.
+    /// Copies the bytes of some spans where they are nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_copied<D: Cell>(
         &self,
@@ -406,8 +408,8 @@ impl SpanList {
         self.each_tested(range, pixels, cells, |k, _, row, cells, [z, dz]| copy_nearer(row, cells, bytes.of(k), z, dz))
     }
 
-    /// Hands the pixels and cells of some to a loop that tests depths: with the span's number among these, its paint, and its
-    /// first depth and the step. Returns the sum of what it returns.
+    /// Passes the pixels and cells of some spans to a loop that tests depths, with the span's index among these, its
+    /// packed shade and step, and its first depth and the depth step. Returns the sum of what the loop returns.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,
@@ -428,7 +430,7 @@ impl SpanList {
     }
 }
 
-/// First sums of eight spans, where their fill is more than a linear shade.
+/// First sums of eight spans that are filled with more than a linear shade.
 #[derive(Clone, Copy)]
 pub(crate) struct Starts8<S: Lanes8, const N: usize>(pub(crate) [S::I64; N]);
 
@@ -443,20 +445,20 @@ impl<S: Lanes8, const N: usize> SpanColumns<S> for Starts8<S, N> {
     }
 }
 
-/// First sums of each span of a list, as [`Starts8`].
+/// First sums of each span of a list, see [`Starts8`].
 #[derive(Clone, Debug)]
 pub(crate) struct SpanStarts<const N: usize>([Depths; N]);
 
 impl<const N: usize> SpanStarts<N> {
     pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
 
-    /// Puts those of the mask into the places from `at` on.
+    /// Stores the lanes of the mask at the indices from `at` on.
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S, N>) {
         s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
     }
 
-    /// Those of span `k`.
+    /// The sums of span `k`.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> [i64; N] {
         let (k, mut of) = (k.min(CAPACITY), [0; N]);
@@ -467,7 +469,7 @@ impl<const N: usize> SpanStarts<N> {
     }
 }
 
-/// Numbers of each span of a list, `N` of them, beside those of the list.
+/// Further numbers of each span of a list, `N` of them.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Debug)]
 pub(crate) struct SpanNumbers<const N: usize>([Numbers; N]);
@@ -476,7 +478,7 @@ pub(crate) struct SpanNumbers<const N: usize>([Numbers; N]);
 impl<const N: usize> SpanNumbers<N> {
     pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
 
-    /// Puts the first `count` of those of the mask into the places from `at` on.
+    /// Stores the first `count` numbers of the lanes of the mask at the indices from `at` on.
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), numbers: [S::I32; N], count: usize) {
         for (numbers, to) in numbers.into_iter().zip(&mut self.0).take(count) {
@@ -509,7 +511,7 @@ impl SpanBytes {
 
     pub(crate) const NONE: Self = Self([[0; Self::LENGTH]; Self::COUNT]);
 
-    /// Those of span `k` of these.
+    /// The bytes of span `k` of these.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u8; Self::LENGTH] {
         &self.0[k % Self::COUNT]
@@ -524,7 +526,7 @@ impl SpanBytes {
 /// Destination of spans.
 pub(crate) struct Target<'a> {
     pub(crate) pixels: &'a mut [u8],
-    /// Those of the depth buffer, if there is one.
+    /// The cells of the depth buffer, if there is one.
     pub(crate) cells: Option<Cells<'a>>,
     pub(crate) kernel: Kernel,
 }
@@ -535,11 +537,11 @@ pub(super) struct Span {
     /// The offset of its first pixel.
     pub(super) at: u32,
     pub(super) length: u32,
-    /// The shade, and above it the step.
+    /// The shade, with the step in the upper half.
     pub(super) paint: u32,
 }
 
-/// The depth of a span: the integer part in the upper half, modulo 2⁶⁴.
+/// The depth of a span, with the integer part in the upper half, modulo 2⁶⁴.
 #[derive(Clone, Copy)]
 pub(super) struct SpanDepth {
     /// The offset of its first cell.
@@ -548,7 +550,7 @@ pub(super) struct SpanDepth {
     pub(super) dz: i64,
 }
 
-/// Eight places from this number on.
+/// Eight elements from this index on.
 #[inline(always)]
 fn eight<T>(numbers: &mut [T; CAPACITY + LANES], from: usize) -> &mut [T; LANES] {
     let rest = &mut numbers[from.min(CAPACITY)..];
@@ -558,7 +560,7 @@ fn eight<T>(numbers: &mut [T; CAPACITY + LANES], from: usize) -> &mut [T; LANES]
     }
 }
 
-/// A span and where it lies.
+/// A span and its position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Listed {
     /// The offset of its first pixel.
@@ -571,18 +573,18 @@ pub struct Listed {
     pub step: u16,
 }
 
-/// The depths of a span, and where they lie in the depth buffer.
+/// The depths of a span, and their position in the depth buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ListedDepths {
     /// Depth of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
     pub z: i64,
-    /// Change from one pixel to the next.
+    /// Change per pixel.
     pub dz: i64,
     /// The offset of its first cell.
     pub at: u32,
 }
 
-/// Draws spans, in order, as the batches do it with this kernel: those that lie inside the pixels. For tests.
+/// Draws spans in order, as batches do with this kernel, if they lie inside the pixels. For tests.
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
     let mut list = SpanList::new((pixels.len(), 0), (0, 0));
     let target = &mut Target { pixels, cells: None, kernel };
@@ -595,8 +597,8 @@ pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
     list.draw_by::<false>(target);
 }
 
-/// Draws spans, in order, where they are nearer, as the batches do it with this kernel: those that lie inside the pixels and
-/// cells. Where each has the offset of its cells, the list has one for both. For tests.
+/// Draws spans in order where they are nearer, as batches do with this kernel, if they lie inside the pixels and cells.
+/// If every span has the same offset for both, the list stores only one. For tests.
 pub fn fill_where_nearer<D: Cell>(
     kernel: Kernel,
     pixels: &mut [u8],
@@ -604,7 +606,7 @@ pub fn fill_where_nearer<D: Cell>(
     spans: &[Listed],
     depths: &[ListedDepths],
 ) -> u32 {
-    // Of one pitch, or of two, so that offsets of cells are their own.
+    // With one pitch, or with two, so that cells have offsets of their own.
     let is_shared = spans.iter().zip(depths).all(|(span, depths)| span.at == depths.at);
     let mut list = SpanList::new((pixels.len(), 0), (cells.len(), u32::from(!is_shared)));
     let target = &mut Target { pixels, cells: Some(D::cells(cells)), kernel };

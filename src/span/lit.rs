@@ -1,4 +1,4 @@
-//! Normal and position at every pixel, perspective-correct, for light. The pass writes no pixel.
+//! Normal and position at every pixel, perspective-correct, for lighting. This pass writes no pixel.
 
 use super::Kernel;
 use crate::lanes::{LANES, Lanes, Points, each};
@@ -11,13 +11,13 @@ use crate::simd::at_best_level;
 /// points[i][k − first] = (a[i] + k·da[i]) · (1 / (d + k·dd))
 /// ```
 ///
-/// in f64, products, sums and one reciprocal, each rounded once and in this order, then to f32. Every point
-/// is made from its own k: it does not depend on how many were made before it, but for k itself.
+/// in f64, with products, sums and one reciprocal, each rounded once and in this order, then rounded to f32. Every
+/// point is computed from its own k, and from nothing that was computed before it.
 ///
-/// For Phong's shading `a` is normal and position at pixel 0, each over w, and `d` is 1/w; `da` and
-/// `dd` are what they change by from one pixel to the next. Beyond the end of a row points may be anything.
+/// For Phong shading `a` is normal and position at pixel 0, each over w, and `d` is 1/w; `da` and `dd` are their
+/// changes per pixel. Points beyond the end of a row may be anything.
 ///
-/// Floats are what it is about, so a processor without them pays for calling it (and only then: it is
+/// The computation is floating-point by nature, so a processor without it pays for calling this (and only then: it is
 /// compiled where it is called).
 #[inline]
 #[must_use]
@@ -29,7 +29,7 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
     interpolate_at(&places, a, da, d, dd)
 }
 
-/// Six numbers at each of any eight pixels of a row, given by their numbers; see [`interpolate`].
+/// Six numbers at each of any eight pixels of a row, given by their indices; see [`interpolate`].
 #[inline]
 #[must_use]
 pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
@@ -52,7 +52,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The numerators of six numbers at each of eight pixels, and their denominators.
 pub type Numerators = [Lanes<f64>; 7];
 
-/// Dividends of [`interpolate_at`]: with [`divide`] they give its numbers, for pixels of different rows too.
+/// Dividends of [`interpolate_at`]: [`divide`] turns them into its numbers, for pixels of different rows too.
 #[inline]
 #[must_use]
 pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
@@ -92,7 +92,7 @@ fn divide_inlined(numerators: &Numerators) -> Points {
 
 impl Kernel {
     internal! {
-    /// [`numerators`] as the kernel's processor does it best: the same numbers.
+    /// [`numerators`], compiled for the kernel's processor: the same numbers.
     #[inline]
     #[must_use]
     fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
@@ -101,7 +101,7 @@ impl Kernel {
     }
 
     internal! {
-    /// [`divide`] as the kernel's processor does it best: the same numbers.
+    /// [`divide`], compiled for the kernel's processor: the same numbers.
     #[inline]
     #[must_use]
     fn divide(self, numerators: &Numerators) -> Points {
@@ -110,7 +110,7 @@ impl Kernel {
     }
 
     internal! {
-    /// [`interpolate_at`] as the kernel's processor does it best: the same numbers.
+    /// [`interpolate_at`], compiled for the kernel's processor: the same numbers.
     #[inline]
     #[must_use]
     fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {

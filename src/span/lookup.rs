@@ -1,4 +1,4 @@
-//! A table of two bytes: what shading of texels, fog, transparency and Phong's table come down to.
+//! A look-up by two bytes: what shading of texels, fog, transparency and Phong's table reduce to.
 
 /// Replaces each byte by what a table of 256 × 256 holds for it:
 ///
@@ -15,7 +15,7 @@
 /// | transparency | byte of the face | byte of the frame |
 /// | Phong's, of 1994 | the normal's y | the normal's x |
 ///
-/// Vectors were tried: eight gathered loads a turn (AVX2) take 20 ns at 64 pixels and 17 at 8, where this
+/// Vectors are not used: eight gathered loads per iteration (AVX2) take 20 ns at 64 pixels and 17 at 8, where this
 /// takes 29 and 6, and processors patched against gather data sampling are said to be much slower at it.
 #[inline(never)]
 pub fn lookup(row: &mut [u8], high: &[u8], table: &[u8; 65_536]) {

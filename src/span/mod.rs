@@ -4,31 +4,31 @@
 //! fill(row, shade, step)        row[k] = ((shade + k·step) mod 65,536) >> 8
 //! ```
 //!
-//! Nothing else, for every `k` below `row.len()`, whatever the length; an empty row is left alone.
-//! `shade` and `step` are 8.8 fixed point; a falling ramp is a step in two's complement.
+//! That and nothing else, for every `k` below `row.len()`, whatever the length; an empty row is left alone. `shade` and
+//! `step` are 8.8 fixed point; a falling ramp is a step in two's complement.
 //!
-//! Every kernel gives the same bytes for **all** inputs, or it is wrong. That costs the fast ones
-//! nothing: the sum wraps at 65,536, so lane `k` may start at `shade + k·step` and be exact.
+//! Every kernel gives the same bytes for **all** inputs, or it is wrong. That costs the fast ones nothing: the sum
+//! wraps at 65,536, so lane `k` may start at `shade + k·step` and still be exact.
 //!
 //! | kernel | what | where |
 //! |---|---|---|
 //! | `portable` | the loop in Rust; the specification | everywhere |
 //! | `asm` | the loop, five instructions a pixel | x86-64 and 32-bit x86, feature `asm` |
-//! | `asm-unrolled` | the same, eight pixels a turn | x86-64, feature `asm` |
+//! | `asm-unrolled` | the same, eight pixels per iteration | x86-64, feature `asm` |
 //! | `simd` | the best of the levels below | feature `simd` |
 //! | `simd-arrays` | plain arrays, which the compiler vectorises | everywhere, feature `simd` |
-//! | `simd-sse2` | 16 pixels a turn | x86-64, feature `simd` |
-//! | `simd-neon` | 16 pixels a turn | 64-bit ARM, feature `simd` |
-//! | `simd-wasm` | 16 pixels a turn | WebAssembly built with `simd128`, feature `simd` |
-//! | `simd-avx2` | 32 pixels a turn | x86-64 with AVX2 and feature `simd` |
-//! | `simd-avx512` | 64 pixels a turn | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
+//! | `simd-sse2` | 16 pixels per iteration | x86-64, feature `simd` |
+//! | `simd-neon` | 16 pixels per iteration | 64-bit ARM, feature `simd` |
+//! | `simd-wasm` | 16 pixels per iteration | WebAssembly built with `simd128`, feature `simd` |
+//! | `simd-avx2` | 32 pixels per iteration | x86-64 with AVX2 and feature `simd` |
+//! | `simd-avx512` | 64 pixels per iteration | x86-64 with AVX-512 BW, BMI2 and feature `simd` |
 //!
-//! `simd` can be forced down to one of its levels, for tests and measurements. With `std` the processor is
-//! asked what it has; without, what the compiler was told counts.
+//! `simd` can be restricted to one of its levels, for tests and measurements. With `std` the processor's features are
+//! detected at run time; without it, the compiler's target features count.
 //!
-//! Other loops, over short rows of bytes, draw more than a span alone can. Each has a portable
-//! specification; where a faster twin was worth its code, the loop of the plain name takes it, and the
-//! specification is beside it as `…_portable`.
+//! Other loops over short rows of bytes draw what a span alone cannot. Each has a portable specification; where a
+//! faster version is worth its code, the loop with the plain name uses it, and the specification is beside it as
+//! `…_portable`.
 //!
 //! | loop | what |
 //! |---|---|
@@ -37,11 +37,11 @@
 //! | `float::fill_float` | the same in f32 |
 //! | `dither::fill_dithered` | the span with ordered dither |
 //! | `texture::fill_affine`, `texture::fill_perspective` | rows of texels |
-//! | `lookup` | shades of texels, fog, transparency, Phong's table: one byte of two |
+//! | `lookup` | shades of texels, fog, transparency, Phong's table: one byte from two |
 //! | `channels::mix_cube`, `channels::mix_nearest` | red, green and blue to an index, with dither |
 //! | `depth::fill_nearer`, `depth::copy_nearer`, `depth::copy_nearer_keep_depth` | with a depth test |
-//! | `list::fill`, `list::fill_where_nearer` | a list of spans, as batches make it |
-//! | `lit::interpolate` | writes no pixels: normals and positions for Phong's shading |
+//! | `list::fill`, `list::fill_where_nearer` | a list of spans, as in batches |
+//! | `lit::interpolate` | writes no pixels: normals and positions for Phong shading |
 //! | `curve::curve` | writes no pixels: shades on a parabola |
 
 use core::fmt;
@@ -82,8 +82,8 @@ mod x86;
 
 pub(crate) use lookup::lookup;
 
-/// The bare assembly entries, for the tests that call them with rubbish in their registers and read
-/// their instructions. No part of the interface.
+/// The bare assembly entries, for the tests that call them with garbage in their registers and read their instructions.
+/// Not part of the interface.
 #[cfg(any(asm_x86_64, asm_i686))]
 #[cfg(feature = "internals")]
 pub(crate) mod entry {
@@ -93,9 +93,9 @@ pub(crate) mod entry {
 /// Signature of every kernel: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 
-/// A way to fill a span that this machine has.
+/// A loop that fills spans and that this machine can run.
 ///
-/// A kernel can only be had from the constructors here, which give none that the processor cannot run.
+/// A kernel can only be obtained from the constructors here, which return none that the processor cannot run.
 ///
 /// ```
 /// use mode13h::span::Kernel;
@@ -111,7 +111,8 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 pub struct Kernel {
     name: &'static str,
     level: Level,
-    /// By what every processor of the target has. A level that not every processor has is a proof, and has its own.
+    /// Uses only what every processor of the target has. A level that not every processor has is a proof that this one
+    /// does, and has its own function.
     fill: Fill,
 }
 
@@ -131,7 +132,7 @@ impl Listed {
     }
 }
 
-/// Every kernel there is, portable first.
+/// Every kernel, portable first.
 static LISTED: [Listed; KERNELS] = [
     Listed { name: "portable", find: || Some((Level::Portable, portable::fill)) },
     Listed { name: "asm", find: find_asm },
@@ -224,7 +225,7 @@ impl Kernel {
         self.name
     }
 
-    /// Name of the level that it draws with: for `simd` the one that was chosen, such as `avx2`.
+    /// Name of the level that it draws with: for `simd` the chosen one, such as `avx2`.
     #[must_use]
     pub const fn level(self) -> &'static str {
         self.level.name()
@@ -282,8 +283,8 @@ impl Kernel {
         }
     }
 
-    /// Copies the bytes of some spans of a list to the pixels, where there are cells those that are nearer. Of the spans none has
-    /// more than 64 pixels. Returns the number of pixels that were nearer.
+    /// Copies the bytes of some spans of a list to the pixels; if there are cells, only where they are nearer. No span
+    /// has more than 64 pixels. Returns the number of pixels that were nearer.
     #[inline]
     pub(crate) fn copy_spans(
         self,
@@ -309,8 +310,9 @@ impl Kernel {
         }
     }
 
-    /// Fills every span, in order, with shades in 16.16, where there are cells those that are nearer: `shades` gives the first
-    /// one and the step of a span, by its number and its paint. Returns the number of pixels that were nearer.
+    /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades` gives
+    /// the first shade and the step of a span, from its index and its packed value. Returns the number of pixels that
+    /// were nearer.
     #[inline(always)]
     pub(crate) fn fill_spans_16_16(
         self,
@@ -340,12 +342,11 @@ impl Kernel {
     }
 
     internal! {
-    /// Copies the first `length` bytes as [`depth::copy_nearer`] with `KEEPS`, otherwise as
-    /// [`depth::copy_nearer_keep_depth`]. Returns the
-    /// number of pixels written.
+    /// Copies the first `length` bytes like [`depth::copy_nearer`] with `KEEPS`, otherwise like
+    /// [`depth::copy_nearer_keep_depth`]. Returns the number of pixels written.
     ///
-    /// Row, cells and bytes may be longer, and what lies behind in the row and in the cells stays as it was: vectors take
-    /// whole turns where there is room for them. Pixels beyond the shortest of the three are left alone.
+    /// Row, cells and bytes may be longer, and what follows in the row and in the cells does not change: vectors take
+    /// whole iterations where there is room for them. Pixels beyond the shortest of the three are left alone.
     #[inline]
     fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
         self,
@@ -372,17 +373,17 @@ impl Kernel {
     }
     }
 
-    /// Copies the first `length` bytes, of which the row has as many. What lies behind them stays as it was.
+    /// Copies the first `length` bytes to a row that has at least as many. What follows them does not change.
     #[inline(always)]
     pub(crate) fn copy(self, length: usize, row: &mut [u8], bytes: &[u8]) {
-        // Usually few, and their number unpredictable: trailing bytes are rewritten unchanged.
+        // Usually few, with an unpredictable number: trailing bytes are rewritten unchanged.
         if (1..=8).contains(&length)
             && let (Some(row), Some(bytes)) = (row.first_chunk_mut(), bytes.first_chunk())
         {
             let mask = !(u64::MAX << 1 << (8 * length - 1));
             *row = (u64::from_le_bytes(*bytes) & mask | u64::from_le_bytes(*row) & !mask).to_le_bytes();
         } else if let (Some(row), Some(bytes)) = (row.get_mut(..length), bytes.get(..length)) {
-            // A copy by a function of the C library takes as long as some tens of pixels.
+            // Calling the C library's copy takes as long as some tens of pixels.
             let blocks = bytes.as_chunks::<8>().0;
             for (to, from) in row.as_chunks_mut::<8>().0.iter_mut().zip(blocks) {
                 *to = *from;
@@ -439,8 +440,8 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// The kernel of a name, as [`Kernel::name`] gives it. [`UnknownName`] if no kernel has it, or if this machine or build
-/// lacks that kernel.
+/// The kernel with a name, as [`Kernel::name`] returns it. [`UnknownName`] if no kernel has it, or if this machine or
+/// build lacks that kernel.
 impl FromStr for Kernel {
     type Err = UnknownName;
 
@@ -453,11 +454,11 @@ impl FromStr for Kernel {
     }
 }
 
-/// The fastest kernel of this machine and this build. It costs a few loads: what the processor has is found out once a
-/// program.
+/// The fastest kernel of this machine and this build. It costs a few loads: the processor's features are detected once
+/// per program.
 impl Default for Kernel {
     fn default() -> Self {
-        // Not the assembly: the compiler makes vectors of the portable loop, and they beat it at every length.
+        // Not the assembly: the compiler vectorises the portable loop, and that is faster at every length.
         match find_simd() {
             Some((level, fill)) => Self { name: "simd", level, fill },
             None => Self::PORTABLE,
@@ -465,7 +466,7 @@ impl Default for Kernel {
     }
 }
 
-/// Two are equal if they have one name and draw with the same level.
+/// Two kernels are equal if they have the same name and draw with the same level.
 impl PartialEq for Kernel {
     fn eq(&self, other: &Self) -> bool {
         (self.name, self.level) == (other.name, other.level)

@@ -8,18 +8,17 @@
 //! bytes   = even >> 8 | odd & 0xFF00               (little-endian: byte 2j, byte 2j + 1)
 //! ```
 //!
-//! so that no lane has to be packed or carried across the register. Both run on by a block's worth
-//! of steps.
+//! so that no lane has to be packed or carried across the register. Both advance by a block's worth of steps.
 
 /// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
 pub(super) mod arrays {
     use super::super::portable;
     use crate::lanes::{LANES, each};
 
-    /// Pixels a turn: two vectors of shades.
+    /// Pixels per iteration: two vectors of shades.
     const BLOCK: usize = 2 * LANES;
-    /// Length from which on the compiler's own vectors of the portable loop are faster: on x86-64 at
-    /// 160 pixels 9.7 ns and 30 here, at 100 about the same, at random 1 to 64 pixels 26 and 15.
+    /// Length from which on the compiler's own vectors of the portable loop are faster: on x86-64 9.7 ns at 160 pixels
+    /// and 30 here, about the same at 100, and 26 and 15 at random lengths of 1 to 64 pixels.
     const LONG: usize = 128;
 
     /// Even and odd shades of a block of 16 pixels.
@@ -67,7 +66,7 @@ pub(super) mod arrays {
             first.store(&mut bytes);
             return row.copy_from_slice(&bytes[..n]);
         }
-        // The last 16, whatever the length: its first pixel is number n − 16.
+        // The last 16 pixels, whatever the length: the first of them is pixel n − 16.
         let last = first.raised(step.wrapping_mul((n - BLOCK) as u16)); // n < 128
         let mut block = first;
         let (blocks, _) = row.as_chunks_mut::<BLOCK>();
@@ -122,7 +121,7 @@ pub(super) mod sse2 {
         #[inline]
         #[target_feature(enable = "sse2")]
         pub(super) fn store(self, to: &mut [u8; 16]) {
-            // SAFETY: `to` is 16 writable bytes; the store asks for no alignment.
+            // SAFETY: `to` is 16 writable bytes; the store requires no alignment.
             unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), self.bytes()) }
         }
 
@@ -138,7 +137,7 @@ pub(super) mod sse2 {
         #[inline]
         #[target_feature(enable = "sse2")]
         fn dithered(self, thresholds: [u8; 16]) -> Self {
-            // SAFETY: `thresholds` is 16 readable bytes; the load asks for no alignment.
+            // SAFETY: `thresholds` is 16 readable bytes; the load requires no alignment.
             let pairs = unsafe { _mm_loadu_si128(thresholds.as_ptr().cast()) };
             // In lanes of 16 bits the lower byte is an even pixel's, the upper an odd one's.
             let even = _mm_and_si128(pairs, _mm_set1_epi16(0xFF));
@@ -146,19 +145,19 @@ pub(super) mod sse2 {
         }
     }
 
-    /// Every x86-64 has SSE2, so for any processor.
+    /// Runs on any processor, since every x86-64 has SSE2.
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         // SAFETY: x86-64 includes SSE2.
         unsafe { vectors(row, shade, step) }
     }
 
-    /// Every span of a list.
+    /// Fills every span of a list.
     pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         // SAFETY: x86-64 includes SSE2.
         spans.each(pixels, |row, shade, step| unsafe { vectors(row, shade, step) });
     }
 
-    /// Puts the first bytes of a row that has no fewer.
+    /// Stores the first bytes of a row that has at least as many.
     #[inline(always)]
     fn put_first<const N: usize>(row: &mut [u8], bytes: [u8; N]) {
         if let Some(to) = row.first_chunk_mut() {
@@ -166,7 +165,7 @@ pub(super) mod sse2 {
         }
     }
 
-    /// Puts the last ones.
+    /// Stores the last bytes of a row that has at least as many.
     #[inline(always)]
     fn put_last<const N: usize>(row: &mut [u8], bytes: [u8; N]) {
         if let Some(to) = row.last_chunk_mut() {
@@ -174,7 +173,7 @@ pub(super) mod sse2 {
         }
     }
 
-    /// Rows of less than 16, each with stores that overlap instead of a loop for the rest.
+    /// Rows of less than 16 pixels, each with overlapping stores instead of a loop for the rest.
     #[inline]
     #[target_feature(enable = "sse2")]
     pub(super) fn short(row: &mut [u8], shade: u16, step: u16) {
@@ -207,7 +206,7 @@ pub(super) mod sse2 {
             return short(row, shade, step);
         }
         let first = Block::new(shade, step);
-        // The last 16, whatever the length: its first pixel is number n − 16. (mod 65,536, as the shade)
+        // The last 16 pixels, whatever the length: the first of them is pixel n − 16. (mod 65,536, like the shade)
         let to_last = step.wrapping_mul((n - 16) as u16);
         let last = first.raised(_mm_set1_epi16(to_last as i16));
         let by = _mm_set1_epi16(step.wrapping_mul(16) as i16);
@@ -223,7 +222,8 @@ pub(super) mod sse2 {
     }
 
     /// The span with dither, for any processor: see [`dither`](super::super::dither).
-    /// Rows of at least 16 pixels.
+    ///
+    /// Rows must have at least 16 pixels.
     pub(crate) fn fill_dithered(row: &mut [u8], shade: u16, step: u16, thresholds: &ThresholdRow, x: usize) {
         // SAFETY: x86-64 includes SSE2.
         unsafe { dithered(row, shade, step, thresholds, x) }
@@ -270,11 +270,11 @@ pub(crate) mod avx2 {
     /// [`Kernel::fill`](super::super::Kernel::fill).
     #[inline]
     pub(crate) fn fill(_: Avx2, row: &mut [u8], shade: u16, step: u16) {
-        // SAFETY: the processor has AVX2, says the token.
+        // SAFETY: the token proves that the processor has AVX2.
         unsafe { vectors(row, shade, step) }
     }
 
-    /// Every span of a list.
+    /// Fills every span of a list.
     pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], spans: &SpanList) {
         #[target_feature(enable = "avx2")]
         fn each(pixels: &mut [u8], spans: &SpanList) {
@@ -282,13 +282,13 @@ pub(crate) mod avx2 {
                 span(pixels, at, length, paint);
             }
         }
-        // SAFETY: the processor has AVX2, says the token.
+        // SAFETY: the token proves that the processor has AVX2.
         unsafe { each(pixels, spans) }
     }
 
-    /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, and above it the step.
-    /// Bytes behind the span, of whichever row, are written as they were read. Nothing is drawn of a span that
-    /// reaches beyond `pixels`.
+    /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, with the step in the upper half.
+    /// Bytes behind the span, in whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not
+    /// drawn.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
@@ -301,18 +301,18 @@ pub(crate) mod avx2 {
             && let Some(row) = pixels.get_mut(at..at + MOST)
         {
             let bytes = sse2::Block::new(shade, step).bytes();
-            // SAFETY: sixteen of 32 bytes, from number 16 or one before it on; the load asks for no alignment.
+            // SAFETY: sixteen of 32 bytes, from byte 16 or an earlier one on; the load requires no alignment.
             let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(MOST - n).cast()) };
             if n <= MOST / 2 {
-                // SAFETY: sixteen bytes, of which eight are read; the load asks for no alignment.
+                // SAFETY: sixteen bytes, of which eight are read; the load requires no alignment.
                 let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };
-                // SAFETY: sixteen bytes, of which eight are written; the store asks for no alignment.
+                // SAFETY: sixteen bytes, of which eight are written; the store requires no alignment.
                 unsafe { _mm_storel_epi64(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
                 return;
             }
-            // SAFETY: sixteen bytes; the load asks for no alignment.
+            // SAFETY: sixteen bytes; the load requires no alignment.
             let before = unsafe { _mm_loadu_si128(row.as_ptr().cast()) };
-            // SAFETY: sixteen bytes; the store asks for no alignment.
+            // SAFETY: sixteen bytes; the store requires no alignment.
             unsafe { _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
             return;
         }
@@ -339,7 +339,7 @@ pub(crate) mod avx2 {
         fn store(self, to: &mut [u8; 32]) {
             let odd_bytes = _mm256_set1_epi16(0xFF00_u16 as i16);
             let bytes = _mm256_or_si256(_mm256_srli_epi16(self.even, 8), _mm256_and_si256(self.odd, odd_bytes));
-            // SAFETY: `to` is 32 writable bytes; the store asks for no alignment.
+            // SAFETY: `to` is 32 writable bytes; the store requires no alignment.
             unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), bytes) }
         }
     }

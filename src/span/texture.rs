@@ -9,7 +9,7 @@
 //!
 //! | loop | u and v |
 //! |---|---|
-//! | [`fill_affine`] | change by the same from each pixel to the next |
+//! | [`fill_affine`] | change by the same amount from each pixel to the next |
 //! | [`fill_perspective`] | the floor of a quotient at every pixel: exact |
 
 use core::fmt;
@@ -72,13 +72,13 @@ impl<'a> Texels<'a> {
         self.bytes[self.place(u, v)]
     }
 
-    /// Place of the texel, below the length. The compiler sees that from the last mask, for bytes that it knows not
-    /// to be empty, and leaves out the check (if all is in usize; for a u32 it did not).
+    /// Index of the texel, below the length. The compiler sees that from the last mask, if it knows that the bytes are
+    /// not empty, and omits the bounds check (with everything in usize; with a u32 it does not).
     #[inline]
     fn place(self, u: u32, v: u32) -> usize {
         let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
-        // What a narrow usize cuts off the masks cut off anyway.
+        // What a narrow usize cuts off, the masks clear anyway.
         let column = (u >> 16) as usize & columns;
         // Shifted once instead of down and up.
         let row = (v >> (16 - self.ubits)) as usize & (last & !columns);
@@ -86,8 +86,8 @@ impl<'a> Texels<'a> {
     }
 }
 
-/// The smaller copies of a texture: the levels of a mipmap from 1 on. Each has half the columns and half the rows of the
-/// level before it, or one where that has one; the last is a single texel. Level 0 is the texture itself.
+/// The smaller copies of a texture: the levels of a mipmap from 1 on. Each has half the columns and half the rows of
+/// the level before it, but at least one of each; the last is a single texel. Level 0 is the texture itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Levels<'a> {
     /// Level after level.
@@ -100,8 +100,8 @@ impl<'a> Levels<'a> {
     /// The smaller copies of a texture 2^`ubits` wide and 2^`vbits` high: level 1 row by row, then level 2, and so on.
     ///
     /// # Errors
-    /// [`TexelsError`] if the texture is wider or higher than 256, or if `bytes` has another length than
-    /// [`length`](Self::length).
+    /// [`TexelsError`] if the texture is wider or higher than 256, or if `bytes` does not have [`length`](Self::length)
+    /// bytes.
     pub const fn new(bytes: &'a [u8], ubits: u32, vbits: u32) -> Result<Self, TexelsError> {
         if ubits > Texels::MAX_BITS || vbits > Texels::MAX_BITS {
             return Err(TexelsError::Bits { ubits, vbits });
@@ -113,13 +113,13 @@ impl<'a> Levels<'a> {
         Ok(Self { bytes, ubits, vbits })
     }
 
-    /// The number of the last level: 0 of a texture of one texel, at most 8.
+    /// The index of the last level: 0 for a texture of one texel, at most 8.
     #[must_use]
     pub const fn deepest(ubits: u32, vbits: u32) -> u32 {
         if ubits > vbits { ubits } else { vbits }
     }
 
-    /// The texels of all levels from 1 on: a third of a square texture's, rounded down.
+    /// The number of texels of all levels from 1 on: for a square texture a third of its own, rounded down.
     #[must_use]
     pub const fn length(ubits: u32, vbits: u32) -> usize {
         let (mut length, mut level) = (0, 1);
@@ -130,13 +130,13 @@ impl<'a> Levels<'a> {
         length
     }
 
-    /// The number of the last level.
+    /// The index of the last level.
     #[must_use]
     pub const fn last(self) -> u32 {
         Self::deepest(self.ubits, self.vbits)
     }
 
-    /// The texels of a level from 1 to the last. A higher number gives those of the last, level 0 `None`.
+    /// The texels of a level from 1 to the last. A higher level gives the last one, level 0 `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
         let level = level.min(self.last());
@@ -149,7 +149,7 @@ impl<'a> Levels<'a> {
     }
 }
 
-/// Bytes are not a texture.
+/// Bytes that are not a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TexelsError {
@@ -186,12 +186,12 @@ impl core::error::Error for TexelsError {}
 
 /// Fills `row` with the texels along a straight line through the texture.
 ///
-/// `u` and `v` are those of the first pixel, `du` and `dv` what each pixel adds; the sums wrap, so a
-/// negative number is given in two's complement (`as u32`).
+/// `u` and `v` are the first pixel's coordinates, `du` and `dv` what each pixel adds; the sums wrap, so a negative
+/// number is given in two's complement (`as u32`).
 ///
-/// Tried and given up, at 64 pixels, where this takes 45 ns: `pext` (BMI2), 37, and said to be slow on the first
-/// two generations of Zen; eight gathered loads a turn (AVX2), 26, and processors patched against gather data
-/// sampling are said to be much slower at it.
+/// At 64 pixels this takes 45 ns. Two faster versions are not used: `pext` (BMI2), 37 ns, is said to be slow on the
+/// first two generations of Zen; eight gathered loads per iteration (AVX2), 26 ns, are said to be much slower on
+/// processors patched against gather data sampling.
 pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, mut u: u32, mut v: u32, du: u32, dv: u32) {
     for pixel in row {
         *pixel = texels.at(u, v);
@@ -200,9 +200,9 @@ pub fn fill_affine(row: &mut [u8], texels: Texels<'_>, mut u: u32, mut v: u32, d
     }
 }
 
-/// What becomes of a texel.
+/// What is shown for a texel.
 pub(crate) trait Shown: Copy {
-    /// The tint that does this to a whole span.
+    /// The tint that does this for a whole span.
     #[cfg(feature = "alloc")]
     type Tint: Tint;
     #[cfg(feature = "alloc")]
@@ -210,7 +210,7 @@ pub(crate) trait Shown: Copy {
     fn show(self, pixel: &mut u8, texel: u8);
 }
 
-/// It is shown.
+/// The texel itself is shown.
 impl Shown for () {
     #[cfg(feature = "alloc")]
     type Tint = ();
@@ -238,8 +238,8 @@ impl Shown for &[u8; 256] {
     }
 }
 
-/// The byte for a shade, which the pixel holds, and the texel is shown, as by [`lookup`](super::lookup). In one loop that
-/// takes 0.7 to 0.8 of the time of two.
+/// The byte for the shade in the pixel and the texel is shown, as by [`lookup`](super::lookup). One loop for both takes
+/// 0.7 to 0.8 of the time of two.
 impl<'a> Shown for &'a [u8; 65_536] {
     #[cfg(feature = "alloc")]
     type Tint = Held<'a>;
@@ -254,9 +254,9 @@ impl<'a> Shown for &'a [u8; 65_536] {
     }
 }
 
-/// Shows the texels at these places, [`Texels::place`].
+/// Shows the texels at these indices, see [`Texels::place`].
 pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places: &[i32]) {
-    // Never so: it tells the compiler that there is a last texel, and the masked place needs no check.
+    // Never true: it tells the compiler that there is a last texel, so that the masked index needs no check.
     if texels.bytes.is_empty() {
         return;
     }
@@ -269,15 +269,15 @@ pub(crate) fn show(shown: impl Shown, row: &mut [u8], texels: Texels<'_>, places
     }
 }
 
-/// Values of a span that are linear along it: the first, and above it the step.
+/// Values of a span that are linear along it: the first, with the step in the upper half.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct SpanValues {
     /// The shade.
     pub(crate) paint: u32,
-    /// The density of fog, if there is some.
+    /// The density of fog, if there is any.
     pub(crate) fog: u32,
-    /// Pixels at the beginning that are left out.
+    /// Pixels at the beginning that are skipped.
     pub(crate) skipped: u32,
 }
 
@@ -286,7 +286,7 @@ pub(crate) struct SpanValues {
 pub(crate) trait Tint: Copy {
     /// True if the density of fog is read.
     const HAS_FOG: bool = false;
-    /// True if what the pixels hold is read, so that they can be written only once.
+    /// True if the pixels' contents are read, so that they can be written only once.
     const READS_PIXELS: bool = false;
     /// State that changes along a span.
     type Along<S: Lanes8>: Copy;
@@ -306,14 +306,14 @@ type Ramp8<S> = [<S as Lanes8>::I32; 2];
 #[cfg(feature = "alloc")]
 #[inline(always)]
 fn ramp_from<S: Lanes8>(s: S, value: u32, skipped: u32) -> Ramp8<S> {
-    // The sums are meant modulo 2¹⁶; what is above is not read.
+    // The sums are modulo 2¹⁶; the bits above are not read.
     let step = (value >> 16).cast_signed();
     let first = value.cast_signed().wrapping_add(step.wrapping_mul(skipped.cast_signed()));
     let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
     [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
 }
 
-/// The whole parts of eight values, in the upper bytes: rows of a table. Goes on to the next eight.
+/// The integer parts of eight values, in the upper bytes: rows of a table. Advances to the next eight.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 fn rows_of<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
@@ -352,7 +352,7 @@ impl Tint for &[u8; 256] {
     }
 }
 
-/// Texels lit by a table, with the shades of the span's paint.
+/// Texels lit by a table, with the shades of the span.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct Painted<'a>(pub(crate) &'a [u8; 65_536]);
@@ -447,8 +447,8 @@ impl<T: Tint> Tint for Fogged<'_, T> {
     }
 }
 
-/// Shows texels in the first `length` pixels of a row: `places` gives those of the next eight, in lanes. What lies behind
-/// them stays as it was.
+/// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next eight, in lanes. What
+/// follows those pixels does not change.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 fn show_along<S: Lanes8, T: Tint>(
@@ -458,7 +458,7 @@ fn show_along<S: Lanes8, T: Tint>(
     (tint, along): (T, &mut T::Along<S>),
     mut places: impl PlacesAlong<S>,
 ) {
-    // Never so: see `show`.
+    // Never true: see `show`.
     if texels.bytes.is_empty() {
         return;
     }
@@ -509,24 +509,24 @@ fn show_along<S: Lanes8, T: Tint>(
     }
 }
 
-/// Texel `k` of eight as it is shown. `last` is the number of the last texel.
+/// Texel `k` of eight as it is shown. `last` is the index of the last texel.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
     tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
 }
 
-/// Pixels that are shown at once where no more are left.
+/// Pixels that are shown at once if no more are left.
 #[cfg(feature = "alloc")]
 const FOUR: usize = LANES / 2;
 
-/// Places of texels, eight after eight.
+/// Indices of texels, eight at a time.
 #[cfg(feature = "alloc")]
 trait PlacesAlong<S: Lanes8> {
     fn next(&mut self) -> S::I32;
 }
 
-/// Places of texels in vectors.
+/// Computes indices of texels in vectors.
 #[derive(Clone, Copy)]
 struct PlaceLanes<S: Lanes8> {
     s: S,
@@ -542,7 +542,7 @@ impl<S: Lanes8> PlaceLanes<S> {
         Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows) }
     }
 
-    /// [`Texels::place`] of u, and of v times the width: what is lost of that no mask has.
+    /// [`Texels::place`] of u, and of v times the width: the masks clear all bits that this loses.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
@@ -550,7 +550,7 @@ impl<S: Lanes8> PlaceLanes<S> {
     }
 }
 
-/// Lines through a texture with the same step, as [`fill_affine`] has them.
+/// Lines through a texture with the same step, as in [`fill_affine`].
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
 pub(crate) struct AffineLines<S: Lanes8> {
@@ -578,7 +578,7 @@ impl<S: Lanes8> AffineLines<S> {
         }
     }
 
-    /// The places of the first `n` texels from (`u`, `v`) on, and of up to seven more, for which there is room.
+    /// Stores the indices of the first `n` texels from (`u`, `v`) on, and of up to seven more, for which there is room.
     #[inline(always)]
     pub(crate) fn places(&self, places: &mut [i32], n: usize, [u, v]: [u32; 2]) {
         let s = self.places.s;
@@ -590,7 +590,7 @@ impl<S: Lanes8> AffineLines<S> {
         }
     }
 
-    /// Shows the texels from (`u`, `v`) on in the first pixels of a row, this many.
+    /// Shows the texels from (`u`, `v`) on in the first pixels of a row, whose number is given with it.
     #[inline(always)]
     pub(crate) fn show<T: Tint>(
         &self,
@@ -606,7 +606,7 @@ impl<S: Lanes8> AffineLines<S> {
     }
 }
 
-/// Along one of the lines.
+/// Position along one of the lines.
 #[cfg(feature = "alloc")]
 struct AffineAlong<'a, S: Lanes8> {
     lines: &'a AffineLines<S>,
@@ -623,7 +623,7 @@ impl<S: Lanes8> PlacesAlong<S> for AffineAlong<'_, S> {
     }
 }
 
-/// Shows texels at places that were found before, in the first pixels of a row, this many.
+/// Shows texels at indices computed before, in the first pixels of a row, whose number is given with it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn show_places<S: Lanes8, T: Tint>(
@@ -659,12 +659,11 @@ impl<S: Lanes8> PlacesAlong<S> for PlacesOf<'_, S> {
 /// Fills `row` with texels in exact perspective, with the fastest loop of this build.
 ///
 /// ```text
-/// u_k = floor((numerators[0] + k·steps[0]) / (d + k·dd))        v_k the same of numerators[1], steps[1]
+/// u_k = floor((numerators[0] + k·steps[0]) / (d + k·dd))        v_k the same with numerators[1], steps[1]
 /// ```
 ///
-/// in exact arithmetic, modulo 2³²; negative coordinates wrap as others do. Along the row every divisor is
-/// positive (what is less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶, as the
-/// raster makes them.
+/// in exact arithmetic, modulo 2³²; negative coordinates wrap like others. Along the row every divisor is positive
+/// (anything less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶, as the raster ensures.
 #[inline(never)]
 pub fn fill_perspective(
     row: &mut [u8],
@@ -674,7 +673,7 @@ pub fn fill_perspective(
     d: i128,
     dd: i128,
 ) {
-    // To begin with the estimate costs as much as two pixels.
+    // Starting the estimate costs as much as two pixels.
     if HAS_F64 && row.len() > 2 {
         fill_perspective_estimated(row, texels, numerators, steps, d, dd);
     } else {
@@ -695,15 +694,15 @@ pub fn fill_perspective_portable(
     each_exact_place(row, texels, [u, v], [d, dd], |pixel, place| *pixel = texels.bytes[place]);
 }
 
-/// The places of texels, as [`fill_perspective_portable`] has them. Of each number the first value is given, and what each
-/// pixel adds.
+/// The indices of texels, as in [`fill_perspective_portable`]. Each number is given by its first value and its change
+/// per pixel.
 #[cfg(feature = "alloc")]
 pub(crate) fn exact_places(places: &mut [i32], texels: Texels<'_>, numerators: [[i128; 2]; 2], divisors: [i128; 2]) {
     // Below 65,536.
     each_exact_place(places, texels, numerators, divisors, |to, place| *to = place as i32);
 }
 
-/// Calls `put` for each with the place of its texel.
+/// Calls `put` for each with the index of its texel.
 #[inline(never)]
 fn each_exact_place<T>(
     row: &mut [T],
@@ -714,23 +713,23 @@ fn each_exact_place<T>(
 ) {
     for to in row {
         let divisor = d.max(1);
-        // Modulo 2³²: the mask leaves less of it.
+        // Modulo 2³²: the mask keeps fewer bits.
         put(to, texels.place(u.div_euclid(divisor) as u32, v.div_euclid(divisor) as u32));
-        // What is added after the last pixel may be anything.
+        // The sum after the last pixel may be anything.
         u = u.wrapping_add(du);
         v = v.wrapping_add(dv);
         d = d.wrapping_add(dd);
     }
 }
 
-/// Fills `row` like [`fill_perspective`], by quotients in f64, exact where they cannot decide.
+/// Fills `row` like [`fill_perspective`], with quotients in f64, and exact ones where these cannot decide.
 ///
-/// The bound of [`perspective_places`] holds: with ε = 2⁻⁵³, the error of one rounding,
+/// The bound of [`perspective_places`] holds, with ε = 2⁻⁵³, the error of one rounding:
 ///
-/// 1. over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N and
-///    D are found at the piece's ends, and |k·dn| ≤ 2N.
-/// 2. The numerator n + k·dn in f64: n is rounded (εN), dn is (2εN for k of them), their product is (2εN), the
-///    sum is (εN). So it is off by 6εN, and the divisor likewise by 6εD.
+/// 1. Over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N
+///    and D are at the piece's ends, and |k·dn| ≤ 2N.
+/// 2. In the numerator n + k·dn in f64, n is rounded (εN), dn is (2εN for k of them), their product is (2εN), and the
+///    sum is (εN). So it is off by 6εN, and the divisor by 6εD in the same way.
 fn fill_perspective_estimated(
     row: &mut [u8],
     texels: Texels<'_>,
@@ -757,27 +756,26 @@ fn fill_perspective_estimated(
     }
 }
 
-/// Pixels of a piece of a row, at most.
+/// The most pixels of a piece of a row.
 const PIECE: usize = 64;
 
-/// The most that the largest divisor of a row may be of the smallest one for an estimate to decide.
+/// The greatest ratio of a row's largest divisor to the smallest for which an estimate decides.
 const MAX_RATIO: f64 = 32_768.0;
 
-/// The places of the first `n` texels by quotients in f64, at most 64, and of up to seven more, for which there is room.
-/// Returns `false` if one of the quotients cannot decide.
+/// Stores the indices of the first `n` texels by quotients in f64, at most 64, and of up to seven more, for which there
+/// is room. Returns `false` if one of the quotients cannot decide.
 ///
-/// Of each numerator and of the divisor the first value is given, and what each pixel adds.
+/// Each numerator and the divisor are given by their first value and their change per pixel.
 ///
-/// Only the whole texel counts. Let q be a quotient, |q| ≤ 2³², and t the whole number nearest to its
-/// estimate. If |t − q| < 1 and t begins no texel (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t:
-/// all bounds of texels are whole numbers other than t, so at least 1 away. So the estimate may be off
-/// by less than ½. It is, where numerators are off by at most 12 parts in 2⁵³ of 2³²·D and divisors by 12 parts of D, D
-/// being the row's largest divisor:
+/// Only the integer texel counts. Let q be a quotient, |q| ≤ 2³², and t the integer nearest to its estimate. If |t − q|
+/// < 1 and no texel begins at t (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t: all bounds of texels are integers
+/// other than t, so at least 1 away. So the estimate may be off by less than ½. It is, if numerators are off by at most
+/// 12 parts in 2⁵³ of 2³²·D and divisors by 12 parts of D, D being the row's largest divisor:
 ///
 /// 1. Let R be D over the smallest divisor, ε = 2⁻⁵³.
-/// 2. The quotient is off by 2³²·12εR for the numerator, the same for the divisor, and 2ε of itself for the reciprocal and
-///    the product: less than 2³²·ε·(24R + 3) altogether.
-/// 3. For R ≤ 2¹⁵ that is 0.38. Where R is larger nothing is filled.
+/// 2. The quotient is off by 2³²·12εR for the numerator, the same for the divisor, and 2ε of itself for the reciprocal
+///    and the product: less than 2³²·ε·(24R + 3) altogether.
+/// 3. For R ≤ 2¹⁵ that is 0.38. If R is larger, nothing is filled.
 #[inline(always)]
 pub(crate) fn perspective_places<S: Lanes8>(
     s: S,
@@ -794,9 +792,9 @@ pub(crate) fn perspective_places<S: Lanes8>(
     quotients.unsure == 0
 }
 
-/// Shows the texels of a span behind the first `skipped` ones, in the first `length` pixels of a row, by the quotients of
-/// [`perspective_places`]. Returns `false` if one of them cannot decide: then the bytes may be anything, unless what pixels
-/// hold is read.
+/// Shows the texels of a span after the first `skipped` ones, in the first `length` pixels of a row, by the quotients
+/// of [`perspective_places`]. Returns `false` if one of them cannot decide: then the bytes may be anything, unless the
+/// pixels' contents are read.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn show_perspective<S: Lanes8, T: Tint>(
@@ -822,21 +820,22 @@ pub(crate) fn show_perspective<S: Lanes8, T: Tint>(
     quotients.unsure == 0
 }
 
-/// The quotients of [`perspective_places`], eight after eight.
+/// The quotients of [`perspective_places`], eight at a time.
 struct Quotients<S: Lanes8> {
     at: PlaceLanes<S>,
     numerators: [[f64; 2]; 2],
     divisors: [f64; 2],
     width: S::I32,
-    /// The pixels of the next eight, and the end of all.
+    /// The indices of the next eight pixels, and the end of all.
     numbers: S::I32,
     end: S::I32,
-    /// A bit for each lane in which one could not decide.
+    /// A bit for each lane in which a quotient could not decide.
     unsure: u32,
 }
 
 impl<S: Lanes8> Quotients<S> {
-    /// Those of the pixels from `first` to `end` of a row, at most [`PIECE`]; `None` where divisors differ too much.
+    /// The quotients of the pixels from `first` to `end` of a row, at most [`PIECE`]; `None` if divisors differ too
+    /// much.
     #[inline(always)]
     fn new(
         s: S,
@@ -847,7 +846,7 @@ impl<S: Lanes8> Quotients<S> {
     ) -> Option<Self> {
         // At most PIECE.
         let last = d + (end as f64 - 1.0) * dd;
-        // False for what is not a number, too.
+        // False for NaN too.
         let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
         is_sure.then(|| Self {
             at: PlaceLanes::new(s, texels),
@@ -873,7 +872,7 @@ impl<S: Lanes8> Quotients<S> {
         self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
         self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
         self.numbers = s.add_i32(self.numbers, s.splat_i32(LANES as i32));
-        // By a product: shifts are by constants.
+        // By a product, since shifts are by constants.
         self.at.at(u, s.mul_i32(v, self.width))
     }
 }

@@ -34,7 +34,7 @@ const MAX_BLOCK: usize = 16;
 /// Thresholds for a row of the frame, [`PERIOD`] of them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ThresholdRow(
-    /// The first ones again at the end, so that any [`MAX_BLOCK`] neighbours lie side by side.
+    /// The first ones are repeated at the end, so that any [`MAX_BLOCK`] neighbours lie side by side.
     [u8; PERIOD + MAX_BLOCK],
 );
 
@@ -74,7 +74,7 @@ impl ThresholdRow {
 /// Thresholds for every pixel of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Thresholds(
-    /// Rows after which they repeat: a power of two.
+    /// One period of rows, whose number is a power of two.
     &'static [ThresholdRow],
 );
 
@@ -82,7 +82,7 @@ impl Thresholds {
     /// A half everywhere: no dither.
     pub const HALVES: Self = Self(&[ThresholdRow::new(&[128])]);
 
-    /// Zero everywhere: no dither, for shades that are to be truncated.
+    /// Zero everywhere: no dither, for shades to be truncated.
     pub const ZEROS: Self = Self(&[ThresholdRow::new(&[0])]);
 
     /// The thresholds of a row of the frame.
@@ -100,9 +100,9 @@ impl Thresholds {
 /// threshold = nearest((2·rank + 1) · 255 / 128)        rank 0 to 63
 /// ```
 ///
-/// That is the middle of the rank's 64th of 0 to 255. Ranks i and 63 − i have thresholds that add up to
-/// 255 (no product is half-way between two numbers), so the mean is exactly 127.5; thresholds of ranks
-/// that follow each other are 4 apart, and 3 (126 and 129) in the middle.
+/// That is the middle of the rank's 64th of 0 to 255. Ranks i and 63 − i have thresholds that add up to 255 (no product
+/// is half-way between two integers), so the mean is exactly 127.5; thresholds of successive ranks are 4 apart, and 3
+/// (126 and 129) in the middle.
 static BAYER: [ThresholdRow; 8] = {
     let mut rows = [ThresholdRow::new(&[0]); 8];
     let mut y = 0;
@@ -110,8 +110,8 @@ static BAYER: [ThresholdRow; 8] = {
         let mut thresholds = [0; 8];
         let mut x = 0;
         while x < 8 {
-            // The ranks of 2 × 2 pixels are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square makes
-            // two bits more, the finest the highest.
+            // The ranks of 2 × 2 pixels are 0 2 / 3 1: two bits, x ≠ y and y. Each halving of the square adds two bits,
+            // the finest the highest.
             let (mut rank, mut bit) = (0, 0);
             while bit < 3 {
                 rank = rank * 4 + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1);

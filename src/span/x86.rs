@@ -1,7 +1,7 @@
-//! The assembly's only door: the loop of 1994 from `asm/`, for x86-64 and 32-bit x86.
+//! The only interface to the assembly: the loop of 1994 from `asm/`, for x86-64 and 32-bit x86.
 
-/// Assembles a file of `asm/` between the macros `function` and `endfunction`, which say what the
-/// object format wants around a symbol. (Mach-O and 32-bit COFF put an underscore before it.)
+/// Assembles a file of `asm/` between the macros `function` and `endfunction`, which emit what the object format
+/// requires around a symbol. (Mach-O and 32-bit COFF put an underscore before it.)
 macro_rules! assemble {
     ($file:literal) => {
         #[cfg(not(any(windows, target_os = "uefi", target_vendor = "apple")))]
@@ -63,7 +63,7 @@ mod x86_64 {
     unsafe extern "sysv64" {
         /// The loop of five instructions.
         pub fn mode13h_span_x86_64(row: *mut u8, count: u32, shade: u16, step: u16);
-        /// The unrolled loop, eight pixels a turn.
+        /// The unrolled loop, eight pixels per iteration.
         pub fn mode13h_span_unrolled_x86_64(row: *mut u8, count: u32, shade: u16, step: u16);
     }
 
@@ -75,7 +75,7 @@ mod x86_64 {
         call(mode13h_span_unrolled_x86_64, row, shade, step);
     }
 
-    /// Cuts the row into pieces that the loop's count can hold; an empty row gives none.
+    /// Splits the row into pieces that the loop's count can hold; an empty row gives none.
     #[inline(always)]
     fn call(entry: Entry, row: &mut [u8], shade: u16, step: u16) {
         let mut shade = shade;
@@ -104,7 +104,7 @@ mod x86 {
         pub fn mode13h_span_i686(row: *mut u8, count: u16, shade: u16, step: u16);
     }
 
-    /// Cuts the row into pieces that the loop's count can hold; an empty row gives none.
+    /// Splits the row into pieces that the loop's count can hold; an empty row gives none.
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         let mut shade = shade;
         for piece in row.chunks_mut(usize::from(u16::MAX)) {
@@ -117,7 +117,7 @@ mod x86 {
     }
 }
 
-/// The entries themselves, for tests of what they do to registers and of what instructions they are.
+/// The entries themselves, for tests of what they do to registers and of their instructions.
 pub(super) mod entry {
     #[cfg(target_arch = "x86")]
     pub use super::x86::{Entry, mode13h_span_i686};

@@ -1,4 +1,4 @@
-//! Faces with effects, by vertices: a door to the columns.
+//! Faces with effects given as vertices: an adapter to the columns.
 
 use alloc::vec::Vec;
 
@@ -13,16 +13,16 @@ use crate::raster::pick::CHUNK;
 use crate::raster::triangle::Raster;
 use crate::raster::vertex::{Vertex, misses_centres};
 
-/// Faces that are drawn by one pixel pipeline. Filled and drawn again and again it allocates nothing.
+/// Faces drawn by one pixel pipeline. Refilling and redrawing it allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct EffectBatch {
     count: usize,
-    /// None before the first face.
+    /// Empty before the first face.
     corners: Vec<Corners>,
     scratch: EffectScratch,
 }
 
-/// Corners of faces in columns: arrays, of whose lengths the compiler knows.
+/// The corners of faces in columns: arrays, so that the compiler knows their lengths.
 #[derive(Clone, Debug)]
 struct Corners {
     at: [ScreenPos; CORNERS],
@@ -35,10 +35,10 @@ struct Corners {
     lit: [[f32; 6]; CORNERS],
 }
 
-/// Corners of a whole batch.
+/// The corners of a full batch.
 const CORNERS: usize = 3 * EffectBatch::CAPACITY;
 
-/// The corners of each face: no two share one.
+/// The corners of each face; no two faces share one.
 const INDICES: [[u32; 3]; EffectBatch::CAPACITY] = {
     let mut indices = [[0; 3]; EffectBatch::CAPACITY];
     let mut face = 0;
@@ -67,10 +67,10 @@ impl Corners {
 }
 
 impl EffectBatch {
-    /// Faces that it holds at most.
+    /// The most faces it holds.
     pub const CAPACITY: usize = CHUNK;
 
-    /// A batch without faces. When it is drawn for the first time it takes 100 kB.
+    /// An empty batch. Its first drawing allocates 100 kB.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -90,14 +90,14 @@ impl EffectBatch {
         self.count >= Self::CAPACITY
     }
 
-    /// Adds a face. The order of the corners and their winding make no difference; a face without area draws nothing. One
-    /// whose box has no pixel centre is left out. Returns `false`, and adds nothing, if there is no room.
+    /// Adds a face. The order and winding of the corners do not matter; a face without area draws nothing, and one
+    /// whose box holds no pixel centre is left out. Returns `false`, and adds nothing, if the batch is full.
     #[inline]
     pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
         if self.is_full() {
             return false;
         }
-        // On a fine model most are such: they are not worth the storing.
+        // Most faces of a fine model are like that, and not worth storing.
         if misses_centres(vertices) {
             return true;
         }
@@ -106,7 +106,7 @@ impl EffectBatch {
         }
         let Some(to) = self.corners.first_mut() else { return false };
         for (k, (vertex, of)) in vertices.iter().zip(attributes).enumerate() {
-            // Below the capacity, which the compiler then sees.
+            // Below the capacity, as the remainder tells the compiler.
             let i = 3 * (self.count % Self::CAPACITY) + k;
             to.at[i] = ScreenPos::of(vertex);
             to.depth[i] = vertex.depth();
@@ -124,9 +124,8 @@ impl EffectBatch {
 
 impl<D: Cell> Raster<'_, D> {
     internal! {
-    /// Draws a triangle with effects. The order of the corners and their winding make no difference; a
-    /// triangle without area draws nothing. Many triangles are drawn sooner by
-    /// [`batch_with_effects`](Self::batch_with_effects), by which this is drawn, too.
+    /// Draws a triangle with effects. The order and winding of the corners do not matter; a triangle without area draws
+    /// nothing. To draw many triangles, [`batch_with_effects`](Self::batch_with_effects), which this calls, is faster.
     fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],
@@ -140,7 +139,7 @@ impl<D: Cell> Raster<'_, D> {
     }
 
     internal! {
-    /// Draws the faces of a batch in their order, by one pixel pipeline, and takes them out of it.
+    /// Draws the faces of a batch in order through one pixel pipeline, and empties the batch.
     fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         let EffectBatch { count, corners, scratch } = &mut *batch;
         let Some(Corners { at, depth, shade, texture, fog, channels, slope, lit }) = corners.first() else {

@@ -1,6 +1,6 @@
 //! Shades that are quadratic over a triangle, through six points.
 //!
-//! With L the weights of the corners, f their shades, m those at the middles of the edges, and D the second
+//! With L the weights of the corners, f the shades at the corners, m those at the edge midpoints, and D the second
 //! differences along the edges:
 //!
 //! ```text
@@ -10,10 +10,10 @@
 //! This equals Σ fᵢLᵢ(2Lᵢ − 1) + Σ 4mᵢⱼLᵢLⱼ. Along an edge it is the parabola through that edge's three points,
 //! whatever lies on either side of it.
 //!
-//! The weights at a pixel are exact, and none is negative where it is covered; so terms are no greater than the six
-//! shades, and f64 is right to some parts in 2⁵⁰ however thin the triangle. Along a row of n pixels q = a + kb + k²c, and
-//! as |q| ≤ 5/3 of the greatest shade, M, n·|b| and n²·|c| are at most 8 · 5/3 · M (Markov): in f32 they are off by less than
-//! 2⁻²⁰ · M together, of shades to 1 by a thousandth of one.
+//! The weights at a pixel are exact, and none is negative where it is covered, so no term exceeds the six shades, and
+//! f64 is accurate to a few parts in 2⁵⁰ however thin the triangle. Along a row of n pixels q = a + kb + k²c. Since |q|
+//! ≤ 5/3 of the greatest shade M, n·|b| and n²·|c| are at most 8 · 5/3 · M (Markov): in f32 they are off by less than
+//! 2⁻²⁰ · M together, for shades up to 1 by a thousandth of a shade.
 
 use super::Limits;
 use super::listing::FaceCorners;
@@ -22,14 +22,14 @@ use crate::lanes::three;
 use crate::raster::reference::weights::{Weights, in_f64};
 use crate::span::Kernel;
 
-/// Greatest shade at a point, in 8.8: 2⁸ times the brightest that is shown. So no sum is infinite.
+/// Greatest shade at a point, in 8.8: 2⁸ times the brightest that can be shown. It keeps sums finite.
 const GREATEST: f32 = 16_777_216.0;
 
 /// One shade or channel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Curve {
     corners: [f64; 3],
-    /// 2D of the edge opposite to each corner.
+    /// 2D of the edge opposite each corner.
     bends: [f64; 3],
     /// Change of the linear part from one pixel to the next, and c.
     step: f64,
@@ -38,7 +38,7 @@ struct Curve {
 
 impl Curve {
     fn new(corners: [[f32; 6]; 3], channel: usize, [sa, sb, sc]: [f64; 3]) -> Self {
-        // Not a number is the least.
+        // NaN becomes the least.
         #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
         let shade = |value: f32| f64::from(value.max(-GREATEST).min(GREATEST));
         let [fa, fb, fc] = three(corners, |corner| shade(corner[channel]));
@@ -53,7 +53,7 @@ impl Curve {
         }
     }
 
-    /// a, b and c from a pixel of these weights on, which change by `steps`.
+    /// a, b and c from a pixel with these weights on, which change by `[sa, sb, sc]` per pixel.
     #[inline]
     fn parabola(&self, [a, b, c]: [f64; 3], [sa, sb, sc]: [f64; 3]) -> [f32; 3] {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
@@ -63,7 +63,7 @@ impl Curve {
     }
 }
 
-/// One shade over a triangle, or three channels.
+/// One shade, or three channels, over a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePlane {
     weights: Weights,

@@ -1,11 +1,11 @@
-//! Pipelines whose texels need no stage before them: one loop a span shows them.
+//! Pipelines whose texels need no stage before them: one loop per span shows them.
 
 use super::pipeline::{PixelPipeline, ShadeSource};
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
 use crate::span::texture::Texels;
 
-/// How the texels of faces are shown by one loop a span, with nothing stored between.
+/// How the texels of faces are shown by one loop per span, with no buffer between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectTexture<'a> {
     pub(super) image: Texels<'a>,
@@ -13,7 +13,7 @@ pub(super) struct DirectTexture<'a> {
     pub(super) tint: DirectTint<'a>,
 }
 
-/// The tint of its texels.
+/// How the texels are tinted.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectTint<'a> {
     /// None: texels are shown as they are.
@@ -25,7 +25,7 @@ pub(super) enum DirectTint<'a> {
 }
 
 impl<'a> DirectTexture<'a> {
-    /// That of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
+    /// The direct texture of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
         let stage = pipeline.texture()?;
         let table = stage.tables[0];

@@ -1,11 +1,12 @@
-//! Faces with effects become spans: the list that plain triangles have, and what the stages need beside it.
+//! Turns faces with effects into spans: the same list as for plain triangles, and what the stages need beside it.
 //!
-//! A span is up to 64 pixels of a row. It begins where its shades begin anew, so that every value is exact at its first pixel,
-//! a multiple of 64 pixels from the row's first covered pixel inside the frame; a clip rectangle may hide its first pixels,
-//! and changes no byte of the others.
+//! A span is up to 64 pixels of a row. It begins where its shades are reseeded, a multiple of 64 pixels from the row's
+//! first covered pixel inside the frame, so every value is exact at its first pixel. A clip rectangle may hide its
+//! first pixels, but changes no byte of the others.
 //!
-//! A linear value has its start and its step in a column beside the list. Starts of texture coordinates, depths and light
-//! are worked out by the stage that asks for them, from the planes of eight faces that set-up leaves and the span's [`Mark`].
+//! The start and step of a linear value are in a column beside the list. Starts of texture coordinates, depths and
+//! light are computed by the stage that needs them, from the planes that set-up leaves for eight faces and the span's
+//! [`Mark`].
 
 use super::direct::DirectTexture;
 use super::pipeline::{PixelPipeline, ShadeSource};
@@ -25,13 +26,13 @@ use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of
 use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, SpanStarts, Spans8, Starts8, Target};
 
-/// Where a span lies in its face, in two numbers of 32 bits.
+/// Where a span lies in its face, packed into two u32.
 ///
 /// | bits | the first | the second |
 /// |---|---|---|
-/// | 0 to 5, 0 to 15 | the face, among those whose planes are kept | the column, from that of the planes |
-/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row |
-/// | 12 to 18 | the number of the span in its row | |
+/// | 0 to 5, 0 to 15 | the face, among those whose planes are stored | the column, from the planes' first pixel |
+/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row, from the planes' first pixel |
+/// | 12 to 18 | the index of the span in its row | |
 /// | 19 to 31 | the row's last pixel inside the frame, from the first one of the span | |
 #[derive(Clone, Copy)]
 pub(super) struct Mark([u32; 2]);
@@ -71,22 +72,22 @@ impl Mark {
     }
 }
 
-/// Numbers of a span: its mark, and the first of each value with its step above it.
+/// Numbers per span: its mark, and the start of each value with the step in the upper half.
 const NUMBERS: usize = 2 + Value::MAX_COUNT;
 
-/// Numbers of texture coordinates that are linear on the screen: u and v at a span's first pixel, and their steps.
+/// Numbers per span for texture coordinates linear on the screen: u and v at its first pixel, and their steps.
 const COORDINATES: usize = 4;
 
-/// Sums at a span's first pixel of texture coordinates that are linear on the face: two numerators, and the divisor.
+/// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
-/// Numbers of eight spans.
+/// The numbers of eight spans.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks8<S: Lanes8> {
-    /// The mark's two, and those of the slots that are taken.
+    /// The two of the mark, and those of the slots in use.
     numbers: [S::I32; NUMBERS],
     count: usize,
-    /// The mapping whose coordinates there are.
+    /// The mapping of the coordinates, if there are any.
     texture: Option<Mapping>,
     coordinates: [S::I32; COORDINATES],
     sums: Starts8<S, SUMS>,
@@ -113,7 +114,7 @@ impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
     }
 }
 
-/// Triangles as the stages read them: those that were picked, by their index among these.
+/// Triangles as the stages read them: picked ones, by their index among the picks.
 #[derive(Clone, Copy)]
 pub(super) struct Faces<'a> {
     pub(super) triangles: &'a Triangles<'a>,
@@ -121,7 +122,7 @@ pub(super) struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    /// Face `k` in the order of its heights, and where its corners' values are.
+    /// Face `k` with its corners sorted by height, and where the values of its corners are.
     #[inline]
     pub(super) fn sorted(&self, k: usize) -> SortedFace {
         let pick = self.picks.get(k);
@@ -132,14 +133,14 @@ impl Faces<'_> {
     }
 }
 
-/// A face in the order of its heights.
+/// A face with its corners sorted by height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SortedFace {
     triangle: SortedTriangle,
     /// Indices of its vertices.
     corners: [usize; 3],
     side: usize,
-    /// The channels that all corners have.
+    /// The channels, if all corners share them.
     flat: Option<[U8F8; 3]>,
 }
 
@@ -176,10 +177,10 @@ impl FaceCorners<'_> {
 /// Planes of eight faces.
 #[derive(Clone, Debug)]
 pub(super) struct FacePlanes8 {
-    /// The box's first pixel.
+    /// The first pixel of the box.
     pub(super) column: Ints,
     pub(super) row: Ints,
-    /// The depth there, with 32 fraction bits, and its change from a column and from a row to the next.
+    /// The depth there, with 32 fraction bits, and its change per column and per row.
     pub(super) z: [[i64; 3]; LANES],
     values: [ValuePlanes8; Value::MAX_COUNT],
     pub(super) affine: AffinePlanes8,
@@ -197,7 +198,7 @@ impl FacePlanes8 {
     };
 }
 
-/// Memory beside the list of spans, which is used again: planes of their faces, and numbers of each.
+/// Reused memory beside the list of spans: the planes of the faces, and the numbers of each span.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     planes: [FacePlanes8; Batches::COUNT],
@@ -215,23 +216,23 @@ impl Columns {
     };
 }
 
-/// Values that are set up for each face beside its shade.
+/// Values set up for each face besides its shade.
 #[derive(Clone, Copy)]
 struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
     texture: Option<Mapping>,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
-    /// Slots up to the last that is taken.
+    /// Slots up to the last one in use.
     slots: usize,
-    /// Shades and channels begin anew with each span.
+    /// Shades and channels are reseeded with each span.
     reseeds: bool,
 }
 
 impl Wanted {
     fn by(pipeline: &PixelPipeline<'_>) -> Self {
         let texture = match pipeline.texture() {
-            // Otherwise a stage sets up each face by itself.
+            // Otherwise a stage sets up each face on its own.
             Some(stage) if pipeline.levels().is_none() && stage.mapping != Mapping::Every16 => Some(stage.mapping),
             _ => None,
         };
@@ -251,7 +252,7 @@ impl Wanted {
     }
 }
 
-/// A face whose edges are walked down, for it is too large for set-up in f64, or there is none.
+/// A face whose edges are walked row by row, because it is too large for set-up in f64, or there is no f64.
 pub(super) struct WalkedFace {
     pub(super) face: SortedFace,
     shade: ShadePlane,
@@ -259,7 +260,7 @@ pub(super) struct WalkedFace {
     values: [Option<ShadePlane>; Value::MAX_COUNT],
 }
 
-/// Spans of a list as the stages know them: their marks, and the planes of their faces.
+/// The spans of a list as the stages see them: their marks, and the planes of their faces.
 pub(super) struct Listed<'a> {
     pub(super) faces: Faces<'a>,
     wanted: Wanted,
@@ -268,11 +269,11 @@ pub(super) struct Listed<'a> {
     pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,
     coordinates: &'a mut SpanNumbers<COORDINATES>,
     sums: &'a mut SpanStarts<SUMS>,
-    /// True if all spans have the texture coordinates of their first pixel.
+    /// True if texture coordinates are stored for the first pixel of every span.
     pub(super) has_texture: bool,
-    /// The only face, if its edges are walked down.
+    /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
-    /// How texels are shown by one loop a span, where that can be.
+    /// How texels are shown by one loop per span, where possible.
     pub(super) direct: Option<DirectTexture<'a>>,
     /// The first row of the frame.
     pub(super) first_row: u32,
@@ -285,7 +286,7 @@ impl Listed<'_> {
         Mark([self.numbers.of(k, 0), self.numbers.of(k, 1)])
     }
 
-    /// u and v at the first pixel of span `k`, and what each pixel adds, where the texture is linear on the screen.
+    /// u and v at the first pixel of span `k`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine(&self, k: usize) -> [[u32; 2]; 2] {
         let of = |i: usize| self.coordinates.of(k, i);
@@ -309,7 +310,7 @@ impl Listed<'_> {
         FaceCorners { triangle: face.triangle, face, columns: &self.faces.triangles.columns.effects }
     }
 
-    /// The batch and the lane of a face.
+    /// The planes of a face's batch, and the face's lane.
     #[inline(always)]
     pub(super) fn planes(&self, face: usize) -> (&FacePlanes8, usize) {
         let (batch, lane) = Batches::of_face(face);
@@ -317,7 +318,7 @@ impl Listed<'_> {
     }
 }
 
-/// Spans with effects: set-up of their faces, and the stages that they pass.
+/// Spans with effects: the set-up of their faces, and the stages they pass through.
 pub(in crate::raster) struct EffectSpans<'a> {
     pub(super) listed: Listed<'a>,
     pipeline: &'a PixelPipeline<'a>,
@@ -325,7 +326,7 @@ pub(in crate::raster) struct EffectSpans<'a> {
 }
 
 impl<'a> EffectSpans<'a> {
-    /// None yet, of these faces.
+    /// No spans yet, of these faces.
     pub(super) fn new(
         faces: Faces<'a>,
         pipeline: &'a PixelPipeline<'a>,
@@ -375,7 +376,7 @@ impl<'a> EffectSpans<'a> {
         triangle
     }
 
-    /// Adds the drawn part of a row of the face that is walked down, whose pixels and cells the target's are.
+    /// Adds the drawn part of a row of the face being walked; `target` has the pixels and cells.
     pub(super) fn add_row(&mut self, row: &Row, list: &mut SpanList, target: &mut Target<'_>) {
         let mut number = (row.x0 - row.origin) / RESEED;
         let mut x = row.x0;
@@ -390,7 +391,7 @@ impl<'a> EffectSpans<'a> {
             let value = |plane: &ShadePlane, reseeds: bool| {
                 let start = match reseeds {
                     true => plane.start(seed, row.y),
-                    // Columns are below 4,096; the sum is meant modulo 2¹⁶.
+                    // Columns are below 4,096; the sum is modulo 2¹⁶.
                     false => {
                         let steps = (seed - row.origin) as u16;
                         plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
@@ -415,7 +416,7 @@ impl<'a> EffectSpans<'a> {
         }
     }
 
-    /// Draws the spans of a list, which is then empty.
+    /// Draws the spans of a list, and empties it.
     #[inline(never)]
     pub(super) fn draw_spans(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
@@ -435,7 +436,7 @@ impl Shades8 for EffectSpans<'_> {
     #[inline(always)]
     fn begin(&mut self, first: usize) {
         self.listed.batches.begin(first);
-        // The spans of others have been drawn.
+        // The spans of earlier batches have been drawn.
         self.listed.has_texture |= self.listed.batches.current() == 0 && self.listed.wanted.texture.is_some();
     }
 
@@ -454,7 +455,7 @@ impl Shades8 for EffectSpans<'_> {
             match mapping {
                 Mapping::Affine => {
                     planes.affine.set_up(s, basis, &of_corners);
-                    // Sums of large ones do not fit in f64.
+                    // The sums of larger triangles do not fit in f64.
                     for (lane, &pick) in picks.picks.iter().enumerate() {
                         planes.affine.fits &= !(u32::from(Pick(pick).class() != SizeClass::Small) << lane);
                         *has_texture &= planes.affine.fits >> lane & 1 != 0;
@@ -501,7 +502,7 @@ impl Shades8 for EffectSpans<'_> {
         let face = self.listed.batches.faces(s, lane);
         let skipped = s.sub_i32(s.low_bits(parts.start), seed);
         let last = s.sub_i32(s.sub_i32(s.low_bits(parts.end), s.splat_i32(1)), seed);
-        // Those of a span that there is are in their ranges: see `Mark`.
+        // For spans that exist the fields are in range: see `Mark`.
         let mark = s.or_i32(face, s.shl_i32(skipped, 6));
         let mark = s.or_i32(mark, s.shl_i32(s.shr_i32(before, 6), 12));
         let mark = s.or_i32(mark, s.shl_i32(last, 19));
@@ -554,14 +555,14 @@ impl Shades8 for EffectSpans<'_> {
     }
 }
 
-/// A value of the corners of up to eight triangles. Lanes without a triangle have 0.
+/// A value of the corners of up to eight triangles; 0 in lanes without a triangle.
 #[inline(always)]
 fn value_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>, value: Value) -> [Ints; 3] {
     let mut gathered = [[0; LANES]; 3];
     let columns = &triangles.columns.effects;
     for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
         let pick = Pick(pick);
-        // The channels of a face that is lit as one.
+        // The channels of a flat-shaded face.
         if let (Value::Channel(i), Some(flat)) = (value, picks.flat.get(lane)) {
             for corner in &mut gathered {
                 corner[lane] = i32::from(flat[i].to_bits());

@@ -1,4 +1,4 @@
-//! Light at the pixels: at each of them, or at some of a row with shades that are linear between.
+//! Per-pixel lighting: at every pixel, or at some pixels of a row with shades interpolated linearly between them.
 
 use super::listing::FaceCorners;
 use super::pipeline::{Lighting, SampleSpacing};
@@ -10,10 +10,10 @@ use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
 
-/// The most places in a span that are lit where not all are, its end being one, and as many as are lit at once.
+/// The most lit pixels of a span that is lit only at some, its end included, rounded up to whole vectors.
 const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
-/// The shade at eight points, or three channels.
+/// The shade, or three channels, at eight points.
 pub(super) trait Lit<const N: usize> {
     fn at(&self, points: &Points) -> [Lanes<u16>; N];
 }
@@ -57,7 +57,7 @@ impl LitPlane {
         Self { weights, values, step: Self::sum(&values, in_f64(weights.per_column())) }
     }
 
-    /// The sum over the corners, in their order from top to bottom, of the values with these weights.
+    /// The weighted sum of the corners' values, the corners in order from top to bottom.
     #[inline]
     fn sum([va, vb, vc]: &[[f64; 7]; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
         let mut sums = [0.0; 6];
@@ -74,18 +74,18 @@ impl LitPlane {
     }
 }
 
-/// The numbers of eight pixels that follow each other.
+/// The indices of eight successive pixels.
 #[inline]
 fn places(first: usize) -> Lanes<f64> {
     // At most 64.
     each!(lane => (first + lane) as f64)
 }
 
-/// Pixels of several rows that wait until eight of them are lit together.
+/// Pixels of several rows, pending until eight of them are lit together.
 struct Waiting {
-    /// Those of the first eight are whole; behind them is room for what one more row adds.
+    /// The first eight make a full block; behind them is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
-    /// The place of each among the pixels of all spans.
+    /// The index of each among the pixels of all spans.
     places: [usize; 2 * LANES],
     count: usize,
 }
@@ -97,7 +97,7 @@ impl Waiting {
         Self { numerators, places: [0; 2 * LANES], count: 0 }
     }
 
-    /// Puts up to seven pixels, from `first` on, behind the pending ones.
+    /// Appends up to seven pixels, from `first` on, to the pending ones.
     #[inline]
     fn push(&mut self, numerators: &Numerators, pixels: core::ops::Range<usize>) {
         for (i, waiting) in self.numerators.iter_mut().enumerate() {
@@ -126,7 +126,7 @@ impl Waiting {
         }
     }
 
-    /// Takes the first eight away.
+    /// Removes the first eight.
     #[inline]
     fn advance(&mut self) {
         for waiting in &mut self.numerators {
@@ -142,8 +142,9 @@ impl Waiting {
 }
 
 impl Spans<'_> {
-    /// Lights every pixel. Eight are lit together: those of a row, and what is left of several rows and triangles. A
-    /// pixel's point is made from its own row's first pixel, so its shade does not depend on the other seven.
+    /// Lights every pixel. Eight are lit together: successive ones of a row, or the remainders of several rows and
+    /// triangles. A pixel's point is computed from its own row's first pixel, so its shade does not depend on the other
+    /// seven.
     #[inline(never)]
     pub(super) fn light_each<const N: usize>(&self, kernel: Kernel, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
         let mut waiting = Waiting::new();
@@ -203,7 +204,7 @@ impl Spans<'_> {
     }
 }
 
-/// Pixels of a span that are lit, and those between.
+/// The lit pixels of a span, and the ones between.
 #[derive(Clone, Copy, Debug)]
 struct Knots {
     spacing: usize,
@@ -214,8 +215,8 @@ struct Knots {
 }
 
 impl Knots {
-    /// The lit pixels of a span.
-    /// Where the row ends inside of the span, its last pixel is lit, whatever the clip rectangle.
+    /// The lit pixels of a span. Where the row ends inside the span, its last pixel is lit, whatever the clip
+    /// rectangle.
     fn new(span: &Span, spacing: SampleSpacing) -> Self {
         let spacing = spacing.pixels();
         let mut places = [0; KNOTS];
@@ -226,7 +227,7 @@ impl Knots {
         Self { spacing, places, count: span.len.div_ceil(spacing) + 1 }
     }
 
-    /// Lights them, eight at a time, and hands the eight on with the number of the first.
+    /// Lights the knots, eight at a time, and passes each eight on with the index of the first.
     fn light(&self, plane: &LitPlane, span: &Span, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
         let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
@@ -238,7 +239,7 @@ impl Knots {
         }
     }
 
-    /// The bytes of shades in 8.8 that are linear between those at the knots.
+    /// The bytes of shades in 8.8 that are linear between the knots.
     fn fill(&self, knots: &[u16; KNOTS], thresholds: &ThresholdRow, column: usize, piece: &mut [u8]) {
         for (i, piece) in piece.chunks_mut(self.spacing).enumerate() {
             let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
@@ -248,7 +249,7 @@ impl Knots {
             for (eight, bytes) in piece.chunks_mut(LANES).enumerate() {
                 // Below 16.
                 let first = (eight * LANES) as i32;
-                // Beyond the knot anything, which is not used.
+                // Lanes beyond the knot are not used.
                 let shades: Lanes<u16> = each!(lane => (from + ((step * (first + lane as i32)) >> 8)) as u16);
                 to_bytes(&shades, thresholds, column + i * self.spacing + eight * LANES, bytes);
             }

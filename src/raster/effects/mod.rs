@@ -1,26 +1,27 @@
-//! Triangles with effects: spans of up to 64 bytes, of which many pass through each stage together.
+//! Triangles with effects: spans of up to 64 bytes, which pass through each stage many at a time.
 //!
 //! ```text
-//! shades     as a shading has them, from a table of normals, or lit at every pixel
-//! texture    shade and texel, of a level of the image, looked up in a table; or red, green and blue mixed to an index
+//! shades     from the shading, from a table of normals, or lit at every pixel
+//! texture    shade and texel, from a level of the image, looked up in a table; or red, green and blue mixed to an index
 //! fog        level and index looked up
-//! blend      index and what the frame holds looked up
-//! write      all of it, or where nearer
+//! blend      index and the frame's index looked up
+//! write      all pixels, or the nearer ones
 //! ```
 //!
-//! Faces of one [`PixelPipeline`] are picked, set up and listed as plain ones are, eight at a time. One that is too large for
-//! that, and any on a processor without f64, is walked down row by row. [`EffectBatch`] is the door for faces by vertices.
+//! Faces of one [`PixelPipeline`] are picked, set up and listed like plain ones, eight at a time. A face too large for
+//! that, and every face on a processor without f64, is walked row by row. [`EffectBatch`] takes faces given as
+//! vertices.
 //!
-//! A stage is one loop over up to 4,096 pixels of many faces, so a stage that the pipeline does not have costs one
-//! question for all of them. Spans are written in the order of their faces; so what one face leaves in the frame is what
-//! the next one blends with. Spans begin at the row's first covered pixel inside the frame and every 64 pixels from there,
-//! where every value is exact; so a pixel's byte depends on no clip rectangle. Without any effect [`Raster::triangle`] gives
-//! the same bytes sooner.
+//! A stage is one loop over up to 4,096 pixels of many faces, so a stage that the pipeline lacks costs one branch for
+//! all of them. Spans are written in the order of their faces, so each face blends with what the ones before it left in
+//! the frame. Spans begin at the row's first covered pixel inside the frame and every 64 pixels from there, where every
+//! value is exact, so a pixel's byte does not depend on the clip rectangle. Without any effect [`Raster::triangle`]
+//! gives the same bytes faster.
 //!
-//! Shades and channels are what the [`Interpolation`](super::Interpolation) makes of them; fog and the table's normals
-//! are linear, started anew with every span, whatever the shading, and keep the guarantees of [`shade`](super::reference::shade): no
-//! sum leaves the range of the three corners. With dither, whose threshold of 0 to 255 takes the place of the half, a
-//! byte lies in [min >> 8, ⌈max⌉].
+//! Shades and channels are interpolated as the [`Interpolation`](super::Interpolation) says; fog and the coordinates in
+//! the table of normals are linear, reseeded with every span whatever the shading, and keep the guarantees of
+//! [`shade`](super::reference::shade): no sum leaves the range of the three corners. With dither, whose threshold of 0
+//! to 255 replaces the half, a byte lies in [min >> 8, ⌈max⌉].
 
 mod batch;
 mod curve;
@@ -57,18 +58,18 @@ use crate::span::list::{SpanList, Target};
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
 
-/// Memory of the stages: planes of faces, and what passes through. Used again and again it allocates nothing.
+/// Memory of the stages: planes of faces, and what passes from stage to stage. Reusing it allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EffectScratch {
-    /// A list of spans with what the stages know of them; none before it is needed.
+    /// A list of spans with what the stages know about them; empty until it is needed.
     lists: Vec<(SpanList, Columns)>,
     buffers: Buffers,
 }
 
-/// Output of the stages: a number for each pixel of all spans.
+/// Output of the stages, a number for each pixel of all spans.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
-    /// The bytes that are drawn in the end.
+    /// The bytes that are finally drawn.
     bytes: Vec<u8>,
     /// Texels, levels of fog, or rows of a table.
     other: Vec<u8>,
@@ -76,12 +77,12 @@ struct Buffers {
     channels: [Vec<u8>; 3],
     /// One shade in 8.8, or three channels.
     shades: [Vec<u16>; 3],
-    /// Places of texels in their image.
+    /// Indices of texels in their image.
     places: Vec<i32>,
 }
 
 impl Buffers {
-    /// Makes room for as many pixels as there may be.
+    /// Makes room for the most pixels there can be.
     fn make_room(&mut self) {
         let Self { bytes, other, channels, shades, places } = self;
         for bytes in [bytes, other].into_iter().chain(channels) {
@@ -93,7 +94,7 @@ impl Buffers {
         places.resize(ROOM, 0);
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     fn bytes(&self) -> usize {
         let Self { bytes, other, channels, shades, places } = self;
         let bytes = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
@@ -103,12 +104,12 @@ impl Buffers {
 }
 
 impl EffectScratch {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.lists.capacity() * size_of::<(SpanList, Columns)>() + self.buffers.bytes()
     }
 
-    /// Takes the memory, 100 kB, the first time.
+    /// Allocates the memory, 100 kB, the first time.
     #[inline]
     fn make_room(&mut self) {
         if self.lists.is_empty() {
@@ -117,7 +118,7 @@ impl EffectScratch {
         }
     }
 
-    /// Paints one row of pick `k` that another method found into `pixels`, the frame's whole row.
+    /// Paints one row of pick `k`, found by another method, into `pixels`, the frame's whole row.
     pub(crate) fn paint_row(
         &mut self,
         (triangles, picks, k): (&Triangles<'_>, Picks<'_>, usize),
@@ -136,13 +137,13 @@ impl EffectScratch {
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
         let (spans, covered, _) = list.counts();
-        // The caller has counted what is covered.
+        // The caller has already counted the covered pixels.
         *drawn += DrawStats { spans, pixels: covered, ..DrawStats::default() };
         count(pipeline, covered, drawn);
     }
 }
 
-/// Counts what was done to so many pixels, whatever the depth test said of them.
+/// Counts what was done to this many pixels, whatever the depth test said about them.
 fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
     let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
     add(pipeline.texture().is_some(), &mut drawn.textured);
@@ -155,7 +156,7 @@ fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
     add(by_table || matches!(pipeline.source, ShadeSource::Lit(_)), &mut drawn.lit);
 }
 
-/// Draws the spans of a list. Returns the number of pixels that were nearer.
+/// Draws the spans of a list. Returns the number of nearer pixels.
 #[inline(never)]
 fn draw_listed(
     listed: &Listed<'_>,
@@ -182,7 +183,7 @@ fn draw_listed(
     nearer
 }
 
-/// Passes spans through the stages up to what the frame holds: their bytes are then in the buffers.
+/// Passes spans through the stages before blending, and leaves their bytes in the buffers.
 #[inline(never)]
 fn run_stages(
     spans: &Spans<'_>,
@@ -201,7 +202,7 @@ fn run_stages(
     }
 }
 
-/// Writes spans, all of each or where it is nearer. Returns the number of pixels that were nearer.
+/// Writes spans, entirely or where they are nearer. Returns the number of nearer pixels.
 fn write(
     spans: &Spans<'_>,
     pipeline: &PixelPipeline<'_>,
@@ -232,7 +233,7 @@ fn write_where_nearer<D: Cell>(
 }
 
 at_best_level! {
-    /// Writes spans, of which no pixel is tested.
+    /// Writes spans without a depth test.
     #[inline(never)]
     fn write_all[const BLENDS: bool][BLENDS](
         level: Kernel,
@@ -247,7 +248,7 @@ at_best_level! {
 }
 
 at_best_level! {
-    /// Writes spans where they are nearer; with `KEEPS` their depths are kept.
+    /// Writes spans where they are nearer, and with `KEEPS` stores their depths.
     #[inline(never)]
     fn write_nearer[D: Cell, const BLENDS: bool, const KEEPS: bool][D, BLENDS, KEEPS](
         level: Kernel,
@@ -293,7 +294,7 @@ fn write_each<D: Cell, const BLENDS: bool, const KEEPS: bool>(
 }
 
 compiled_for_each_level! {
-    /// Draws triangles with effects, where there are cells those that are nearer.
+    /// Draws triangles with effects, and if there are depth cells, only their nearer pixels.
     #[inline(never)]
     fn draw_effects[][](
         of: Drawn<'_>,
@@ -315,7 +316,7 @@ fn draw_effects_by<S: Lanes8>(
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws triangles that were picked inside the clip rectangle, one after the other, by one pixel pipeline.
+    /// Draws triangles that were picked inside the clip rectangle, in order, through one pixel pipeline.
     #[inline(never)]
     pub(crate) fn picks_with_effects(
         &mut self,
@@ -335,7 +336,7 @@ impl<D: Cell> Raster<'_, D> {
         let mut first = 0;
         while first < picks.picks.len() {
             let together = if HAS_F64 && fits { Pick::count_batched(&picks.picks[first..]) } else { 0 };
-            // In a build that leaves it out (`plan::Effect::is_left_out`) there is none.
+            // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             if together > 0 {
                 let picks = picks.range(first, first + together);
@@ -363,7 +364,7 @@ impl<D: Cell> Raster<'_, D> {
         let has_depth = depth.is_some();
         let (mut count, mut covered, mut nearer) = (0, 0, 0);
         spans.walk(k).rows(width, clip, |row: Row| {
-            // Rows of the frame.
+            // A row of the frame, so not negative.
             let y = row.y as u32;
             covered += (row.x1 - row.x0) as u32;
             let Some(pixels) = self.frame.starting_at(0, y) else { return };

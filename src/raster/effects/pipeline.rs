@@ -1,4 +1,4 @@
-//! Pixel pipeline of a triangle: the source of its shades, and the stages that they pass.
+//! Pixel pipeline of a triangle: the source of its shades, and the stages they pass through.
 
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
@@ -7,13 +7,13 @@ use crate::raster::interpolation::Interpolation;
 use crate::span::dither::Thresholds;
 use crate::span::texture::{Levels, Texels};
 
-/// Light at every pixel.
+/// Per-pixel lighting.
 pub trait Lighting: core::fmt::Debug {
-    /// The shade at each point (normal and position, perspective-correct, the normal of any length), in
-    /// 8.8, 0 to 0xFF00. Points beyond the end of a row may be anything, and what is made of them is not used.
+    /// The shade in 8.8, 0 to 0xFF00, at each point (normal and position, perspective-correct, the normal of any
+    /// length). Points beyond the end of a row may be anything; their results are not used.
     fn shades(&self, points: &Points) -> Lanes<u16>;
 
-    /// Red, green and blue at each point, on the terms of [`shades`](Self::shades).
+    /// Red, green and blue at each point, under the conditions of [`shades`](Self::shades).
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
@@ -21,30 +21,32 @@ pub trait Lighting: core::fmt::Debug {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
-    /// The corners' shades, or their channels, each for itself, as this shading has them.
+    /// The corners' shades, or each of their channels, interpolated by this shading.
     ///
-    /// [`GouraudVintage`](Interpolation::GouraudVintage) gives the shades alone: exact cover decides which pixels,
-    /// for there the values of all stages are in range.
+    /// [`GouraudVintage`](Interpolation::GouraudVintage) contributes only the shades; coverage stays exact, because
+    /// only there are the values of all stages in range.
     Shaded(Interpolation),
     /// [`Attributes::slope`](super::Attributes::slope), linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
-    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit.
+    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at every pixel.
     Lit(&'a dyn Lighting),
-    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a row; shades are linear between.
+    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a row; shades are linear
+    /// between.
     ///
-    /// These pixels are the row's first inside the frame, some from there on, and its last.
+    /// The lit pixels are the row's first inside the frame, some at equal distances from there on, and its last.
     LitEvery(SampleSpacing, &'a dyn Lighting),
-    /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): those at the corners and at the middles of
-    /// the edges. Held within these limits, one for each channel; the first counts for one shade.
+    /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): at the corners
+    /// and at the midpoints of the edges. Clamped to these limits, one pair for each channel; a single shade uses the
+    /// first.
     Curved([Limits; 3]),
 }
 
-/// The least and the greatest of a shade.
+/// The least and the greatest value of a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Limits {
     /// The least.
     pub least: U8F8,
-    /// The greatest; where it is below the least, it counts.
+    /// The greatest; if it is below the least, the greatest applies.
     pub most: U8F8,
 }
 
@@ -60,7 +62,7 @@ pub enum SampleSpacing {
 }
 
 impl SampleSpacing {
-    /// All of them, the nearest first.
+    /// All of them, the closest spacing first.
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
     /// Distance in pixels.
@@ -79,14 +81,14 @@ impl SampleSpacing {
 pub enum Mix<'a> {
     /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
     Cube,
-    /// The entry that a table of 32 × 32 × 32 names.
+    /// The palette entry given by a table of 32 × 32 × 32.
     Nearest {
         /// Indices by red, green and blue, five bits each.
         map: &'a [u8; 32_768],
         /// Range over which dither moves a channel, from end to end.
         spread: u8,
     },
-    /// No mixing: one channel's shades as they are, 0 red, 1 green, 2 blue, for those who measure them.
+    /// No mixing: one channel's shades as they are, 0 red, 1 green, 2 blue, for measurements.
     Only(usize),
 }
 
@@ -95,15 +97,15 @@ pub enum Mix<'a> {
 pub struct TextureStage<'a> {
     /// The image.
     pub texels: Texels<'a>,
-    /// Its smaller copies, from which one is taken where more than √2 texels go to a pixel; `None` for the image alone.
+    /// Its smaller copies, one of which is used where a pixel spans more than √2 texels; `None` for the image alone.
     pub levels: Option<Levels<'a>>,
-    /// Progression of its coordinates.
+    /// How its coordinates are interpolated.
     pub mapping: Mapping,
-    /// The byte for a shade (row) and a texel (column); of channels, one table each.
+    /// The byte for a shade (row) and a texel (column); with channels, one table each.
     pub tables: [&'a [u8; 65_536]; 3],
 }
 
-/// Stages that the pixels of a triangle pass.
+/// Stages that the pixels of a triangle pass through.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPipeline<'a> {
     /// Source of the shades.
@@ -114,15 +116,15 @@ pub struct PixelPipeline<'a> {
     pub dither: Option<Thresholds>,
     /// An image.
     pub texture: Option<TextureStage<'a>>,
-    /// The index for a level (row) and an index (column).
+    /// The index for a fog level (row) and an index (column).
     pub fog: Option<&'a [u8; 65_536]>,
     /// The index for the triangle's own (row) and the frame's (column).
     pub blend: Option<&'a [u8; 65_536]>,
-    /// True if the depth buffer keeps its depth, so that it hides what is drawn later behind it.
+    /// True if the depth buffer stores its depth, so that it hides what is drawn behind it later.
     pub keeps_depth: bool,
 }
 
-/// The stages. One that a build leaves out (`plan::Effect::is_left_out`) is not there, and the compiler knows.
+/// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
 impl<'a> PixelPipeline<'a> {
     #[inline]
     pub(super) fn channels(&self) -> Option<Mix<'a>> {

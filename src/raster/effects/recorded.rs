@@ -99,14 +99,14 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
-    // Every row has the same pixels.
+    // All rows share the same pixels.
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
     let mut pixels = [0; 4_096];
     let target = &mut Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
     draw_triangles::<S, _, true, false>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
 }
 
-/// The spans of faces of which none is unbatched, in a frame of 4,096 x 4,096 pixels.
+/// The spans of faces, none of them unbatched, in a frame of 4,096 × 4,096 pixels.
 pub(super) fn record(
     kernel: Kernel,
     triangles: &Triangles<'_>,

@@ -1,4 +1,4 @@
-//! The first stages of a span: shades from their source, with an image, or mixed of three channels.
+//! The first stages of a span: shades from their source, with an image, or mixed from three channels.
 
 use super::Buffers;
 use super::curve::CurvePlane;
@@ -56,7 +56,7 @@ impl Spans<'_> {
         }
     }
 
-    /// The bytes of shades, of which there is one at a pixel.
+    /// The bytes of pixels with a single shade.
     #[inline(never)]
     fn shade_bytes(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
@@ -88,14 +88,14 @@ impl Spans<'_> {
         }
     }
 
-    /// The bytes of three channels.
+    /// The bytes of pixels with three channels.
     #[inline(never)]
     fn shade_channels(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { channels, shades, .. } = buffers;
         let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
         let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
         match pipeline.source {
-            // What is shaded by a table of normals has no table for each channel.
+            // A table of normals gives one shade; there is none for channels.
             ShadeSource::Shaded(_) | ShadeSource::NormalTable(_) => {
                 let interpolation = match pipeline.source {
                     ShadeSource::Shaded(interpolation) => interpolation,
@@ -125,7 +125,7 @@ impl Spans<'_> {
         }
     }
 
-    /// Shades to bytes, by thresholds.
+    /// Rounds shades to bytes by thresholds.
     fn round(&self, shades: &[u16], dither: Option<Thresholds>, bytes: &mut [u8]) {
         let Some(dither) = dither else {
             let n = self.pixels();
@@ -137,7 +137,7 @@ impl Spans<'_> {
         }
     }
 
-    /// Three channels to one index.
+    /// Mixes three channels to one index.
     fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<Thresholds>) {
         let dither = dither.unwrap_or(Thresholds::HALVES);
         let Buffers { bytes, channels, .. } = buffers;

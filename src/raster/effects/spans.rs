@@ -1,4 +1,4 @@
-//! Spans as the stages read them: many at a time, their pixels one behind the other in buffers.
+//! Spans as the stages see them: many at a time, their pixels concatenated in buffers.
 
 use core::ops::Range;
 
@@ -15,25 +15,25 @@ use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::SpanList;
 use crate::span::texture::{SpanValues, Tint};
 
-/// Pixels of a span, at most.
+/// The most pixels of a span.
 pub(super) const LONGEST: usize = RESEED as usize;
 
-/// Pixels that pass through the stages together, at most, and room for what is written eight at a time.
+/// The most pixels that pass through the stages together, and the room for them when written eight at a time.
 pub(super) const PIXELS: usize = 4_096;
 pub(super) const ROOM: usize = PIXELS + LANES;
 
-/// Spans that pass through the stages together; their pixels lie one behind the other.
+/// Spans that pass through the stages together; their pixels are concatenated.
 pub(super) struct Spans<'a> {
     listed: &'a Listed<'a>,
     list: &'a SpanList,
     /// Index of the first in the list.
     first: usize,
     count: usize,
-    /// Where the pixels of each begin, and at the end how many there are; zeros where no buffer has them.
+    /// Where the pixels of each begin, and at the end their total; zeros where no buffer holds them.
     pixels: &'a Offsets,
 }
 
-/// Memory for where the pixels of spans begin.
+/// Memory for the offsets of the spans' pixels.
 pub(super) type Offsets = [u32; SpanList::CAPACITY + 1];
 
 static NO_OFFSETS: Offsets = [0; SpanList::CAPACITY + 1];
@@ -47,7 +47,7 @@ pub(super) struct Span {
     pub(super) y: i32,
     /// Where its pixels begin among those of all spans, ...
     pub(super) first: usize,
-    /// ... and how many it has, hidden ones among them: 1 to 64.
+    /// ... and how many there are, hidden ones included: 1 to 64.
     pub(super) len: usize,
 }
 
@@ -72,7 +72,7 @@ impl Span {
         of.row(self.y as usize)
     }
 
-    /// The row's last pixel inside the frame, whatever the clip rectangle, from its own first one.
+    /// The row's last pixel inside the frame, whatever the clip rectangle, relative to the span's first.
     #[inline(always)]
     pub(super) fn last(&self) -> i32 {
         self.mark.last()
@@ -88,7 +88,7 @@ impl Span {
 }
 
 impl<'a> Spans<'a> {
-    /// Takes the spans from index `first` on, as many as pass through the stages together.
+    /// Takes as many spans from index `first` on as pass through the stages together.
     #[inline]
     pub(super) fn of(listed: &'a Listed<'_>, list: &'a SpanList, first: usize, offsets: &'a mut Offsets) -> Self {
         let (mut count, mut end) = (0, 0);
@@ -106,7 +106,7 @@ impl<'a> Spans<'a> {
         Self { listed, list, first, count, pixels: offsets }
     }
 
-    /// Takes all spans of a list, for a stage that asks for no place in a buffer.
+    /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
     #[inline]
     pub(super) fn all(listed: &'a Listed<'_>, list: &'a SpanList) -> Self {
         Self { listed, list, first: 0, count: list.count(), pixels: &NO_OFFSETS }
@@ -141,13 +141,13 @@ impl<'a> Spans<'a> {
         (first, end - first)
     }
 
-    /// All of them.
+    /// All spans.
     #[inline(always)]
     pub(super) fn iter(&self) -> impl Iterator<Item = Span> {
         (0..self.count).map(|i| self.span(i))
     }
 
-    /// The index behind the last span of the face that span `i` belongs to.
+    /// The index after the last span of the face that span `i` belongs to.
     #[inline(always)]
     pub(super) fn end_of_face(&self, i: usize) -> usize {
         let face = |i: usize| self.listed.mark(self.first + i).face();
@@ -165,7 +165,7 @@ impl<'a> Spans<'a> {
         self.listed.corners(span.mark.face())
     }
 
-    /// The first shade of span `i`, and above it the step.
+    /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn paint(&self, i: usize) -> u32 {
         self.list.fill_of(self.first + i).1
@@ -178,7 +178,7 @@ impl<'a> Spans<'a> {
         SpanValues { paint: self.paint(i), fog, skipped }
     }
 
-    /// The first of a value of span `i`, and above it the step.
+    /// The start of a value of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
         self.listed.numbers.of(self.first + i, 2 + value.slot())
@@ -190,7 +190,7 @@ impl<'a> Spans<'a> {
         self.listed.has_texture
     }
 
-    /// u and v at the first pixel of span `i`, and what each pixel adds, where the texture is linear on the screen.
+    /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
         self.listed.affine(self.first + i)
@@ -202,7 +202,7 @@ impl<'a> Spans<'a> {
         self.listed.sums(self.first + i)
     }
 
-    /// ... and their changes from a pixel to the next one.
+    /// ... and their change per pixel.
     #[inline(always)]
     pub(super) fn sum_steps(&self, i: usize) -> [f64; 3] {
         let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
@@ -216,8 +216,8 @@ impl<'a> Spans<'a> {
         self.listed.walked.is_none() && planes.affine.fits >> lane & 1 != 0
     }
 
-    /// One stage: for every face `plane` makes what its values are over it, from its corners top to bottom; for every
-    /// span `fill` makes its part of `out` from that.
+    /// Runs one stage: for every face `plane` computes what its values are over it, from its corners top to bottom; for
+    /// every span `fill` computes its part of `out` from that.
     #[inline(always)]
     pub(super) fn each<P, T>(
         &self,
@@ -237,7 +237,7 @@ impl<'a> Spans<'a> {
         }
     }
 
-    /// A stage of shades, or of another value.
+    /// Runs a stage of shades, or of another value.
     pub(super) fn fill(&self, shaded: Shaded, out: &mut [u8], kernel: Kernel) {
         match shaded.interpolation {
             Interpolation::Flat(index) => out[..self.pixels()].fill(index),
@@ -248,7 +248,7 @@ impl<'a> Spans<'a> {
         }
     }
 
-    /// Fills spans by a shader of their own.
+    /// Fills spans with a shader for each face.
     #[inline(never)]
     fn fill_by_shader(&self, Shaded { value, interpolation, dither }: Shaded, out: &mut [u8], kernel: Kernel) {
         let shader = |face: &FaceCorners<'_>| {
@@ -264,8 +264,8 @@ impl<'a> Spans<'a> {
         });
     }
 
-    /// Where the bytes of span `i` begin, how many they are, and how many of its first pixels are left out: with `DIRECT` the
-    /// drawn pixels in the frame, otherwise all in the buffer of all pixels.
+    /// Where the bytes of span `i` begin, how many there are, and how many of its first pixels are left out: with
+    /// `DIRECT` the drawn pixels in the frame, otherwise all of them in the buffer of all pixels.
     #[inline(always)]
     pub(super) fn target<'o, const DIRECT: bool>(
         &self,
@@ -281,7 +281,8 @@ impl<'a> Spans<'a> {
         Some((out.get_mut(first..)?, length, 0))
     }
 
-    /// Where the drawn pixels of span `i` are among those of all, where they lie in the frame, and how many they are.
+    /// Where the drawn pixels of span `i` are among those of all spans, where they lie in the frame, and how many there
+    /// are.
     #[inline(always)]
     pub(super) fn drawn(&self, i: usize) -> (usize, usize, usize) {
         let k = self.first + i;
@@ -289,7 +290,7 @@ impl<'a> Spans<'a> {
         (first + skipped, self.list.offset(k) as usize, self.list.fill_of(k).0)
     }
 
-    /// Where the first drawn pixel of span `i` lies in the depth buffer; its depth, and the change from one to the next, with
+    /// Where the first drawn pixel of span `i` lies in the depth buffer, its depth, and the change per pixel, both with
     /// 24 fraction bits.
     #[inline(always)]
     pub(super) fn depth(&self, i: usize) -> (usize, [i64; 2]) {
@@ -310,7 +311,7 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// A shade or another value of the corners, as bytes.
+/// A shade or another value of the corners, to become bytes.
 #[derive(Clone, Copy)]
 pub(super) struct Shaded {
     /// `None` for the shade.
@@ -320,7 +321,7 @@ pub(super) struct Shaded {
 }
 
 impl Shaded {
-    /// A value that starts anew with every span.
+    /// A value that is reseeded with every span.
     pub(super) fn linear(value: Value) -> Self {
         Self { value: Some(value), interpolation: Interpolation::GouraudReseeded, dither: None }
     }
@@ -347,7 +348,7 @@ fn fill_linear(kernel: Kernel, spans: &Spans<'_>, Shaded { value, dither, .. }: 
         (_, Some(thresholds)) => {
             for i in 0..spans.count() {
                 let paint = value.map_or_else(|| spans.paint(i), |value| spans.value(value, i));
-                // The halves.
+                // The start in the lower half, the step in the upper.
                 let (start, step) = (paint as u16, (paint >> 16) as u16);
                 let span = spans.span(i);
                 let row = span.thresholds(thresholds);
@@ -361,7 +362,7 @@ fn fill_linear(kernel: Kernel, spans: &Spans<'_>, Shaded { value, dither, .. }: 
 fn fill_plain(kernel: Kernel, spans: &Spans<'_>, paint: impl Fn(usize) -> u32, out: &mut [u8]) {
     for i in 0..spans.count() {
         let paint = paint(i);
-        // The halves.
+        // The start in the lower half, the step in the upper.
         let (start, step) = (paint as u16, (paint >> 16) as u16);
         let (first, len) = spans.range(i);
         if len > LONG {
@@ -372,10 +373,10 @@ fn fill_plain(kernel: Kernel, spans: &Spans<'_>, paint: impl Fn(usize) -> u32, o
     }
 }
 
-/// Pixels from which on a span's shades are filled by the kernel.
+/// Spans longer than this are filled by the kernel.
 const LONG: usize = 20;
 
-/// Fills the first `n` bytes, and up to seven more, for which there is room, with linear shades.
+/// Fills the first `n` bytes with linear shades, and up to seven more, for which there is room.
 #[inline(always)]
 fn fill_blocks(bytes: &mut [u8], n: usize, start: u16, step: u16) {
     let mut shade = start;

@@ -1,8 +1,8 @@
 //! Texels: texture coordinates over a triangle, the level of a mipmap, and the bytes of the image along a row.
 //!
-//! Eight places are found at a time, and their texels go where they belong at once: into the frame, or into the buffer of
-//! the stages. How long a row is, is a guess of the processor that costs as much as several pixels, so the last few pixels
-//! of a span are written by a mask.
+//! Eight texel indices are computed at a time, and their texels go straight to their destination: into the frame, or
+//! into the stages' buffer. Mispredicting the length of a row costs as much as several pixels, so the last few pixels
+//! of a span are written with a mask.
 
 use super::direct::{DirectTexture, DirectTint};
 use super::listing::FaceCorners;
@@ -23,11 +23,11 @@ use crate::span::texture::{
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
 
-/// An image, with its levels where one of them is chosen.
+/// An image, with its levels if one of them is to be chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 
 impl DirectTexture<'_> {
-    /// Shows the texels of every span in the frame, mixed with what is there by a table if there is one.
+    /// Shows the texels of every span in the frame, blended with what is there by a table if there is one.
     pub(super) fn show_in_frame(
         self,
         spans: &Spans<'_>,
@@ -47,7 +47,7 @@ impl DirectTexture<'_> {
         }
     }
 
-    /// Shows the texels of every span in the buffer of all pixels, in fog if there is some.
+    /// Shows the texels of every span in the buffer of all pixels, with fog if there is any.
     pub(super) fn show_in_buffer(
         self,
         spans: &Spans<'_>,
@@ -78,8 +78,8 @@ impl DirectTexture<'_> {
 }
 
 impl Spans<'_> {
-    /// The texels of every span, from the levels of the image where there are any, and what is shown of them; and room for
-    /// their places.
+    /// The texels of every span, from the levels of the image where there are any, and what is shown of them; `places`
+    /// has room for their indices.
     pub(super) fn texels(
         &self,
         shown: impl Shown,
@@ -89,7 +89,7 @@ impl Spans<'_> {
     ) {
         let image = (stage.texels, levels);
         let level = kernel.simd_level();
-        // A function for each, so that none is compiled otherwise where another is left out.
+        // One function for each, so that leaving one out does not change how another is compiled.
         match (stage.mapping, levels) {
             (Mapping::Affine, None) => {
                 show_affine::<_, false>(level, self, stage.texels, shown.tint(), out);
@@ -103,7 +103,7 @@ impl Spans<'_> {
         }
     }
 
-    /// Texels whose coordinates are linear on the screen, of the level of each face.
+    /// Texels with coordinates linear on the screen, from the level of each face.
     #[inline(never)]
     fn affine_levels(&self, shown: impl Shown, image: Image<'_>, (out, places): (&mut [u8], &mut [i32])) {
         let plane = |face: &FaceCorners<'_>| AffineTexture::new(face, image);
@@ -176,7 +176,7 @@ fn show_affine_by<S: Lanes8, T: Tint, const DIRECT: bool>(
     out: &mut [u8],
 ) {
     if spans.have_texture() {
-        // Small faces, of which the clip rectangle hides nothing. (Asked of each span, these are 9 % of the instructions.)
+        // Small faces, of which the clip rectangle hides nothing. (Checking every span takes 9 % of the instructions.)
         for i in 0..spans.count() {
             let Some((row, length, _)) = spans.target::<DIRECT>(i, out) else { continue };
             let ([from, step], along) = (spans.affine_start(i), &mut tint.begin(s, spans.values::<T>(i, 0)));
@@ -194,7 +194,7 @@ fn show_affine_by<S: Lanes8, T: Tint, const DIRECT: bool>(
                 Some(walked) => [walked.start(&spans.span(i)), walked.steps()],
             };
             let Some((row, length, skipped)) = spans.target::<DIRECT>(i, out) else { continue };
-            // At most 63; the sums are meant modulo 2³².
+            // At most 63; the sums are modulo 2³².
             let from = [u.wrapping_add(du.wrapping_mul(skipped)), v.wrapping_add(dv.wrapping_mul(skipped))];
             let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
             AffineLines::new(s, image, [du, dv]).show((row, length), image, (tint, along), from);
@@ -225,7 +225,7 @@ fn show_exact_by<S: Lanes8, T: Tint, const DIRECT: bool>(
     }
 }
 
-/// Shows the texels of a span whose sums are not in the list, or decide nothing.
+/// Shows the texels of a span whose sums are not in the list, or are inconclusive.
 #[inline(never)]
 fn show_one<S: Lanes8, T: Tint>(
     s: S,
@@ -238,7 +238,7 @@ fn show_one<S: Lanes8, T: Tint>(
     let (plane, span) = (perspective_texture(spans, i), spans.span(i));
     let (mut places, n) = ([0; LONGEST + LANES], span.len.min(LONGEST));
     if spans.have_texture() {
-        // An estimate could not decide.
+        // The estimate was inconclusive.
         plane.in_integers((image, 0), (span.x, span.y), &mut places[..n]);
     } else {
         plane.exact(BASELINE, (image, 0), (span.x, span.y), (&mut places, n));
@@ -275,7 +275,7 @@ impl<'a> AffineTexture<'a> {
         Self { texels: levels.get(level).unwrap_or(image), planes: planes.map(|plane| plane.of_level(level)) }
     }
 
-    /// Change of the coordinates from a pixel to the next one.
+    /// Change of the coordinates per pixel.
     #[inline(always)]
     fn steps(&self) -> [u32; 2] {
         let [u, v] = &self.planes;
@@ -292,9 +292,8 @@ impl<'a> AffineTexture<'a> {
 }
 
 impl PerspectiveTexture {
-    /// Shows the texels of a span, from levels, one of which is chosen for every 16 pixels.
-    /// The middle one of these decides, or the row's last inside the frame if that comes before, whatever the clip
-    /// rectangle.
+    /// Shows the texels of a span from levels, one of which is chosen for every 16 pixels. The middle pixel of these
+    /// decides, or the row's last inside the frame if that comes first, whatever the clip rectangle.
     #[inline(never)]
     fn show_levels<const EVERY_16: bool>(
         &self,
@@ -327,7 +326,7 @@ impl PerspectiveTexture {
         }
     }
 
-    /// The places of `n` texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
+    /// The indices of `n` texels of one level, from pixel `x` on. Coordinates are divided by 2^`shift`.
     #[inline]
     fn places<const EVERY_16: bool>(
         &self,
@@ -359,7 +358,7 @@ impl PerspectiveTexture {
                     pixels => (change / pixels) as u32,
                 }
             };
-            // Wrapping is intended here, too.
+            // Wrapping is intended here too.
             let start = [from[0] as u32, from[1] as u32];
             let lines = AffineLines::new(BASELINE, texels, [step(0), step(1)]);
             lines.places(&mut places[first..], EVERY.min(n - first), start);
@@ -409,7 +408,7 @@ mod tests {
     use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
 
-    /// The definition, in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
+    /// The definition in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
     fn defined(triangle: &SortedTriangle, coordinates: [i32; 3], level: u32, (x, y): (i32, i32)) -> u32 {
         let weights = Weights::new(triangle);
         let values = coordinates.map(i64::from);
@@ -424,8 +423,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// Starts and steps are those of the definition, from triangles of a pixel to those of a whole frame, and from flat
-        /// coordinates to those of which numerators take more than 64 bits.
+        /// Starts and steps equal the definition, for triangles from one pixel to a whole frame, and for coordinates
+        /// from constant to those whose numerators exceed 64 bits.
         #[test]
         fn affine_coordinates_are_the_definition(
             (corners, (left, top)) in prop::sample::select(&[300, 5_000, 80_000, 1 << 20][..]).prop_flat_map(|side| {
@@ -464,7 +463,7 @@ mod tests {
     fn given() -> impl Strategy<Value = Given> {
         let side = |n: i32| prop::sample::select(&[200, 700, 4_000, 16_384][..]).prop_map(move |side: i32| side.min(n));
         let triangle = (side(16_384), side(4_096)).prop_flat_map(|(width, height)| {
-            // The box's ends are where sums are greatest.
+            // Sums are greatest at the ends of the box.
             let at = |end: i32| prop_oneof![4 => 0..=end, 1 => Just(0), 1 => Just(end)];
             let depth = prop_oneof![3 => any::<u32>(), 1 => Just(0), 1 => Just(1), 1 => Just(u32::MAX)];
             let corner = (at(width), at(height), depth);
@@ -478,7 +477,7 @@ mod tests {
                 (any::<[i32; 2]>(), prop::array::uniform3([apart.clone(), apart])).prop_map(|(origin, corners)| {
                     corners.map(|uv: [i32; 2]| [0, 1].map(|i| uv[i].wrapping_add(origin[i])))
                 });
-            // Whole at every pixel: a numerator that is one less gives another quotient.
+            // A whole number at every pixel: a numerator smaller by one gives another quotient.
             let whole = prop::option::of(prop::array::uniform2([-100..=100, -100..=100]));
             (prop::array::uniform3(corner), (0..60_000, 0..40_000), texture, whole)
         });
@@ -488,14 +487,14 @@ mod tests {
             });
             (corners.map(|(x, y, depth)| (left + x, top + y, depth)), texture)
         });
-        // Boxed: eight trees of values are more than a stack holds.
+        // Boxed: eight value trees do not fit on the stack.
         prop::array::uniform8(triangle.boxed())
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every level sets eight triangles up as each alone is: affine coordinates and depths
-        /// to the bit, the sums of perspective ones within the four roundings of their terms.
+        /// Every level sets up eight triangles as it would each alone: affine coordinates and depths to the bit, the
+        /// sums of perspective ones within the four roundings of their terms.
         #[test]
         fn eight_triangles_are_each_its_own(given in given()) {
             let (mut at, mut depth, mut shade) = (Vec::new(), Vec::new(), Vec::new());
@@ -558,8 +557,8 @@ mod tests {
         }
     }
 
-    /// A face whose estimates cannot decide at any pixel, since u is a whole number everywhere: stages that read what the
-    /// pixels hold, shades that were lit before or the frame behind glass, read it once.
+    /// A face whose estimates are inconclusive at every pixel, since u is a whole number everywhere: stages that read
+    /// the pixels' contents (shades lit before, or the frame behind glass) read them once.
     #[test]
     fn pixels_are_read_before_they_are_written() {
         use crate::raster::effects::{Attributes, EffectBatch};
@@ -568,7 +567,7 @@ mod tests {
         let at = |x: i32, y: i32, shade: u8, depth| {
             Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from(shade), depth).expect("inside")
         };
-        // Over the right and the lower edge, so that the frame's last pixels are among them.
+        // Beyond the right and the lower edge, so that it covers the frame's last pixels.
         let vertices = [at(300, 400, 10, 4_000), at(13_000, 700, 240, 9_000), at(12_500, 13_000, 90, 2_000)];
         let texture = |v: i32| Attributes { texture: [7 << 16, v << 16], ..Attributes::default() };
         let attributes = [texture(0), texture(90), texture(40)];
@@ -585,7 +584,7 @@ mod tests {
             bytes
         };
         for kernel in Kernel::available() {
-            // The shade alone, and an image on it; each over a frame of 0 and of 255 to see what is covered.
+            // Only the shade, and an image with it; each over a frame of 0 and one of 255, which shows what is covered.
             let sources = [Interpolation::Flat(77), Interpolation::Gouraud, Interpolation::GouraudHyperbolic];
             let mappings = [Mapping::Affine, Mapping::Perspective];
             for (source, mapping) in sources.into_iter().flat_map(|source| mappings.map(|mapping| (source, mapping))) {
@@ -654,7 +653,7 @@ mod tests {
             for (weights, sum) in [(weights.at(x, y), start[i]), (weights.per_column(), step[i])] {
                 let terms: i128 = weights.iter().zip(values).map(|(w, v)| (i128::from(*w) * i128::from(v)).abs()).sum();
                 let off = sum as i128 - exact(weights, values);
-                // Four parts in 2⁵³ of the terms; less than one for what `as` cuts off.
+                // Four parts in 2⁵³ of the terms, and less than one for the fraction that `as` drops.
                 prop_assert!((off.abs() - 1) << 51 <= terms, "{} off of {}", off, terms);
             }
         }

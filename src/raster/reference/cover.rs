@@ -1,11 +1,11 @@
-//! Cover: the pixels of a triangle, as rows from top to bottom.
+//! Coverage: the pixels of a triangle, as rows from top to bottom.
 
 use super::edge::Edge;
 use crate::raster::frame::Rect;
 use crate::raster::vertex::Vertex;
 
-/// A triangle whose vertices are in order: top, middle, bottom, of equal heights the left one
-/// first. The pixels depend on the three points alone, not on the order they were given in.
+/// A triangle with sorted vertices: top, middle, bottom, at equal heights the left one first. The pixels depend only on
+/// the three points, not on the order they were given in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortedTriangle {
     /// The vertices by (y, x).
@@ -16,15 +16,14 @@ pub struct SortedTriangle {
 }
 
 impl SortedTriangle {
-    /// Puts three vertices in order.
+    /// Sorts three vertices.
     #[must_use]
     #[inline]
     pub fn new(vertices: &[Vertex; 3]) -> Self {
         Self::with_order(vertices).0
     }
 
-    /// Puts three vertices in order, and says which of them stands in each place. Without branches, which no
-    /// processor would predict.
+    /// Sorts three vertices, and returns the original index of each. Without branches, which would be unpredictable.
     #[inline]
     pub(in crate::raster) fn with_order(vertices: &[Vertex; 3]) -> (Self, [usize; 3]) {
         let key = |v: &Vertex| (i64::from(v.y().to_bits()) << 32) + i64::from(v.x().to_bits());
@@ -47,19 +46,19 @@ impl SortedTriangle {
         [shade(0), shade(1), shade(2)]
     }
 
-    /// The area doubled, positive.
+    /// The doubled area, positive.
     #[must_use]
     #[inline]
     pub fn area(&self) -> i64 {
         self.doubled_area.abs()
     }
 
-    /// Gradient of a value that is linear over the triangle, with `values` at its vertices: its change from one
-    /// 1/256 pixel to the next, as numerators (in x, in y) over [`area`](Self::area).
+    /// Gradient of a value that is linear over the triangle, with `values` at its vertices: its change per 1/256 pixel,
+    /// as numerators (in x, in y) over [`area`](Self::area).
     ///
     /// ```text
     /// gx = (v1 − v0)·(y2 − y0) − (v2 − v0)·(y1 − y0)
-    /// gy = (v2 − v0)·(x1 − x0) − (v1 − v0)·(x2 − x0)       the signs both turned if the area is negative
+    /// gy = (v2 − v0)·(x1 − x0) − (v1 − v0)·(x2 − x0)       both negated if the area is negative
     /// ```
     ///
     /// Each is within 2ⁿ⁺²² if the values lie within 2ⁿ of each other; n is at most 32.
@@ -75,8 +74,8 @@ impl SortedTriangle {
         if self.doubled_area < 0 { (-gx, -gy) } else { (gx, gy) }
     }
 
-    /// The rows inside `clip` whose centre lies between the top and the bottom; `None` if there is none,
-    /// if no column's centre inside `clip` lies between left and right, or if there is no area.
+    /// The rows inside `clip` whose centres lie between the top and the bottom; `None` if there are none, if no
+    /// column's centre inside `clip` lies between left and right, or if there is no area.
     #[must_use]
     #[inline]
     pub fn extent(&self, clip: Rect) -> Option<core::ops::Range<i32>> {
@@ -93,8 +92,8 @@ impl SortedTriangle {
         (left.max(clip.x0 as i32) < right.min(clip.x1 as i32)).then_some(first..end)
     }
 
-    /// Calls `row` for every row that has a covered pixel inside `clip`, from the top down.
-    /// `frame_width` is that of the whole frame; `clip` lies inside the frame.
+    /// Calls `row` for every row with a covered pixel inside `clip`, from the top down. `frame_width` is the whole
+    /// frame's; `clip` lies inside the frame.
     #[inline]
     pub fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row)) {
         let Some(rows) = self.extent(clip) else { return };
@@ -111,7 +110,7 @@ impl SortedTriangle {
     }
 }
 
-/// A triangle's rows one after the other: the two edges that the row at hand crosses.
+/// Walks a triangle's rows: the two edges that cross the current row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::raster) struct RowWalk {
     /// From the top to the bottom.
@@ -127,7 +126,7 @@ pub(in crate::raster) struct RowWalk {
 }
 
 impl RowWalk {
-    /// Begins at the first of rows that lie in the triangle's [extent](SortedTriangle::extent).
+    /// Begins at the first of `rows`, which lie in the triangle's [extent](SortedTriangle::extent).
     #[inline]
     pub(in crate::raster) fn new(triangle: &SortedTriangle, rows: core::ops::Range<i32>) -> Self {
         let [top, middle, bottom] = triangle.vertices.each_ref().map(point);
@@ -137,7 +136,7 @@ impl RowWalk {
         Self { long, short, is_long_left: triangle.doubled_area > 0, y, split, end: rows.end }
     }
 
-    /// The row at hand. It may be empty: `x0` is then not below `x1`.
+    /// The current row. It may be empty: `x0` is then not below `x1`.
     #[inline]
     pub(in crate::raster) fn row(&self, frame_width: u32, clip: Rect) -> Row {
         let (left, right) = if self.is_long_left { (self.long.x, self.short.x) } else { (self.short.x, self.long.x) };
@@ -201,12 +200,12 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
 
-    /// Corners stand by (y, x), and each stands where it is said to, for all triples of nine points that reach both ends of
-    /// the guard band, equal ones among them.
+    /// Corners are sorted by (y, x), and the reported order is right, for all triples of nine points that reach both
+    /// ends of the guard band, equal ones included.
     #[test]
     fn corners_are_in_order_and_known() {
         const ENDS: [i32; 3] = [-Vertex::GUARD_BAND, 0, Vertex::GUARD_BAND];
-        // The shade tells equal points apart.
+        // The shade distinguishes equal points.
         let vertex = |place: usize, shade: u16| {
             let [x, y] = [ENDS[place % 3], ENDS[place / 3]].map(I24F8::from_bits);
             Vertex::new(x, y, U8F8::from_bits(shade), 0).expect("in the guard band")

@@ -9,13 +9,12 @@
 //! gx = nearest(2²⁴ · ((d1 − d0)·(y2 − y0) − (d2 − d0)·(y1 − y0)) / A)
 //! ```
 //!
-//! vertex 0 being the first in (y, x) order: gradients a pixel with 16 fraction bits. They are
-//! within half a unit, and no vertex is further than 2²¹ units away in x and in y, so the sum is
-//! within 2²¹ of exact: an eighth of a depth step. The byte shift rounds to the nearest, so a
-//! depth lies within that of its vertices, without a clamp.
+//! where vertex 0 is the first in (y, x) order. The gradients, per pixel with 16 fraction bits, are within half a unit,
+//! and no vertex is more than 2²¹ units away in x or in y, so the sum is within 2²¹ of exact: an eighth of a depth
+//! step. The shift by 24 bits rounds to the nearest, so a depth stays in the range of its vertices', without a clamp.
 //!
-//! A sliver's gradients don't fit in 64 bits. The *sum* does, so all is taken modulo 2⁶⁴, where
-//! wrapping is intended; only the division needs 128 bits, and only then.
+//! A sliver's gradients do not fit in 64 bits. The *sum* does, so everything is computed modulo 2⁶⁴, and wrapping is
+//! intended; only the division needs 128 bits, and only for slivers.
 
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
@@ -24,7 +23,7 @@ use crate::lanes::three;
 /// The depth plane of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthPlane {
-    /// At column 0's centre of row 0, with 24 fraction bits, the half included, modulo 2⁶⁴.
+    /// At the centre of pixel (0, 0), with 24 fraction bits, the half included, modulo 2⁶⁴.
     origin: i64,
     per_column: i64,
     per_row: i64,
@@ -37,7 +36,7 @@ impl DepthPlane {
     pub fn new(triangle: &SortedTriangle) -> Self {
         let area = Divisor::new(triangle.area());
         let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth()));
-        // At most 2⁵⁴ both.
+        // Both at most 2⁵⁴.
         let (gx, gy) = triangle.gradient(depths);
         let (gx, gy) = (gradient(gx, &area), gradient(gy, &area));
         let first = &triangle.vertices[0];
@@ -48,20 +47,20 @@ impl DepthPlane {
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 
-    /// The plane of three corners (x, y, depth) in any order, without branches that the order decides.
+    /// The plane through three corners (x, y, depth) in any order, without branching on that order.
     #[inline]
     pub(in crate::raster) fn of_corners(corners: [(i32, i32, u32); 3]) -> Self {
         let [(x0, y0, d0), (x1, y1, d1), (x2, y2, d2)] =
             three(corners, |(x, y, depth)| (i64::from(x), i64::from(y), i64::from(depth)));
         let (dx1, dy1, dx2, dy2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
         let signed = dx1 * dy2 - dx2 * dy1;
-        // −1 or 0: with it the sign of a number is turned, or not.
+        // −1 to negate a number, 0 not to.
         let turned = signed >> 63;
         let area = Divisor::new((signed ^ turned) - turned);
         let gx = (d1 - d0) * dy2 - (d2 - d0) * dy1;
         let gy = (d2 - d0) * dx1 - (d1 - d0) * dx2;
         let (gx, gy) = (gradient((gx ^ turned) - turned, &area), gradient((gy ^ turned) - turned, &area));
-        // The first by (y, x), in one number: x is within ±2²⁰.
+        // The first by (y, x), as one number: x is within ±2²⁰.
         let key = |x: i64, y: i64| (y << 32) + x;
         let (mut first, mut depth) = (key(x0, y0), d0);
         for (x, y, d) in [(x1, y1, d1), (x2, y2, d2)] {
@@ -110,7 +109,7 @@ fn gradient(numerator: i64, area: &Divisor) -> i64 {
         area.floor((numerator << 24) + (area.get() >> 1))
     } else {
         let wide = (i128::from(numerator) << 24) + i128::from(area.get() >> 1);
-        // Wrapping is intended: see the module's head.
+        // Wrapping is intended: see the module's documentation.
         wide.div_euclid(i128::from(area.get())) as i64
     }
 }

@@ -1,5 +1,5 @@
-//! One edge, walked from row to row with quotient and remainder: no slope, so no rounding that
-//! could pile up.
+//! One edge, walked from row to row with quotient and remainder: there is no slope, so no rounding that could
+//! accumulate.
 //!
 //! The pixels of a row that lie right of an edge, or on it, begin at
 //!
@@ -42,7 +42,7 @@ impl Edge {
         let numerator = i64::from(a.0 - 128) * i64::from(dy) + i64::from(dx) * i64::from(below);
         let (x, rest) = denominator.div_rem_floor(numerator + denominator.get() - 1);
         let (step, step_rest) = denominator.div_rem_floor(i64::from(dx) * 256);
-        // x within ±4,097, step within ±2²¹, the rests below the denominator, at most 2²⁹.
+        // x within ±4,097, step within ±2²¹, the remainders below the denominator, at most 2²⁹.
         Self {
             x: x as i32,
             rest: rest as i32,
@@ -55,7 +55,7 @@ impl Edge {
     /// Steps to the next row.
     #[inline]
     pub(crate) fn down(&mut self) {
-        // Both rests are below 2²⁹.
+        // Both remainders are below 2²⁹.
         self.rest += self.step_rest;
         let carry = i32::from(self.rest >= self.denominator);
         self.rest -= self.denominator * carry;

@@ -1,40 +1,39 @@
-//! Shades in f32, as a program of today has them: every attribute divided by w, linear on the screen, and
-//! multiplied by w again at every pixel.
+//! Shades in f32, as today's programs compute them: every attribute divided by w, interpolated linearly on the screen,
+//! and multiplied by w again at every pixel.
 //!
 //! ```text
 //! shade(k) = (n + k·dn) / (d + k·dd)        n: shade/w, d: 1/w, at the row's start; k pixels from there
 //! ```
 //!
-//! A vertex's depth is `2³⁰·near / w`, so it stands for 1/w. With λ the weights of the corners and s their shades
-//! n = Σ λᵢ·dᵢ·sᵢ and d = Σ λᵢ·dᵢ, summed in f64 over the vertices in their order from top to bottom, then
-//! rounded to f32; dn and dd are exact before they are rounded. The factor by which n and d are larger than
-//! shade/w and 1/w is the same, and drops out.
+//! A vertex's depth is `2³⁰·near / w`, so it stands for 1/w. With λ the weights of the corners and s their shades, n =
+//! Σ λᵢ·dᵢ·sᵢ and d = Σ λᵢ·dᵢ, summed in f64 over the vertices from top to bottom, then rounded to f32; dn and dd are
+//! exact before they are rounded. n and d are larger than shade/w and 1/w by the same factor, which cancels.
 //!
 //! # Where a row starts
 //!
-//! A row starts at its far end: its first covered pixel inside the frame if 1/w grows to the right or stays; otherwise
-//! its last, and k then counts down from 0. From the near end on the divisor would shrink, while the rounding error of
-//! its start stays: for w from 1 to 10⁴ in a row that is up to 0.9 of a shade. Both ends are the frame's, whatever the
-//! clip rectangle, and every pixel is made from its own k, so a part of a row has the bytes of the whole.
+//! A row starts at its far end: at its first covered pixel inside the frame if 1/w grows to the right or is constant,
+//! otherwise at its last, and k then counts down from 0. From the near end the divisor would shrink while the rounding
+//! error of its start stays: for w from 1 to 10⁴ in a row that is up to 0.9 of a shade. Both ends are the frame's,
+//! whatever the clip rectangle, and every pixel is computed from its own k, so a part of a row has the bytes of the
+//! whole.
 //!
 //! # How far a byte is from exact
 //!
-//! With u = 2⁻²⁴, N and D the exact values and S the greatest shade of a vertex: N ≤ S·D everywhere, and D at
-//! the row's start b is no more than at any pixel k. The start is rounded once, the step and its product with k
-//! once each, and the sum; so
+//! With u = 2⁻²⁴, N and D the exact values and S the greatest shade of a vertex, N ≤ S·D everywhere, and D at the row's
+//! start b is no greater than at any pixel k. The start, the step, the step's product with k, and the sum are each
+//! rounded once; so
 //!
 //! ```text
 //! |n(k) − N(k)| ≤ u·(N(b) + 2·|N(k) − N(b)| + N(k)) ≤ 3u·max(N(b), N(k)) ≤ 3u·S·D(k)
 //! |d(k) − D(k)| ≤ 3u·D(k)                                        in the same way
 //! ```
 //!
-//! to the first order in u, and the quotient is off by no more than 6u·S, 7u·S once it is rounded. S is at most
-//! 255: less than 7/65,536 of a shade. Clamping to the range of the vertices brings no value farther from
-//! one in it. Rounding to a byte has another 1/65,536: all in all a byte is within ½ + 1/8,192 of a shade of
-//! exact, for any triangle, however thin and however deep.
+//! to first order in u, and the quotient is off by at most 6u·S, 7u·S once it is rounded. S is at most 255, so that is
+//! less than 7/65,536 of a shade. Clamping to the range of the vertices moves no value farther from one inside it.
+//! Rounding to a byte adds 1/65,536: in all, a byte is within ½ + 1/8,192 of a shade of exact, for any triangle,
+//! however thin and however deep.
 //!
-//! The clamp keeps bytes in range, and nothing else: here, not by rounding one way, as in
-//! [`shade`](super::shade).
+//! Here only the clamp keeps bytes in range, not rounding in one direction as in [`shade`](super::shade).
 
 use super::cover::{Row, SortedTriangle};
 use super::weights::{Weights, in_f64};
@@ -52,7 +51,7 @@ pub(in crate::raster) struct FloatPlane {
     range: [f32; 2],
 }
 
-/// A row's n and d at its start, each with its step: what [`fill_float`](crate::span::float::fill_float) takes.
+/// A row's n and d at its start, each with its step: the input of [`fill_float`](crate::span::float::fill_float).
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct FloatRow {
     /// The column at which k is 0.
@@ -73,7 +72,7 @@ impl FloatPlane {
             let [a, b, c] = three(weights.per_column(), i128::from);
             a * products[0] + b * products[1] + c * products[2]
         };
-        // In 1/256 shade; at most 2⁸⁰, which f32 has.
+        // In 1/256 shade; at most 2⁸⁰, which f32 can represent.
         let dn = step(three([0, 1, 2], |i| i128::from(depths[i]) * i128::from(shades[i]))) as f32 / 256.0;
         let dd = step(three(depths, i128::from)) as f32;
         // 48 bits and 32.

@@ -1,18 +1,17 @@
 //! Perspective-correct shades: linear on the face, so a hyperbola along a row (Hill).
 //!
-//! A value that is linear on a face in space is, over the screen, the quotient of two linear functions:
-//! the value divided by w, and 1 / w. A vertex's depth is `2³⁰·near / w`, rounded, so with λ the
-//! weights of the three vertices, which are areas and whole numbers,
+//! A value that is linear on a face in space is, on the screen, the quotient of two linear functions: the value divided
+//! by w, and 1 / w. A vertex's depth is `2³⁰·near / w`, rounded. So with λ the weights of the three vertices, which are
+//! areas and whole numbers,
 //!
 //! ```text
 //! I(x, y) = Σ λᵢ·dᵢ·Iᵢ / Σ λᵢ·dᵢ
 //! ```
 //!
-//! Numerator and denominator are exact: at most 2⁴² · 2³² · 2¹⁶. The byte is the nearest shade,
-//! `floor((I + 128) / 256)`, in one quotient. It is in the range of the vertices because I is a mean of
-//! theirs with weights that are not negative, and the quotient is exact. From the truth it is half a
-//! shade off, and what the rounding of depths adds: for w from 1 to 10⁴ within one triangle a
-//! depth is off by 5 parts in 10⁶ at most, a shade by 0.003.
+//! Numerator and denominator are exact: at most 2⁴² · 2³² · 2¹⁶. The byte is the nearest shade, `floor((I + 128) /
+//! 256)`, in one quotient. It is in the range of the vertices because I is a mean of theirs with non-negative weights,
+//! and the quotient is exact. It is off from the truth by half a shade and what the rounding of depths adds: for w from
+//! 1 to 10⁴ within one triangle a depth is off by at most 5 parts in 10⁶, a shade by 0.003.
 
 use super::cover::SortedTriangle;
 use super::weights::{Weights, in_f64};
@@ -38,8 +37,8 @@ impl HyperbolicPlane {
         Self { weights: Weights::new(triangle), depths, shades }
     }
 
-    /// The sums, over the corners, of weight times depth times shade (with `more` added to each) and of weight times
-    /// depth. Depth times shade is below 2⁴⁹.
+    /// The sums, over the corners, of weight times depth times shade (with `more` added to each shade) and of weight
+    /// times depth. Depth times shade is below 2⁴⁹.
     fn sums(&self, weights: [i64; 3], more: i64) -> (i128, i128) {
         let sum = |value: [i64; 3]| {
             let [a, b, c] = three([0, 1, 2], |i| i128::from(weights[i]) * i128::from(value[i]));
@@ -77,17 +76,17 @@ impl HyperbolicPlane {
         fill_quotients(pixels, n, dn, d, dd);
     }
 
-    /// Fills a row by quotients in f64, exact where these cannot decide. Returns whether it was done.
+    /// Fills a row with quotients in f64, exact ones where these cannot decide. Returns whether it did.
     ///
-    /// The estimated value is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. With ε = 2⁻⁵³, N(k) and D(k) the exact
-    /// sums at pixel k, their largest values N and D at the two ends, and R = D over the least D(k), which lies at an end
-    /// too:
+    /// The estimated value is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. Let ε = 2⁻⁵³, N(k) and D(k) the exact
+    /// sums at pixel k, N and D their largest values, which are at the two ends, and R = D over the least D(k), which
+    /// is at an end too:
     ///
-    /// 1. Weights are exact, and so are depths times shades. Three products and two sums, of numbers that are not
-    ///    negative: N(0) is off by 3εN.
-    /// 2. No weight is negative at either end, so what k steps change one by is at most the sum of both its values there;
-    ///    the step is off by 3ε of the sum of its terms' sizes, and k of them by 3ε·(N(0) + N(last)), 6εN.
-    /// 3. Their product with k has εN more, the sum another: the numerator is off by less than 12εN, and the divisor by
+    /// 1. Weights are exact, and so are depths times shades. There are three products and two sums of non-negative
+    ///    numbers: N(0) is off by 3εN.
+    /// 2. No weight is negative at either end, so k steps change a weight by at most the sum of its values at both
+    ///    ends; the step is off by 3ε of the sum of its terms' magnitudes, and k of them by 3ε·(N(0) + N(last)), 6εN.
+    /// 3. Their product with k adds εN, the sum another: the numerator is off by less than 12εN, and the divisor by
     ///    12εD in the same way.
     /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
     ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
@@ -116,14 +115,14 @@ impl HyperbolicPlane {
         is_sure
     }
 
-    /// Returns whether divisors of so many pixels, the first one and its change from one to the next, lie near enough to each
-    /// other for quotients in f64.
+    /// Returns whether the divisors of this many pixels, given by the first one and its change per pixel, are close
+    /// enough to each other for quotients in f64.
     #[inline(always)]
     pub(in crate::raster) fn is_sure(d: f64, dd: f64, pixels: usize) -> bool {
         const MAX_RATIO: f64 = 32_768.0;
         // At most 4,096 pixels.
         let last = d + pixels.saturating_sub(1) as f64 * dd;
-        // False for what is not a number, too.
+        // False for NaN too.
         d.min(last) * MAX_RATIO >= d.max(last)
     }
 }
@@ -137,15 +136,16 @@ mod tests {
     use proptest::prelude::*;
 
     fn corner() -> impl Strategy<Value = (i32, i32, u16, u32)> {
-        // Halves, where a quotient is a whole number all along a triangle of one shade, among the shades, and all sizes of
-        // depths.
+        // Shades include halves, whose quotient is a whole number all along a triangle of one shade; depths have all
+        // sizes.
         let shade = prop_oneof![0_u16..=0xFF00, Just(0x4080), Just(0), Just(0xFF00), Just(0x40FF)];
         let depth = (0_u32..32, any::<u32>()).prop_map(|(bits, depth)| depth >> bits);
         (-20_000..100_000_i32, -20_000..20_000_i32, shade, depth)
     }
 
-    /// One shade all over, half a shade below a step: every exact quotient is a whole number. The row's last pixel is 1 unit
-    /// from the far edge, where the divisor is 2³⁰ times less than at its first and holds little but the first's rounding.
+    /// One shade everywhere, half a shade below a step: every exact quotient is a whole number. The row's last pixel is
+    /// 1 unit from the far edge, where the divisor is 2³⁰ times less than at the first and consists of little but the
+    /// first's rounding error.
     #[test]
     fn where_the_divisor_falls_too_far_there_is_no_estimate() {
         for (last, height) in (200..4_000).step_by(19).zip((20_000..1 << 20).step_by(997)) {

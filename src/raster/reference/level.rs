@@ -1,21 +1,21 @@
-//! Mipmap levels: the one that a pixel's texel is taken from.
+//! Mipmap levels: which one a pixel's texel comes from.
 //!
-//! A step of one pixel goes (∂u/∂x, ∂v/∂x) texels along a row of the screen, (∂u/∂y, ∂v/∂y) down a column. The longer of
-//! the two steps, ρ, is the texels to a pixel (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983), and the level is the
-//! one whose texels are nearest to ρ by ratio: the least n with ρ ≤ √2 · 2ⁿ, and the last level where there is none.
-//! √2 is taken as 181/128, and a step's length as the longer side and half the shorter one, which is up to 12 % too
-//! long and never too short.
+//! A step of one pixel moves (∂u/∂x, ∂v/∂x) texels along a row of the screen, (∂u/∂y, ∂v/∂y) down a column. The longer
+//! of the two steps, ρ, is the number of texels per pixel (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983), and
+//! the level is the one whose texels are nearest to ρ by ratio: the least n with ρ ≤ √2 · 2ⁿ, or the last level if
+//! there is none. √2 is taken as 181/128, and a step's length as the longer side plus half the shorter one, which is up
+//! to 12 % too long and never too short.
 //!
-//! Coordinates that are linear on the screen have one ρ, and a face has one level. For those that follow the
-//! perspective, with λ the areas opposite to the corners, A their sum, d the corners' depths and D = Σ λᵢdᵢ,
+//! Coordinates that are linear on the screen have one ρ, so a face has one level. For perspective-correct ones, with λ
+//! the areas opposite the corners, A their sum, d the corners' depths and D = Σ λᵢdᵢ,
 //!
 //! ```text
 //! ∂u/∂x = A · Σ dᵢdⱼ(uᵢ − uⱼ)(y − yₖ) / D²        over (i, j, k) = (0, 1, 2), (1, 2, 0), (2, 0, 1)
 //! ∂u/∂y = A · Σ dᵢdⱼ(uⱼ − uᵢ)(x − xₖ) / D²
 //! ```
 //!
-//! so one numerator is the same all along a row, and the other linear. The depth D / A is taken in whole sixteenths,
-//! rounded down. All else is exact.
+//! so one numerator is constant along a row, and the other is linear. The depth D / A is taken in whole sixteenths,
+//! rounded down. Everything else is exact.
 
 use super::cover::SortedTriangle;
 use crate::span::hyperbolic::floor_quotient;
@@ -26,33 +26,33 @@ fn doubled([u, v]: [i128; 2]) -> u128 {
     2 * u.max(v) + u.min(v)
 }
 
-/// The least level, up to `last`, at which neither of two steps is longer than √2 texels. Twice their lengths are given, in
-/// units of which a texel of level 0 has so many.
+/// The least level, up to `last`, at which neither of two steps is longer than √2 texels. `across` and `down` are twice
+/// their lengths, and `unit` is a texel of level 0 in the same unit.
 fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
     // Twice a length is below 2¹²¹, a unit below 2¹¹⁵.
     let (mut length, longest) = (64 * across.max(down), 181 * unit);
     let mut level = 0;
     while level < last && length > longest {
-        // Rounded up: it is then above `longest` just where the exact half is.
+        // Rounded up: it is then above `longest` exactly where the exact half is.
         length = length.div_ceil(2);
         level += 1;
     }
     level
 }
 
-/// The level of a face whose coordinates are linear on the screen. They change by these from one pixel of a row, and of a
-/// column, to the next, times the area.
+/// The level of a face whose coordinates are linear on the screen. `across` and `down` are their changes from one pixel
+/// of a row, and of a column, to the next, times the area.
 pub(in crate::raster) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
     let (across, down) = (doubled(across), doubled(down));
     // Coordinates have 16 fraction bits. The area is at most 2⁴².
     choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
 }
 
-/// Levels of a face whose coordinates follow the perspective.
+/// Levels of a face with perspective-correct coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct LevelPlane {
     area: i64,
-    /// The sums Σ dᵢdⱼ(uᵢ − uⱼ) for u and for v. Below: each term times yₖ, and each times xₖ.
+    /// The sums Σ dᵢdⱼ(uᵢ − uⱼ) for u and for v. Below: the same with each term times yₖ, and times xₖ.
     sums: [i128; 2],
     times_y: [i128; 2],
     times_x: [i128; 2],
@@ -75,18 +75,19 @@ impl LevelPlane {
         Self { area: triangle.area(), sums, times_y, times_x }
     }
 
-    /// Twice the length of the sums at a row or a column, of which the corners have `times`.
+    /// Twice the length of the sums at a row or a column; `times` are the sums with the corners' coordinate as a
+    /// factor.
     fn doubled_at(&self, pixel: i32, times: &[i128; 2]) -> u128 {
         let centre = i128::from(pixel) * 256 + 128;
         doubled([self.sums[0] * centre - times[0], self.sums[1] * centre - times[1]])
     }
 
-    /// Returns the part of [`at`](Self::at) that is a row's: twice the length of a step along it.
+    /// The part of [`at`](Self::at) that a row shares: twice the length of a step along it.
     pub(in crate::raster) fn across(&self, y: i32) -> u128 {
         self.doubled_at(y, &self.times_y)
     }
 
-    /// The level at a pixel of column `x` whose centre lies in the triangle, where D is `denominator`.
+    /// The level at a pixel of column `x` whose centre lies in the triangle; D is `denominator`.
     pub(in crate::raster) fn at(&self, across: u128, x: i32, denominator: i128, last: u32) -> u32 {
         // A mean of depths from 1 to 2³², in sixteenths.
         let depth = floor_quotient(16 * denominator, i128::from(self.area)).unsigned_abs();

@@ -10,7 +10,7 @@
 //! | [`edge`], [`cover`] | the fill rule: which pixels a triangle covers |
 //! | [`quotient`] | exact floors by one reciprocal per divisor |
 //! | [`shade`], [`fixed16`], [`hyperbolic`], `float` | the shade at a pixel, for each [`Interpolation`](super::Interpolation) |
-//! | `weights` | what a corner counts at a pixel |
+//! | `weights` | how much a corner counts at a pixel |
 //! | [`depth`] | the depth at a pixel |
 //! | `texture`, `level` | the texture coordinates at a pixel, and the level of a mipmap |
 

@@ -11,10 +11,9 @@
 //! if r < 0 { q −= 1; r += d }   now 0 ≤ r < d: q is the floor
 //! ```
 //!
-//! One correction is enough while |n/d| < 2⁴⁶: the product's error is then below 2⁴⁶ · 3 · 2⁻⁵³ <
-//! 0.03, so |q − n/d| < 0.53 and −0.53·d < r < 0.53·d. The result is the integer floor, so the same on every processor;
-//! where there is no f64 unit the integer division is used, and nothing of this module links a
-//! soft-float routine.
+//! One correction is enough while |n/d| < 2⁴⁶: the product's error is then below 2⁴⁶ · 3 · 2⁻⁵³ < 0.03, so |q − n/d| <
+//! 0.53 and −0.53·d < r < 0.53·d. The result is the integer floor, so it is the same on every processor; where there is
+//! no f64 unit, integer division is used, and this module links no soft-float routine.
 
 use crate::fixed::{HAS_F64, nearest_whole};
 
@@ -30,7 +29,7 @@ impl Divisor {
     /// The largest quotient, either way, that one correction is proved for.
     pub const MAX_QUOTIENT: i64 = 1 << 46;
 
-    /// `divisor` must be 1 to 2⁴⁴; what is less counts as 1.
+    /// A divisor of 1 to 2⁴⁴; anything less counts as 1.
     #[must_use]
     #[inline]
     pub fn new(divisor: i64) -> Self {
@@ -120,7 +119,7 @@ mod tests {
         #[test]
         fn anywhere(d_bits in 0..42_u32, d in any::<i64>(), n_bits in 0..61_u32, n in any::<i64>()) {
             let d = (d & ((2_i64 << d_bits) - 1)).max(1);
-            // Not by `prop_assume`: a twentieth of 20,000 cases is as many as proptest lets go.
+            // Not with `prop_assume`: proptest tolerates rejecting no more than a twentieth of the 20,000 cases.
             let n = n % (2_i64 << n_bits).min(d.saturating_mul(Divisor::MAX_QUOTIENT));
             check(n, d);
         }

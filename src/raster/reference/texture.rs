@@ -21,17 +21,19 @@ pub(in crate::raster) fn depth(triangle: &SortedTriangle, corner: usize) -> i64 
 /// u(x, y) = c + (gx·(256·x + 128 − x₀) + gy·(256·y + 128 − y₀)) / A
 /// ```
 ///
-/// It is rounded back toward where it comes from, as shades are, so no sum leaves the range of the corners. Inside the
-/// triangle the fraction's value is at most D, by which the corners differ most. Where D·A is below 2⁶¹, which it is for
-/// triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms are.
+/// It is rounded like shades, down where it rises and up where it falls, so no sum leaves the range of the corners.
+/// Inside the triangle the fraction is at most D, the largest difference between corners. Where D·A is below 2⁶¹, which
+/// it is for triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms
+/// are.
 ///
-/// Level n has c and the quotient, rounded already, divided by 2ⁿ and rounded once more: the same as if it were rounded once.
+/// In level n, the sum of c and the rounded quotient is divided by 2ⁿ and rounded again, with the same result as
+/// rounding once.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct AffinePlane {
     area: Divisor,
     /// c.
     coordinate: i64,
-    /// (x₀, y₀) from the centre of pixel (0, 0).
+    /// (x₀, y₀), relative to the centre of pixel (0, 0).
     corner: [i64; 2],
     /// (gx, gy), each within 2⁵⁵.
     gradient: [i64; 2],
@@ -73,7 +75,7 @@ impl AffinePlane {
         }
     }
 
-    /// The numerators of the change from one 1/256 pixel to the next, in x and in y.
+    /// The numerators of the change per 1/256 pixel, in x and in y.
     pub(in crate::raster) fn gradient(&self) -> [i64; 2] {
         self.gradient
     }
@@ -139,14 +141,14 @@ fn estimate([wa, wb, wc]: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
     wa * a + wb * b + wc * c
 }
 
-/// The floor of a coordinate n / d, whose estimate is less than ½ off.
+/// The floor of a coordinate n / d, given an estimate less than ½ off.
 #[inline]
 fn floor(estimate: f64, n: i128, d: i128) -> i64 {
     if !HAS_F64 {
         // A mean of coordinates.
         return n.div_euclid(d) as i64;
     }
-    // The floor or the next number up.
+    // The floor or the next integer.
     let near = nearest_whole(estimate);
     near - i64::from(n < i128::from(near) * d)
 }
@@ -175,7 +177,7 @@ impl PerspectiveTexture {
         exact(self.weights.at(x, y), self.values[2])
     }
 
-    /// The places of `n` texels of one level, from a pixel on, each exact.
+    /// The indices of `n` texels of one level, from a pixel on, each exact.
     #[inline(always)]
     pub(in crate::raster) fn exact<S: Lanes8>(
         &self,
@@ -200,7 +202,7 @@ impl PerspectiveTexture {
         self.in_integers((texels, shift), (x, y), &mut places[..n]);
     }
 
-    /// [`exact`](Self::exact) in whole numbers, for where an estimate cannot decide.
+    /// [`exact`](Self::exact) in integers, for pixels where an estimate cannot decide.
     #[inline(never)]
     pub(in crate::raster) fn in_integers(
         &self,

@@ -1,16 +1,16 @@
 //! The weights of a triangle's corners at a pixel, exact.
 //!
-//! The weight of a corner is twice the area of the part of the triangle that lies opposite to it: a whole
-//! number of at most 2⁴² in the triangle. Over the screen it is linear; all terms are whole and below 2⁴⁴, so
-//! f64 loses nothing of them. None is negative at a centre that is covered: a sum of such weights times
-//! values above 0 cancels nothing, and is right to a few parts in 2⁵³ however thin the triangle.
+//! The weight of a corner is twice the area of the part of the triangle opposite it: a whole number of at most 2⁴² in
+//! the triangle. It is linear on the screen; all terms are whole and below 2⁴⁴, so f64 holds them exactly. None is
+//! negative at a covered centre, so in a sum of such weights times values above 0 nothing cancels, and it is right to a
+//! few parts in 2⁵³ however thin the triangle.
 
 use super::cover::SortedTriangle;
 
 /// The weights of the three corners, as whole numbers.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct Weights {
-    /// At column 0's centre of row 0.
+    /// At the centre of pixel (0, 0).
     origin: [i64; 3],
     per_column: [i64; 3],
     per_row: [i64; 3],
@@ -41,14 +41,14 @@ impl Weights {
         [at(0), at(1), at(2)]
     }
 
-    /// Change of the weights from one pixel to the next. They add up to 0, and are within 2³⁰.
+    /// Change of the weights per pixel. The changes add up to 0 and are within 2³⁰.
     #[inline]
     pub(in crate::raster) fn per_column(&self) -> [i64; 3] {
         self.per_column
     }
 }
 
-/// Weights in f64, which is exact: they are at most 2⁴⁴.
+/// Weights in f64, exactly: they are at most 2⁴⁴.
 #[inline]
 pub(in crate::raster) fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
     [a as f64, b as f64, c as f64]

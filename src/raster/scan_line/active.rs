@@ -1,4 +1,4 @@
-//! The active list: the faces that the row at hand crosses, each with its two edges.
+//! The active list: the faces that cross the current row, each with its two edges.
 
 use super::Key;
 use crate::raster::frame::Rect;
@@ -8,22 +8,22 @@ use crate::raster::reference::cover::{Row, RowWalk, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
 use crate::raster::vertex::Vertex;
 
-/// A face on its way down the rows: the two edges that the row at hand crosses. Opaque; the caller
-/// lends a slice of them ([`Scratch`](super::Scratch)).
+/// A face whose rows are being walked: the two edges that cross the current row. Opaque; the caller lends a slice of
+/// them ([`Scratch`](super::Scratch)).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgePair {
     triangle: SortedTriangle,
     pub(super) interpolation: Interpolation,
-    /// Its index among the faces: the first of equal depths has the pixel.
+    /// Its index among the faces: at equal depths the first gets the pixel.
     pub(super) order: usize,
     walk: RowWalk,
-    /// Its pixels on the row at hand.
+    /// Its pixels on the current row.
     pub(super) row: Row,
     /// True if it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
     paint: Option<RowShader>,
     depth: Option<DepthPlane>,
-    /// The next free index, where no face has this one.
+    /// The next free index, if no face has this one.
     next_free: usize,
 }
 
@@ -34,7 +34,7 @@ impl EdgePair {
             triangle,
             interpolation,
             order,
-            // Only faces that have rows are given.
+            // Only faces that have rows are passed in.
             walk: triangle.extent(clip).map(|rows| RowWalk::new(&triangle, rows)).unwrap_or_default(),
             hides_background: vertices.iter().all(|v| v.depth() > 0),
             ..Self::default()
@@ -47,13 +47,13 @@ impl EdgePair {
         self.walk.down(&self.triangle)
     }
 
-    /// Its shades, worked out when it first has a pixel.
+    /// Its shades, computed when it first has a pixel.
     #[inline]
     pub(super) fn paint(&mut self) -> &RowShader {
         self.paint.get_or_insert_with(|| RowShader::new(&self.triangle, self.interpolation))
     }
 
-    /// Its depths, worked out when it first meets another face.
+    /// Its depths, computed when it first meets another face.
     #[inline]
     pub(super) fn depth(&mut self) -> &DepthPlane {
         self.depth.get_or_insert_with(|| DepthPlane::new(&self.triangle))
@@ -62,14 +62,13 @@ impl EdgePair {
 
 /// The active list, sorted by the first column of each face.
 pub(super) struct List<'a> {
-    /// Keys of a column and a place in `pairs`.
+    /// Keys of a column and an index into `pairs`.
     keys: &'a mut [u64],
     active: usize,
     pairs: &'a mut [EdgePair],
-    /// The first place in `pairs` that a face has left, or `used`.
+    /// The first index in `pairs` that a face has freed, or `used`.
     free: usize,
-    /// Places in `pairs` that a face has ever had. They are used again, so that few are, and these
-    /// stay in the cache.
+    /// Number of entries of `pairs` ever used. Freed entries are reused, so they are few and stay in the cache.
     used: usize,
     y: i32,
     clip: Rect,
@@ -81,12 +80,12 @@ impl<'a> List<'a> {
         Self { keys, active: 0, pairs, free: 0, used: 0, y: 0, clip, frame_width }
     }
 
-    /// The row at hand, or `None` if no face is active.
+    /// The current row, or `None` if no face is active.
     pub(super) fn row(&self) -> Option<i32> {
         (self.active > 0).then_some(self.y)
     }
 
-    /// The key at this place of the list.
+    /// The key at this index of the list.
     #[inline]
     pub(super) fn key(&self, place: usize) -> Option<Key> {
         self.keys[..self.active].get(place).map(|key| Key(*key))
@@ -102,7 +101,7 @@ impl<'a> List<'a> {
         &mut self.pairs[slot]
     }
 
-    /// Takes in the faces that begin at row `y`. `coming` holds their keys, and is used up.
+    /// Inserts the faces that begin at row `y`. `coming` holds their keys, and is used up.
     pub(super) fn enter(&mut self, y: i32, coming: &mut [u64], faces: &[([Vertex; 3], Interpolation)]) {
         self.y = y;
         for key in &mut *coming {
@@ -133,7 +132,7 @@ impl<'a> List<'a> {
         }
     }
 
-    /// Steps to the next row: faces that end leave, the others are put in order again.
+    /// Steps to the next row: faces that end are removed, the others are sorted again.
     pub(super) fn down(&mut self) {
         self.y += 1;
         let mut kept = 0;

@@ -1,4 +1,4 @@
-//! Hidden surfaces by the scan-line method (the Russian textbook's own): all faces of a frame at once, row by row, and
+//! Hidden surfaces by the scan-line method (the Russian textbook's own): all faces of a frame at once, row by row, with
 //! every pixel written once.
 //!
 //! ```text
@@ -6,29 +6,29 @@
 //! for every row:
 //!     the faces that begin here enter the active list, which is sorted by the left edges' x
 //!     from left to right, in segments from one edge to the next:
-//!         of the faces open in the segment the nearest has it; its shades ride along
-//!     every face's two edges go down a row, those that end leave, the list is sorted again
+//!         of the faces open in the segment the nearest is drawn, its shades continuing from before
+//!     every face's two edges step down a row, faces that end are removed, the list is sorted again
 //! ```
 //!
-//! The picture is the depth buffer's, byte for byte: cover by the same edges, depth by the same
-//! [`DepthPlane`](super::reference::depth::DepthPlane), of equal depths the first submitted, and each shade from
-//! the start that the triangle alone would have. It needs no depth for every pixel and paints no
-//! pixel that another face hides; a face that no other overlaps needs no depth at all.
+//! The image is the depth buffer's, byte for byte: coverage by the same edges, depth by the same
+//! [`DepthPlane`](super::reference::depth::DepthPlane), the first submitted of equal depths, and each shade from the
+//! start that the triangle alone would have. It does not need a depth for every pixel and paints no pixel that another
+//! face hides; a face that no other overlaps needs no depth at all.
 //!
-//! [`GouraudVintage`](Interpolation::GouraudVintage), whose triangles have edges of their own, gets exact cover here like all
-//! others, and its own [shades](super::vintage) on it; so it alone gives other frames than the depth buffer.
+//! [`GouraudVintage`](Interpolation::GouraudVintage), whose triangles have edges of their own, gets exact coverage here
+//! like all others, with its own [shades](super::vintage) on it, so it alone gives different frames than the depth
+//! buffer.
 //!
 //! | file | what |
 //! |---|---|
-//! | `active` | a face on its way down the rows: its two edges |
-//! | `nearest` | which of the open faces has a segment, and how far |
+//! | `active` | faces whose rows are being walked: their two edges |
+//! | `nearest` | which of the open faces a segment belongs to, and how far |
 //!
 //! # What it costs
 //!
-//! Every face that is open in a segment covers each of its pixels, and a segment has one pixel at
-//! least. So all that is done in segments is bounded by the pixels that a depth buffer would test;
-//! on a model it is far less. The list is sorted by insertion, since from row to row it hardly
-//! changes: two faces change places only where their left edges cross.
+//! Every face that is open in a segment covers each of its pixels, and a segment has at least one pixel. So the work
+//! done in segments is bounded by the pixels that a depth buffer would test; on a model it is far less. The list is
+//! sorted by insertion, since it hardly changes from row to row: two faces swap only where their left edges cross.
 
 mod active;
 mod nearest;
@@ -44,8 +44,7 @@ use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::span::Kernel;
 
-/// The memory of the scan-line method, lent by the caller. Its contents between two frames make no
-/// difference.
+/// The memory of the scan-line method, lent by the caller. Its contents between two frames do not matter.
 #[derive(Debug)]
 pub struct Scratch<'a> {
     list: &'a mut [u64],
@@ -53,17 +52,17 @@ pub struct Scratch<'a> {
 }
 
 impl<'a> Scratch<'a> {
-    /// Entries of the list that a face needs: one each among those to come, the active and the open.
+    /// List entries per face: one each among the coming, the active and the open.
     pub const LIST_EACH: usize = 3;
 
-    /// Takes memory for n faces: `list` is [`LIST_EACH`](Self::LIST_EACH)·n long at least, and `pairs` n.
+    /// Takes memory for n faces: `list` is at least [`LIST_EACH`](Self::LIST_EACH)·n long, and `pairs` at least n.
     #[must_use]
     pub fn new(list: &'a mut [u64], pairs: &'a mut [EdgePair]) -> Self {
         Self { list, pairs }
     }
 }
 
-/// Memory of the scan-line method that is made as long as needed.
+/// Memory of the scan-line method that grows as needed.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
@@ -73,7 +72,7 @@ pub struct Lists {
 
 #[cfg(feature = "alloc")]
 impl Lists {
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
     }
@@ -84,7 +83,7 @@ impl Lists {
         self.pairs.reserve(faces.saturating_sub(self.pairs.len()));
     }
 
-    /// Memory for so many faces.
+    /// Memory for this many faces.
     pub fn scratch(&mut self, faces: usize) -> Scratch<'_> {
         let least = |length: usize, needed: usize| length.max(needed);
         self.list.resize(least(self.list.len(), faces.saturating_mul(Scratch::LIST_EACH)), 0);
@@ -112,16 +111,16 @@ crate::errors::debug_as_display!(ScratchError);
 
 impl core::error::Error for ScratchError {}
 
-/// Something with a place in the order of the scan: a row or a column above a number.
+/// A sort key: a row or a column in the upper bits, an index in the lower.
 ///
-/// Sorting these sorts by the place, then by the number.
+/// Keys sort by the row or column, then by the index.
 #[derive(Clone, Copy)]
 struct Key(u64);
 
 impl Key {
     const NUMBER_BITS: u32 = 48;
 
-    /// `place` is a row or column of a frame or the one after its last. No slice of faces has 2⁴⁸.
+    /// `place` is a row or column of a frame or the one after its last. No slice has 2⁴⁸ faces.
     #[inline]
     fn new(place: i32, number: usize) -> Self {
         Self((place as u64) << Self::NUMBER_BITS | number as u64)
@@ -140,11 +139,11 @@ impl Key {
 
 impl<D: Cell> Raster<'_, D> {
     internal! {
-    /// Draws all `faces` of a frame, of each pixel the nearest one, and writes no pixel twice: the
-    /// bytes of drawing them one after the other with a cleared depth buffer.
+    /// Draws all `faces` of a frame, at each pixel the nearest one, and writes no pixel twice: the bytes are those of
+    /// drawing them in order with a cleared depth buffer.
     ///
-    /// The frame's former contents count as background. A depth buffer that the raster has is neither
-    /// looked at nor changed.
+    /// The frame's former contents count as background. The raster's depth buffer, if it has one, is neither read nor
+    /// changed.
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
@@ -167,7 +166,7 @@ impl<D: Cell> Raster<'_, D> {
     /// ```
     ///
     /// # Errors
-    /// `scratch` is too small for so many faces. Nothing is drawn then.
+    /// `scratch` is too small for this many faces. Nothing is drawn then.
     fn scan_line(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],
@@ -177,10 +176,10 @@ impl<D: Cell> Raster<'_, D> {
     }
     }
 
-    /// Draws faces like [`scan_line`](Self::scan_line), but lets `paint` paint them otherwise.
+    /// Draws faces like [`scan_line`](Self::scan_line), but lets `paint` paint them differently.
     ///
-    /// `paint` is handed a face's index in `faces`, a row of it, the frame's whole row, the kernel and the counts. It
-    /// returns whether it painted; if not, the face is painted as its shading says.
+    /// `paint` is given a face's index in `faces`, a row of it, the frame's whole row, the kernel and the counts. It
+    /// returns whether it painted; if not, the face is painted with its own shading.
     ///
     /// # Errors
     /// Those of [`scan_line`](Self::scan_line).
@@ -221,12 +220,12 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
-/// Paints a face's row otherwise than its shading says, or returns `false`.
+/// Paints a face's row in place of its shading, or returns `false`.
 trait Painter: FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool {}
 
 impl<F: FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool> Painter for F {}
 
-/// The pixels from `x0` to `x1` of a row that one face has.
+/// The pixels from `x0` to `x1` of a row, which belong to one face.
 #[derive(Clone, Copy)]
 struct Run {
     slot: usize,
@@ -237,7 +236,7 @@ struct Run {
 /// Sweep along a row, from left to right.
 struct Sweep {
     drawn: DrawStats,
-    /// Not yet painted, because the next segment may be the same face's.
+    /// Not yet painted, because the next segment may belong to the same face.
     run: Option<Run>,
 }
 
@@ -253,7 +252,7 @@ impl Sweep {
         let (mut next, mut opened, mut x) = (0, 0, 0);
         loop {
             if opened == 0 {
-                // On to where a face begins.
+                // Skip to where a face begins.
                 let Some(key) = list.key(next) else { break };
                 x = key.place();
             }

@@ -1,8 +1,8 @@
-//! The bound: how far linear shades are from the light of the model on a patch of a surface. `docs/budget.md` proves
-//! what is used here; its lemmas are named where they are used.
+//! The bound: how far linear shades are from the model's light on a patch of a surface. `docs/budget.md` has the
+//! proofs; its lemmas are named where they are used.
 //!
-//! A patch is a face, or many faces of which no figure exceeds the patch's. Eight patches are bounded at a time in plain
-//! arrays that the compiler vectorises.
+//! A patch is a face, or a set of faces none of whose figures exceeds the patch's. Eight patches are bounded at a time,
+//! in plain arrays that the compiler vectorises.
 
 use super::ranges::{HUGE, Patches, Sight, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes, each};
@@ -10,28 +10,28 @@ use crate::light::{ConeBeam, Lights, Reflectance};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
-/// Greatest turn of a direction, in radians, that is told from any other.
+/// Greatest turn of a direction, in radians: greater ones are not distinguished.
 const GREATEST_TURN: f32 = 1e4;
 
-/// Length of the second derivative of a unit vector, in squares of what it turns by: 2/√3 (Lemma 5).
+/// Length of the second derivative of a unit vector, in squares of its turn: 2/√3 (Lemma 5).
 const BEND: f32 = 1.154_701;
 
-/// Share of a light's strength that the arithmetic of f32 may be off by, in the bound and in the cosines that enter it.
+/// Bound on the error of f32 arithmetic, as a share of a light's strength, in the bound and in the cosines that enter it.
 const ROUNDING: f32 = 2e-5;
 
 /// Spread from which on a face's normals may cancel.
 const CANCELS: f32 = 0.99;
 
-/// Figures of eight patches, whichever light falls on them.
+/// Figures of eight patches that do not depend on the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shapes {
-    /// Radius of the corners' normals (Lemma 1): no face's is greater.
+    /// Radius of the corners' normals (Lemma 1): no face has a greater one.
     pub(super) spread: Lanes<f32>,
     /// Radius of the corners' positions.
     pub(super) edge: Lanes<f32>,
-    /// Size of the parts that the faces are looked at in, as a share of the face.
+    /// Size of the parts into which the faces are divided, as a share of the face.
     pub(super) part: Lanes<f32>,
-    /// Share of its range by which perspective moves a shade along.
+    /// Share of its range by which perspective shifts a shade.
     pub(super) bend: Lanes<f32>,
 }
 
@@ -49,9 +49,9 @@ pub(super) struct Incident<'a> {
     pub(super) answer: &'a Reflectance,
     /// The greatest coordinate of the object's vertices.
     pub(super) extent: f32,
-    /// True if it is lit on red, green and blue apart.
+    /// True if red, green and blue are lit separately.
     pub(super) in_color: bool,
-    /// True if light is meant as it goes on below the horizon, less than none.
+    /// True if light continues below the horizon, as less than none.
     pub(super) below: bool,
 }
 
@@ -64,17 +64,17 @@ pub(super) struct Bounds {
     pub(super) on_face: Lanes<f32>,
 }
 
-/// A highlight's power: constants of Lemma 8.
+/// A highlight's power: the constants of Lemma 8.
 #[derive(Clone, Copy, Debug)]
 struct Lobe {
     shininess: f32,
     /// 1 − 1/s and 1 − 2/s.
     slow: f32,
     fast: f32,
-    /// Where (2y − 1)·e^(−fast·y) is greatest, and what it is there.
+    /// Where (2y − 1)·e^(−fast·y) is greatest, and its value there.
     peak_at: f32,
     peak: f32,
-    /// Where √(2y/s)·e^(−slow·y) is greatest, and what it is there.
+    /// Where √(2y/s)·e^(−slow·y) is greatest, and its value there.
     steepest_at: f32,
     steepest: f32,
 }
@@ -144,7 +144,7 @@ struct Share {
 }
 
 impl Share {
-    /// Lemma 12, from the range of the cosine at the corners, and what the direction turns by.
+    /// Lemma 12, from the range of the cosine at the corners and the turn of the direction.
     #[inline(always)]
     fn new(cone: &ConeBeam, (most, least): (f32, f32), turn: f32) -> Self {
         let (inner, inverse_width) = (cone.inner as f32, cone.inverse_width as f32);
@@ -153,7 +153,7 @@ impl Share {
         let x = |cosine: f32| lesser(greater(1.0 - (inner - cosine) * inverse_width, 0.0), 1.0);
         let (high, low) = (x(most), x(least));
         let share = |x: f32| x * x * (3.0 - 2.0 * x);
-        // The x of the range that is nearest to the steepest one, and the farther end, where it bends most.
+        // The x of the range nearest to the steepest one, and the farther end, where the curve bends most.
         let steepest = greater(lesser(0.5, high), low);
         let is_edge = if low < 1.0 && high > 0.0 { 1.0 } else { 0.0 };
         let slope = is_edge * 6.0 * steepest * (1.0 - steepest) * inverse_width;
@@ -190,7 +190,7 @@ impl FallOff {
 struct Term {
     /// Error of linear shades.
     error: f32,
-    /// What the term differs by on one face, or on a part of it.
+    /// By how much the term varies over one face, or a part of it.
     range: f32,
     most: f32,
     least: f32,
@@ -260,13 +260,13 @@ fn highlight(
         let across = greater(slowly, lesser(beyond, lobe.peak));
         (seen * s * slope, seen * s * (turn * turn * across + aside * slope))
     } else {
-        // s·c^(s − 1) and s(s − 1)·c^(s − 2) are bounded away from c = 0 alone, where the power may be a step.
+        // s·c^(s − 1) and s(s − 1)·c^(s − 2) are bounded only away from c = 0, where the power may be a step.
         let inverse = 1.0 / lowest;
         let power = if s >= 1.0 { inverse } else { inverse * inverse };
         (s * power, s * (1.0 + (s - 1.0).abs()) * (turn * turn + aside) * power)
     };
     let is_smooth = s >= 2.0 || lowest > 0.05;
-    // The light of the horizon, where the highlight begins at once.
+    // The light's horizon, where the highlight starts abruptly.
     let horizon = spread * fall.turn + 0.5 * BEND * fall.turn * fall.turn;
     let (is_lit, is_dark) = (facing_least - horizon > 0.0, facing_most + horizon <= 0.0);
     let most = if is_dark { 0.0 } else { fall.most * bright };
@@ -279,13 +279,13 @@ fn highlight(
     Term { error: lesser(error, range), range, most, least }
 }
 
-/// No less than e^−y, for y of at least 0: e^y is greater than the first terms of its series.
+/// At least e^−y, for y of at least 0: e^y is greater than the first terms of its series.
 #[inline(always)]
 fn falling(y: f32) -> f32 {
     1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0)))))
 }
 
-/// One term on eight patches: error, range, most and least.
+/// One term on eight patches: error, range, greatest and least value.
 type Terms = [Lanes<f32>; 4];
 
 #[inline(always)]
@@ -294,7 +294,7 @@ fn put(terms: &mut Terms, lane: usize, term: Term) {
     (errors[lane], ranges[lane], most[lane], least[lane]) = (term.error, term.range, term.most, term.least);
 }
 
-/// The eye of a surface with highlights: their power, where the eye is seen, and what its direction turns by.
+/// The eye of a surface with highlights: their power, the view of the eye, and how far its direction turns.
 struct Eye<D> {
     lobe: Lobe,
     sight: Sight<D>,
@@ -312,7 +312,7 @@ struct Sums {
 impl Sums {
     #[inline(always)]
     fn add(&mut self, strengths: &[f32; 3], terms: &Terms) {
-        // Index loops, here and below, as in `light::lanes`.
+        // Index loops here and below, as in `light::lanes`.
         let mut channel = 0;
         while channel < self.channels.min(3) {
             let (sums, strength) = (&mut self.of[channel], strengths[channel]);
@@ -362,8 +362,8 @@ impl Sums {
 }
 
 impl Incident<'_> {
-    /// Returns whether all strengths together are so small that their sums are numbers, and places and inverse ranges so
-    /// small that their squares are.
+    /// Returns whether all strengths together are small enough for finite sums, and positions and inverse ranges small
+    /// enough for finite squares.
     fn is_moderate(&self) -> bool {
         const MODERATE: f32 = 1e6;
         let Lights { suns, lamps, eye } = self.lights;
@@ -402,7 +402,7 @@ impl Incident<'_> {
 }
 
 at_best_level! {
-    /// [`interpolation_error`] as the kernel's processor does it best: the same numbers.
+    /// [`interpolation_error`], compiled for the kernel's processor: the same numbers.
     #[inline(never)]
     pub(super) fn error_at_best[const WHOLE: bool, P: Patches][WHOLE, P](
         kernel: Kernel, patches: &P, shapes: &Shapes, incident: &Incident<'_>,
@@ -411,9 +411,9 @@ at_best_level! {
     }
 }
 
-/// Bounds the distance of linear shades from the model's light, rounding to bytes aside, on each of eight patches. `WHOLE`
-/// is of whole faces, the corners of which have unit normals; otherwise the bound is of any part of the faces of the
-/// size that `shapes` says, between light at the part's own corners.
+/// Bounds the distance of linear shades from the model's light, not counting rounding to bytes, on each of eight
+/// patches. With `WHOLE` the bound is for whole faces, whose corners have unit normals; otherwise it is for any part of
+/// the faces of the size given by `shapes`, between light at the part's own corners.
 #[inline(always)]
 pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     patches: &P,
@@ -422,9 +422,9 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
 ) -> Bounds {
     let Lights { suns, lamps, eye } = incident.lights;
     let narrow = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32];
-    // Coordinates of f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
+    // Coordinates in f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
     let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
-    // Beyond that nothing is said, and below nothing overflows.
+    // Beyond moderate values there is no bound, and below them nothing overflows.
     if !incident.is_moderate() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
@@ -481,7 +481,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     for [errors, ranges, most, least] in &sums.of[..sums.channels.min(3)] {
         for lane in 0..LANES {
             let (error, range, most, least) = (errors[lane], ranges[lane], most[lane], least[lane]);
-            // Lemma 4: what is cut off at 1 and at 0.
+            // Lemma 4: what is clamped at 1 and at 0.
             let cut = lesser(range / 4.0, greater(most - 1.0, 0.0)) + lesser(range / 4.0, greater(-least, 0.0));
             // Both lie between the greatest and the least light.
             let apart =
@@ -489,7 +489,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
             let model = error + cut;
             let bent = model + lesser(shapes.bend[lane] * range, 1.0);
             let (bent, model) = (lesser(bent, apart), lesser(model, apart));
-            // Not a number is the greatest.
+            // NaN counts as the greatest.
             let on_screen = &mut bounds.on_screen[lane];
             *on_screen = if bent <= *on_screen { *on_screen } else { bent };
             let on_face = &mut bounds.on_face[lane];

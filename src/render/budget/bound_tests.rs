@@ -1,5 +1,6 @@
-//! The bound, tested as a bound: on random patches in random light no sampled error is greater than that of the face, of the
-//! part, or of the cluster that the face is in. `cargo test` tries 36,000 faces, the long run 3,200,000.
+//! The bound, tested as a bound: on random patches in random light no sampled error is greater than the bound of the
+//! face, of the part, or of the cluster that contains the face. `cargo test` tests 36,000 faces, the long run
+//! 3,200,000.
 
 use core::f64::consts::FRAC_PI_2;
 use std::vec::Vec;
@@ -17,7 +18,7 @@ use crate::mesh::normals::unit;
 use crate::random::Random;
 use crate::render::geometry::Geometry;
 
-/// What faces and light are made of.
+/// Source of random faces and lights.
 struct Chance(Random);
 
 impl Chance {
@@ -132,8 +133,8 @@ impl Case {
         Self { triangles, positions, normals, suns, lamps, eye: wide(eye_at), answer, part, in_color }
     }
 
-    /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one's least of all, and what is
-    /// between may be dark. A highlight is at its greatest there, and ends at once.
+    /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one least of all, and the
+    /// points between may be dark. A highlight is at its greatest there, and ends abruptly.
     fn grazing(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
         let spread = random.log(0.01, 0.5) as f32;
@@ -185,7 +186,7 @@ impl Case {
         case
     }
 
-    /// A faint exponent: where r·v passes 0 the highlight is a step, nearly, and it is flat elsewhere.
+    /// A tiny exponent: where r·v passes 0 the highlight is nearly a step, and elsewhere it is flat.
     fn stepped(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
         case.answer.shininess = if random.chance(0.1) { 0.0 } else { random.log(1e-30, 1.0) };
@@ -197,7 +198,7 @@ impl Case {
         Lights { suns: &self.suns, lamps: &self.lamps, eye: self.eye }
     }
 
-    /// Light at a point of a face, cut off, by the model in f64.
+    /// Light at a point of a face, clamped, by the model in f64.
     fn light(&self, face: usize, weights: [f64; 3]) -> [f64; 3] {
         let sum = |of: &[Vec3]| {
             let mut sum = [0.0; 3];
@@ -277,7 +278,7 @@ impl Case {
         faces
     }
 
-    /// Bounds of the faces, of their parts, and of the cluster that they are in.
+    /// Bounds of the faces, of their parts, and of the cluster that contains them.
     fn bounds(&self) -> (Bounds, Bounds, Bounds) {
         let clusters = self.clusters();
         let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: [1.0; LANES], bend: ZERO };
@@ -295,7 +296,7 @@ impl Case {
         )
     }
 
-    /// The greatest error among points of a part of a face: the triangle of these corners.
+    /// The greatest error among points of a part of a face: the triangle with these corners.
     fn sampled(&self, face: usize, corners: [[f64; 3]; 3], points: u32) -> f64 {
         let at_corners = corners.map(|weights| self.light(face, weights));
         let mut most = 0.0_f64;
@@ -308,7 +309,7 @@ impl Case {
                 let (light, linear) = (self.light(face, mix(corners)), mix(at_corners));
                 for channel in 0..if self.in_color { 3 } else { 1 } {
                     let error = (light[channel] - linear[channel]).abs();
-                    // Of a light at the surface itself nothing is said.
+                    // Of a light at the surface itself there is no bound.
                     most = if error.is_nan() { most } else { most.max(error) };
                 }
             }
@@ -331,10 +332,10 @@ impl Case {
     }
 }
 
-/// Sums of f32 near 1 are rounded by so much: 1/10,000 shade, which the rounding of shades has room for.
+/// Rounding of f32 sums near 1: 1/10,000 shade, covered by the allowance for the rounding of shades.
 const ROUNDING: f64 = 4e-7;
 
-/// Tries one case; returns bound over error of each face where there is an error to speak of.
+/// Tests one case; returns bound over error for each face with a significant error.
 fn try_case(case: &Case, random: &mut Chance, points: u32) -> Vec<f64> {
     let (whole, parts, clusters) = case.bounds();
     let mut ratios = Vec::new();
@@ -397,11 +398,11 @@ fn no_sampled_error_is_beyond_its_bound() {
     let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64) as usize];
     std::println!("{} faces: bound over error {:.2} in the median, {:.2} at 95 %", ratios.len(), at(0.5), at(0.95));
     assert!(ratios.len() > 5_000);
-    // What it was when this was written, and 2 % for other machines' powers: a looser bound is a slower budget.
+    // Measured with the current bound, plus 2 % for other machines' powers: a looser bound makes a slower budget.
     assert!(at(0.5) < 3.71 && at(0.95) < 43.6, "a looser bound: {:.2} and {:.2}", at(0.5), at(0.95));
 }
 
-/// A hundred times as many.
+/// Tests a hundred times as many patches.
 #[test]
 #[ignore = "the long run: 3,200,000 faces"]
 fn bound_of_many_more_patches() {
@@ -449,8 +450,8 @@ fn bounds_do_not_depend_on_the_kernel() {
 }
 
 proptest! {
-    /// Lemma 1: no point of a triangle has a greater mean square distance from the corners, weighted, and one has
-    /// nearly as much.
+    /// Lemma 1: no point of a triangle has a greater weighted mean square distance from the corners, and one has nearly
+    /// as much.
     #[test]
     fn radii_are_of_the_smallest_balls(points in prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0)), thin in 0.0_f32..1.0) {
         let points = points.map(|p| Vec3::from(p) * Vec3::new(1.0, thin * thin, 0.3));

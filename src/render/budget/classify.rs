@@ -1,4 +1,4 @@
-//! Classification: which faces of a chunk are linear, by the bound on clusters, and on eight faces at a time.
+//! Classification: which faces of a chunk are linear, by the bound on clusters and on eight faces at a time.
 
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
@@ -17,12 +17,12 @@ pub(in crate::render) struct Classes {
     pub(in crate::render) linear: u64,
     /// Others that are linear on the face.
     pub(in crate::render) float: u64,
-    /// Bounds of the others, of shades that are linear on the face, in shares of full intensity.
+    /// Bounds of the remaining ones, for shades that are linear on the face, in shares of full intensity.
     pub(in crate::render) errors: [f32; CHUNK],
 }
 
-/// Share of a shade's range that perspective moves it along on each of eight clusters: (ρ − 1) / 4 (Lemma 9). Nothing that
-/// is drawn unclipped is nearer than the near plane.
+/// Share of its range by which perspective shifts a shade, on each of eight clusters: (ρ − 1) / 4 (Lemma 9). Nothing
+/// drawn unclipped is nearer than the near plane.
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
     let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
@@ -35,7 +35,7 @@ fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f3
     })
 }
 
-/// That share on each of eight faces.
+/// Share of its range by which perspective shifts a shade, on each of eight faces.
 #[inline(always)]
 fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
     let (row, offset) = view.along_view();
@@ -64,7 +64,7 @@ impl Faces<'_> {
         error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
     }
 
-    /// Faces of a chunk whose clusters are linear, where they show their fronts or their backs.
+    /// Faces of a chunk whose clusters are linear, for those that show their fronts or those that show their backs.
     #[inline(never)]
     fn linear_by_clusters(&self, budget: &Budget, chunk: usize, back: bool) -> u64 {
         let chunk = &budget.clusters.chunks[chunk];
@@ -91,8 +91,8 @@ impl Faces<'_> {
         linear
     }
 
-    /// Classifies the faces of a chunk among those in `left`. `first` is the first one's index, `back` has the bits of
-    /// those that show their other side.
+    /// Classifies the faces of a chunk among those in `left`. `first` is the index of the first face, and `back` has
+    /// the bits of those that show their backs.
     #[inline]
     pub(in crate::render) fn classify(&self, budget: &Budget, (first, back): (usize, u64), left: u64) -> Classes {
         let mut classes = Classes { linear: 0, float: 0, errors: [0.0; CHUNK] };
@@ -140,7 +140,7 @@ impl Faces<'_> {
         }
     }
 
-    /// Up to eight faces of a chunk, and their shapes as a whole.
+    /// Up to eight faces of a chunk, and their shapes as whole faces.
     #[inline]
     fn eight(
         &self,
@@ -167,7 +167,7 @@ impl Faces<'_> {
         (faces, shapes)
     }
 
-    /// Bounds of parts of one face: eight of them, of these sizes and bends.
+    /// Bounds of parts of one face: eight of them, with these sizes and bends.
     #[inline(never)]
     pub(super) fn bounds_of_parts(
         &self,
@@ -181,14 +181,14 @@ impl Faces<'_> {
         self.bounds::<false, _>(budget, (&faces, &Shapes { part, bend, ..shapes }), face.surface, below)
     }
 
-    /// The shading of a face that is clipped: it has no place on the screen.
+    /// The shading of a clipped face, which has no position on the screen.
     pub(in crate::render) fn decide_clipped(&self, budget: &Budget, face: Face) -> FaceShading {
         let (faces, shapes) = self.eight(budget, face.index as usize, core::iter::once((0, face.back_facing)));
         let bounds = self.bounds::<true, _>(budget, (&faces, &shapes), face.surface, false);
         if bounds.on_face[0] <= budget.spare(EXACT_ROUNDING) || !self.lights_pixels { FLOAT } else { PHONG }
     }
 
-    /// Bounds the error of linear shades, wherever on the object, in shades, and rounding aside.
+    /// Bounds the error of linear shades anywhere on the object, in shades, not counting rounding.
     #[inline(never)]
     pub(in crate::render) fn linear_error(&self) -> f64 {
         let budget = Budget { clusters: Clusters::new(&self.geometry), ..Budget::default() };
@@ -205,7 +205,7 @@ impl Faces<'_> {
             }
             first += surfaces.len();
         }
-        // No two shades are farther apart.
+        // No two shades differ by more.
         f64::from(most.min(1.0)) * 255.0
     }
 }

@@ -1,4 +1,4 @@
-//! Clusters of a mesh: eight faces that follow each other, with a box and a cone of normals. Eight clusters are a chunk.
+//! Clusters of a mesh: eight consecutive faces each, with a box and a cone of normals. Eight clusters are a chunk.
 
 use alloc::vec::Vec;
 
@@ -18,27 +18,27 @@ pub(super) struct Facet {
     pub(super) edge: f32,
 }
 
-/// Radius of the smallest ball that three points lie in.
+/// Radius of the smallest ball that contains three points.
 pub(super) fn radius(points: [Vec3; 3]) -> f32 {
     let square = |(i, j): (usize, usize)| f64::from((points[i] - points[j]).length_squared());
     let [a, b, c] = [(0, 1), (1, 2), (2, 0)].map(square);
     let longest = a.max(b).max(c);
     let others = a + b + c - longest;
-    // That of the longest edge, or, of an acute triangle, the circumcircle: R² = a²b²c² / 16K², by the squares of the
-    // sides. That is a third of the longest edge's at most.
+    // The radius of the longest edge, or for an acute triangle of the circumcircle: R² = a²b²c² / 16K², by the squares
+    // of the sides. That is at most a third of the longest edge's square.
     let around = a * b * c / (2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c));
     let square = if others > longest && around <= longest / 3.0 { around.max(longest / 4.0) } else { longest / 3.0 };
     let square = if others <= longest { longest / 4.0 } else { square };
     libm::sqrt(square) as f32 * (1.0 + 1e-5)
 }
 
-/// The eight clusters of a chunk. Of those that are missing all is zero.
+/// The eight clusters of a chunk. Missing ones are all zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chunk {
     pub(super) clusters: EightClusters,
     pub(super) spread: Lanes<f32>,
     pub(super) edge: Lanes<f32>,
-    /// The surface of each cluster's faces, if it is the same.
+    /// The surface of each cluster's faces, if they share one.
     pub(super) surfaces: [Option<u16>; LANES],
 }
 
@@ -97,7 +97,7 @@ impl Clusters {
         Self { facets, chunks, extent }
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.facets.capacity() * size_of::<Facet>() + self.chunks.capacity() * size_of::<Chunk>()
     }

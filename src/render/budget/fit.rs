@@ -1,9 +1,10 @@
-//! The fit: a quadratic function of the screen, tried on a grid of points of one face (`docs/budget.md`, Lemma 10).
+//! The fit: a quadratic function on the screen, tested on a grid of points of one face (`docs/budget.md`, Lemma 10).
 //!
 //! The quadratic function goes through the light at six points: the corners and the middles of the edges (see
-//! `raster::effects::ShadeSource::Curved`). It is of light that is not cut off above 1: cut off both differ by no more.
+//! `raster::effects::ShadeSource::Curved`). It approximates light that is not clamped at 1: clamping both increases no
+//! difference.
 //!
-//! The light of a matt face in one source goes on below the horizon, less than none by as much as the other side has more.
+//! Light from one source on a matt face continues below the horizon, as much less than none as the other side has more.
 
 use glam::Vec3;
 
@@ -20,38 +21,39 @@ use crate::render::paint::SurfaceMaterial;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
-/// Pixels for each point of the finer grids, at least, for it to be worth it. (The spheres of `phong` within 2 shades: at 10
-/// 1.04 of the time of the shading, at 5 0.99, at 3 0.95; a failed attempt costs more on a finer grid.)
+/// Least number of pixels for each point of the finer grids that makes them worthwhile. (The spheres of `phong` within
+/// 2 shades take 1.04 of the time of the shading at 10, 0.99 at 5, 0.95 at 3; a failed attempt costs more on a finer
+/// grid.)
 const PIXELS_A_POINT: f32 = 4.0;
 
-/// Pixels from which on a face is tried. (Instructions of a frame within 1 shade, from 16 on, 32 and 48: `rgb` 1.06, 1.02 and
-/// 1 times as many, `torus` 1.04, 1.00 and 1, `teapot` 1.02, 1 and 1; `torus` within 2 takes 1.01, 0.99 and 1.)
+/// Pixels from which on a face is fitted. (Instructions of a frame within 1 shade, relative to 48, for 16, 32 and 48:
+/// `rgb` 1.06, 1.02 and 1, `torus` 1.04, 1.00 and 1, `teapot` 1.02, 1 and 1; `torus` within 2 takes 1.01, 0.99 and 1.)
 const WORTH_CURVE: f32 = 48.0;
 
-/// Share of the allowed error that the face's bound, times the square of the smallest part's size, may come to for it to be
-/// worth asking for the bound of parts: an estimate. (Instructions of a frame within 1 shade with it: `phong` 0.94, `rgb` 0.92;
-/// with 0.5 in its place `rgb` 0.97.)
+/// Share of the allowed error up to which the face's bound, times the square of the smallest part's size, makes the
+/// bound of parts worth computing: an estimate. (Instructions of a frame within 1 shade with it: `phong` 0.94, `rgb`
+/// 0.92; with 0.5 instead `rgb` 0.97.)
 const HOPE: f32 = 0.25;
 
-/// Share of the allowed error up to which light may be off between the points of a grid for it to be worth lighting.
-/// (With 0.5 the torus within 1 shade takes 1.00 of `phong`, with 0.9 0.93.)
+/// Share of the allowed error up to which light may deviate between the points of a grid for it to be worth lighting.
+/// (Within 1 shade the torus takes 1.00 of `phong` with 0.5, 0.93 with 0.9.)
 const MODEL: f32 = 0.9;
 
-/// The widest row of a triangle that it pays to light some pixels of, in pixels: as eight are lit at a time.
+/// The widest row, in pixels, from which on lighting only some pixels of a triangle pays: eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
 
 /// Weights of eight points on the screen.
 type Weights = [Lanes<f32>; 3];
 
-/// The corners, the middles of the edges opposite to them, and two that nobody needs.
+/// The corners, the middles of the opposite edges, and two unused ones.
 const NODES: Weights = [
     [1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0],
     [0.0, 1.0, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0],
     [0.0, 0.0, 1.0, 0.5, 0.5, 0.0, 0.0, 0.0],
 ];
 
-/// The points that divide each edge in `n`, but for the corners and, as `n` is even, the middles of the edges; to full eights
-/// with the first corner.
+/// The points that divide each edge in `n`, except for the corners and, as `n` is even, the middles of the edges;
+/// padded to full eights with the first corner.
 const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     let mut eights = [[[1.0; LANES], [0.0; LANES], [0.0; LANES]]; EIGHTS];
     let (mut at, mut a) = (0, 0);
@@ -74,7 +76,7 @@ const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     eights
 }
 
-/// 6, 15, 45 and 153 points, the six nodes among them.
+/// 6, 15, 45 and 153 points, including the six nodes.
 static FOURTHS: [Weights; 2] = grid(4);
 static EIGHTHS: [Weights; 5] = grid(8);
 static SIXTEENTHS: [Weights; 19] = grid(16);
@@ -85,7 +87,7 @@ const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHT
 /// Light at the nodes, on each channel.
 type Nodes = [Lanes<f32>; 3];
 
-/// The shading of a face, and if it is quadratic the light that its function goes through.
+/// The shading of a face, and if it is quadratic, the light that its function goes through.
 pub(in crate::render) struct Fit {
     pub(in crate::render) shading: FaceShading,
     pub(in crate::render) nodes: Nodes,
@@ -104,7 +106,7 @@ struct OnScreen<'a> {
     positions: [Vec3; 3],
     depths: [f32; 3],
     answer: &'a Reflectance,
-    /// True if its light goes on below the horizon.
+    /// True if its light continues below the horizon.
     below: bool,
 }
 
@@ -135,7 +137,7 @@ impl OnScreen<'_> {
 #[derive(Clone, Copy, Default)]
 struct Quadratic {
     corners: [f32; 3],
-    /// 2D of the edges opposite to the corners.
+    /// 2D of the edges opposite the corners.
     bends: [f32; 3],
 }
 
@@ -157,7 +159,7 @@ impl Quadratic {
         }))
     }
 
-    /// What it bends by between the points of a grid that divides each edge in `n`.
+    /// By how much it bends between the points of a grid that divides each edge in `n`.
     #[inline]
     fn between(&self, n: f32) -> f32 {
         // D is half of the greatest bend.
@@ -171,7 +173,7 @@ at_best_level! {
     }
 }
 
-/// Returns the greatest value; not a number if one of them is not.
+/// Returns the greatest value; NaN if one of them is.
 #[inline(always)]
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     let (mut most, mut i) = (0.0, 0);
@@ -182,14 +184,14 @@ fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     most
 }
 
-/// Beyond f32 infinite.
+/// Infinite beyond f32.
 #[inline(always)]
 fn narrow(wide: &Lanes<f64>) -> Lanes<f32> {
     each!(lane => wide[lane] as f32)
 }
 
 impl Faces<'_> {
-    /// A face whose light may go on below the horizon.
+    /// A face whose light may continue below the horizon.
     fn on_screen(&self, Face { indices, surface, back_facing, .. }: Face, depths: [u32; 3]) -> OnScreen<'_> {
         let normals = three(indices, |i| self.geometry.normals[i as usize]);
         let positions = three(indices, |i| self.geometry.positions[i as usize]);
@@ -214,14 +216,14 @@ impl Faces<'_> {
         }
     }
 
-    /// Light on each channel, or on the first, not cut off.
+    /// Light on each channel, or on the first, unclamped.
     #[inline]
     fn light_at(&self, face: &OnScreen<'_>, weights: &Weights) -> [Lanes<f32>; 3] {
         let front = self.front(face, weights, false);
         if !face.below {
             return front;
         }
-        // One side has the light, the other what is there without it, which is the lesser.
+        // One side has the light, the other what remains without it, which is the lesser.
         let back = self.front(face, weights, true);
         let mut both = [[0.0; LANES]; 3];
         for channel in 0..3 {
@@ -243,18 +245,18 @@ impl Faces<'_> {
         }
     }
 
-    /// The cheapest shading of a face that is known to keep within the budget by light at some points of it. `error` bounds
-    /// that of shades that are linear on the face.
+    /// The cheapest shading of a face that is known, from light at some of its points, to keep within the budget.
+    /// `error` is the bound of shades that are linear on the face.
     #[inline(never)]
     pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
         let (depths, spare) = (three(vertices.each_ref(), Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
         let (ratio, (pixels, width)) = (near as f32 / far as f32, size_of(vertices));
-        // Where rounding takes all that is allowed, nothing fits.
+        // If rounding uses up all that is allowed, nothing fits.
         if far == 0 || pixels < WORTH_CURVE || !self.lights_pixels || spare <= 0.0 {
             return Fit::of(PHONG);
         }
-        // The sizes of parts: four grids, then three spacings; the last is of no use.
+        // The sizes of parts: four grids, then three spacings; the last is unused.
         let (mut part, mut bend) = ([1.0; LANES], [1.0; LANES]);
         for (lane, (n, _)) in GRIDS.iter().enumerate() {
             part[lane] = (2.155 * ratio - 1.155).min(1.155 * ratio) / n;
@@ -265,7 +267,7 @@ impl Faces<'_> {
             (part[lane], bend[lane]) = (share * ratio, (ratio - 1.0) / 4.0 * share);
         }
         let mut on_screen = self.on_screen(face, depths);
-        // Quadratic functions are of light that adds.
+        // Quadratic functions are for additive light.
         on_screen.below &= budget.adds;
         // Eight points at a time, and the nodes.
         let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
@@ -275,7 +277,7 @@ impl Faces<'_> {
         };
         let spacings = (GRIDS.len()..).zip(SampleSpacing::ALL).filter(|(lane, spacing)| spaced(*lane, *spacing));
         let least = spacings.clone().map(|(lane, _)| part[lane]).fold(part[grids - 1], f32::min);
-        // Of light that goes on below the horizon the face's bound says little.
+        // If light continues below the horizon, the face's bound says little.
         if !on_screen.below && error * least * least > HOPE * spare {
             return Fit::of(PHONG);
         }
@@ -292,8 +294,8 @@ impl Faces<'_> {
         Fit::of(spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)))
     }
 
-    /// Tries the quadratic function on grids, from coarse to fine; returns the light that it goes through, if it fits.
-    /// `left` says how far it may be off at the points of each, of what is allowed in all.
+    /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes through, if it fits.
+    /// `left` is how far it may be off at the points of each grid, out of the whole allowance.
     fn quadratic(
         &self,
         face: &OnScreen<'_>,
@@ -322,7 +324,7 @@ impl Faces<'_> {
         None
     }
 
-    /// The shades that a quadratic face goes through, at each of its corners: see `Attributes::lit`.
+    /// The shades that a quadratic face goes through, for each of its corners: see `Attributes::lit`.
     pub(in crate::render) fn curve(&self, surface: u16, nodes: &Nodes) -> [[f32; 6]; 3] {
         let ramp = self.paints[usize::from(surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);
@@ -339,14 +341,14 @@ impl Faces<'_> {
 
 /// The area of a triangle on the screen, and its widest row, in pixels.
 fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
-    // In 1/256 pixel, and twice.
+    // In 1/256 pixel, and doubled.
     let area = doubled_area(vertices).unsigned_abs() as f32 / 131_072.0;
     let [a, b, c] = three(vertices.each_ref(), |vertex| vertex.y().to_bits());
     let height = a.max(b).max(c) - a.min(b).min(c);
     (area, if height == 0 { 0.0 } else { 512.0 * area / height as f32 })
 }
 
-/// Between which shades quadratic ones are held: that without light, as no light takes any away, and the last.
+/// The limits of quadratic shades: the shade without light, as no light takes any away, and the last one.
 pub(in crate::render) fn limits(paint: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
     if channels {
         let Reflectance { ambient, color, .. } = paint.answer;

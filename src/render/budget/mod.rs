@@ -1,8 +1,8 @@
-//! The error budget: for each triangle the cheapest shading that is known to keep within it.
+//! The error budget: the cheapest shading for each triangle that is known to keep within it.
 //!
-//! One bound says how far linear shades are from the model's light on a patch of a surface (`bound`). It is asked of
-//! clusters of eight faces, of eight faces one by one, and of parts of one face. What it leaves open is lit at some points
-//! (`fit`). `docs/budget.md` has the proofs.
+//! One bound says how far linear shades are from the model's light on a patch of a surface (`bound`). It is computed
+//! for clusters of eight faces, for eight faces one by one, and for parts of one face. Faces that it leaves undecided
+//! are lit at some points (`fit`). `docs/budget.md` has the proofs.
 //!
 //! | file | what |
 //! |---|---|
@@ -10,7 +10,7 @@
 //! | `ranges` | ranges of cosines and distances, from corners or from boxes and cones |
 //! | `clusters` | eight faces each, with a box and a cone of normals |
 //! | `classify` | which faces of a chunk are linear |
-//! | `fit` | linear and quadratic functions, tried on points of a face |
+//! | `fit` | linear and quadratic functions, tested on points of a face |
 //! | `bound_tests` | the bound against sampled light |
 
 mod bound;
@@ -32,27 +32,26 @@ use crate::settings::Shading;
 use crate::shared::Shared;
 use crate::span::Kernel;
 
-/// Shading of faces that are linear on the screen, of those that are linear on the face, and of those that are lit at every
+/// Shadings of faces that are linear on the screen, of those that are linear on the face, and of those lit at every
 /// pixel.
 pub(super) const LINEAR: FaceShading = FaceShading::By(Shading::Gouraud88Reseeded);
 pub(super) const FLOAT: FaceShading = FaceShading::By(Shading::Float);
 pub(super) const PHONG: FaceShading = FaceShading::By(Shading::Phong);
 
-/// Rounding of a linear shade that starts anew every 64 pixels: a half, 1/512 of the vertices' shades, a quarter of drift,
-/// and 1/2,000 of the bound itself.
+/// Rounding of a linear shade reseeded every 64 pixels: a half, 1/512 for the vertices' shades, a quarter of drift, and
+/// 1/2,000 for the bound itself.
 const LINEAR_ROUNDING: f32 = 0.7525;
 
-/// Rounding of a shade that is exact before it: a half, 1/512 of the vertices' shades, 1/100 of f32, and the
-/// bound's.
+/// Rounding of a shade that is exact before it: a half, 1/512 for the vertices' shades, 1/100 for f32, and the bound's.
 const EXACT_ROUNDING: f32 = 0.5125;
 
-/// Error budget of an object: the data that its decisions are made from.
+/// Error budget of an object: the data that its decisions are based on.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
-    /// Whose clusters these are; of a mesh that was split, none.
+    /// The mesh of these clusters; `None` for a split mesh.
     mesh: Option<Shared<Mesh>>,
     clusters: Clusters,
-    /// The kernel of the frame that is drawn.
+    /// The kernel of the current frame.
     pub(super) kernel: Option<Kernel>,
     /// In shades.
     allowed: f32,
@@ -61,7 +60,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Takes on an object as it is now. `mesh` is the object's, if that is what is drawn.
+    /// Updates the budget to the object's current state. `mesh` is the object's, if that is what is drawn.
     #[inline(never)]
     pub(super) fn renew(
         &mut self,
@@ -78,12 +77,12 @@ impl Budget {
         }
     }
 
-    /// Light that may be off, in shares of full intensity, where a shade is off by `rounding` shades besides.
+    /// Error of light that is left, in shares of full intensity, if a shade is also off by `rounding` shades.
     fn spare(&self, rounding: f32) -> f32 {
         (self.allowed - rounding) / 255.0
     }
 
-    /// Bytes that it holds.
+    /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.clusters.bytes()
     }

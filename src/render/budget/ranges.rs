@@ -1,5 +1,5 @@
-//! Ranges of the cosines and distances that light on a patch depends on: from the three corners of each of eight faces,
-//! or from the boxes and cones of eight clusters.
+//! Ranges of the cosines and distances that determine the light on a patch: from the three corners of each of eight
+//! faces, or from the boxes and cones of eight clusters.
 
 use crate::lanes::{LANES, Lanes, each};
 
@@ -8,10 +8,10 @@ pub(super) type Vectors = [Lanes<f32>; 3];
 
 pub(super) const ZERO: Lanes<f32> = [0.0; LANES];
 
-/// Cosines of f32 are off by less.
+/// The error of cosines in f32 is less.
 const ROUNDING: f32 = 4e-6;
 
-/// Greatest number that is told from any other, as distance or as bound: its square is still finite.
+/// Greatest distance or bound: greater ones are not distinguished. Its square is still finite.
 pub(super) const HUGE: f32 = 1e15;
 
 /// Eight vectors, by axis and lane.
@@ -35,15 +35,15 @@ pub(super) struct Sight<D> {
     pub(super) far: Lanes<f32>,
 }
 
-/// Eight patches of which ranges are known. Ranges are the greatest value and the least.
+/// Eight patches with known ranges. A range is the greatest value and the least.
 pub(super) trait Patches {
     /// Directions from the patches to a light or the eye.
     type Directions;
 
     /// Directions to a sun.
     fn sun(&self, towards: [f32; 3]) -> Self::Directions;
-    /// Directions and distances to a point; positions are off by no more than `blur`, and no point of a patch is farther
-    /// from its corners than `edge` says.
+    /// Directions and distances to a point; positions are off by at most `blur`, and no point of a patch is farther
+    /// from its corners than `edge`.
     fn point(&self, at: [f32; 3], blur: f32, edge: &Lanes<f32>) -> Sight<Self::Directions>;
     /// Range of n·l.
     fn facing(&self, directions: &Self::Directions) -> [Lanes<f32>; 2];
@@ -52,19 +52,19 @@ pub(super) trait Patches {
     /// Range of n·l times a lamp's fall-off, whose own range is `falls`.
     fn weighted(&self, sight: &Sight<Self::Directions>, falls: &[Lanes<f32>; 2], inverse_range: f32)
     -> [Lanes<f32>; 2];
-    /// Range of r·v at the corners, and its greatest value anywhere; `turns` is what directions to the light and to the eye
-    /// turn by along a patch's radius.
+    /// Range of r·v at the corners, and its greatest value anywhere; `turns` is how far directions to the light and to
+    /// the eye turn along a patch's radius.
     fn mirrored(&self, light: &Self::Directions, eye: &Self::Directions, turns: &Lanes<f32>) -> [Lanes<f32>; 3];
 }
 
-/// Eight faces, on the side that is seen: what their corners have. Missing ones are zero.
+/// Eight faces on the visible side: the values at their corners. Missing ones are zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EightFaces {
     pub(super) normals: [Vectors; 3],
     pub(super) positions: [Vectors; 3],
 }
 
-/// Unit directions from each corner, their distances, and how far cosines may be off.
+/// Unit directions from each corner, their distances, and the error of cosines.
 pub(super) struct FromCorners {
     directions: [Vectors; 3],
     distances: [Lanes<f32>; 3],
@@ -88,7 +88,7 @@ impl Patches for EightFaces {
         }
         let [a, b, c] = &distances;
         let least = each!(lane => lesser(a[lane], lesser(b[lane], c[lane])) * (1.0 - ROUNDING) - blur);
-        // Lemma 1, of the squares of distances.
+        // Lemma 1, for the squares of distances.
         let near = each!(lane => {
             let square = least[lane] * least[lane] - edge[lane] * edge[lane];
             if least[lane] > 0.0 { square_root(greater(square, 0.0)) } else { 0.0 }
@@ -145,8 +145,9 @@ impl Patches for EightFaces {
 }
 
 impl EightFaces {
-    /// The greatest r·v anywhere on the faces, by the vector h half-way between light and eye at the first corner (Lemma
-    /// 11): what the normals have across h is a flat triangle, which lies no nearer to 0 than in any one direction.
+    /// The greatest r·v anywhere on the faces, by the vector h half-way between light and eye at the first corner
+    /// (Lemma 11): the components of the normals across h form a flat triangle, which lies no nearer to 0 than in any
+    /// one direction.
     #[inline(always)]
     fn highest(&self, light: &FromCorners, eye: &FromCorners, off: &Lanes<f32>, turns: &Lanes<f32>) -> Lanes<f32> {
         let sums = vectors!(axis, lane => light.directions[0][axis][lane] + eye.directions[0][axis][lane]);
@@ -175,7 +176,7 @@ impl EightFaces {
     }
 }
 
-/// Eight clusters: a box that all their corners lie in, and a cone that all their normals lie in.
+/// Eight clusters, each with a box that contains all its corners, and a cone that contains all its normals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EightClusters {
     pub(super) centres: Vectors,
@@ -186,7 +187,7 @@ pub(super) struct EightClusters {
     pub(super) angles: Lanes<f32>,
 }
 
-/// A direction from each box's middle, and how far those from other points are turned, in radians.
+/// A direction from each box's middle, and how far directions from other points are turned, in radians.
 pub(super) struct FromBoxes {
     directions: Vectors,
     turns: Lanes<f32>,
@@ -257,7 +258,7 @@ pub(super) fn splat([x, y, z]: [f32; 3]) -> Vectors {
     [[x; LANES], [y; LANES], [z; LANES]]
 }
 
-/// Range of cosines of angles that are so far from these.
+/// Range of cosines of angles that differ from these by at most `turns`.
 #[inline(always)]
 fn turned(cosines: &Lanes<f32>, turns: &Lanes<f32>) -> [Lanes<f32>; 2] {
     let sine: Lanes<f32> = each!(lane => square_root(greater(1.0 - cosines[lane] * cosines[lane], 0.0)));
@@ -275,7 +276,7 @@ fn turned(cosines: &Lanes<f32>, turns: &Lanes<f32>) -> [Lanes<f32>; 2] {
     ]
 }
 
-/// Unit vectors of these directions, and the lengths that they had.
+/// Unit vectors of these directions, and their original lengths.
 #[inline(always)]
 fn units(of: &Vectors) -> (Vectors, Lanes<f32>) {
     let squares = dot(of, of);
@@ -283,13 +284,13 @@ fn units(of: &Vectors) -> (Vectors, Lanes<f32>) {
     (vectors!(axis, lane => of[axis][lane] / lengths[lane]), lengths)
 }
 
-/// r·v of n·l, n·v and l·v.
+/// r·v from n·l, n·v and l·v.
 #[inline(always)]
 fn mirror(light: &Lanes<f32>, eye: &Lanes<f32>, between: &Lanes<f32>) -> Lanes<f32> {
     each!(lane => 2.0 * light[lane] * eye[lane] - between[lane])
 }
 
-/// The greatest and the least of three cosines, each off by no more than `off`. What is not a number may be any.
+/// The greatest and the least of three cosines, each off by at most `off`. NaN may count as anything.
 #[inline(always)]
 fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
     let (mut most, mut least) = ([-1.0; LANES], [1.0; LANES]);
@@ -303,13 +304,13 @@ fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
     [most, least]
 }
 
-/// The greater one; the second where one is not a number. In this form it is one instruction.
+/// The greater one; the second if one is NaN. In this form it is one instruction.
 #[inline(always)]
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// The lesser one; the second where one is not a number.
+/// The lesser one; the second if one is NaN.
 #[inline(always)]
 pub(super) fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
@@ -320,7 +321,7 @@ pub(super) fn dot(a: &Vectors, b: &Vectors) -> Lanes<f32> {
     each!(lane => a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }
 
-/// Both are the number nearest to the root, so they are one number. The compiler makes vectors of the first.
+/// Both are correctly rounded, so they are equal. The compiler vectorises the first.
 #[inline(always)]
 pub(super) fn square_root(square: f32) -> f32 {
     #[cfg(feature = "std")]

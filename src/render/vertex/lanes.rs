@@ -1,8 +1,7 @@
-//! The commonest stages of vertices, eight at a time: f32 serves, and suns light matt surfaces.
+//! The most common vertex stages, eight at a time: f32 suffices, and suns light matt surfaces.
 //!
-//! Each vertex gets the numbers that it gets alone, by [`ObjectView::project`] and
-//! [`both_sides`](crate::light::both_sides): the operations and their order are the same, and each rounds alike in a vector
-//! and alone.
+//! Each vertex gets the same values as by [`ObjectView::project`] and [`both_sides`](crate::light::both_sides): the
+//! operations and their order are the same, and each rounds equally in a vector and in a scalar.
 
 use glam::Vec3;
 
@@ -41,7 +40,7 @@ fn project_by<S: F32Lanes8, const TESTED: bool>(
     for (i, points) in eights[..n].iter().enumerate() {
         project_eight(s, narrow, points, &mut places[i], &mut depths[i]);
     }
-    // Those that are left; or, of an object that is said to lie inside and does not, all.
+    // The remaining ones; or all, for an object that is claimed to lie inside but does not.
     let whole = positions.len() - rest.len();
     let strays = !TESTED && vertices.at[..whole].iter().any(|place| place.needs_clipping());
     one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, vertices);
@@ -65,7 +64,7 @@ fn project_eight<S: F32Lanes8>(
     let nothing = s.splat_i32(0);
     let x = s.select_i32(within, units(s, x), s.splat_i32(ScreenPos::BEYOND));
     let y = s.select_i32(within, units(s, y), nothing);
-    // As `ObjectView::depth`: 1 to 2³⁰ of what is within.
+    // As in `ObjectView::depth`: 1 to 2³⁰ for what is within.
     let part = s.mul(s.div(s.splat_f64(narrow.near.into()), s.widen(w)), s.splat_f64(1_073_741_824.0));
     let depth = s.max_i32(s.whole(s.add(part, s.splat_f64(0.5))), s.splat_i32(1));
 
@@ -82,10 +81,10 @@ fn project_eight<S: F32Lanes8>(
     *depths = each!(lane => numbers[lane].cast_unsigned());
 }
 
-/// Coordinate `k` of points seen from the eye. As glam has it: column by column.
+/// Coordinate `k` of points in eye space, computed column by column as glam does.
 #[inline(always)]
 fn row<S: F32Lanes8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32 {
-    // No closures, and no functions of the standard library that take them: they would be compiled for no level.
+    // No closures, and no standard library functions that take them: they would not be compiled for the level.
     let Narrow { matrix, offset, .. } = narrow;
     let a = s.mul_f32(s.splat_f32(matrix.x_axis.to_array()[k]), at[0]);
     let b = s.mul_f32(s.splat_f32(matrix.y_axis.to_array()[k]), at[1]);
@@ -93,14 +92,14 @@ fn row<S: F32Lanes8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32
     s.add_f32(s.add_f32(s.add_f32(a, b), c), s.splat_f32(offset.to_array()[k]))
 }
 
-/// Within the limit. NaN is not.
+/// Within the limit; NaN is not.
 #[inline(always)]
 fn is_near<S: F32Lanes8>(s: S, c: S::F32) -> S::Mask {
     s.and(s.is_at_least(c, s.splat_f32(-Narrow::LIMIT)), s.is_at_least(s.splat_f32(Narrow::LIMIT), c))
 }
 
-/// `floor(256·pixels + ½)` for coordinates within the limit; some number for others. It stays in f32, where such a
-/// coordinate is exact, and so is 256 times that:
+/// `floor(256·pixels + ½)` for coordinates within the limit; arbitrary for others. It stays in f32, where such a
+/// coordinate is exact, and so is 256 times it:
 ///
 /// ```text
 /// s = 256·x        |s| < 2²⁰
@@ -109,19 +108,19 @@ fn is_near<S: F32Lanes8>(s: S, c: S::F32) -> S::Mask {
 /// ```
 ///
 /// s − n is exact: below 1 in magnitude and a multiple of the lesser of both units in the last place. It lies within
-/// ±½, and −½ is a half that was rounded up already.
+/// ±½, and −½ is a half that has already been rounded up.
 #[inline(always)]
 fn units<S: F32Lanes8>(s: S, pixels: S::F32) -> S::I32 {
     let magic = s.splat_f32(12_582_912.0);
     let scaled = s.mul_f32(pixels, s.splat_f32(256.0));
     let sum = s.add_f32(scaled, magic);
-    // The number is in the low bits of the sum.
+    // The integer is in the low bits of the sum.
     let nearest = s.sub_i32(s.bits_of_f32(sum), s.bits_of_f32(magic));
     let is_less = s.is_at_least(s.sub_f32(scaled, s.sub_f32(sum, magic)), s.splat_f32(0.5));
     s.add_i32(nearest, s.select_i32(is_less, s.splat_i32(1), s.splat_i32(0)))
 }
 
-/// The definition, of vertices from number `first` on.
+/// The definition, for vertices from index `first` on.
 #[inline(never)]
 pub(super) fn one_by_one<const TESTED: bool>(
     view: &ObjectView,
@@ -188,8 +187,7 @@ fn light_one_by_one<const BOTH: bool>(
     }
 }
 
-/// The shades of eight normals of one surface: the front's in the lower half, and where `BOTH` are asked for the back's in
-/// the upper.
+/// The shades of eight normals of one surface: the front's in the lower half, and with `BOTH` the back's in the upper.
 #[inline(always)]
 pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
     s: S,
@@ -203,10 +201,10 @@ pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
     for sun in lights.suns {
         let towards = sun.towards;
         let (x, y) = (s.mul_f32(nx, s.splat_f32(towards.x)), s.mul_f32(ny, s.splat_f32(towards.y)));
-        // As glam has it.
+        // As glam does.
         let cosine = s.add_f32(s.add_f32(x, y), s.mul_f32(nz, s.splat_f32(towards.z)));
         let intensity = s.splat_f64(sun.intensity.into());
-        // A light without effect adds zero, which changes no sum: none is −0, as each begins at +0. NaN is without effect.
+        // A light without effect adds zero, which changes no sum: none is −0, as each begins at +0. NaN has no effect.
         front = s.add(front, s.mul(intensity, s.widen(s.max_f32(cosine, dark))));
         if BOTH {
             back = s.sub(back, s.mul(intensity, s.widen(s.min_f32(cosine, dark))));
@@ -220,7 +218,7 @@ pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
 #[inline(always)]
 fn shade<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
     let light = s.add(s.splat_f64(paint.answer.ambient), s.mul(s.splat_f64(paint.answer.diffuse), light));
-    // Of what is no number the second of both: 0.
+    // For NaN the second of both: 0.
     let clamped = s.min_f32(s.max_f32(s.narrow(light), s.splat_f32(0.0)), s.splat_f32(1.0));
     let units = s.splat_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
     let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.splat_f64(0.5)));
@@ -244,7 +242,7 @@ mod tests {
     use crate::view::{Screen, View};
 
     fn kernels() -> Vec<Kernel> {
-        // Every level that the processor has, the lower ones too: `simd` alone is the highest.
+        // Every level the processor has, lower ones included: `simd` alone is the highest.
         Kernel::available().collect()
     }
 
@@ -300,7 +298,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every vertex is where it is alone, or needs clipping as it does alone.
+        /// Every vertex has the same position as alone, or needs clipping exactly if it does alone.
         #[test]
         fn eight_vertices_are_where_each_is_alone(
             view in view(),
@@ -328,7 +326,7 @@ mod tests {
             }
         }
 
-        /// Every vertex has the shades that it has alone, of one surface or of several.
+        /// Every vertex has the same shades as alone, with one surface or several.
         #[test]
         fn eight_vertices_are_lit_as_each_is_alone(
             normals in prop::collection::vec(vector(), 0..40),
@@ -339,7 +337,7 @@ mod tests {
             let suns: Vec<Beam> =
                 suns.into_iter().map(|(towards, intensity)| Beam { towards, intensity, channels: [0.0; 3] }).collect();
             let lights = Lights { suns: &suns, lamps: &[], eye: [0.0; 3] };
-            // Mostly whole eights of the first.
+            // Usually whole eights of the first.
             let vertex_surfaces: Vec<u16> = (0..normals.len()).map(|i| u16::from(surfaces[i / 8] == i % 8)).collect();
             let geometry = geometry(&[], &normals, &vertex_surfaces);
             for kernel in kernels() {

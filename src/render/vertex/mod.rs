@@ -1,5 +1,5 @@
-//! The stages of an object's vertices. Each is a loop of its own over all of them, entered only where
-//! the plan calls for it: what is off costs nothing. The commonest take eight at a time (`lanes`).
+//! The stages of an object's vertices. Each is its own loop over all of them, entered only if the plan requires it, so
+//! disabled effects cost nothing. The most common ones process eight at a time (`lanes`).
 
 use core::ops::Range;
 
@@ -20,7 +20,7 @@ mod lanes;
 
 pub(super) use lanes::light_eight;
 
-/// Gives each vertex the shade that its material's own answer to light makes of what it has.
+/// Applies the response of each vertex's material to its shade.
 #[inline(never)]
 pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {
     for (i, &surface) in geometry.vertex_surfaces.iter().enumerate() {
@@ -32,13 +32,13 @@ pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], verti
     }
 }
 
-/// Every vertex on the screen, none of which can need clipping.
+/// Projects every vertex, none of which can need clipping.
 #[inline(never)]
 pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
     project::<false>(view, geometry.positions, kernel, vertices);
 }
 
-/// Every vertex on the screen, with a mark on those that need clipping.
+/// Projects every vertex, and marks those that need clipping.
 #[inline(never)]
 pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
     project::<true>(view, geometry.positions, kernel, vertices);
@@ -52,7 +52,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
     lanes::project::<TESTED>(kernel.simd_level(), view, &narrow, positions, vertices);
 }
 
-/// Vertices that are rounded already rounded again, to fewer bits after the point, half up.
+/// Rounds vertices that are already rounded again, to fewer fraction bits, half up.
 #[cold]
 pub(super) fn requantize(bits: u32, vertices: &mut VertexColumns) {
     let unit = 1 << (8 - bits.min(8));
@@ -71,7 +71,7 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], ve
     }
 }
 
-/// Suns on matt surfaces; on the side that the normals point away from, or on `both`: the other's shades are then 0.
+/// Suns on matt surfaces, on the front or on `both` sides; without `both` the back's shades are 0.
 #[inline(never)]
 pub(super) fn light_suns(
     geometry: &Geometry<'_>,
@@ -87,7 +87,7 @@ pub(super) fn light_suns(
     }
 }
 
-/// Suns, lamps and highlights; on the side that the normals point away from, or on `both`.
+/// Suns, lamps and highlights, on the front or on `both` sides.
 #[inline(never)]
 pub(super) fn light_all(
     geometry: &Geometry<'_>,
@@ -112,7 +112,7 @@ pub(super) fn light_all(
     });
 }
 
-/// Suns, lamps and highlights on three channels; on the side that the normals point away from, or on `both`.
+/// Suns, lamps and highlights on three channels, on the front or on `both` sides.
 #[inline(never)]
 pub(super) fn light_channels(
     geometry: &Geometry<'_>,
@@ -139,8 +139,8 @@ pub(super) fn light_channels(
     });
 }
 
-/// Hands on the vertices, up to eight of one surface at a time: which they are, their surface, and their normals
-/// and positions.
+/// Passes on the vertices, up to eight of one surface at a time: their indices, their surface, and their normals and
+/// positions.
 fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize, &Points)) {
     let mut first = 0;
     for alike in geometry.vertex_surfaces.chunk_by(|a, b| a == b) {
@@ -175,18 +175,18 @@ pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[SurfaceMate
     }
 }
 
-/// `part` of a texture's `size`, in 16.16. Images repeat; what is more than 16,384 texels away from
-/// their corner is brought back by whole images.
+/// `part` of a texture's `size`, in 16.16. Images repeat; coordinates more than 16,384 texels from their corner are
+/// brought back by whole images.
 fn texels(part: f32, size: u32) -> i32 {
     const FARTHEST: f64 = 16_384.0;
     let size = f64::from(size);
     let at = f64::from(part) * size;
     let near = if at.abs() <= FARTHEST { at } else { at - libm::floor(at / size) * size };
-    // Within ±2³⁰, or, of what is too great to have a fraction, a number all the same.
+    // Within ±2³⁰; if too great to have a fraction, still a number.
     libm::floor(near * 65_536.0 + 0.5) as i32
 }
 
-/// Coordinates at which an image of the surroundings is mirrored: by the normal as the eye sees it.
+/// Coordinates at which an image of the surroundings is mirrored, from the normal in eye space.
 #[inline(never)]
 pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,
@@ -198,14 +198,14 @@ pub(super) fn environment_coordinates(
     for ((texture, &normal), &surface) in texture.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].environment_size {
             let seen = to_eye * normal;
-            // To the centres of the outermost texels, so that no coordinate is another image's.
+            // To the centres of the outermost texels, so that no coordinate wraps to the opposite side.
             let within = |c: f32, size: u32| texels(0.5 + 0.5 * c * (1.0 - 1.0 / size as f32), size);
             *texture = [within(seen.x, width), within(seen.y, height)];
         }
     }
 }
 
-/// Density of the fog before every vertex.
+/// Fog density between the eye and every vertex.
 #[inline(never)]
 pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, levels: &mut [U8F8]) {
     for (level, &position) in levels.iter_mut().zip(geometry.positions) {
@@ -213,12 +213,12 @@ pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, 
     }
 }
 
-/// Density of the fog at a distance along the view, 0 to 0xFF00.
+/// Fog density at a distance along the view, 0 to 0xFF00.
 pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
     U8F8::from_intensity(fog.level(distance) as f32, 0, Ramp::WHOLE.entries())
 }
 
-/// The normals' x and y as the eye sees them, for a table.
+/// The normals' x and y in eye space, for a table.
 #[inline(never)]
 pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, slopes: &mut [[U8F8; 2]]) {
     let to_eye = view.directions_to_eye();

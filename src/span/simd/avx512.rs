@@ -1,8 +1,8 @@
-//! Spans by AVX-512: every row ends with a store under a mask, so that no length has a branch of its own.
+//! Spans with AVX-512: every row ends with a masked store, so that no length has a branch of its own.
 //!
-//! 1. Spans of 1 to 64 pixels in a random order take 2.8 ns each, the same as in order; with AVX2 it is 10.4.
-//! 2. Two blocks a turn, a last store that overlaps, stores from an aligned address on, 32-byte vectors: each tried, none
-//!    faster at 320 pixels and at 8. (`vpermi2b`, which packs two vectors, is three operations on Intel.)
+//! 1. Spans of 1 to 64 pixels in random order take 2.8 ns each, the same as in sorted order; with AVX2 they take 10.4.
+//! 2. Two blocks per iteration, an overlapping last store, stores aligned from the second on, and 32-byte vectors are
+//!    not faster at 320 pixels and at 8. (`vpermi2b`, which packs two vectors, is three operations on Intel.)
 
 use core::arch::x86_64::*;
 use core::hint::black_box;
@@ -24,10 +24,11 @@ static EVEN: [u16; 32] = {
     even
 };
 
-// Vectors that are read through a `black_box`. A shuffle that the compiler knows, and one under a mask that it knows, it
-// replaces by two or three operations on the port that shuffles. (A large triangle's rows 3.0 ns each, and 1.9.)
+// Vectors that are read through a `black_box`. The compiler replaces a shuffle that it knows, and one under a mask that
+// it knows, by two or three operations on the shuffle port. (A large triangle's rows then take 3.0 ns each, otherwise
+// 1.9.)
 
-/// Both bytes of a 16-bit lane from its upper.
+/// Both bytes of a 16-bit lane from its upper one.
 static UPPER_BYTES: [u16; 32] = {
     let mut bytes = [0; 32];
     let mut i = 0;
@@ -47,23 +48,23 @@ static LOWEST: [u64; 8] = {
 /// The upper halves of eight 64-bit lanes of two vectors, in 32-bit lanes.
 static UPPER_HALVES: [u32; 16] = [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31];
 
-/// One of these.
+/// Loads one of these.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn opaque<T, const N: usize>(numbers: &'static [T; N]) -> __m512i {
     const { assert!(size_of::<[T; N]>() == 64) };
-    // SAFETY: 64 bytes; the load asks for no alignment.
+    // SAFETY: 64 bytes; the load requires no alignment.
     unsafe { _mm512_loadu_si512(black_box(numbers).as_ptr().cast()) }
 }
 
 /// [`Kernel::fill`](super::super::Kernel::fill).
 #[inline]
 pub(crate) fn fill(_: Avx512, row: &mut [u8], shade: u16, step: u16) {
-    // SAFETY: the processor has AVX-512, says the token; the row is that long.
+    // SAFETY: the token proves that the processor has AVX-512; the row is that long.
     unsafe { row_of(row.as_mut_ptr(), row.len(), shade, step) }
 }
 
-/// Bits below this one, which is at most number 64.
+/// The lowest `length` bits, at most 64.
 #[inline]
 #[target_feature(enable = "bmi2")]
 fn ones(length: usize) -> u64 {
@@ -79,11 +80,11 @@ fn ones(length: usize) -> u64 {
 /// ```
 ///
 /// # Safety
-/// So many bytes may be written from `row` on.
+/// At least `length` bytes can be written from `row` on.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
 unsafe fn row_of(mut row: *mut u8, length: usize, shade: u16, step: u16) {
-    // SAFETY: 64 bytes; the load asks for no alignment.
+    // SAFETY: 64 bytes; the load requires no alignment.
     let numbers = unsafe { _mm512_loadu_si512(EVEN.as_ptr().cast()) };
     let steps = _mm512_set1_epi16(step.cast_signed());
     let mut even = _mm512_add_epi16(_mm512_mullo_epi16(steps, numbers), _mm512_set1_epi16(shade.cast_signed()));
@@ -91,7 +92,8 @@ unsafe fn row_of(mut row: *mut u8, length: usize, shade: u16, step: u16) {
     if left > BLOCK {
         let block = _mm512_slli_epi16::<6>(steps);
         while left > BLOCK {
-            // SAFETY: more than 64 bytes are left; the store asks for no alignment. So many lie behind the row's place.
+            // SAFETY: more than 64 bytes are left, so 64 can be written and `row` can advance by 64; the store requires
+            // no alignment.
             unsafe {
                 _mm512_storeu_si512(row.cast(), bytes(even, steps));
                 row = row.add(BLOCK);
@@ -104,7 +106,7 @@ unsafe fn row_of(mut row: *mut u8, length: usize, shade: u16, step: u16) {
     unsafe { _mm512_mask_storeu_epi8(row.cast(), ones(left), bytes(even, steps)) }
 }
 
-/// The upper bytes of even shades, and those of the odd ones.
+/// Interleaves the upper bytes of even shades and of the odd ones.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw")]
 fn bytes(even: __m512i, steps: __m512i) -> __m512i {
@@ -114,10 +116,10 @@ fn bytes(even: __m512i, steps: __m512i) -> __m512i {
     _mm512_ternarylogic_epi32::<0xF8>(_mm512_srli_epi16::<8>(even), odd, odd_bytes)
 }
 
-/// Every span of a list.
+/// Fills every span of a list.
 pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &SpanList) {
     if spans.are_inside(pixels) {
-        // SAFETY: the processor has AVX-512, says the token; all spans lie inside the pixels.
+        // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels.
         unsafe { each(pixels.as_mut_ptr(), spans) }
     }
 }
@@ -126,11 +128,11 @@ pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &SpanList) {
 /// All spans lie inside the pixels.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,bmi2")]
 unsafe fn each(pixels: *mut u8, spans: &SpanList) {
-    // SAFETY: 16 bytes; the load asks for no alignment.
+    // SAFETY: 16 bytes; the load requires no alignment.
     let numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
     for k in 0..spans.len() {
         let Span { at, length, paint } = spans.span(k);
-        // Its halves.
+        // The shade in the lower half, the step in the upper.
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
         // SAFETY: by the caller's promise.
         let row = unsafe { pixels.add(at as usize) };
@@ -149,19 +151,19 @@ unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     }
 }
 
-/// A triangle whose rows go to the pixels without a list. Columns and rows are counted from its box's first on.
+/// A triangle whose rows go to the pixels without a list. Columns and rows are relative to its box's first.
 ///
-/// (Eight rows take half the instructions that the list takes; a cube's triangles of 3,570 pixels in 100 rows 1.57 times as
-/// long by it.)
+/// (Eight rows take half the instructions of the list, with which a cube's triangles of 3,570 pixels in 100 rows take
+/// 1.57 times as long.)
 #[derive(Clone, Copy)]
 pub(crate) struct LargeTriangle {
-    /// The numerator in the first row, its change from one row to the next, and the inverse of the divisor: of the long edge,
-    /// of the upper and the lower short one, and of the shade.
+    /// The numerator in the first row, its change per row, and the inverse of the divisor: of the long edge, of the
+    /// upper and the lower short one, and of the shade.
     pub(crate) long: [f64; 3],
     pub(crate) upper: [f64; 3],
     pub(crate) lower: [f64; 3],
     pub(crate) shade: [f64; 3],
-    /// Change of the shade's numerator from one column to the next.
+    /// Change of the shade's numerator per column.
     pub(crate) per_column: f64,
     /// The offset of the box's first pixel.
     pub(crate) at: i32,
@@ -170,13 +172,14 @@ pub(crate) struct LargeTriangle {
     /// The first row of the lower edge.
     pub(crate) split: i32,
     pub(crate) step: u16,
-    /// Every 64 pixels of a row start anew.
+    /// True if a row is reseeded every 64 pixels.
     pub(crate) reseeds: bool,
 }
 
-/// Draws a large triangle. Rows that do not lie inside the pixels are left out. Returns its spans, and the pixels of these.
+/// Draws a large triangle. Rows that do not lie inside the pixels are left out. Returns the number of its spans, and of
+/// their pixels.
 pub(crate) fn fill_large(_: Avx512, pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
-    // SAFETY: the processor has AVX-512, says the token.
+    // SAFETY: the token proves that the processor has AVX-512.
     unsafe { large(pixels, triangle) }
 }
 
@@ -189,7 +192,7 @@ impl Rows {
     #[target_feature(enable = "avx512f")]
     fn of(numbers: __m512i) -> Self {
         let mut rows = Self([0; 8]);
-        // SAFETY: 64 bytes; the store asks for no alignment.
+        // SAFETY: 64 bytes; the store requires no alignment.
         unsafe { _mm512_storeu_si512(rows.0.as_mut_ptr().cast(), numbers) }
         rows
     }
@@ -218,7 +221,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
     let first = _mm512_set1_epi64(i64::from(triangle.at).wrapping_sub(ROUND_MAGIC.to_bits().cast_signed()));
     let mut at = _mm512_add_epi64(first, _mm512_mullo_epi64(numbers, _mm512_set1_epi64(pitch)));
     let (per_column, per_piece) = (_mm512_set1_pd(triangle.per_column), triangle.per_column * BLOCK as f64);
-    // Pieces of a row, of which there is one where it does not start anew: it has at most 1,024 pixels.
+    // Pieces of a row. A row that is not reseeded is one piece, as it has at most 1,024 pixels.
     let (round, shift) = if triangle.reseeds { (BLOCK as i64 - 1, 6) } else { (1_023, 10) };
     let (round, shift) = (_mm512_set1_epi64(round), _mm_cvtsi64_si128(shift));
     let (mut spans, mut covered) = (_mm512_setzero_si512(), _mm512_setzero_si512());
@@ -229,7 +232,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
         let (left, right) = (_mm512_min_pd(long, short), _mm512_max_pd(long, short));
         let length = _mm512_sub_epi64(_mm512_castpd_si512(right), _mm512_castpd_si512(left));
         let begin = _mm512_add_epi64(_mm512_castpd_si512(left), at);
-        // All without sign, so what is negative is left out.
+        // All comparisons are unsigned, so negative values are left out.
         let is_row = _mm512_cmplt_epi64_mask(numbers, rows);
         let is_row = _mm512_mask_cmple_epu64_mask(is_row, length, size);
         let is_row = _mm512_mask_cmple_epu64_mask(is_row, begin, _mm512_sub_epi64(size, length));
@@ -243,7 +246,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
             (Rows::of(_mm512_maskz_mov_epi64(is_row, begin)), Rows::of(length), Rows::of(shades));
         let numerators = Rows::of(_mm512_castpd_si512(numerator));
         for lane in 0..ROWS as usize {
-            // The lower half is a shade twice: a broadcast of 32 bits needs no shuffle.
+            // The lower half is the shade twice: a broadcast of 32 bits needs no shuffle.
             let (mut left, shade) = (lengths.0[lane] as usize, shades.0[lane] as i32);
             // SAFETY: a row lies inside the pixels, or begins at the first and has no length.
             let mut row = unsafe { pixels.add(begins.0[lane] as usize) };
@@ -257,7 +260,8 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
             }
             let mut numerator = f64::from_bits(numerators.0[lane]);
             while left > BLOCK {
-                // SAFETY: more than 64 bytes are left; the store asks for no alignment. So many lie behind the row's place.
+                // SAFETY: more than 64 bytes are left, so 64 can be written and `row` can advance by 64; the store
+                // requires no alignment.
                 unsafe {
                     _mm512_storeu_si512(row.cast(), ramp.bytes(shades));
                     row = row.add(BLOCK);
@@ -265,7 +269,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
                 left -= BLOCK;
                 if triangle.reseeds {
                     numerator += per_piece;
-                    // Its lower part.
+                    // The low bits.
                     shades = _mm512_set1_epi16((numerator * triangle.shade[2] + ROUND_MAGIC).to_bits() as i16);
                 } else {
                     shades = _mm512_add_epi16(shades, _mm512_slli_epi16::<6>(ramp.steps));
@@ -289,7 +293,7 @@ struct Ramp {
     steps: __m512i,
     even: __m512i,
     odd: __m512i,
-    /// Both bytes of a 16-bit lane from its upper.
+    /// Both bytes of a 16-bit lane from its upper one.
     upper: __m512i,
     /// A bit for each even byte, of 64 and of 32.
     even_bytes: __mmask64,
@@ -300,7 +304,7 @@ impl Ramp {
     #[inline]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
     fn new(step: u16) -> Self {
-        // SAFETY: 64 bytes; the load asks for no alignment.
+        // SAFETY: 64 bytes; the load requires no alignment.
         let numbers = unsafe { _mm512_loadu_si512(EVEN.as_ptr().cast()) };
         let steps = _mm512_set1_epi16(step.cast_signed());
         let even = _mm512_mullo_epi16(steps, numbers);
@@ -315,7 +319,7 @@ impl Ramp {
         }
     }
 
-    /// From these shades on: the upper bytes of even ones below those of odd ones.
+    /// The bytes from these shades on: the upper bytes of even ones below those of odd ones.
     #[inline]
     #[target_feature(enable = "avx512f,avx512bw")]
     fn bytes(self, shades: __m512i) -> __m512i {
@@ -323,7 +327,7 @@ impl Ramp {
         _mm512_mask_shuffle_epi8(odd, self.even_bytes, even, self.upper)
     }
 
-    /// Half as many.
+    /// Half of them: the bytes of 32 pixels.
     #[inline]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
     fn half(self, shades: __m256i) -> __m256i {
@@ -333,12 +337,12 @@ impl Ramp {
     }
 }
 
-/// Every span of a list where it is nearer. Returns the number of pixels written.
+/// Fills every span of a list where it is nearer. Returns the number of pixels written.
 pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     if !spans.are_inside(pixels) || !spans.are_inside_cells(cells) {
         return 0;
     }
-    // SAFETY: the processor has AVX-512, says the token; all spans lie inside the pixels and cells.
+    // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
     unsafe { each_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans) }
 }
 
@@ -348,9 +352,9 @@ pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32],
 unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32 {
     let numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
     let upper = opaque(&UPPER_HALVES);
-    // 1, and above it the pixel's number.
+    // 1, with the pixel's index in the upper half.
     let numbered = _mm256_setr_epi32(1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001);
-    // SAFETY: 16 bytes; the load asks for no alignment.
+    // SAFETY: 16 bytes; the load requires no alignment.
     let even_numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
     let odd_bytes = _mm_set1_epi16(0xFF00_u16.cast_signed());
     let mut nearer = 0;
@@ -361,7 +365,7 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
         let steps = _mm512_set1_epi64(dz);
         let mut z0 = _mm512_add_epi64(_mm512_mullo_epi64(steps, numbers), _mm512_set1_epi64(z));
         if length <= 8 {
-            // Eight cells: with sixteen nearly every access is one to two lines of the cache.
+            // Eight cells: with sixteen nearly every access would touch two cache lines instead of one.
             let mask = ones(length as usize) as u8;
             let depths = _mm512_castsi512_si256(_mm512_permutexvar_epi32(upper, z0));
             // shade + j·step, of which bits 8 to 15 count.
@@ -376,7 +380,7 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
             }
             continue;
         }
-        // Its halves.
+        // The shade in the lower half, the step in the upper.
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
         let mut z1 = _mm512_add_epi64(z0, _mm512_slli_epi64::<3>(steps));
         let step = _mm_set1_epi16(step.cast_signed());
@@ -415,7 +419,7 @@ mod tests {
 
     use super::*;
 
-    /// Rows that do not lie wholly inside the pixels are left out, whatever the triangle.
+    /// Rows that do not lie entirely inside the pixels are left out, whatever the triangle.
     #[test]
     fn nothing_outside_the_pixels_is_written() {
         let Some(avx512) = Avx512::find() else {

@@ -1,11 +1,11 @@
-//! The span with a depth test by AVX2, of shades and of bytes: four pixels a turn in the shortest spans, eight in others, and
-//! sixteen of shades in spans longer than eight.
+//! The span with a depth test in AVX2, for shades and for bytes: four pixels per iteration in the shortest spans, eight
+//! in others, and sixteen for shades in spans longer than eight.
 //!
-//! Pixels of a turn that a span does not have are given depth 0, which is nearer than nothing, so that they are written as
-//! they were read: AVX2 has masked stores of 32 bits alone, and on some processors they are slow. So as many pixels and
-//! cells as a turn takes have to be there, of whichever row; a span at the very end of the frame that lacks them is drawn
-//! by [`fill_nearer`]. (Four where that is enough: what was stored a moment ago is seldomer read again in other pieces. Of
-//! 8 pixels a triangle 38.5 to 36.7 ns a face, of 0.6 13.9 to 13.5.)
+//! Pixels of an iteration that are not part of the span get depth 0, which is not nearer than anything, so they are
+//! rewritten unchanged: AVX2 has masked stores only for 32 bits, and on some processors they are slow. So as many
+//! pixels and cells as an iteration takes must exist, in whichever row; a span at the very end of the frame that lacks
+//! them is drawn by [`fill_nearer`]. (Four where that is enough, since bytes stored a moment ago are then less often
+//! reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
 
 use core::arch::x86_64::*;
 use core::ops::Range;
@@ -15,16 +15,16 @@ use super::super::list::{Span, SpanBytes, SpanDepth, SpanList};
 use crate::simd::Avx2;
 use crate::span::fixed16::fill_16_16 as fill_16_16_portable;
 
-/// Pixels a turn, ...
+/// Pixels per iteration, ...
 const EIGHT: usize = 8;
-/// ... of the shades of long spans, ...
+/// ... for shades in long spans, ...
 const SIXTEEN: usize = 16;
-/// ... or of spans that have no more than
+/// ... or in spans of at most four.
 const FOUR: usize = 4;
 
-/// Every span of a list. Returns the number of pixels written.
+/// Fills every span of a list. Returns the number of pixels written.
 pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
-    // SAFETY: the processor has AVX2, says the token.
+    // SAFETY: the token proves that the processor has AVX2.
     unsafe { fill(pixels, cells, spans.tested_spans(), |_, _| Own::Linear) }
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn copy_spans(
     (spans, range): (&SpanList, Range<usize>),
     bytes: &SpanBytes,
 ) -> u32 {
-    // SAFETY: the processor has AVX2, says the token.
+    // SAFETY: the token proves that the processor has AVX2.
     unsafe { fill(pixels, cells, spans.tested_spans_of(range), |number, _| Own::Bytes(bytes.of(number))) }
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn fill_spans_16_16(
     spans: &SpanList,
     shades: impl Fn(usize, u32) -> (u32, u32),
 ) -> u32 {
-    // SAFETY: the processor has AVX2, says the token.
+    // SAFETY: the token proves that the processor has AVX2.
     unsafe { fill_16_16(pixels, cells, spans, shades) }
 }
 
@@ -76,9 +76,10 @@ enum Own<'a> {
     Bytes(&'a [u8; SpanBytes::LENGTH]),
 }
 
-/// Fills spans, one after the other. Returns the number of pixels written.
-/// Nothing is drawn of a span that does not lie inside the pixels and cells. (One function for a list: as one for a
-/// span, which is too large to be part of the loop, a quarter slower.)
+/// Fills spans in order. Returns the number of pixels written.
+///
+/// A span that does not lie inside the pixels and cells is not drawn. (One function for a list: one for each span,
+/// which is too large to be inlined in the loop, is a quarter slower.)
 #[target_feature(enable = "avx2")]
 fn fill<'a>(
     pixels: &mut [u8],
@@ -86,7 +87,7 @@ fn fill<'a>(
     spans: impl Iterator<Item = (Span, SpanDepth)>,
     own: impl Fn(usize, &Span) -> Own<'a>,
 ) -> u32 {
-    // Pixels of all turns, and of each lane those that were not written, as a number below 0. Sums are meant modulo 2³².
+    // Pixels of all iterations, and per lane those that were not written, as a negative count. Sums are modulo 2³².
     let mut turned = 0_u32;
     let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());
     for (number, (span, depth)) in spans.enumerate() {
@@ -138,9 +139,9 @@ fn fill<'a>(
     turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
 }
 
-/// Copies the first `length` bytes as [`copy_nearer`](super::super::depth::copy_nearer) does, or without `KEEPS` as
-/// [`copy_nearer_keep_depth`](super::super::depth::copy_nearer_keep_depth). Returns the number of pixels written; `None`, with nothing done, where
-/// something is shorter than the turns.
+/// Copies the first `length` bytes like [`copy_nearer`](super::super::depth::copy_nearer), or without `KEEPS` like
+/// [`copy_nearer_keep_depth`](super::super::depth::copy_nearer_keep_depth). Returns the number of pixels written;
+/// `None`, with nothing done, if something is shorter than the iterations.
 #[inline]
 pub(crate) fn copy<const KEEPS: bool>(
     _: Avx2,
@@ -155,12 +156,12 @@ pub(crate) fn copy<const KEEPS: bool>(
     let (z, dz) = (z << 8, dz << 8);
     if length <= FOUR {
         let (row, cells, bytes) = (row.first_chunk_mut()?, cells.first_chunk_mut()?, bytes.first_chunk()?);
-        // SAFETY: the processor has AVX2, says the token.
+        // SAFETY: the token proves that the processor has AVX2.
         return Some(unsafe { copy_four::<KEEPS>(length, row, cells, bytes, z, dz) });
     }
     let whole = length.next_multiple_of(EIGHT);
     let (row, cells, bytes) = (row.get_mut(..whole)?, cells.get_mut(..whole)?, bytes.get(..whole)?);
-    // SAFETY: the processor has AVX2, says the token.
+    // SAFETY: the token proves that the processor has AVX2.
     Some(unsafe { copy_eights::<KEEPS>(length, row, cells, bytes, z, dz) })
 }
 
@@ -225,23 +226,23 @@ static SET_THEN_CLEAR: [i32; 2 * EIGHT] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0,
 
 /// The first `count` lanes set, at most eight.
 ///
-/// (From memory, and not by a comparison: from that the compiler knows that the lanes it clears are stored as they were
-/// read, and stores the others by `vpmaskmovd`, which takes AMD's processors 20 cycles.)
+/// (Loaded from memory, not computed by a comparison: from that the compiler knows that the cleared lanes are stored as
+/// they were read, and stores the others with `vpmaskmovd`, which takes 20 cycles on AMD processors.)
 #[inline]
 #[target_feature(enable = "avx2")]
 fn first_eight(count: usize) -> __m256i {
     let clear = EIGHT - count.min(EIGHT);
-    // SAFETY: eight of the sixteen, from at most the ninth on; the load asks for no alignment.
+    // SAFETY: eight of the sixteen, from at most the ninth on; the load requires no alignment.
     unsafe { _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(clear).cast()) }
 }
 
-/// The depths of eight pixels a turn.
+/// The depths of eight pixels per iteration.
 struct Depths {
-    /// With 32 fraction bits, so arranged that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
+    /// With 32 fraction bits, arranged so that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
     z: [__m256i; 2],
-    /// From a turn to the next one.
+    /// Change per iteration.
     step: __m256i,
-    /// Pixels from this turn on.
+    /// Pixels from this iteration on.
     left: usize,
 }
 
@@ -257,8 +258,8 @@ impl Depths {
         Self { z, step: _mm256_slli_epi64(dz, 3), left: length }
     }
 
-    /// One turn: −1 where a pixel stays, because it is not nearer than its cell, or is none of the span. With `KEEPS` the
-    /// cells keep what is nearer.
+    /// One iteration: −1 where a pixel stays, because it is not nearer than its cell, or is not part of the span. With
+    /// `KEEPS` nearer depths are stored in the cells.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn stay<const KEEPS: bool>(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
@@ -279,28 +280,29 @@ impl Depths {
     }
 }
 
-/// −1 where a depth is not greater than its cell; with `KEEPS` the cells keep the greater one.
+/// −1 where a depth is not greater than its cell; with `KEEPS` the cells store the greater one.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn stay<const KEEPS: bool>(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
-    // SAFETY: eight u32; the load asks for no alignment.
+    // SAFETY: eight u32; the load requires no alignment.
     let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
     let after = _mm256_max_epu32(before, depths);
     if KEEPS {
-        // SAFETY: eight u32; the store asks for no alignment.
+        // SAFETY: eight u32; the store requires no alignment.
         unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
     }
     _mm256_cmpeq_epi32(before, after)
 }
 
-/// Lanes of 32 bits, sixteen numbers of 16 bits: 0 to 3 and 8 to 11, 4 to 7 and 12 to 15.
+/// Packs lanes of 32 bits into sixteen numbers of 16 bits: 0 to 3 and 8 to 11, 4 to 7 and 12 to 15.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn halves([first, second]: [__m256i; 2]) -> __m256i {
     _mm256_packs_epi32(first, second)
 }
 
-/// The lower bytes of two vectors of sixteen numbers below 256, arranged as [`halves`] are: in order.
+/// The lower bytes of two vectors of sixteen numbers below 256, which are arranged as by [`halves`]; the bytes are in
+/// order.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
@@ -309,7 +311,7 @@ fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
     [_mm_unpacklo_epi32(low, high), _mm_unpackhi_epi32(low, high)]
 }
 
-/// −1 where one of up to four pixels stays; with `KEEPS` as [`Depths::stay`].
+/// −1 where one of up to four pixels stays; with `KEEPS` as in [`Depths::stay`].
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i {
@@ -318,18 +320,18 @@ fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
     let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
     let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first_eight(length)));
-    // SAFETY: four u32; the load asks for no alignment.
+    // SAFETY: four u32; the load requires no alignment.
     let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
     let after = _mm_max_epu32(before, depths);
     if KEEPS {
-        // SAFETY: four u32; the store asks for no alignment.
+        // SAFETY: four u32; the store requires no alignment.
         unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
     }
     _mm_cmpeq_epi32(before, after)
 }
 
-/// One span, in turns of eight, of its own bytes if it has such. Returns of each lane the pixels that were not written, as
-/// a number below 0.
+/// Fills one span, eight pixels per iteration, with its own bytes if it has any. Returns per lane the pixels that were
+/// not written, as a negative count.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own<'_>) -> __m256i {
@@ -356,7 +358,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
     let cells = &mut cells[..n];
     for (i, pixels) in pixels[..n].iter_mut().enumerate() {
         let stay = depths.stay::<true>(&mut cells[i]);
-        // SAFETY: eight bytes; the load asks for no alignment.
+        // SAFETY: eight bytes; the load requires no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let after = match own {
             Own::Bytes(own) => {
@@ -370,7 +372,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
         // The lowest byte of each.
         let fours = _mm256_shuffle_epi8(bytes, _mm256_set1_epi32(0x0C08_0400));
         let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256(fours, 1));
-        // SAFETY: eight bytes; the store asks for no alignment.
+        // SAFETY: eight bytes; the store requires no alignment.
         unsafe { _mm_storel_epi64(pixels.as_mut_ptr().cast(), eight) };
         stayed = _mm256_add_epi32(stayed, stay);
         shades = _mm256_add_epi32(shades, next_shade);
@@ -378,14 +380,14 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
     stayed
 }
 
-/// One span of the shades that it names, in turns of sixteen. Returns of each lane the pixels that were not written, as a number
-/// below 0.
+/// Fills one span with its linear shades, sixteen pixels per iteration. Returns per lane the pixels that were not
+/// written, as a negative count.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
     let (start, step) = (span.paint as i16, (span.paint >> 16) as i16);
     let steps = _mm256_set1_epi16(step);
-    // Arranged as `halves` are.
+    // Arranged as by `halves`.
     let numbers = _mm256_setr_epi16(0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15);
     let mut shades = _mm256_add_epi16(_mm256_mullo_epi16(steps, numbers), _mm256_set1_epi16(start));
     let next_shade = _mm256_slli_epi16(steps, 4);
@@ -407,8 +409,8 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
     stayed
 }
 
-/// Fills sixteen pixels where they are nearer; a pixel of depth 0 stays. The shades are arranged as [`halves`] are. Returns of
-/// each lane the pixels that were not written, as a number below 0.
+/// Fills sixteen pixels where they are nearer; a pixel of depth 0 stays. The shades are arranged as by [`halves`].
+/// Returns per lane the pixels that were not written, as a negative count.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m256i; 2], shades: __m256i) -> __m256i {
@@ -417,7 +419,7 @@ fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m2
     // 0 or 255.
     let stays = _mm256_srli_epi16(halves(stay), 8);
     let [bytes, stays] = bytes_of(_mm256_srli_epi16(shades, 8), stays);
-    // SAFETY: sixteen bytes; the load and the store ask for no alignment.
+    // SAFETY: sixteen bytes; the load and the store require no alignment.
     unsafe {
         let before = _mm_loadu_si128(pixels.as_ptr().cast());
         _mm_storeu_si128(pixels.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays));

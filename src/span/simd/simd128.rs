@@ -1,7 +1,7 @@
-//! Sixteen pixels at a time with vectors of 128 bits, as ARM and WebAssembly have them: the kernel of `sse2`, in the operations
+//! Sixteen pixels at a time with vectors of 128 bits, for ARM and WebAssembly: the kernel of `sse2`, in the operations
 //! of each.
 
-/// Even and odd shades of sixteen pixels, as the module `simd` has them.
+/// Even and odd shades of sixteen pixels, as described in the module `simd`.
 pub(super) trait Block: Copy {
     /// The block whose first pixel has `shade`.
     fn new(shade: u16, step: u16) -> Self;
@@ -11,7 +11,7 @@ pub(super) trait Block: Copy {
     fn store(self, to: &mut [u8; 16]);
 }
 
-/// Pixels a turn.
+/// Pixels per iteration.
 const BLOCK: usize = 16;
 
 /// Fills a row: blocks from its first pixel on, and one that ends with its last.
@@ -24,7 +24,7 @@ pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
         block.store(&mut bytes);
         return row.copy_from_slice(&bytes[..n]);
     }
-    // Wrapping is intended, of the length, too: shades are sums modulo 2¹⁶.
+    // Wrapping is intended, for the length too: shades are sums modulo 2¹⁶.
     let last = block.raised(step.wrapping_mul((n - BLOCK) as u16));
     let (blocks, _) = row.as_chunks_mut::<BLOCK>();
     for to in blocks {
@@ -72,7 +72,7 @@ pub(in super::super) mod neon {
         #[inline(always)]
         fn store(self, to: &mut [u8; 16]) {
             // The upper byte of an even shade goes below that of the odd one.
-            // SAFETY: the target has NEON, and `to` is 16 writable bytes; the store asks for no alignment.
+            // SAFETY: the target has NEON, and `to` is 16 writable bytes; the store requires no alignment.
             unsafe { vst1q_u8(to.as_mut_ptr(), vreinterpretq_u8_u16(vsriq_n_u16::<8>(self.odd, self.even))) }
         }
     }
@@ -81,13 +81,13 @@ pub(in super::super) mod neon {
         super::fill::<Block>(row, shade, step);
     }
 
-    /// Every span of a list.
+    /// Fills every span of a list.
     pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         spans.each(pixels, fill);
     }
 }
 
-/// WebAssembly with vectors of 128 bits.
+/// WebAssembly with 128-bit vectors.
 #[cfg(simd_wasm)]
 pub(in super::super) mod wasm {
     use super::super::super::list::SpanList;
@@ -116,7 +116,7 @@ pub(in super::super) mod wasm {
         #[inline(always)]
         fn store(self, to: &mut [u8; 16]) {
             let bytes = v128_or(u16x8_shr(self.even, 8), v128_and(self.odd, u16x8_splat(0xFF00)));
-            // SAFETY: `to` is 16 writable bytes; the store asks for no alignment.
+            // SAFETY: `to` is 16 writable bytes; the store requires no alignment.
             unsafe { v128_store(to.as_mut_ptr().cast(), bytes) }
         }
     }
@@ -125,7 +125,7 @@ pub(in super::super) mod wasm {
         super::fill::<Block>(row, shade, step);
     }
 
-    /// Every span of a list.
+    /// Fills every span of a list.
     pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         spans.each(pixels, fill);
     }
