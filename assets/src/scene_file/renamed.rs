@@ -1,17 +1,17 @@
-//! Keys and values that had other names before, and the short name of one. An old name is an error that says the new one.
+//! Keys and values that have been renamed, and one short name. An old name is an error that gives the new one.
 
 use mode13h::settings::Shading;
 
-/// Old keys, with those they lay in, and the present name of each.
+/// Old keys with their parents, and the new name of each.
 const KEYS: [(&str, &str); 2] = [("wishes", "render"), ("render.rung", "shading")];
 
-/// Old values, and the present name of each.
+/// Old values, and the new name of each.
 const VALUES: [(&str, &str); 2] = [("gouraud-period", "gouraud-vintage"), ("float", "gouraud-float")];
 
 /// The short name of the default shading.
 pub const GOURAUD: &str = "gouraud";
 
-/// The name that a short name stands for; any other name as it is.
+/// The full name for a short name; any other name unchanged.
 ///
 /// ```
 /// use mode13h_assets::scene_file::in_full;
