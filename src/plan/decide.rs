@@ -405,9 +405,9 @@ impl Rules<'_> {
     ///
     /// Linear on the screen and linear on the face weigh the three corners differently: one by a, the other by a/w,
     /// normalised to a sum of 1. The weight given to the wrong corners is at most (√ρ − 1) / (√ρ + 1), where ρ is the
-    /// greatest ratio of two w (with mass m at the nearer end it is mρ/(mρ + 1 − m) − m, which is greatest at m = 1/(1
-    /// + √ρ)), and no two corners' texels are farther apart than the longest edge in the texture. Between two vertices
-    /// of a triangle, w differs by at most the longest edge of the mesh.
+    /// greatest ratio of two w. (With mass m at the nearer end it is mρ/(mρ + 1 − m) − m, which is greatest at
+    /// m = 1/(1 + √ρ).) No two corners' texels are farther apart than the longest edge in the texture, and between two
+    /// vertices of a triangle w differs by at most the longest edge of the mesh.
     fn affine_error(&self) -> f64 {
         let nearest = self.reach.nearest.max(f64::from(self.view.near()));
         let (edge, texture_edge) = self.object.mesh().longest_edges();
