@@ -2,7 +2,7 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// An angle of any size: two whole turns are not none. Made from degrees or radians, it is kept in radians.
+/// An angle of any size, so two full turns differ from none. Made from degrees or radians, and stored in radians.
 ///
 /// ```
 /// use mode13h::Angle;
@@ -15,16 +15,16 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 pub struct Angle(f64);
 
 impl Angle {
-    /// A whole turn: 360°.
+    /// A full turn: 360°.
     pub(crate) const TURN: Self = Self(core::f64::consts::TAU);
 
-    /// An angle of so many degrees.
+    /// Makes an angle from degrees.
     #[must_use]
     pub const fn from_degrees(degrees: f64) -> Self {
         Self(degrees.to_radians())
     }
 
-    /// An angle of so many radians.
+    /// Makes an angle from radians.
     #[must_use]
     pub const fn from_radians(radians: f64) -> Self {
         Self(radians)

@@ -2,16 +2,16 @@
 //!
 //! | type | holds | bits | unit |
 //! |---|---|---|---|
-//! | [`I24F8`] | a screen coordinate | 24 whole and sign, 8 fraction | 1/256 pixel |
-//! | [`U8F8`] | a shade | 8 whole, 8 fraction | 1/256 shade |
-//! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 whole and sign, 16 fraction | 1/65,536 |
+//! | [`I24F8`] | a screen coordinate | 24 integer and sign, 8 fraction | 1/256 pixel |
+//! | [`U8F8`] | a shade | 8 integer, 8 fraction | 1/256 shade |
+//! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 integer and sign, 16 fraction | 1/65,536 |
 //!
-//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. More is true: `sar`
-//! rounds toward minus infinity and a division rounds toward zero, so a value that is narrowed must
-//! say which. Here each narrowing conversion has its rounding in its name.
+//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. In fact `sar` rounds
+//! toward minus infinity and a division rounds toward zero, so narrowing has to say which it means. Here each narrowing
+//! conversion has its rounding in its name.
 
 /// Set on targets with IEEE double precision in hardware. On others the branch that uses floats is not compiled. (x87
-/// is left out: it rounds to 64 bits on the way.)
+/// is excluded: its intermediate results have 64-bit mantissas.)
 pub(crate) const HAS_F64: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -19,39 +19,40 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
-/// 1.5 · 2⁵²: a sum of it and a value within ±2⁵¹ has the nearest integer, halves to even, in the low bits of its mantissa.
-/// The lower half of its own bits is 0, so the lower half of the sum's bits is that integer modulo 2³².
+/// 1.5 · 2⁵²: added to a value within ±2⁵¹, the sum has the nearest integer, ties to even, in the low bits of its
+/// mantissa. The lower half of the constant's own bits is 0, so the lower half of the sum's bits is that integer modulo
+/// 2³².
 pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0;
 const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 
-/// The whole number nearest to a value within ±2⁵¹, halves to even; for any other value, some number.
+/// The integer nearest to a value within ±2⁵¹, ties to even; for other values the result is arbitrary.
 ///
-/// Only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the
-/// cost of two comparisons.
+/// Use only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the cost of two
+/// comparisons.
 #[inline]
 pub(crate) fn nearest_whole(x: f64) -> i64 {
     (x + ROUND_MAGIC).to_bits().wrapping_sub(ROUND_MAGIC.to_bits()) as i64
 }
 
-/// The whole part of a value of at least 0 and below 2³¹; for any other value, some number. A cast would saturate,
-/// which keeps the compiler from making vectors of it.
+/// The integer part of a value of at least 0 and below 2³¹; for other values the result is arbitrary. A cast would
+/// saturate, which keeps the compiler from vectorising it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn whole_part(x: f64) -> i32 {
-    // As in `nearest_whole`; what was rounded up is one too much.
+    // As in `nearest_whole`; if that rounded up, the result is one too large.
     let sum = x + ROUND_MAGIC;
-    // Its lower half.
+    // The lower half.
     let nearest = sum.to_bits() as i32;
     nearest.wrapping_sub(i32::from(sum - ROUND_MAGIC > x))
 }
 
-/// A screen coordinate in 1/256 pixel: 24 bits before the point, 8 behind it.
+/// A screen coordinate in 1/256 pixel: 24 integer bits, 8 fractional bits.
 ///
-/// Pixel `p` has its centre at `256·p + 128` units.
+/// The centre of pixel `p` is at `256·p + 128` units.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct I24F8(i32);
 
-/// Whole pixels.
+/// Converts from whole pixels.
 impl From<i16> for I24F8 {
     #[inline]
     fn from(pixels: i16) -> Self {
@@ -60,7 +61,7 @@ impl From<i16> for I24F8 {
 }
 
 impl I24F8 {
-    /// Units in a pixel.
+    /// The number of units in a pixel.
     pub(crate) const ONE: i32 = 256;
     /// The distance from the pixel's left edge to its centre, in units.
     pub const HALF: i32 = 128;
@@ -81,11 +82,10 @@ impl I24F8 {
     ///
     /// Returns `None` if `pixels` is not finite or the result does not fit in 32 bits.
     ///
-    /// Adding the half in f64 first would be wrong: `0.49999999999999994 + 0.5` is 1. So the
-    /// fraction is compared with a half instead. 256·x is exact (a power of two; where a denormal
-    /// loses nothing either), and so is `scaled − floor(scaled)` for every value for which it
-    /// matters: for a negative number nearer to 0 than 2⁻⁵³ it is rounded to 1, which is still no
-    /// less than ½.
+    /// Adding the half in f64 first would be wrong: `0.49999999999999994 + 0.5` is 1. So the fraction is compared with
+    /// a half instead. 256·x is exact (multiplying by a power of two loses nothing, even for a denormal), and so is
+    /// `scaled − floor(scaled)` wherever it matters: for a negative number closer to 0 than 2⁻⁵³ it is rounded to 1,
+    /// which is still not less than ½.
     ///
     /// ```
     /// use mode13h::fixed::I24F8;
@@ -97,11 +97,11 @@ impl I24F8 {
     #[inline]
     pub fn round_from_f64(pixels: f64) -> Option<Self> {
         let scaled = pixels * 256.0;
-        // Written so that NaN fails it.
+        // NaN fails this comparison.
         if !(scaled > -2_147_483_648.0 && scaled < 2_147_483_647.0) {
             return None;
         }
-        // Truncates toward zero, in range by the line above.
+        // Truncates toward zero, in range as checked above.
         let mut whole = scaled as i32;
         if f64::from(whole) > scaled {
             whole -= 1;
@@ -128,7 +128,7 @@ impl I24F8 {
         Self(((pixels.0 as i64 + 128) >> 8) as i32)
     }
 
-    /// The first pixel whose centre lies at or to the right of (below) this coordinate: `ceil(x − ½)`.
+    /// The first pixel whose centre is at or to the right of (below) this coordinate: `ceil(x − ½)`.
     #[must_use]
     #[inline]
     pub const fn first_centre(self) -> i32 {
@@ -137,13 +137,13 @@ impl I24F8 {
     }
 }
 
-/// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 bits before the point, 8 behind it. AX of the
-/// 1994 loop: AH is the byte that is written, AL the fraction.
+/// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 integer bits, 8 fractional bits. AX of the 1994 loop: AH is the byte
+/// that is written, AL the fraction.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 #[repr(transparent)]
 pub struct U8F8(u16);
 
-/// A whole shade, 0 to 255.
+/// Converts from a whole shade, 0 to 255.
 impl From<u8> for U8F8 {
     #[inline]
     fn from(shade: u8) -> Self {
@@ -167,32 +167,32 @@ impl U8F8 {
         self.0
     }
 
-    /// The nearest whole shade, halves upward: `(u + 128) >> 8`. 255.5 and above stay at 255.
+    /// The nearest whole shade, ties upward: `(u + 128) >> 8`. 255.5 and above stay at 255.
     #[must_use]
     pub const fn nearest(self) -> u8 {
         (self.0.saturating_add(128) >> 8) as u8
     }
 
-    /// The shade of an intensity on a ramp: `first + intensity·(entries − 1)`, rounded to the
-    /// nearest 1/256, halves upward. NaN and everything below 0 count as 0, everything above 1 as 1.
+    /// The shade of an intensity on a ramp: `first + intensity·(entries − 1)`, rounded to the nearest 1/256, ties
+    /// upward. NaN and everything below 0 count as 0, everything above 1 as 1.
     ///
-    /// `entries` is 1 to 256 and `first + entries` at most 256 (a [`Ramp`](crate::palette::Ramp)
-    /// sees to both); what does not fit saturates at 255.0.
+    /// `entries` is 1 to 256 and `first + entries` at most 256 (a [`Ramp`](crate::palette::Ramp) ensures both); larger
+    /// results saturate at 255.0.
     #[must_use]
     #[inline]
     pub fn from_intensity(intensity: f32, first: u8, entries: u16) -> Self {
         let units = f64::from(entries.saturating_sub(1)) * 256.0;
-        // `max` gives the other operand for NaN, and `clamp` would not. The product of 24 and 16 bits is exact in
-        // f64, and so is the sum with a half unless the product is below 2⁻¹³, where the whole part
-        // is 0 either way. `as` truncates.
+        // For NaN `max` returns the other operand, which `clamp` would not. The product of 24 and 16 bits is exact in
+        // f64, and so is the sum with a half, unless the product is below 2⁻¹³, where the integer part is 0 either way.
+        // `as` truncates.
         #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
         let above = (f64::from(intensity.max(0.0).min(1.0)) * units + 0.5) as u32;
         let shade = u32::from(first) * 256 + above;
         Self(if shade > 0xFF00 { 0xFF00 } else { shade as u16 })
     }
 
-    /// The shades of eight intensities on a ramp, each as by [`from_intensity`](Self::from_intensity).
-    /// The compiler makes vectors of this form.
+    /// The shades of eight intensities on a ramp, each as computed by [`from_intensity`](Self::from_intensity). The
+    /// compiler vectorises this form.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     pub(crate) fn from_eight_intensities(intensities: &[f32; 8], first: u8, entries: u16) -> [Self; 8] {
@@ -202,7 +202,7 @@ impl U8F8 {
             #[expect(clippy::manual_clamp, reason = "clamp keeps NaN")]
             let clamped = intensities[lane].max(0.0).min(1.0);
             let sum = i32::from(first) * 256 + whole_part(f64::from(clamped) * units + 0.5);
-            // Neither part is above 2¹⁶.
+            // Both terms are at most 2¹⁶.
             *shade = Self(if sum > 0xFF00 { 0xFF00 } else { sum as u16 });
         }
         shades
@@ -229,14 +229,14 @@ impl I16F16 {
         self.0
     }
 
-    /// Makes a number from a whole one, −32,768 to 32,767.
+    /// Makes a number from an integer, −32,768 to 32,767.
     #[must_use]
     pub const fn from_int(whole: i16) -> Self {
         Self((whole as i32) << 16)
     }
 
-    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. For loading a mesh:
-    /// nothing on the drawing path calls it.
+    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. For loading a mesh: nothing calls it
+    /// while drawing.
     #[must_use]
     pub fn round_from_f64(x: f64) -> Option<Self> {
         // The 1/256 rounding of a number 256 times as large; the product is exact.

@@ -1,9 +1,9 @@
-//! The inside of the engine, for the laboratory, the conformance crate, tests and benchmarks: what drew each pixel, one
-//! triangle at a time; settings of a renderer that no game needs; the loops over spans, and the stages of the raster.
+//! The engine's internals, for the laboratory, the conformance crate, tests and benchmarks: what drew each pixel, one
+//! triangle at a time; settings of a renderer that no game needs; the span loops, and the stages of the raster.
 //!
-//! It may change with any version.
+//! They may change with any version.
 
-/// Makes modules that pass on what is public in those of the same names.
+/// Makes modules that re-export the public items of those with the same names.
 macro_rules! modules {
     ($room:ident: $($(#[$meta:meta])* $module:ident)*) => {
         $($(#[$meta])* pub mod $module { pub use crate::$room::$module::*; })*
@@ -13,25 +13,25 @@ macro_rules! modules {
     };
 }
 
-/// Eight numbers at a time.
+/// Eight values at a time.
 pub mod lanes {
     pub use crate::lanes::*;
 }
 
-/// The loops over spans, and their specifications.
+/// The span loops and their specifications.
 pub mod span {
     pub use crate::span::lookup::lookup;
 
     modules! { span:
-        /// Red, green and blue to an index.
+        /// From red, green and blue to a palette index.
         channels
-        /// Shades on a parabola.
+        /// Quadratic shades.
         curve
-        /// With a depth test.
+        /// Depth-tested spans.
         depth
-        /// With ordered dither.
+        /// Ordered dithering.
         dither
-        /// The span in 16.16.
+        /// Spans in 16.16.
         fixed16
         /// Perspective-correct shades in f32.
         float
@@ -39,11 +39,11 @@ pub mod span {
         hyperbolic
         /// A list of spans.
         list
-        /// Normals and positions for Phong's shading.
+        /// Normals and positions for Phong shading.
         lit
         /// Rows of texels.
         texture
-        /// The bare entries of the assembly.
+        /// The raw entry points of the assembly.
         #[cfg(any(asm_x86_64, asm_i686))]
         entry
     }
@@ -56,7 +56,7 @@ pub mod raster {
     modules! { raster:
         /// Clipping of triangles.
         clip
-        /// Stages over spans: texture, fog, channels, blending, dither, light at every pixel.
+        /// Stages over spans: texture, fog, channels, blending, dithering, per-pixel light.
         effects
         /// The scan-line method.
         scan_line
@@ -71,7 +71,7 @@ pub mod raster {
             depth
             /// The shade at a pixel.
             shade
-            /// Exact floors by one reciprocal for each divisor.
+            /// Exact floor division with one reciprocal per divisor.
             quotient
         }
     }
@@ -89,9 +89,9 @@ use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
-/// Hands every triangle that [`Renderer::draw`] would draw to `visit`, in the order of [`Renderer::for_each_triangle`],
-/// with all that the raster would get. Returns the counts of the work, without the raster's. Nothing is drawn, and
-/// later frames are the same as without this call.
+/// Passes every triangle that [`Renderer::draw`] would draw to `visit`, in the order of
+/// [`Renderer::for_each_triangle`], with everything that the raster would get. Returns the counts of the work, without
+/// the raster's. Nothing is drawn, and later frames are the same as without this call.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`], before the first triangle.
@@ -104,7 +104,7 @@ pub fn each_triangle(
     renderer.each_triangle(scene, screen, visit)
 }
 
-/// Makes the plan and the vertices of a frame, and draws nothing.
+/// Makes the plan and the vertices of a frame without drawing it.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -112,7 +112,7 @@ pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> 
     renderer.make_vertices(scene, screen)
 }
 
-/// Prepares a frame by the 16.16 path, which the renderer then has, draws nothing, and returns its numbers.
+/// Prepares a frame for the 16.16 path without drawing it, stores it in the renderer and returns its numbers.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -124,25 +124,26 @@ pub fn integer_frame<'a>(
     renderer.integer_frame(scene, screen)
 }
 
-/// Rounds projected vertices once more, to so many bits after the point: 8, the default, or fewer; 0 gives whole pixels.
-/// Points that clipping makes stay.
+/// Rounds projected vertices again, to this many fractional bits: 8, the default, or fewer; 0 gives whole pixels.
+/// Vertices created by clipping are not affected.
 pub fn set_vertex_bits(renderer: &mut Renderer, bits: u32) {
     renderer.set_vertex_bits(bits);
 }
 
-/// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the palette; `None`, the
-/// default, mixes them.
+/// Shows the shades of one channel, 0 red, 1 green, 2 blue, where three would be combined to a palette entry; `None`,
+/// the default, combines them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
     renderer.show_channel(channel);
 }
 
-/// The mesh of an object, to be kept or compared by address.
+/// The mesh of an object, to be stored or compared by address.
 #[must_use]
 pub fn shared_mesh(object: &Object) -> &Shared<Mesh> {
     object.shared_mesh()
 }
 
-/// A copy of an object with another mesh, whose vertices must each have one surface, and a material for each surface of it.
+/// Copies an object with another mesh, whose vertices must each have one surface, and a material for each of its
+/// surfaces.
 #[must_use]
 pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) -> Object {
     object.with_mesh(mesh, materials)
@@ -151,7 +152,7 @@ pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) 
 /// Checks a light.
 ///
 /// # Errors
-/// One line that says what is wrong.
+/// A line that says what is wrong.
 pub fn check_light(light: &Light) -> Result<(), &'static str> {
     light.check()
 }
@@ -159,7 +160,7 @@ pub fn check_light(light: &Light) -> Result<(), &'static str> {
 /// Checks an object, by its index.
 ///
 /// # Errors
-/// One line that says what is wrong.
+/// A line that says what is wrong.
 pub fn check_object(scene: &Scene, index: usize) -> Result<(), &'static str> {
     scene.objects().get(index).map_or(Ok(()), Object::check)?;
     scene.check_parents(index)

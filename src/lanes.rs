@@ -1,22 +1,21 @@
-//! Eight numbers at a time: the form in which light, vertices and pixels are computed.
+//! Eight values at a time: the form in which light, vertices and pixels are computed.
 
-/// The number of pixels or vertices in one batch: two to eight vectors of a processor, and no more than short spans
-/// have.
+/// The number of pixels or vertices in a batch: two to eight vectors of a processor, and no more than short spans have.
 pub const LANES: usize = 8;
 
-/// The numbers of the lanes.
+/// The index of each lane.
 pub(crate) const NUMBERS: Lanes<i32> = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/// One number for each of so many pixels or vertices that follow each other.
+/// One value for each of eight consecutive pixels or vertices.
 pub type Lanes<T> = [T; LANES];
 
-/// Normal and position, x, y and z each, of as many pixels or vertices.
+/// Normals and positions, x, y and z each, of eight consecutive pixels or vertices.
 pub type Points = [Lanes<f32>; 6];
 
 /// `each!(lane => value)`: one value for each lane.
 ///
-/// An index loop, because a closure, or a function of the standard library that takes one, would be compiled for the
-/// baseline instead of the caller's level whenever the optimiser does not inline it.
+/// An index loop, because a closure, or a library function that takes one, is compiled for the baseline instead of the
+/// caller's level unless the optimiser inlines it.
 macro_rules! each {
     ($lane:ident => $value:expr) => {{
         let mut lanes = [Default::default(); crate::lanes::LANES];
@@ -30,7 +29,7 @@ macro_rules! each {
 }
 pub(crate) use each;
 
-/// `array::map` of three values, which are mostly those of a face's corners. Always inlined, as that is not.
+/// `array::map` for three values, usually those of a face's corners, but always inlined, unlike that.
 #[inline(always)]
 pub(crate) fn three<T, U>([a, b, c]: [T; 3], mut of: impl FnMut(T) -> U) -> [U; 3] {
     [of(a), of(b), of(c)]

@@ -1,26 +1,26 @@
-//! A software 3-D engine that draws the way a 386 with a VGA card did in 1994: a frame of
-//! 320 × 200 bytes, a palette of 256 colours, fixed-point arithmetic, and one inner loop,
-//! `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` / `jnz`.
+//! A software 3-D engine that draws the way a 386 with a VGA card did in 1994: a frame of 320 × 200 bytes, a palette of
+//! 256 colours, fixed-point arithmetic, and one inner loop, `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` /
+//! `jnz`.
 //!
-//! The stages, from the bottom up. A module uses those above it in this list, never those below.
+//! These are the stages from the bottom up. A module only uses those above it in the list.
 //!
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
-//! | [`span`] | the loop, and its twins in assembly and vectors that give the same bytes | – |
-//! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, compiled in | `alloc` |
+//! | [`span`] | the loop, and its assembly and vector versions, which give the same bytes | – |
+//! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, built in | `alloc` |
 //! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
-//! | [`settings`] | how to draw: shadings, error budgets, ways to hidden surfaces | – |
+//! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
-//! | [`scene`] | objects, camera, lights, fog, motion, what is asked for | `alloc` |
+//! | [`scene`] | objects, camera, lights, fog, motion, preferences | `alloc` |
 //! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
 //! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
-//! | [`window`] | a whole game's frame: [`window::run`] | `window` |
+//! | [`window`] | the frame loop of a game: [`window::run`] | `window` |
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
 #![cfg_attr(not(feature = "png"), doc = "```ignore")]
@@ -48,24 +48,24 @@
 //! # Angles, positions and colours
 //!
 //! Each of these has one type. An angle is an `Angle`, whatever it turns; on the 16.16 path it is an
-//! [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take whatever becomes one, such
-//! as `[0.0, 1.0, 0.0]`. A colour of the palette, of a picture or of fog is an [`Rgb`](palette::Rgb) of three bytes. A
-//! colour of a light or of a surface is `[f32; 3]`: red, green and blue, as a rule 0 to 1. An `Rgb` becomes one by `into`.
+//! [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take anything that converts to
+//! one, such as `[0.0, 1.0, 0.0]`. A colour in a palette, a picture or fog is an [`Rgb`](palette::Rgb) of three bytes. A
+//! colour of a light or a surface is `[f32; 3]`: red, green and blue, usually 0 to 1. An `Rgb` converts to one by `into`.
 //!
-//! The feature `internals` opens the inside of the engine to the laboratory, the conformance crate, tests and benchmarks.
-//! It may change with any version.
+//! The feature `internals` opens the engine's internals to the laboratory, the conformance crate, tests and benchmarks.
+//! They may change with any version.
 //!
 //! # Features
 //!
 //! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
-//! `unsafe` code), and `png`. `window` and `embedded-graphics` (text and shapes on a frame) are added by name.
-//! Files are read by the crate `mode13h-assets`. With no feature at all `fixed`, `palette`, `vga`, `span`, `raster`
-//! and `integer` remain, which need neither `std` nor an allocator; `alloc` adds the engine.
+//! `unsafe` code), and `png`. Optional are `window` and `embedded-graphics` (text and shapes on a frame). The crate
+//! `mode13h-assets` reads files. Without any feature, `fixed`, `palette`, `vga`, `span`, `raster`, `settings` and
+//! `integer` remain, which need neither `std` nor an allocator; `alloc` adds the engine.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]
 #![cfg_attr(any(feature = "asm", feature = "simd"), deny(unsafe_code))]
-// Some of it is seen by `internals` alone.
+// Some items are only used by `internals`.
 #![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports, unreachable_pub))]
 
 #[cfg(feature = "alloc")]
@@ -76,7 +76,7 @@ pub use embedded_graphics;
 #[cfg(feature = "alloc")]
 pub use glam;
 
-/// Makes a function public for `internals`, and the crate's own without.
+/// Makes a function public with `internals`, and otherwise private to the crate.
 macro_rules! internal {
     ($(#[$meta:meta])* fn $($rest:tt)*) => {
         #[cfg(feature = "internals")]

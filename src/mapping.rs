@@ -1,17 +1,17 @@
-//! The mapping of textures, as a scene, a renderer and the raster name it.
+//! Texture mappings, as named by scenes, renderers and the raster.
 
 use crate::names::named;
 
 named! {
-    /// The interpolation of a texture's coordinates over a face.
+    /// The interpolation of texture coordinates over a face.
     #[derive(Default)]
     pub enum Mapping, "mapping" {
-        /// Linear on the screen, as for a face that is seen straight on.
+        /// Linear on the screen, which is exact for a face seen straight on.
         #[default]
         Affine = "affine",
-        /// Right at every sixteenth pixel, linear between.
+        /// Exact at every sixteenth pixel, linear in between.
         Every16 = "every-16",
-        /// Right at every pixel: two quotients each.
+        /// Exact at every pixel: two divisions each.
         Perspective = "perspective",
     }
 }

@@ -1,29 +1,29 @@
-//! Choices that are typed by name: one table gives the enum, its names, and the error for an unknown name.
+//! Options selected by name: one table gives the enum, its names, and the error for an unknown name.
 
 use core::fmt;
 
-/// The number of kernels that there are on all machines.
+/// The number of kernels on all machines together.
 pub(crate) const KERNELS: usize = 10;
 
-/// An unknown name, or that of a kernel that this machine or build lacks. Its text lists those that there are.
+/// The error of an unknown name, or of a kernel that this machine or build lacks. Its text lists the available names.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct UnknownName(Unknown);
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 enum Unknown {
-    /// What is to be chosen, and its names.
+    /// What is being selected, and its names.
     Of(&'static str, &'static [&'static str]),
-    /// A kernel: its name if other machines or builds have it, and the names of those that are here.
+    /// A kernel: its name if other machines or builds have it, and the names of those available here.
     Kernel(Option<&'static str>, [Option<&'static str>; KERNELS]),
 }
 
 impl UnknownName {
-    /// No such name of `what`.
+    /// There is no `what` with that name.
     pub const fn of(what: &'static str, names: &'static [&'static str]) -> Self {
         Self(Unknown::Of(what, names))
     }
 
-    /// No such kernel here; `lacking` is its name if there is such a kernel elsewhere.
+    /// There is no such kernel here; `lacking` is its name if it exists elsewhere.
     pub(crate) const fn kernel(lacking: Option<&'static str>, here: [Option<&'static str>; KERNELS]) -> Self {
         Self(Unknown::Kernel(lacking, here))
     }
@@ -54,7 +54,7 @@ crate::errors::debug_as_display!(UnknownName);
 
 impl core::error::Error for UnknownName {}
 
-/// An enum whose every variant has a name, with `ALL`, `name`, `Display` and `FromStr`.
+/// Defines an enum with a name for each variant, and `ALL`, `name`, `Display` and `FromStr`.
 macro_rules! named {
     (
         $(#[$of_choice:meta])*

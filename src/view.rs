@@ -1,14 +1,14 @@
-//! From a mesh's own coordinates to the screen: one matrix an object, then one division a vertex.
+//! From a mesh's own coordinates to the screen: one matrix per object, then one division per vertex.
 //!
-//! The camera's space is chosen so that projecting is two products and two sums:
+//! Camera space is chosen so that projecting takes two products and two sums:
 //!
 //! ```text
 //! X = fx·(right · d)    Y = −fy·(up · d)    W = forward · d        d from the eye to the point
 //! x = cx + X / W        y = cy + Y / W                             in pixels
 //! ```
 //!
-//! fy is half the picture's height over the tangent of half the field of view, and fx is fy times
-//! the height of a pixel over its width: 6/5 in mode 13h, whose 320 × 200 fill a 4:3 screen.
+//! fy is half the picture's height over the tangent of half the field of view, and fx is fy times the height of a pixel
+//! over its width: 6/5 in mode 13h, whose 320 × 200 pixels fill a 4:3 screen.
 
 use glam::{Mat3, Vec3};
 
@@ -27,11 +27,11 @@ pub(crate) use narrow::Narrow;
 /// The screen: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Screen {
-    /// Columns.
+    /// The number of columns.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// A pixel's width to its height.
+    /// The aspect ratio of a pixel, width to height.
     pub pixel_aspect: (u32, u32),
 }
 
@@ -39,7 +39,7 @@ impl Screen {
     /// 320 × 200, pixels 5:6.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
 
-    /// fx and fy, in pixels; the field of view in radians.
+    /// fx and fy, in pixels; the field of view is the vertical one.
     pub(crate) fn focal_lengths(self, field_of_view: Angle) -> [f64; 2] {
         let (pixel_width, pixel_height) = self.pixel_aspect;
         let fy = f64::from(self.height) / 2.0 / libm::tan(field_of_view.to_radians() / 2.0);
@@ -50,17 +50,17 @@ impl Screen {
 type Row = [f64; 3];
 type Matrix = [Row; 3];
 
-/// The camera's part of the way: from the world to the screen.
+/// The camera's part of the transform: from the world to the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     eye: Row,
     /// The rows that give X, Y and W.
     rows: Matrix,
-    /// Right, up and towards the eye, unit.
+    /// Unit vectors right, up and towards the eye.
     axes: Matrix,
     /// The screen, in pixels.
     size: (f64, f64),
-    /// The middle of the screen, in pixels.
+    /// The centre of the screen, in pixels.
     centre: (f32, f32),
     near: f32,
 }
@@ -71,7 +71,7 @@ impl View {
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err("its positions must be finite");
         }
-        // Written so that NaN fails it.
+        // NaN fails this comparison.
         if !(near > 0.0 && near <= f32::MAX) {
             return Err("its near distance must be above 0 and finite");
         }
@@ -94,7 +94,7 @@ impl View {
             rows: [right.map(|c| fx * c), up.map(|c| -fy * c), forward],
             axes: [right, up, backward],
             size: (width, height),
-            // Halves of whole numbers up to 4,096: exact.
+            // Halves of integers up to 4,096: exact.
             centre: ((width / 2.0) as f32, (height / 2.0) as f32),
             near,
         })
@@ -102,8 +102,8 @@ impl View {
 }
 
 impl View {
-    /// Where a point of the world lies on the screen, in pixels, and how far in front of the eye; `None` if it is nearer than
-    /// the near distance.
+    /// The position of a point of the world on the screen, in pixels, and its distance in front of the eye; `None` if
+    /// it is nearer than the near distance.
     pub(crate) fn on_screen(&self, world: Vec3) -> Option<[f64; 3]> {
         let world = widen(world);
         let from_eye = [0, 1, 2].map(|i| world[i] - self.eye[i]);
@@ -113,8 +113,7 @@ impl View {
         (distance >= f64::from(self.near)).then(|| [cx + x / distance, cy + y / distance, distance])
     }
 
-    /// A direction of the world as the eye sees it (right, up, towards the eye), unit; `None` for the
-    /// zero vector.
+    /// A direction of the world as a unit vector in eye space (right, up, towards the eye); `None` for the zero vector.
     pub(crate) fn direction_to_eye(&self, world: Vec3) -> Option<Vec3> {
         let world = unit(widen(world))?;
         let [x, y, z] = self.axes.map(|axis| dot(axis, world) as f32);
@@ -123,9 +122,9 @@ impl View {
 }
 
 impl Camera {
-    /// Where a point of the scene lies on the screen: x and y in pixels from the upper left corner, and the distance in front
-    /// of the eye, along the view; for labels, crosshairs and flares. The point may lie beside the screen.
-    /// `None` if it is nearer than the near distance, behind the eye, or not finite, or if the camera is no camera.
+    /// Projects a point of the scene onto the screen, for labels, crosshairs and flares: x and y in pixels from the
+    /// upper left corner, and the distance in front of the eye, along the view. The point may be off the screen. `None`
+    /// if it is nearer than the near distance, behind the eye, or not finite, or if the camera is invalid.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -145,17 +144,17 @@ impl Camera {
     }
 }
 
-/// An object's whole way: from its mesh to the screen.
+/// The whole transform of an object, from its mesh to the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ObjectView {
     exact: (Matrix, Row),
-    /// The way of `exact` in f32; `None` if the object reaches so far that f32 could overflow.
+    /// The transform of `exact` in f32; `None` if the object reaches so far that f32 could overflow.
     fast: Option<(Mat3, Vec3)>,
     centre: (f32, f32),
     near: f32,
-    /// The turn alone, from the object's directions to the world's.
+    /// The rotation alone, from the object's directions to the world's.
     turn: Matrix,
-    /// The turn from the object's directions to the eye's: right, up, towards the eye.
+    /// The rotation from the object's directions to eye space: right, up, towards the eye.
     to_eye: Matrix,
     /// The eye, in the object's own space.
     eye: Row,
@@ -165,17 +164,17 @@ pub(crate) struct ObjectView {
     size: (f64, f64),
 }
 
-/// The part of space and screen where an object may be seen, once its part before the near plane is cut off: somewhat
-/// more than it covers.
+/// The region of space and screen where an object may be visible, once the part in front of the near plane is clipped:
+/// slightly larger than what it covers.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ScreenBounds {
     /// The least distance along the view; may be negative.
     pub(crate) nearest: f64,
     /// The greatest distance along the view.
     pub(crate) farthest: f64,
-    /// Some of it may be nearer than the near plane.
+    /// Whether some of it may be nearer than the near plane.
     pub(crate) crosses_near: bool,
-    /// Some of it may be projected beyond the screen's edges.
+    /// Whether some of it may be projected beyond the screen's edges.
     pub(crate) leaves_screen: bool,
     /// The part of the screen where it may be.
     pub(crate) seen: Rect,
@@ -190,17 +189,17 @@ pub(crate) struct Homogeneous {
 }
 
 impl ObjectView {
-    /// The limit of projected coordinates, in pixels either way; points beyond it are clipped. It lies beyond the last
-    /// pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by [`ROOM`](Self::ROOM).
+    /// The limit of projected coordinates, in pixels, in both directions; points beyond it are clipped. It is beyond
+    /// the last pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by [`ROOM`](Self::ROOM).
     pub(crate) const LIMIT: f64 = 4095.75;
 
-    /// Room for what a clipped point is off the limit by rounding, in pixels.
+    /// The margin beyond the limit for the rounding error of clipped points, in pixels.
     pub(crate) const ROOM: f64 = 0.25;
 
-    /// The reach beyond which a sum of products might overflow f32, or, below its inverse, vanish in it.
+    /// The reach beyond which a sum of products might overflow f32, or, below its inverse, underflow.
     const FAST_REACH: f64 = 1e30;
 
-    /// The way of an object without a parent.
+    /// The transform of an object without a parent.
     #[cfg(test)]
     pub(crate) fn new(view: &View, object: &Object) -> Self {
         Self::placed(view, object, &Placement::of(object))
@@ -241,7 +240,7 @@ impl ObjectView {
         this
     }
 
-    /// A point of the world in the object's own space; the pivot, for an object without size.
+    /// Transforms a point of the world into the object's own space; for an object of scale 0, returns the pivot.
     pub(crate) fn point_in_object(&self, world: [f64; 3]) -> [f64; 3] {
         if self.scale <= 0.0 {
             return self.pivot;
@@ -262,12 +261,12 @@ impl ObjectView {
         Vec3::from_array(self.position.map(|c| c as f32))
     }
 
-    /// The object's size in units of its mesh's.
+    /// The scale factor of the mesh.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The matrix from the object's directions to the eye's: right, up, towards the eye.
+    /// The matrix from the object's directions to eye space: right, up, towards the eye.
     pub(crate) fn directions_to_eye(&self) -> Mat3 {
         Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
     }
@@ -278,7 +277,7 @@ impl ObjectView {
         let (min, max) = (widen(bounds.min), widen(bounds.max));
         let far: Row = core::array::from_fn(|i| min[i].abs().max(max[i].abs()));
         let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
-        // As in `depths`: more than either vertex path is off by.
+        // As in `depths`: more than the error of either vertex path.
         let slack: Row = core::array::from_fn(|i| reach(i) / 4096.0);
         let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -288,8 +287,8 @@ impl ObjectView {
             let w = at(2);
             nearest = nearest.min(w);
             farthest = farthest.max(w);
-            // Of a corner that is in front. Where one is not, the object crosses the near plane, and
-            // these are not looked at.
+            // Valid for a corner in front of the eye. If one is not, the object crosses the near plane, and these are
+            // not used.
             for i in 0..2 {
                 low[i] = low[i].min(at(i) / w);
                 high[i] = high[i].max(at(i) / w);
@@ -297,15 +296,15 @@ impl ObjectView {
         }
         let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);
         let crosses_near = nearest <= f64::from(self.near) || nearest.is_nan();
-        // A box in front of the eye is projected into the convex hull of its corners. What x = X/W is
-        // off by is what X is, and |x| times what W is, over W; a pixel for rounding.
+        // A box in front of the eye is projected into the convex hull of its corners. The error of x = X/W is that of X
+        // plus |x| times that of W, over W, plus a pixel for rounding.
         let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);
         let ends = |i: usize| {
             let off = (slack[i] + low[i].abs().max(high[i].abs()) * slack[2]) / nearest + 1.0;
             (centre[i] + low[i] - off, centre[i] + high[i] + off)
         };
         let inside = |i: usize| ends(i).0 >= 0.0 && ends(i).1 <= size[i];
-        // On the screen, at most 4,096; of what is no number the screen's end.
+        // On the screen, at most 4,096; NaN becomes the screen's edge.
         let pixels = |i: usize| {
             let (from, to) = if crosses_near { (0.0, size[i]) } else { ends(i) };
             (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
@@ -344,13 +343,13 @@ impl ObjectView {
         Vertex::new(at(x), at(y), U8F8::default(), self.depth(w)).unwrap_or_default()
     }
 
-    /// A direction of the world in the object's own space, unit; `None` for the zero vector.
+    /// Transforms a direction of the world into a unit vector in the object's own space; `None` for the zero vector.
     pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
         let [x, y, z] = self.wide_direction_in_object(world)?;
         Some(Vec3::new(x as f32, y as f32, z as f32))
     }
 
-    /// [`direction_in_object`](Self::direction_in_object), before it is rounded.
+    /// The result of [`direction_in_object`](Self::direction_in_object) before rounding.
     pub(crate) fn wide_direction_in_object(&self, world: Vec3) -> Option<[f64; 3]> {
         let world = unit(widen(world))?;
         Some(core::array::from_fn(|j| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world)))
@@ -358,7 +357,7 @@ impl ObjectView {
 
     /// The longer side of a pixel at a distance along the view, in units of the object's mesh.
     pub(crate) fn longest_pixel(&self, distance: f64) -> f64 {
-        // Each of the matrix's first rows is as long as a unit of the mesh at distance 1, in pixels.
+        // The length of each of the matrix's first two rows is that of a unit of the mesh at distance 1, in pixels.
         let [across, down, _] = self.exact.0.map(|row| libm::sqrt(dot(row, row)));
         distance / across.min(down)
     }
@@ -368,14 +367,15 @@ impl ObjectView {
         self.near
     }
 
-    /// The direction along the view, in the object's own space and per unit of distance, and the distance of its origin.
+    /// The direction along the view, in the object's own space and per unit of distance, and the distance of its
+    /// origin.
     pub(crate) fn along_view(&self) -> ([f32; 3], f32) {
         let ([.., row], [.., offset]) = &self.exact;
         (row.map(|c| c as f32), *offset as f32)
     }
 
     /// A vertex before its division. Its numbers do not depend on the triangle, so triangles that share the vertex
-    /// agree on its place.
+    /// agree on its position.
     #[inline]
     pub(crate) fn homogeneous(&self, p: Vec3) -> Homogeneous {
         match self.fast {
@@ -411,7 +411,7 @@ impl ObjectView {
         }
     }
 
-    /// Projects a point that is not nearer than the near plane to a vertex on the screen; `None` if it lies beyond the
+    /// Projects a point that is not nearer than the near plane to a vertex on the screen; `None` if it is beyond the
     /// limit.
     #[inline]
     pub(crate) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
@@ -419,7 +419,7 @@ impl ObjectView {
         self.vertex(cx + h.x / h.w, cy + h.y / h.w, h.w, shade)
     }
 
-    /// The middle of the screen, in pixels.
+    /// The centre of the screen, in pixels.
     pub(crate) fn centre(&self) -> (f64, f64) {
         (f64::from(self.centre.0), f64::from(self.centre.1))
     }
@@ -436,23 +436,23 @@ impl ObjectView {
     /// The depth: round(2³⁰ · near / w).
     #[inline]
     fn depth(&self, w: f64) -> u32 {
-        // near ≤ w, so at most 2³⁰, but for a clipped point's rounding; the cast truncates. There is no
-        // far plane: beyond 2³¹ times the near distance, where the formula gives the background's 0,
-        // a face is still in front of it.
+        // near ≤ w, so this is at most 2³⁰, apart from a clipped point's rounding; the cast truncates. There is no far
+        // plane: beyond 2³¹ times the near distance, where the formula gives the background's 0, a face is still in
+        // front of the background.
         ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
     }
 
-    /// The least and the greatest depth that a vertex within `bounds` may have, once the part before the near plane is
-    /// cut off; somewhat wider than they are.
+    /// The least and the greatest depth that a vertex within `bounds` may have, once the part in front of the near
+    /// plane is clipped; slightly wider than the true range.
     pub(crate) fn depths(&self, bounds: Bounds) -> (u32, u32) {
         let (row, offset) = (self.exact.0[2], self.exact.1[2]);
         let (min, max) = (widen(bounds.min), widen(bounds.max));
         let middle = dot(row, [0, 1, 2].map(|i| (min[i] + max[i]) / 2.0)) + offset;
         let size = dot(row.map(f64::abs), [0, 1, 2].map(|i| (max[i] - min[i]) / 2.0));
         let reach = dot(row.map(f64::abs), [0, 1, 2].map(|i| min[i].abs().max(max[i].abs()))) + offset.abs();
-        // In f32, w is made with four roundings of the matrix, three of products and three of sums, each
-        // of at most 2⁻²⁴ of what they reach. In 16.16, each of three angles is off by at most π · 2⁻¹⁶,
-        // and each entry of the matrix by 2⁻¹⁷: in all less than 2⁻¹².
+        // In f32, w takes four roundings of the matrix, three of products and three of sums, each of at most 2⁻²⁴ of
+        // their reach. In 16.16, each of three angles has an error of at most π · 2⁻¹⁶, and each entry of the matrix
+        // one of 2⁻¹⁷: in all less than 2⁻¹².
         let slack = reach / 4096.0;
         let near = f64::from(self.near);
         let at = |w: f64| self.depth(w.max(near));

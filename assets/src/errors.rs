@@ -1,5 +1,5 @@
-//! How errors print: `Debug` says what `Display` says, as a `main` that returns an error prints it by `Debug`;
-//! and what other libraries say of theirs.
+//! How errors print: `Debug` prints like `Display`, because a `main` that returns an error prints it by `Debug`; and
+//! how messages of other libraries are quoted.
 
 /// Implements `Debug` as `Display`.
 macro_rules! debug_as_display {
@@ -14,8 +14,8 @@ macro_rules! debug_as_display {
 
 pub(crate) use debug_as_display;
 
-/// What another library says of its error, as a clause of our own sentence: the first of its sentences, on one line and
-/// without a stop at its end. A value that is printed with its fields is named by the first of these.
+/// The message of another library's error as a clause for our own sentence: its first sentence, on one line and without
+/// a full stop at its end. A value printed with its fields is named by the first of these.
 pub(crate) fn clause(said: &str) -> String {
     let words: Vec<&str> = said.split_whitespace().collect();
     let line = words.join(" ");

@@ -3,17 +3,17 @@
 //! | module | holds |
 //! |---|---|
 //! | [`scene_file`] | scenes in TOML: camera, shapes, models, materials, lights, fog, motion |
-//! | [`shipped`] | the scenes that are compiled in |
-//! | [`model_file`] | meshes from files in any of the formats |
+//! | [`shipped`] | the built-in scenes |
+//! | [`model_file`] | meshes from files in any supported format |
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
-//! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and by the feature `images` JPEG, TGA, BMP and WebP |
+//! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and with the feature `images` JPEG, TGA, BMP and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
-//! | [`auto_palette`] | a palette for a scene, from what is seen of it over a round |
+//! | [`auto_palette`] | a palette for a scene, from what is visible of it over a loop |
 //! | [`animation`] | animated GIF and PNG, and Y4M for other programs |
 //!
-//! [`SceneExt`] adds what reads a file to [`Scene`](mode13h::scene::Scene).
+//! [`SceneExt`] adds methods that read files to [`Scene`](mode13h::scene::Scene).
 //!
-//! Without the default feature `std` there is [`auto_palette`], which needs an allocator alone.
+//! Without the default feature `std` there is only [`auto_palette`], which needs nothing but an allocator.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What reads a file, as methods of a scene.
+//! File-reading methods for scenes.
 
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -10,20 +10,20 @@ use crate::model::{self, Model, ModelError, studio};
 use crate::model_file::Options;
 use crate::scene_file::{self, Loaded, SceneError};
 
-/// Scenes from files: methods of [`Scene`].
+/// Methods of [`Scene`] that read files.
 pub trait SceneExt: Sized {
-    /// Makes a scene that shows a model file with its materials and textures, in the middle of the picture, turning
-    /// once in a [round](Scene::duration) as [`showing`](Scene::showing) says. A model with colours gets a palette made
-    /// for them; a grey one is drawn in greys.
+    /// Makes a scene that shows a model file with its materials and textures, centred, turning once per
+    /// [loop](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
+    /// it; a grey one is drawn in greys.
     ///
     /// The model brings no light and no background. It is lit by a key light, a weaker fill from the other side and
-    /// ambient light, which are full light together: a face towards the eye shows 93 % of its Kd, or of its image,
-    /// beside which a grey Kd does not count. The background is the darkest grey, or else a blue, that stands out from
-    /// all that is seen over a turn. y points up, but z does in an STL file and for a sheet that looks along z. A low model is tilted until
-    /// it fills the picture's height as well as its width.
+    /// ambient light, which add up to full light: a face towards the eye shows 93 % of its Kd, or of its image, in
+    /// which case a grey Kd is ignored. The background is the darkest grey, or otherwise a blue, that stands out from
+    /// everything visible over a turn. y points up, except in an STL file and for a sheet that faces along z, where z
+    /// does. A low model is tilted until it fills the picture's height as well as its width.
     ///
-    /// The second value are the warnings, one line each: parts of the model that were left out or mended, and textures that
-    /// could not be read.
+    /// The second value contains the warnings, one line each: parts of the model that were ignored or repaired, and
+    /// textures that could not be read.
     ///
     /// ```no_run
     /// use mode13h::export;
@@ -45,8 +45,8 @@ pub trait SceneExt: Sized {
     /// [`ModelError`] with the file and the line, or with the part that cannot be drawn.
     fn from_model(path: impl AsRef<Path>) -> Result<(Self, Vec<String>), ModelError>;
 
-    /// Makes a scene of the text of a file. Errors call it `path`; `open` is given the path of each file that the scene
-    /// names, joined to the folder of `path`.
+    /// Makes a scene from the text of a file. `path` is used in errors; `open` is given the path of each file that the
+    /// scene names, joined to the folder of `path`.
     ///
     /// # Errors
     /// A `SceneError` with line, column and key: see [`SceneErrorKind`](scene_file::SceneErrorKind).
@@ -56,10 +56,10 @@ pub trait SceneExt: Sized {
         open: impl FnMut(&Path) -> io::Result<Box<dyn BufRead>>,
     ) -> Result<Loaded, SceneError>;
 
-    /// Makes a scene of the bytes of a file. Otherwise like [`from_toml`](Self::from_toml).
+    /// Makes a scene from the bytes of a file. Otherwise like [`from_toml`](Self::from_toml).
     ///
     /// # Errors
-    /// Those of [`from_toml`](Self::from_toml), and bytes that are no text.
+    /// Those of [`from_toml`](Self::from_toml), and bytes that are not text.
     fn from_toml_bytes(
         bytes: &[u8],
         path: impl AsRef<Path>,

@@ -1,5 +1,5 @@
-//! The scenes that are compiled in, by name. Their files are in `assets/scenes/`, and name no file: their palettes and
-//! textures are compiled in, too.
+//! The built-in scenes, by name. Their files are in `assets/scenes/`, and refer to no other files: their palettes and
+//! textures are built in, too.
 
 use std::io;
 use std::path::Path;
@@ -11,20 +11,20 @@ use mode13h::scene::Scene;
 use crate::SceneExt;
 use crate::scene_file::{Loaded, SceneError};
 
-/// A scene that is compiled in.
+/// A built-in scene.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Shipped {
-    /// Its name on the command line.
+    /// The name, as used on the command line.
     pub name: &'static str,
     /// The text of its file.
     pub text: &'static str,
 }
 
-/// The table of scenes, a row each: its file's name without the extension.
+/// Lists the scenes by file name without the extension.
 macro_rules! shipped {
     ($($name:literal)*) => {
-        /// All scenes that are compiled in, in the order in which they are best looked at.
+        /// All built-in scenes, in a good order for viewing.
         pub static ALL: [Shipped; NAMES.len()] =
             [$(Shipped { name: $name, text: include_str!(concat!("../scenes/", $name, ".toml")) }),*];
         const NAMES: [&str; [$($name),*].len()] = [$($name),*];
@@ -36,7 +36,7 @@ shipped! {
     "mirror" "interlock" "glenz" "fade" "cycle" "still"
 }
 
-/// The scene of a name, exactly as in [`ALL`].
+/// The scene with a name, spelled as in [`ALL`].
 ///
 /// ```
 /// use mode13h_assets::shipped::Shipped;
@@ -53,16 +53,16 @@ impl FromStr for Shipped {
 }
 
 impl Shipped {
-    /// The scene's subject, in one line: the first of its file.
+    /// The scene's subject, in one line: the first line of its file.
     #[must_use]
     pub fn shows(&self) -> &'static str {
         self.text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
     }
 
-    /// The scene itself.
+    /// Loads the scene.
     ///
     /// # Errors
-    /// None, as the tests of this crate see to; those of [`Scene::from_toml`] in principle.
+    /// None, which this crate's tests ensure; in principle those of [`Scene::from_toml`].
     pub fn load(&self) -> Result<Loaded, SceneError> {
         let no_files = |_: &Path| Err(io::ErrorKind::NotFound.into());
         Scene::from_toml(self.text, std::format!("{}.toml", self.name), no_files)

@@ -1,4 +1,4 @@
-//! Files that are whole or not there: written beside their name, flushed, then renamed.
+//! Files that are either complete or absent: written under another name, flushed, then renamed.
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -8,7 +8,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// An error of a file that was not written. The file that stood under its name before is untouched.
+/// The error of a file that was not written. A previous file under its name is untouched.
 #[non_exhaustive]
 pub struct ExportError {
     /// The file that was to be written.
@@ -18,7 +18,7 @@ pub struct ExportError {
 }
 
 impl ExportError {
-    /// The error of a file.
+    /// Makes an error about a file.
     #[must_use]
     pub fn new(path: &Path, kind: ExportErrorKind) -> ExportError {
         ExportError { path: path.to_path_buf(), kind }
@@ -29,27 +29,27 @@ impl ExportError {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ExportErrorKind {
-    /// The directory that the file was to stand in does not exist.
+    /// The directory for the file does not exist.
     MissingDirectory,
-    /// A path that was named as a directory is a file.
+    /// A path that was used as a directory is a file.
     NotADirectory,
-    /// The directory exists, but no file can be made in it: only the system makes files there.
+    /// The directory exists, but no file can be created in it: only the system creates files there.
     NoNewFiles,
     /// The name is that of a directory, or ends like one.
     IsDirectory,
-    /// No right to write there; also a file or a file system that is read-only.
+    /// Permission is denied, or the file or the file system is read-only.
     NotPermitted,
-    /// The disk, or the user's share of it, is full.
+    /// The disk, or the user's quota, is full.
     DiskFull,
     /// The picture itself cannot be written.
     #[cfg(feature = "png")]
     Picture(super::PictureError),
-    /// Any other failure that the system reports.
+    /// Any other error reported by the system.
     Io(io::Error),
 }
 
 impl ExportErrorKind {
-    /// Makes an error of opening or renaming a file of this name.
+    /// Makes an error from opening or renaming a file with this name.
     fn from_opening(path: &Path, error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => match fs::metadata(directory_of(path)) {
@@ -63,8 +63,7 @@ impl ExportErrorKind {
         }
     }
 
-    /// Makes an error of writing into an open file. That something does not exist then says nothing about the
-    /// directory.
+    /// Makes an error from writing into an open file. A "not found" then says nothing about the directory.
     pub fn from_writing(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
@@ -107,17 +106,17 @@ impl Error for ExportError {
     }
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 ///
 /// `write` fills a temporary file in the same directory (`.mode13h-` and two numbers), which is flushed to the disk and
-/// then renamed to `path`. If `write` fails or panics, or the disk does, the temporary is removed and what stood under
-/// `path` before is as it was. A link is followed; the permissions of a file that is replaced are kept; a file that is
-/// read-only is refused, although a rename could replace it. What exists and is no ordinary file (a device, a pipe) is
-/// written to directly, as renaming would take its place.
+/// then renamed to `path`. If `write` fails or panics, or the disk fails, the temporary file is removed and whatever
+/// was at `path` before is unchanged. Symbolic links are followed; the permissions of a replaced file are preserved; a
+/// read-only file is an error, although a rename could replace it. An existing path that is not a regular file (a
+/// device, a pipe) is written to directly, since renaming would replace it.
 ///
 /// # Errors
 ///
-/// [`ExportError`], with the path and what went wrong. Of the errors that `write` returns a full disk is told apart;
+/// [`ExportError`], with the path and the cause. Of the errors that `write` returns, only a full disk is distinguished;
 /// all others are [`ExportErrorKind::Io`].
 ///
 /// ```
@@ -139,35 +138,35 @@ pub fn write_atomically(
     }
 }
 
-/// Tests whether [`write_atomically`] could write a file under this name, short of a disk that is full: a temporary
-/// file is made and removed. A file that stands under the name is left alone.
+/// Tests whether [`write_atomically`] could write a file with this name, apart from a full disk: a temporary file is
+/// created and removed. An existing file is left alone.
 ///
 /// # Errors
 ///
-/// [`ExportError`], as `write_atomically` would say it.
+/// [`ExportError`], the one that `write_atomically` would return.
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
     AtomicFile::create(path.as_ref()).map(drop)
 }
 
-/// A file in the making, as [`write_atomically`] has it. It gets its name once it is committed, and is removed if it is
-/// dropped before.
+/// An unfinished file, as used by [`write_atomically`]. It gets its name when it is committed, and is removed if it is
+/// dropped before that.
 pub struct AtomicFile {
-    /// The path as the caller named it, for errors.
+    /// The path given by the caller, for errors.
     path: PathBuf,
     /// The path that the file is renamed to.
     target: PathBuf,
     out: BufWriter<File>,
-    /// The temporary file; none for a device or a pipe.
+    /// The temporary file; `None` for a device or a pipe.
     temporary: Option<Temporary>,
-    /// The permissions of the file that is replaced.
+    /// The permissions of the replaced file.
     permissions: Option<Permissions>,
 }
 
 impl AtomicFile {
-    /// Begins a file, under another name in the same folder.
+    /// Creates a file under a temporary name in the same folder.
     ///
     /// # Errors
-    /// No such folder, no right to write there, a name that is a folder's.
+    /// The folder does not exist, permission is denied, or the name is that of a folder.
     pub fn create(path: &Path) -> Result<AtomicFile, ExportError> {
         let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(path, error));
         let begun = |target: &Path, file, temporary, permissions| AtomicFile {
@@ -178,8 +177,7 @@ impl AtomicFile {
             permissions,
         };
 
-        // A link is followed, so that the file behind it is replaced and not the link. One that leads nowhere yet is
-        // replaced itself.
+        // A link is followed, so that its target is replaced and not the link. A dangling link is replaced itself.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         let before = fs::metadata(&target).ok();
         if let Some(before) = &before {
@@ -203,10 +201,10 @@ impl AtomicFile {
         Ok(begun(&target, file, Some(temporary), before.map(|before| before.permissions())))
     }
 
-    /// Flushes the file to the disk and gives it its name.
+    /// Flushes the file to the disk and renames it.
     ///
     /// # Errors
-    /// A full disk, or a name that cannot be given.
+    /// The disk is full, or the file cannot be renamed.
     pub fn commit(self) -> Result<(), ExportError> {
         let AtomicFile { path, target, out, temporary, permissions } = self;
         let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(&path, error));
@@ -221,7 +219,7 @@ impl AtomicFile {
         temporary.rename(&target).map_err(fail)
     }
 
-    /// Makes the error to report from one that writing into the file gave.
+    /// Makes the error to report from an error of writing into the file.
     fn failed(&self, error: io::Error) -> ExportError {
         ExportError::new(&self.path, ExportErrorKind::from_writing(error))
     }
@@ -237,7 +235,7 @@ impl Write for AtomicFile {
     }
 }
 
-/// The directory that a file of this name stands in.
+/// The directory of a file with this name.
 fn directory_of(path: &Path) -> &Path {
     match path.parent() {
         Some(directory) if !directory.as_os_str().is_empty() => directory,
@@ -251,16 +249,16 @@ struct Temporary {
 }
 
 impl Temporary {
-    /// A new file in `directory`, under a name that nothing else has.
+    /// Creates a file with a unique name in `directory`.
     fn create(directory: &Path) -> io::Result<(Temporary, File)> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         loop {
-            // The name does not hold the file's own: that may be as long as the system allows already.
+            // The name does not include the file's own, which may already be as long as the system allows.
             let number = NEXT.fetch_add(1, Ordering::Relaxed);
             let path = directory.join(OsString::from(format!(".mode13h-{}-{number}", std::process::id())));
             match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => return Ok((Temporary { path }, file)),
-                // Left behind by a process of the same number that was killed.
+                // Left behind by a killed process with the same id.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -269,7 +267,7 @@ impl Temporary {
 
     fn rename(self, target: &Path) -> io::Result<()> {
         fs::rename(&self.path, target)?;
-        // Nothing of that name is left to remove.
+        // There is nothing under that name to remove any more.
         std::mem::forget(self);
         Ok(())
     }
@@ -277,7 +275,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // Nothing better can be done about a failure here; the error that led here is the one to report.
+        // A failure here can only be ignored; the error that led here is the one to report.
         let _ = fs::remove_file(&self.path);
     }
 }

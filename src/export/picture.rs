@@ -1,4 +1,4 @@
-//! A frame as an exporter takes it: bytes, size, palette, and the shape of a pixel.
+//! Pictures for the exporters: bytes, size, palette, and the shape of a pixel.
 
 use std::error::Error;
 use std::fmt;
@@ -8,7 +8,7 @@ use crate::palette::{Palette, Rgb};
 /// The longest side of an exported picture, in pixels.
 pub const MAX_SIDE: u16 = 16_384;
 
-/// The shape of a pixel: its width to its height.
+/// The aspect ratio of a pixel.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub struct PixelShape {
     /// Width, in the same unit as the height; at least 1.
@@ -17,7 +17,7 @@ pub struct PixelShape {
     pub height: u16,
 }
 
-/// A pixel as wide as it is high.
+/// A square pixel.
 impl Default for PixelShape {
     fn default() -> PixelShape {
         PixelShape { width: 1, height: 1 }
@@ -29,18 +29,18 @@ impl PixelShape {
     pub const MODE_13H: PixelShape = PixelShape { width: 5, height: 6 };
 }
 
-/// A picture of palette indices, as it is exported.
+/// A picture of palette indices for export.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     /// Palette indices, row by row, `pitch` bytes from one row to the next.
     pub pixels: &'a [u8],
-    /// Pixels in a row, 1 to 16,384.
+    /// The number of pixels in a row, 1 to 16,384.
     pub width: usize,
-    /// Rows, 1 to 16,384.
+    /// The number of rows, 1 to 16,384.
     pub height: usize,
-    /// Bytes from the start of one row to the start of the next, at least `width`.
+    /// The number of bytes from the start of one row to the start of the next, at least `width`.
     pub pitch: usize,
-    /// The colours that the indices stand for.
+    /// The colours of the indices.
     pub palette: &'a [Rgb; 256],
     /// The shape of one pixel.
     pub shape: PixelShape,
@@ -52,21 +52,21 @@ impl<'a> Picture<'a> {
         Picture { pixels, width: 320, height: 200, pitch: 320, palette: palette.colors(), shape: PixelShape::MODE_13H }
     }
 
-    /// Square pixels in rows of `width`, one row after the other, in the colours of `palette`. Bytes behind the last whole
-    /// row are left out.
+    /// Square pixels in consecutive rows of `width`, in the colours of `palette`. Bytes after the last complete row are
+    /// ignored.
     pub fn of(pixels: &'a [u8], width: usize, palette: &'a Palette) -> Picture<'a> {
         let height = pixels.len().checked_div(width).unwrap_or(0);
         Picture { pixels, width, height, pitch: width, palette: palette.colors(), shape: PixelShape::default() }
     }
 
-    /// Checks that the sizes agree with each other and with the number of bytes.
+    /// Checks that the sizes are consistent with each other and with the number of bytes.
     pub fn check(&self) -> Result<(), PictureError> {
         let limit = 1..=MAX_SIDE as usize;
         let shape = self.shape;
         if !limit.contains(&self.width) || !limit.contains(&self.height) || shape.width == 0 || shape.height == 0 {
             return Err(PictureError::Size { width: self.width, height: self.height });
         }
-        // The last row needs no padding behind it.
+        // The last row needs no padding after it.
         let needed = self.pitch.checked_mul(self.height - 1).and_then(|bytes| bytes.checked_add(self.width));
         match needed {
             Some(needed) if self.pitch >= self.width && needed <= self.pixels.len() => Ok(()),
@@ -74,7 +74,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Row `y`, `width` bytes; none beyond the picture.
+    /// Row `y`, `width` bytes; empty beyond the picture.
     #[must_use]
     pub fn row(&self, y: usize) -> &'a [u8] {
         let row = y.checked_mul(self.pitch).and_then(|first| self.pixels.get(first..));
@@ -82,29 +82,29 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// The errors of a picture that cannot be exported.
+/// The reason why a picture cannot be exported.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// A side of no pixels or of more than 16,384, or a pixel of no size.
+    /// A side is 0 or above 16,384 pixels, or a pixel has no size.
     Size {
-        /// Pixels in a row.
+        /// The number of pixels in a row.
         width: usize,
-        /// Rows.
+        /// The number of rows.
         height: usize,
     },
-    /// The bytes are fewer than the rows need, or the rows overlap.
+    /// There are fewer bytes than the rows need, or the rows overlap.
     Bytes {
         /// The number of bytes.
         bytes: usize,
-        /// The pitch that was given.
+        /// The pitch given.
         pitch: usize,
     },
-    /// The words are no [`Scale`](super::Scale).
+    /// The text is not a [`Scale`](super::Scale).
     Scale,
     /// The picture does not fit in memory.
     Memory {
-        /// The number of bytes that were requested.
+        /// The number of bytes requested.
         bytes: usize,
     },
 }

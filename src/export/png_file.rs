@@ -1,4 +1,4 @@
-//! PNG files: indexed, with the frame's own bytes and the DAC's palette, or RGB, with the shape of a pixel.
+//! PNG files: indexed, with the frame's own bytes and the DAC's palette, or RGB; both with the shape of a pixel.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,13 +9,13 @@ use super::scale::Scaled;
 use super::{ExportError, ExportErrorKind, Picture, PictureError, Scale, write_atomically};
 use crate::vga::Vga;
 
-/// Writes the picture that `vga` shows as an indexed PNG of 320 × 200 pixels: the 64,000 bytes as they are, the DAC's
-/// palette in 8-bit colours, and `pHYs` 6:5 (6 pixels across are as long as 5 down), so that viewers which heed it show
-/// 4:3. [`Png`] has other sizes and RGB.
+/// Writes the picture that `vga` shows as an indexed PNG of 320 × 200 pixels: the 64,000 bytes unchanged, the DAC's
+/// palette in 8-bit colours, and `pHYs` 6:5 (6 pixels across are as long as 5 down), so that viewers that respect it
+/// show 4:3. [`Png`] has other sizes and RGB.
 ///
 /// # Errors
 ///
-/// [`ExportError`] if the file cannot be written; a file that stood there before is then whole.
+/// [`ExportError`] if the file cannot be written; a previous file with this name is then unchanged.
 ///
 /// ```
 /// use mode13h::{export, vga::Vga};
@@ -31,7 +31,7 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
     Png::default().save(&Picture::mode_13h(vga.pixels(), &palette), path)
 }
 
-/// The form in which a [`Picture`] becomes a PNG file.
+/// Options for writing a [`Picture`] as a PNG file.
 ///
 /// ```
 /// use mode13h::export::{Picture, Png, Scale};
@@ -46,10 +46,10 @@ pub fn png(vga: &Vga, path: impl AsRef<Path>) -> Result<(), ExportError> {
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Png {
-    /// The enlargement. `pHYs` has the shape that the pixels then have: 6:5 for a mode 13h frame at [`Scale::One`] and
+    /// The enlargement. `pHYs` is the shape of the resulting pixels: 6:5 for a mode 13h frame at [`Scale::One`] and
     /// [`Scale::Double`], 1:1 at [`Scale::FiveBySix`] and 640 × 480.
     pub scale: Scale,
-    /// Colours in place of indices, for programs that know no palettes.
+    /// Whether to write colours instead of indices, for programs without palette support.
     pub rgb: bool,
 }
 
@@ -58,8 +58,8 @@ impl Png {
     ///
     /// # Errors
     ///
-    /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written; a file that stood
-    /// there before is then whole.
+    /// [`ExportError`] if the picture's sizes do not fit its bytes, or if the file cannot be written; a previous file
+    /// with this name is then unchanged.
     pub fn save(self, picture: &Picture<'_>, path: impl AsRef<Path>) -> Result<(), ExportError> {
         let path = path.as_ref();
         let scaled = Scaled::new(picture, self.scale)
@@ -77,7 +77,7 @@ impl Png {
         let mut file = Vec::new();
         match self.write(picture, &scaled, &mut file) {
             Ok(()) => Ok(file),
-            // A vector takes whatever is written to it, and the sizes have been checked; memory alone can run out.
+            // Writing to a vector only fails for lack of memory, and the sizes have been checked.
             Err(_) => Err(PictureError::Memory { bytes: scaled.width as usize * scaled.height as usize }),
         }
     }
@@ -118,8 +118,8 @@ impl Png {
     }
 }
 
-/// A writer that keeps its first error. The encoder passes on only the words of an error amid a picture's data, so a
-/// full disk would be an error like any other.
+/// A writer that stores its first error. For an error amid a picture's data the encoder only passes on the text, so a
+/// full disk would look like any other error.
 struct Remembered<'a> {
     out: &'a mut dyn Write,
     error: Option<io::Error>,
@@ -129,7 +129,7 @@ impl Remembered<'_> {
     fn keep<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
         result.map_err(|error| {
             let kind = error.kind();
-            // One that is to be tried again is no failure.
+            // An interrupted write is retried, and does not count as an error.
             if kind != io::ErrorKind::Interrupted {
                 self.error.get_or_insert(error);
             }
@@ -150,7 +150,7 @@ impl Write for Remembered<'_> {
     }
 }
 
-/// The disk's error. (The encoder's own conversion hides the kind of an error.)
+/// The underlying I/O error. (The encoder's own conversion hides its kind.)
 fn reason(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,

@@ -1,4 +1,4 @@
-//! Enlarging for programs that show square pixels only.
+//! Enlargement for programs that only show square pixels.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use super::{MAX_SIDE, Picture, PictureError, PixelShape};
 
-/// The enlargement of a picture when it is exported. Each pixel of the result is one pixel of the frame, never a
-/// mixture, so an indexed picture stays indexed.
+/// The enlargement of an exported picture. Each pixel of the result is one pixel of the frame, never a mixture, so an
+/// indexed picture stays indexed.
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scale {
@@ -18,17 +18,17 @@ pub enum Scale {
     Double,
     /// Every pixel 5 wide and 6 high: 1600 × 1200, exactly 4:3 in square pixels.
     FiveBySix,
-    /// Stretched to this size, each pixel the one of the frame that its centre falls in.
+    /// Stretched to this size; each pixel is the one of the frame that contains its centre.
     To {
-        /// Pixels in a row, 1 to [`MAX_SIDE`].
+        /// The number of pixels in a row, 1 to [`MAX_SIDE`].
         width: u16,
-        /// Rows, 1 to [`MAX_SIDE`].
+        /// The number of rows, 1 to [`MAX_SIDE`].
         height: u16,
     },
 }
 
 impl Scale {
-    /// The size that a picture of `width` × `height` pixels is exported at.
+    /// The exported size of a picture of `width` × `height` pixels.
     pub fn size(self, width: usize, height: usize) -> (usize, usize) {
         match self {
             Scale::One => (width, height),
@@ -39,7 +39,8 @@ impl Scale {
     }
 }
 
-/// `1`, `2`, `5x6`, or a width and a height as `640x480`. The two sides that are `5x6` mean [`Scale::FiveBySix`].
+/// Parses `1`, `2`, `5x6`, or a width and a height such as `640x480`. A size of 5 by 6 always means
+/// [`Scale::FiveBySix`].
 impl FromStr for Scale {
     type Err = PictureError;
 
@@ -53,7 +54,7 @@ impl FromStr for Scale {
                     _ => Err(PictureError::Scale),
                 };
                 let (width, height) = words.split_once('x').ok_or(PictureError::Scale)?;
-                // Whatever zeros stand before them.
+                // Also with leading zeros.
                 match (side(width)?, side(height)?) {
                     (5, 6) => Ok(Scale::FiveBySix),
                     (width, height) => Ok(Scale::To { width, height }),
@@ -74,16 +75,16 @@ impl fmt::Display for Scale {
     }
 }
 
-/// A picture and the size that it is exported at, with the source of each pixel of the result.
+/// A picture and its exported size, with the source of each pixel of the result.
 pub struct Scaled<'a> {
     picture: Picture<'a>,
     /// The width of the result, in pixels.
     pub width: u32,
     /// The height of the result, in pixels.
     pub height: u32,
-    /// The frame's column of each column of the result.
+    /// The frame's column for each column of the result.
     columns: Vec<usize>,
-    /// The frame's row of each row of the result.
+    /// The frame's row for each row of the result.
     rows: Vec<usize>,
 }
 
@@ -91,7 +92,7 @@ impl<'a> Scaled<'a> {
     /// Enlarges a picture.
     ///
     /// # Errors
-    /// A picture that is not sound; a side of more than [`MAX_SIDE`] pixels.
+    /// A picture that is not valid; a side of more than [`MAX_SIDE`] pixels.
     pub fn new(picture: &Picture<'a>, scale: Scale) -> Result<Scaled<'a>, PictureError> {
         picture.check()?;
         let (width, height) = scale.size(picture.width, picture.height);
@@ -118,7 +119,7 @@ impl<'a> Scaled<'a> {
     /// The palette indices of a part of the result, row by row.
     ///
     /// # Errors
-    /// A part that does not lie within the result; no memory.
+    /// A part that is not within the result; not enough memory.
     pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, PictureError> {
         let (Some(columns), Some(rows)) = (self.columns.get(columns), self.rows.get(rows)) else {
             return Err(PictureError::Size { width: self.width as usize, height: self.height as usize });
@@ -133,30 +134,30 @@ impl<'a> Scaled<'a> {
         Ok(part)
     }
 
-    /// The picture itself, and the columns and rows of it that the columns and rows of the result show.
+    /// The picture itself, and which of its columns and rows the columns and rows of the result show.
     pub fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
         (&self.picture, &self.columns, &self.rows)
     }
 
-    /// Pixels per unit of length, across and down, in lowest terms, for `pHYs`. The picture keeps its shape whatever
-    /// its size: 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
+    /// Pixels per unit of length, across and down, in lowest terms, for `pHYs`. The picture keeps its aspect ratio at
+    /// any size: 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
     pub fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
         let y = u64::from(self.height) * u64::from(across) * self.picture.width as u64;
         let common = greatest_common_divisor(x, y);
         let (mut x, mut y) = (x / common, y / common);
-        // PNG numbers end at 2^31 - 1. Odd shapes at odd sizes may need more: the ratio is then rounded.
+        // PNG numbers end at 2^31 − 1. Unusual shapes and sizes may need more; the ratio is then rounded.
         const END: u64 = (1 << 31) - 1;
         while x > END || y > END {
             (x, y) = (x.div_ceil(2), y.div_ceil(2));
         }
-        // Both fit: the loop has just ended.
+        // Both fit: the loop has ended.
         (x as u32, y as u32)
     }
 }
 
-/// The pixel of `from` that the centre of pixel `at` of `to` falls in: floor((at + ½) · from / to).
+/// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
 fn source(at: usize, to: usize, from: usize) -> usize {
     (2 * at + 1) * from / (2 * to)
 }

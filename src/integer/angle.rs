@@ -1,15 +1,14 @@
 //! Angles and their sines, from a table.
 //!
-//! A binary angle counts 65,536ths of a turn in 16 bits, so that a full turn wraps to 0 by itself
-//! and no angle ever has to be reduced. A quarter wave of 16,385 sines would be 64 KiB; two short
-//! tables give the same by the addition theorem,
+//! A binary angle counts 1/65,536 turns in 16 bits, so a full turn wraps to 0 by itself and no angle ever needs
+//! reducing. A quarter wave of 16,385 sines would be 64 KiB; two short tables give the same by the addition theorem,
 //!
 //! ```text
 //! sin(a + b) = sin a · cos b + cos a · sin b       a: a 512th of a turn, b: less than that
 //! ```
 //!
-//! in 1.5 KiB. Their entries are sums of Taylor's series in integers, made when the crate is
-//! compiled: [`BinaryAngle::sin`] is the multiple of 1/65,536 nearest to the true sine, for every angle.
+//! in 1.5 KiB. Their entries are sums of Taylor series in integers, computed at compile time: [`BinaryAngle::sin`] is
+//! the multiple of 1/65,536 nearest to the true sine, for every angle.
 
 use core::ops::Add;
 
@@ -17,7 +16,7 @@ use core::ops::Add;
 use crate::angle::Angle;
 use crate::fixed::I16F16;
 
-/// Bits behind the point of the table's sines.
+/// The number of fractional bits of the table's sines.
 pub(super) const SINE_BITS: u32 = 30;
 
 /// ⌊π · 2⁶⁰⌋.
@@ -28,10 +27,11 @@ const COARSE: usize = 128;
 /// The number of fine steps, of one binary angle each, in a coarse one.
 const FINE: usize = 128;
 
-/// sin x with 30 bits behind the point, to the nearest, by Taylor's series; x with 60 bits, 0 to π/2.
+/// sin x with 30 fractional bits, rounded to the nearest, by its Taylor series; x has 60 fractional bits and is 0 to
+/// π/2.
 const fn sine_q30(x: i128) -> i32 {
     let (mut sum, mut term, mut k) = (x, x, 1);
-    // Each term loses less than 2 in its last bit: some forty units of 2⁻⁶⁰ in all.
+    // Each term loses less than 2 in its last bit: about forty units of 2⁻⁶⁰ in all.
     while term != 0 {
         term = -((((term * x) >> 60) * x) >> 60) / ((k + 1) * (k + 2));
         sum += term;
@@ -52,7 +52,7 @@ static COARSE_SINES: [i32; COARSE + 1] = {
     table
 };
 
-/// The sine and the cosine of the fine steps.
+/// The sine and the cosine of each fine step.
 static FINE_SINES: [[i32; 2]; FINE] = {
     let mut table = [[0; 2]; FINE];
     let mut i = 0;
@@ -75,7 +75,7 @@ static FINE_SINES: [[i32; 2]; FINE] = {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct BinaryAngle(u16);
 
-/// An angle in 65,536ths of a turn.
+/// Converts from 1/65,536 turns.
 impl From<u16> for BinaryAngle {
     #[inline]
     fn from(steps: u16) -> Self {
@@ -83,7 +83,7 @@ impl From<u16> for BinaryAngle {
     }
 }
 
-/// The angle in 65,536ths of a turn.
+/// Converts to 1/65,536 turns.
 impl From<BinaryAngle> for u16 {
     #[inline]
     fn from(angle: BinaryAngle) -> Self {
@@ -97,39 +97,39 @@ impl BinaryAngle {
     /// Half a turn.
     pub const HALF: Self = Self(0x8000);
 
-    /// The angle nearest to so many whole degrees, any number of turns in either direction.
+    /// The angle nearest to a whole number of degrees, which may be several turns in either direction.
     #[must_use]
     pub const fn from_degrees(degrees: i32) -> Self {
         // At most 359 · 65,536 + 180. The result is 0 to 65,536, and a full turn wraps to 0.
         Self(((degrees.rem_euclid(360) * 65_536 + 180) / 360) as u16)
     }
 
-    /// The sine: the nearest multiple of 1/65,536.
+    /// The sine, rounded to the nearest multiple of 1/65,536.
     #[must_use]
     pub fn sin(self) -> I16F16 {
         let sine = self.wide_sine();
         let magnitude = (sine.abs() + (1 << 43)) >> 44;
-        // At most 65,536 either way.
+        // Within ±65,536.
         I16F16::from_bits((magnitude * sine.signum()) as i32)
     }
 
-    /// The cosine: the nearest multiple of 1/65,536.
+    /// The cosine, rounded to the nearest multiple of 1/65,536.
     #[must_use]
     pub fn cos(self) -> I16F16 {
         (self + Self::QUARTER).sin()
     }
 
-    /// Sine and cosine with 30 bits behind the point: within 2 units of 2⁻³⁰, and within ±2³⁰.
+    /// Sine and cosine with 30 fractional bits, each within 2 units of 2⁻³⁰, and within ±2³⁰.
     pub(super) fn sin_cos(self) -> (i64, i64) {
         let narrow = |sine: i64| {
             let magnitude = (sine.abs() + (1 << 29)) >> 30;
-            // The two tables' rounding may add up to a hair more than 1.
+            // Rounding in the two tables may add up to slightly more than 1.
             magnitude.min(1 << SINE_BITS) * sine.signum()
         };
         (narrow(self.wide_sine()), narrow((self + Self::QUARTER).wide_sine()))
     }
 
-    /// The sine with 60 bits behind the point, about 30 of them right.
+    /// The sine with 60 fractional bits, about 30 of them correct.
     fn wide_sine(self) -> i64 {
         let in_half = self.0 & 0x7FFF;
         // The second quarter runs backward: 0 to 16,384.
@@ -143,7 +143,7 @@ impl BinaryAngle {
     }
 }
 
-/// The sum, which wraps at a full turn.
+/// Adds, wrapping at a full turn.
 impl Add for BinaryAngle {
     type Output = Self;
 
@@ -152,13 +152,13 @@ impl Add for BinaryAngle {
     }
 }
 
-/// The nearest binary angle. An angle so large that its f64 no longer counts turns gives some angle.
+/// The nearest binary angle. For an angle too large to count turns in f64, the result is arbitrary.
 #[cfg(feature = "alloc")]
 impl From<Angle> for BinaryAngle {
     fn from(angle: Angle) -> Self {
         let turns = angle.to_radians() / core::f64::consts::TAU;
         let part = turns - libm::floor(turns);
-        // 0 to 65,536, of which the last is a full turn; the casts truncate, and wrap that to 0.
+        // 0 to 65,536, where 65,536 is a full turn; the casts truncate, and wrap that to 0.
         Self((part * 65_536.0 + 0.5) as u32 as u16)
     }
 }

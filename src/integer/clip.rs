@@ -1,23 +1,23 @@
 //! Clipping in homogeneous space, in wide integers: the near plane first, then the guard band.
 //!
-//! Corners get 12 bits more behind their point than vertices have: a cut is rounded, and one on the
-//! guard band's edge, 4,096 pixels away, leads through the whole picture.
+//! Corners have 12 more fractional bits than vertices: an intersection is rounded, and one at the edge of the guard
+//! band, 4,096 pixels away, affects an edge across the whole picture.
 //!
 //! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the guard band
-//! is `a·W ± b·X` with a at most 2³¹ and b at most 2³²: below 2⁷⁷. A cut multiplies it by a difference of coordinates:
-//! 2⁷⁷ · 2⁴⁵ = 2¹²².
+//! is `a·W ± b·X` with a at most 2³¹ and b at most 2³²: below 2⁷⁷. An intersection multiplies it by a difference of
+//! coordinates: 2⁷⁷ · 2⁴⁵ = 2¹²².
 
 use super::view::{Homogeneous, ObjectView, vertex};
 use crate::fixed::U8F8;
 use crate::raster::Vertex;
 use crate::raster::clip::{Clipped, clip as clip_triangle};
 
-/// Bits that a corner has more than a vertex.
+/// The number of extra bits of a corner compared with a vertex.
 const EXTRA: u32 = 12;
-/// Bits of a parameter along an edge, and of a shade behind its 8.8.
+/// The number of fractional bits of a parameter along an edge, and of a shade below its 8.8.
 const PARAMETER: u32 = 32;
 
-/// A corner of the polygon that is being clipped.
+/// A corner of the polygon being clipped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     x: i128,
@@ -25,8 +25,8 @@ pub(super) struct Corner {
     w: i128,
     /// In 2⁻⁴⁰ shade.
     shade: i64,
-    /// The projected vertex, for a corner of the mesh that needs no clipping. It is kept as it is, because a neighbour
-    /// that needs none either draws with it.
+    /// The projected vertex, for a corner of the mesh that needs no clipping. It is passed through unchanged, because a
+    /// neighbour that needs no clipping either uses the same vertex.
     vertex: Option<Vertex>,
 }
 
@@ -36,7 +36,7 @@ impl Corner {
         Self { x, y, w, shade: i64::from(shade.to_bits()) << PARAMETER, vertex }
     }
 
-    /// The vertex on the screen; `None` if it lies beyond the limit.
+    /// The vertex on the screen; `None` if it is beyond the limit.
     fn project(&self, view: &ObjectView) -> Option<Vertex> {
         if self.vertex.is_some() {
             return self.vertex;
@@ -47,7 +47,7 @@ impl Corner {
         // At most 2³⁰ · 2⁴⁴, as for a vertex: see `view`.
         let x = i128::from(view.lens.width) * 128 + (fx * self.x + 128 * w).div_euclid(256 * w);
         let y = i128::from(view.lens.height) * 128 + (fy * self.y + 128 * w).div_euclid(256 * w);
-        // w is no less than near, so at most 2³⁰.
+        // w is at least near, so at most 2³⁰.
         let depth = (((near << 31) + w) / (2 * w)) as u32;
         // Between two shades of at most 0xFF00, and rounded to the nearest.
         let shade = U8F8::from_bits(((self.shade + (1 << (PARAMETER - 1))) >> PARAMETER) as u16);
@@ -55,8 +55,8 @@ impl Corner {
     }
 }
 
-/// The distance of a corner from a plane, 0 or more inside. For the guard band it is four times that times W, in
-/// 1/65,536 pixel.
+/// The distance of a corner from a plane, 0 or more inside. For the guard band it is four times the distance times W,
+/// in 1/65,536 pixel.
 fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
     let Corner { x, y, w, .. } = *corner;
     let limit = i128::from(ObjectView::LIMIT);
@@ -69,16 +69,17 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
         3 => ((limit + height) << 16) * w + 2 * fy * y,
         _ => ((limit - height) << 16) * w - 2 * fy * y,
     };
-    // A vertex that was projected counts as inside, with the room that it had.
+    // A projected vertex counts as inside, even within the rounding margin beyond the limit.
     if corner.vertex.is_some() { distance.max(0) } else { distance }
 }
 
-/// `n / d` to the nearest; d is above 0.
+/// `n / d` rounded to the nearest; d is above 0.
 fn nearest(n: i128, d: i128) -> i128 {
     (2 * n + d).div_euclid(2 * d)
 }
 
-/// The point where an edge meets a plane. `on_face`: shades are linear on the face in space, and not on the screen.
+/// The intersection of an edge with a plane. `on_face`: shades are linear on the face in space rather than on the
+/// screen.
 fn cut(
     view: &ObjectView,
     on_face: bool,
@@ -86,16 +87,16 @@ fn cut(
     [inside, outside]: [&Corner; 2],
     [d_inside, d_outside]: [i128; 2],
 ) -> Corner {
-    // Above 0: one distance is 0 or more, the other less.
+    // Above 0: one distance is at least 0, the other below 0.
     let whole = d_inside - d_outside;
     let between = |a: i128, b: i128| a + nearest((b - a) * d_inside, whole);
     let w = if plane == 0 { i128::from(view.near) << EXTRA } else { between(inside.w, outside.w) };
-    // 0 to 1, with 32 bits: 2⁷⁶ · 2³³ on the way.
+    // 0 to 1 with 32 fractional bits; intermediate values reach 2⁷⁶ · 2³³.
     let t = nearest(d_inside << PARAMETER, whole);
-    // On the edge's projection the point lies at t·wb / w. Where the other end has no projection, beyond the
-    // near plane, shades that are linear on the screen are linear along the edge too.
+    // On the edge's projection the point is at t·wb / w. If the other end is beyond the near plane and has no
+    // projection, shades that are linear on the screen are taken as linear along the edge as well.
     let part = if plane == 0 || on_face { t } else { nearest(t * outside.w, w).clamp(0, 1 << PARAMETER) };
-    // 2⁴⁸ · 2³³ on the way; the shade lies between the two.
+    // Intermediate values reach 2⁴⁸ · 2³³; the shade is between the two.
     let change = (i128::from(outside.shade - inside.shade) * part) >> PARAMETER;
     Corner {
         x: between(inside.x, outside.x),
@@ -106,8 +107,8 @@ fn cut(
     }
 }
 
-/// Clips a triangle, whose shades are linear on the face in space if `on_face`, else on the screen. Returns `None` if
-/// nothing is left.
+/// Clips a triangle, whose shades are linear on the face in space if `on_face`, otherwise on the screen. Returns `None`
+/// if nothing is left.
 pub(super) fn clip(view: &ObjectView, on_face: bool, corners: [Corner; 3]) -> Option<Clipped> {
     let left = clip_triangle(
         corners,

@@ -1,4 +1,4 @@
-//! A mesh in 16.16: slices that the caller owns, checked once.
+//! Meshes in 16.16: slices owned by the caller, checked once.
 
 use super::IntegerError;
 use super::vector::{Vector, cross, narrow_unit, widen};
@@ -10,7 +10,7 @@ mod sealed {
     impl Sealed for u32 {}
 }
 
-/// The number of a vertex: `u16`, or `u32` for more than 65,536 vertices.
+/// The index of a vertex: `u16`, or `u32` for more than 65,536 vertices.
 pub trait Index: Copy + sealed::Sealed {
     /// The index as a `usize`, for the slices.
     fn place(self) -> usize;
@@ -26,31 +26,31 @@ impl Index for u16 {
 impl Index for u32 {
     #[inline]
     fn place(self) -> usize {
-        // No narrower on any target that the raster serves: a frame may have 2²⁴ pixels.
+        // Lossless on every target that the raster supports: a frame may have 2²⁴ pixels.
         self as usize
     }
 }
 
-/// A mesh in 16.16, borrowed and checked: one that exists is sound.
+/// A mesh in 16.16, borrowed and checked, so always valid.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedMesh<'a, I: Index = u16> {
     pub(crate) positions: &'a [Vector],
     pub(crate) normals: &'a [Vector],
     pub(crate) triangles: &'a [[I; 3]],
     pub(crate) closed: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if none does.
+    /// A bit for each triangle that lies back to back with another, 64 per word; empty if there is none.
     pub(crate) twins: &'a [u64],
     pub(crate) exponent: i32,
     /// The greatest distance of a vertex from the origin, in 1/65,536 of the mesh's own unit.
     pub(crate) radius: u64,
-    /// The surface of each vertex. Empty if all are of surface 0.
+    /// The surface of each vertex. Empty if all have surface 0.
     pub(crate) vertex_surfaces: &'a [u16],
     pub(crate) triangle_surfaces: &'a [u16],
-    /// The number of surfaces that the two slices name.
+    /// The number of surfaces that the two slices refer to.
     pub(crate) surfaces: usize,
 }
 
-/// What a [`FixedMesh`] was made of.
+/// The slices and values that a [`FixedMesh`] consists of.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedMeshParts<'a, I: Index> {
     /// The positions of its vertices.
@@ -59,28 +59,28 @@ pub struct FixedMeshParts<'a, I: Index> {
     pub normals: &'a [Vector],
     /// The vertices of its triangles.
     pub triangles: &'a [[I; 3]],
-    /// True if it is closed and faces outward.
+    /// Whether it is closed and faces outward.
     pub closed: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there is none.
+    /// A bit for each triangle that lies back to back with another, 64 per word; empty if there is none.
     pub twins: &'a [u64],
-    /// Its coordinates count 2 to the power of this of the scene's units.
+    /// The binary logarithm of its unit, in units of the scene.
     pub exponent: i32,
-    /// The surface of each vertex; empty if there is one.
+    /// The surface of each vertex; empty if there is only one.
     pub vertex_surfaces: &'a [u16],
-    /// The surface of each triangle; empty if there is one.
+    /// The surface of each triangle; empty if there is only one.
     pub triangle_surfaces: &'a [u16],
 }
 
 impl<'a, I: Index> FixedMesh<'a, I> {
-    /// The largest coordinate, either way.
+    /// The largest absolute coordinate.
     pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
 
-    /// Makes a mesh of vertices with positions and unit normals, and of triangles. Triangles are counter-clockwise seen
-    /// from outside, in a right-handed system whose y is up. `closed` says that they enclose a body without a gap, so
-    /// that those turned away need not be drawn.
+    /// Makes a mesh from vertices, with positions and unit normals, and triangles. Triangles are counter-clockwise seen
+    /// from outside, in a right-handed system with y up. `closed` promises that they enclose a solid without a gap, so
+    /// that back faces need not be drawn.
     ///
     /// # Errors
-    /// A number of normals other than that of the positions; a coordinate outside ±32,767; a normal whose length is not
+    /// A different number of normals than of positions; a coordinate outside ±32,767; a normal whose length is not
     /// within 2⁻¹⁴ of 1; an index out of range.
     pub fn new(
         positions: &'a [Vector],
@@ -118,21 +118,21 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         })
     }
 
-    /// Makes the mesh 2^`exponent` times as large.
+    /// Scales the mesh by 2^`exponent`.
     ///
-    /// Its coordinates then count 2^`exponent` units of the scene, so a mesh of any size may use all of its 32 bits.
+    /// Its unit is then 2^`exponent` units of the scene, so a mesh of any size can use all of its 32 bits.
     #[must_use]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.exponent = i32::from(exponent);
         self
     }
 
-    /// Gives each vertex and each triangle the number of its surface.
+    /// Sets the surface of each vertex and each triangle.
     ///
     /// A surface's number is the index of its [`Paint`](super::Paint).
     ///
     /// # Errors
-    /// A number of entries other than that of the vertices, or of the triangles.
+    /// A number of entries that differs from the number of vertices or triangles.
     pub fn with_surfaces(
         mut self,
         vertex_surfaces: &'a [u16],
@@ -146,15 +146,15 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         Ok(self)
     }
 
-    /// Marks triangles that lie back to back with another, a bit for each, 64 in a word: they are left out if they are
-    /// turned away.
+    /// Marks triangles that lie back to back with another, by a bit each, 64 per word: these are culled when they face
+    /// away.
     #[must_use]
     pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
         self.twins = twins;
         self
     }
 
-    /// Returns what the mesh was made of.
+    /// Returns the slices and values that the mesh consists of.
     #[must_use]
     pub fn parts(&self) -> FixedMeshParts<'a, I> {
         FixedMeshParts {
@@ -169,13 +169,12 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         }
     }
 
-    /// Counts the vertices: a stage needs room for so many.
+    /// Counts the vertices: a stage needs storage for this many.
     pub(crate) fn vertices(&self) -> usize {
         self.positions.len()
     }
 
-    /// Returns whether a triangle is left out if it is turned away: in a closed mesh, and in a pair that lies back to
-    /// back.
+    /// Returns whether a triangle is culled when it faces away: in a closed mesh, and in a back-to-back pair.
     #[inline]
     pub(super) fn hides_back(&self, triangle: usize) -> bool {
         self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
@@ -208,8 +207,8 @@ pub(super) fn square(v: Vector) -> u64 {
     v.iter().map(|c| u64::from(c.to_bits().unsigned_abs()).pow(2)).sum()
 }
 
-/// The unit normal of a face, out of the side from which its corners are counter-clockwise; `None`
-/// if they lie on a line. Exact but for its last rounding.
+/// The unit normal of a face, on the side where its corners are counter-clockwise; `None` if they are collinear. Exact
+/// except for the final rounding.
 #[must_use]
 pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     let [a, b, c] = [a, b, c].map(widen);
@@ -218,14 +217,14 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     narrow_unit(cross(from_a(b), from_a(c)))
 }
 
-/// Averages the unit normals of the faces around each vertex, and makes the sum unit again. Without that a corner is
-/// the darker the rounder it is (the Hungarian tutorial's slip). A normal's length is within 2⁻¹⁶ of 1.
+/// Averages the unit normals of the faces around each vertex, and normalises the sum. Without that, a vertex is darker
+/// the sharper its corner (the Hungarian tutorial's slip). A normal's length is within 2⁻¹⁶ of 1.
 ///
-/// A vertex whose faces' normals cancel gets that of its first face; one that has no face with an area gets +z. Faces
-/// beyond the 32,767th around one vertex may no longer count.
+/// A vertex whose faces' normals cancel gets that of its first face; one without a face that has an area gets +z. Faces
+/// beyond the 32,767th around one vertex may be ignored.
 ///
 /// # Errors
-/// Less room for normals than there are positions; an index out of range.
+/// Fewer normals than positions; an index out of range.
 pub fn average_normals<I: Index>(
     positions: &[Vector],
     triangles: &[[I; 3]],

@@ -1,22 +1,22 @@
 //! The integer vertex path: from a mesh in 16.16 to the raster without a float.
 //!
-//! The Hungarian tutorial keeps everything in fixed point, unit vectors of length 65,536. Here a whole frame is made
-//! so: turn, projection, normals, light, clipping. The path needs neither `std` nor an allocator, and links no
-//! soft-float routine: meshes, paints and suns are borrowed slices, room for vertices is the caller's, triangles go to
-//! a closure. So a chip that has no floating point unit draws what the f32 path of `render` draws, by the same stages
-//! and with the same conventions.
+//! The Hungarian tutorial uses fixed point throughout, with unit vectors of length 65,536. Here a whole frame is computed
+//! like that: rotation, projection, normals, light, clipping. The path needs neither `std` nor an allocator, and links no
+//! soft-float routine: meshes, paints and suns are borrowed slices, the caller provides storage for vertices, and
+//! triangles go to a closure. So a chip without a floating point unit draws what the f32 path of `render` draws, in the
+//! same stages and with the same conventions.
 //!
 //! | file | what |
 //! |---|---|
 //! | `angle` | binary angles and their sines |
-//! | `vector` | unit vectors, the turn of an object |
+//! | `vector` | unit vectors, the rotation of an object |
 //! | `mesh` | a mesh in 16.16; averaged normals |
 //! | `view` | camera and object to one matrix; projection; the one rounding |
 //! | `light` | suns, paints, the shade of a vertex |
 //! | `clip` | near plane and guard band |
 //! | `stage` | an object's vertices, lit and projected, then its faces |
 //!
-//! A frame may be drawn in bands of rows: the vertices are made once, the faces drawn into each band.
+//! A frame may be drawn in bands of rows: the vertices are computed once, the faces drawn into each band.
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
@@ -72,29 +72,29 @@ pub use view::{Camera, Lens, Placement, View};
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum IntegerError {
-    /// A picture with a side of 0 or above 4,096 pixels.
+    /// A side of the picture is 0 or above 4,096 pixels.
     Size,
-    /// A field of view that is 0, half a turn or more, or so small that a focal length exceeds 16,384
-    /// pixels; a pixel without a side.
+    /// The field of view is 0, half a turn or more, or so small that a focal length exceeds 16,384 pixels; or a side of
+    /// a pixel is 0.
     FieldOfView,
-    /// A near distance that is not above 0.
+    /// The near distance is not above 0.
     Near,
-    /// A camera that looks at the point where it is.
+    /// The camera looks at the point where it is.
     Direction,
-    /// A scale below 0.
+    /// A scale is below 0.
     Scale,
     /// A part of an object may be more than 65,535 units from the eye.
     TooFar,
-    /// More than 4,096 suns, or one without direction.
+    /// There are more than 4,096 suns, or one has no direction.
     Light,
     /// There are fewer paints than the mesh has surfaces.
     Paints {
         /// The number needed.
         needed: usize,
     },
-    /// There is too little room for vertices or beams.
+    /// There is too little storage for vertices or beams.
     Room {
-        /// The number that there must be room for.
+        /// The number that must fit.
         needed: usize,
     },
     /// A slice of a mesh has a wrong length.
@@ -106,7 +106,7 @@ pub enum IntegerError {
         /// The number needed.
         needed: usize,
     },
-    /// A coordinate of a mesh lies outside ±32,767.
+    /// A coordinate of a mesh is outside ±32,767.
     Position {
         /// The vertex.
         vertex: usize,
@@ -124,7 +124,7 @@ pub enum IntegerError {
 }
 
 impl IntegerError {
-    /// The error in words, without its numbers.
+    /// The error as text, without its numbers.
     pub(crate) const fn what(&self) -> &'static str {
         match self {
             Self::Size => "each side of the picture must be 1 to 4,096 pixels",

@@ -1,5 +1,4 @@
-//! An object on its way to the raster: its vertices, each lit, projected and rounded once, then its
-//! faces.
+//! An object on its way to the raster: its vertices, each lit, projected and rounded once, then its faces.
 
 use super::IntegerError;
 use super::clip::{Corner, clip};
@@ -11,45 +10,45 @@ use crate::raster::clip::doubled_area;
 use crate::raster::{Interpolation, Vertex};
 use crate::settings::Shading;
 
-/// A mesh in its place, with one paint for each of its surfaces.
+/// A mesh with its placement, and one paint for each of its surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Object<'a, I: Index = u16> {
     /// The mesh.
     pub mesh: FixedMesh<'a, I>,
-    /// Its place in the scene.
+    /// Its position, rotation and scale in the scene.
     pub placement: Placement,
     /// The paints, one for each surface.
     pub paints: &'a [Paint],
 }
 
-/// Room for a vertex, lit and projected.
+/// Storage for a lit and projected vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// The vertex. Its shade is that of the front: the side that the normal points away from. Only the shade counts in
-    /// a vertex that needs clipping.
+    /// The vertex. Its shade is that of the front: the side that the normal points away from. If the vertex needs
+    /// clipping, only the shade is valid.
     vertex: Vertex,
     back: U8F8,
     needs_clipping: bool,
 }
 
-/// Counts of the faces of an object, by what became of them.
+/// Counts of an object's faces by what happened to them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
 pub struct Faces {
-    /// Faces lit, where shading is flat.
+    /// Faces lit, with flat shading.
     pub lit: u64,
-    /// Faces cut by the near plane or the guard band, or wholly beyond them.
+    /// Faces clipped by the near plane or the guard band, or wholly beyond them.
     pub clipped: u64,
-    /// Faces turned away, or without area once clipped and rounded.
+    /// Faces that face away, or have no area once clipped and rounded.
     pub culled: u64,
-    /// Triangles handed on: faces, and the parts of those that were clipped.
+    /// Triangles passed on: faces, and the parts of clipped ones.
     pub drawn: u64,
 }
 
-/// An object whose vertices are ready: its faces can be drawn, as often as there are bands.
+/// An object whose vertices are ready: its faces can be drawn, once for each band.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexStage<'a, I: Index = u16> {
-    /// A shading that is drawn from the vertices alone.
+    /// A shading that needs nothing but the vertices.
     shading: Shading,
     object: Object<'a, I>,
     view: ObjectView,
@@ -58,13 +57,13 @@ pub struct VertexStage<'a, I: Index = u16> {
 }
 
 impl<'a, I: Index> VertexStage<'a, I> {
-    /// Lights and projects every vertex of the mesh. `lit` is room for at least as many vertices as the mesh has,
-    /// `beams` for as many beams as there are suns. A shading that this path lacks counts as the default: those that
-    /// light pixels, split faces or need floats.
+    /// Lights and projects every vertex of the mesh. `lit` must hold at least as many vertices as the mesh has, and
+    /// `beams` at least as many beams as there are suns. Shadings that this path lacks (those that light pixels, split
+    /// faces or need floats) are replaced by the default.
     ///
     /// # Errors
-    /// Too little room; a surface without a paint; a scale below 0; an object that may reach farther than 65,535 units
-    /// away; more than 4,096 suns, or one without direction.
+    /// Too little storage; a surface without a paint; a scale below 0; an object that may reach farther than 65,535
+    /// units away; more than 4,096 suns, or one without direction.
     pub fn new(
         view: &View,
         object: Object<'a, I>,
@@ -103,13 +102,13 @@ impl<'a, I: Index> VertexStage<'a, I> {
         Ok(Self { shading: shading.in_integers(), object, view, beams, lit })
     }
 
-    /// Hands the faces that are drawn to `triangle`, clipped where they must be. Faces that are turned away are left
-    /// out in a closed mesh and in pairs that lie back to back; others show their back.
+    /// Passes the faces to be drawn to `triangle`, clipped where necessary. Back faces are culled in a closed mesh and
+    /// in back-to-back pairs; elsewhere their back is drawn.
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
         for (face, indices) in mesh.triangles.iter().enumerate() {
-            // In range: the mesh saw to it, and every vertex is lit.
+            // In range, which the mesh guarantees, and every vertex is lit.
             let indices = indices.map(Index::place);
             let corners = indices.map(|i| self.lit[i]);
             if corners.iter().any(|corner| corner.needs_clipping) {
@@ -134,7 +133,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         counts
     }
 
-    /// Clips a face that reaches beyond the near plane or the guard band. Kept apart, because it is rare.
+    /// Clips a face that reaches beyond the near plane or the guard band. Out of line because it is rare.
     #[cold]
     fn clipped(
         &self,
@@ -164,7 +163,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         }
     }
 
-    /// The interpolation of a face's shades. If it has only one shade, that is computed here.
+    /// The interpolation of a face's shades. With flat shading, the shade is computed here.
     #[inline]
     fn interpolation(&self, face: usize, indices: [usize; 3], turned: bool, counts: &mut Faces) -> Interpolation {
         match self.shading {

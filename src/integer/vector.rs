@@ -1,4 +1,4 @@
-//! Vectors of three integers: length, direction, turn.
+//! Vectors of three integers: length, direction, rotation.
 
 use super::angle::{BinaryAngle, SINE_BITS};
 use crate::fixed::I16F16;
@@ -7,7 +7,7 @@ use crate::fixed::I16F16;
 pub type Vector = [I16F16; 3];
 
 pub(super) type Wide = [i64; 3];
-/// Rows of directions with [`SINE_BITS`] behind the point.
+/// Rows of directions with [`SINE_BITS`] fractional bits.
 pub(super) type Matrix = [Wide; 3];
 
 pub(super) fn widen(v: Vector) -> Wide {
@@ -24,21 +24,21 @@ pub(super) fn cross(a: Wide, b: Wide) -> [i128; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Half a unit of what a shift to the right leaves.
+/// Shifts right, rounding to the nearest.
 #[inline]
 pub(super) fn round_shift(n: i64, bits: u32) -> i64 {
     (n + (1 << (bits - 1))) >> bits
 }
 
-/// The vector of length 2^`bits` in the direction of `v`, `bits` at most 30; `None` for the zero
-/// vector. The components stay below 2¹²⁶.
+/// The vector of length 2^`bits`, `bits` at most 30, in the direction of `v`; `None` for the zero vector. Components
+/// must be below 2¹²⁶.
 ///
-/// Turning `v` round turns the result round, to the bit, so that opposite directions cancel.
+/// Negating `v` negates the result, bit for bit, so that opposite directions cancel.
 ///
-/// How near: the components are first brought to 30 bits, the greatest to 2²⁹ or more, so that
-/// cutting them and rooting the sum of their squares changes the direction by less than 2⁻²⁸; then
-/// each is rounded to the nearest. At `bits` = 16 a component is within 0.501 units, and the length
-/// within √3 · 0.501 < 0.87 units: 2⁻¹⁶ of 1. (The limit is 2⁻¹⁴.)
+/// Accuracy: the components are first brought to 30 bits, the greatest to 2²⁹ or more, so that truncating them and
+/// taking the root of the sum of their squares changes the direction by less than 2⁻²⁸; then each is rounded to the
+/// nearest. At `bits` = 16 a component is within 0.501 units, and the length within √3 · 0.501 < 0.87 units: 2⁻¹⁶ of 1.
+/// (The limit is 2⁻¹⁴.)
 pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
     let greatest = v.iter().fold(0, |greatest, c| c.unsigned_abs().max(greatest));
     if greatest == 0 {
@@ -47,7 +47,7 @@ pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
     let length_in_bits = 128 - greatest.leading_zeros();
     let thirty_bits = |c: i128| {
         let c = c.unsigned_abs();
-        // Below 2³⁰ either way.
+        // Below 2³⁰ in magnitude.
         (if length_in_bits > 30 { c >> (length_in_bits - 30) } else { c << (30 - length_in_bits) }) as u64
     };
     let [x, y, z] = v.map(thirty_bits);
@@ -62,8 +62,7 @@ pub(super) fn unit(v: [i128; 3], bits: u32) -> Option<Wide> {
     Some([component(x, v[0]), component(y, v[1]), component(z, v[2])])
 }
 
-/// The unit vector, length 65,536, in the direction of `v`; `None` for the zero vector. Its length
-/// is right to within 2⁻¹⁶ of 1.
+/// The unit vector, length 65,536, in the direction of `v`; `None` for the zero vector. Its length is within 2⁻¹⁶ of 1.
 ///
 /// ```
 /// use mode13h::fixed::I16F16;
@@ -78,23 +77,23 @@ pub fn unit_vector(v: Vector) -> Option<Vector> {
 
 /// The unit vector, length 65,536, of wide components below 2¹²⁶; see [`unit_vector`].
 pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
-    // At most 65,536 either way.
+    // Within ±65,536.
     unit(v, 16).map(|v| v.map(|c| I16F16::from_bits(c as i32)))
 }
 
-/// An object's turn, from its angles about x, y and z: z first, then y, then x. Directions of the
-/// object times this matrix are directions of the scene.
+/// An object's rotation matrix, from its angles about x, y and z: z first, then y, then x. It takes directions of the
+/// object to directions of the scene.
 ///
-/// It is made from the angles at once, never from a product of small steps: the same angles give
-/// the same matrix for ever. Every entry is within 0.501 of a 65,536th, so the rows have the length 1
-/// and stand at right angles to within √3 · 2 · 0.501 / 65,536 < 2⁻¹⁵. (The limit is 2⁻¹³.)
+/// It is computed directly from the angles, never as a product of small steps: the same angles always give the same
+/// matrix. Every entry is within 0.501 of 1/65,536, so the rows have length 1 and are orthogonal to within √3 · 2 ·
+/// 0.501 / 65,536 < 2⁻¹⁵. (The limit is 2⁻¹³.)
 #[must_use]
 pub fn turn(angles: [BinaryAngle; 3]) -> [Vector; 3] {
-    // At most 65,536 either way: the entry before is at most 2³⁰ and a few units.
+    // Within ±65,536: the unrounded entry is at most 2³⁰ and a few units.
     wide_turn(angles).map(|row| row.map(|c| I16F16::from_bits(round_shift(c, SINE_BITS - 16) as i32)))
 }
 
-/// The matrix of [`turn`] with [`SINE_BITS`] behind the point, within 8 units.
+/// The matrix of [`turn`] with [`SINE_BITS`] fractional bits, within 8 units.
 pub(super) fn wide_turn(angles: [BinaryAngle; 3]) -> Matrix {
     let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(BinaryAngle::sin_cos);
     let narrow = |n: i64| round_shift(n, SINE_BITS);
@@ -108,7 +107,7 @@ pub(super) fn wide_turn(angles: [BinaryAngle; 3]) -> Matrix {
     .map(|row| row.map(narrow))
 }
 
-/// `a · b` with [`SINE_BITS`] behind the point.
+/// `a · b` with [`SINE_BITS`] fractional bits.
 pub(super) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
     // Sums of three products of at most 2³⁰ and a few units each: below 2⁶².

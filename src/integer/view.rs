@@ -1,22 +1,22 @@
-//! From a mesh's own coordinates to the screen: one matrix an object, one division a coordinate.
+//! From a mesh's own coordinates to the screen: one matrix per object, one division per coordinate.
 //!
 //! ```text
 //! X = right · d    Y = −(up · d)    W = forward · d         d from the eye to the point; 1/65,536 unit
 //! x = cx + fx · X / W               y = cy + fy · Y / W     in pixels; fx, fy in 1/65,536 pixel
 //! ```
 //!
-//! **What is rounded (R13).** X, Y and W are integers: a sum of three products, of 16.16 numbers with
-//! 16.16 numbers, rounded to the nearest 1/65,536 once. The projected coordinate is then the exact
-//! rational `cx + fx·X / (65,536·W)`, and it is rounded to floor(256·x + ½) exactly:
+//! **What is rounded (R13).** X, Y and W are integers: a sum of three products of 16.16 numbers, rounded to the nearest
+//! 1/65,536 once. The projected coordinate is then the exact rational `cx + fx·X / (65,536·W)`, which is rounded to
+//! floor(256·x + ½) exactly:
 //!
 //! ```text
 //! floor(256·x + ½) = 256·cx + floor((fx·X + 128·W) / (256·W))       256·cx = 128·width: whole
 //! ```
 //!
-//! **Why nothing overflows.** An object is refused unless all of it stays within 2³² units of 1/65,536
-//! ([`ObjectView::REACH`]) of the eye along each axis of the view, and focal lengths are at most 2³⁰.
-//! So fx·X is at most 2⁶² and 128·W at most 2³⁹: the sum fits in i64, and 256·W is at most 2⁴⁰.
-//! The sums on the way are stated where they are taken.
+//! **Why nothing overflows.** An object is rejected unless all of it stays within 2³² units of 1/65,536
+//! ([`ObjectView::REACH`]) of the eye along each axis of the view, and focal lengths are at most 2³⁰. So fx·X is at
+//! most 2⁶² and 128·W at most 2³⁹: the sum fits in i64, and 256·W is at most 2⁴⁰. Bounds on the intermediate sums are
+//! given where they are computed.
 
 use super::IntegerError;
 use super::angle::{BinaryAngle, SINE_BITS};
@@ -25,7 +25,7 @@ use super::vector::{Matrix, Vector, Wide, cross, dot, product, round_shift, unit
 use crate::fixed::{I16F16, I24F8, U8F8};
 use crate::raster::{Frame, Vertex};
 
-/// The picture: its size in pixels, and how large things look in it.
+/// The picture's size in pixels, and its focal lengths.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Lens {
     pub(super) width: u32,
@@ -38,15 +38,14 @@ impl Lens {
     /// The longest focal length: 16,384 pixels, in 1/65,536 pixel.
     const LONGEST: i64 = 1 << 30;
 
-    /// A picture of `width` × `height` pixels, each 1 to 4,096, whose pixels have the shape
-    /// `pixel_aspect`, width to height: 5:6 in mode 13h. `field_of_view` is the angle between the
-    /// picture's upper and lower edge.
+    /// A picture of `width` × `height` pixels, each 1 to 4,096, whose pixels have the aspect ratio `pixel_aspect`,
+    /// width to height: 5:6 in mode 13h. `field_of_view` is the vertical one.
     ///
     /// fy = height/2 · cot(½ field of view), fx = fy · pixel height / pixel width.
     ///
     /// # Errors
-    /// A side or part of the aspect that is 0, or too large; an angle that is 0, half a turn or more,
-    /// or so small that a focal length exceeds 16,384 pixels.
+    /// A side or a part of the aspect ratio is 0 or too large; the angle is 0, half a turn or more, or so small that a
+    /// focal length exceeds 16,384 pixels.
     pub fn new(
         width: u32,
         height: u32,
@@ -67,10 +66,10 @@ impl Lens {
         Self::checked(width, height, [fx, i128::from(fy)])
     }
 
-    /// A picture of `width` × `height` pixels, from the focal lengths fx and fy in pixels.
+    /// A picture of `width` × `height` pixels, with the focal lengths fx and fy in pixels.
     ///
     /// # Errors
-    /// A side that is 0 or above 4,096; a focal length that is not above 0, or above 16,384 pixels.
+    /// A side is 0 or above 4,096; a focal length is not above 0, or is above 16,384 pixels.
     pub fn with_focal_lengths(width: u32, height: u32, focal: [I16F16; 2]) -> Result<Self, IntegerError> {
         Self::checked(width, height, focal.map(|f| i128::from(f.to_bits())))
     }
@@ -83,25 +82,25 @@ impl Lens {
         if focal.iter().any(|f| !(1..=i128::from(Self::LONGEST)).contains(f)) {
             return Err(IntegerError::FieldOfView);
         }
-        // In range by the line above.
+        // In range, as checked above.
         Ok(Self { width, height, focal: focal.map(|f| f as i64) })
     }
 }
 
-/// The eye: a perspective camera in 16.16.
+/// A perspective camera in 16.16.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Camera {
     /// The position of the eye, in units of the scene.
     pub eye: Vector,
-    /// The point that it looks at: the middle of the picture.
+    /// The point that it looks at, in the middle of the picture.
     pub target: Vector,
-    /// The direction that is up in the picture; any length. If it lies along the view, another axis is taken.
+    /// The direction that is up in the picture; any length. If it is parallel to the view, another axis is used.
     pub up: Vector,
     /// The near distance, above 0: nothing nearer is drawn. It also sets the unit of depth.
     pub near: I16F16,
 }
 
-/// The camera's part of the way: from the scene to the screen.
+/// The camera's part of the transform: from the scene to the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     eye: Wide,
@@ -129,7 +128,7 @@ impl View {
         Ok(Self { eye, axes: [right, up.map(|c| -c), forward], lens, near })
     }
 
-    /// Checks that `mesh` can be drawn there.
+    /// Checks that `mesh` can be drawn with this placement.
     ///
     /// # Errors
     /// A scale below 0; a mesh that may reach farther than 65,535 units from the eye.
@@ -138,33 +137,33 @@ impl View {
     }
 }
 
-/// The unit vector to the right of `forward`. If `up` lies within 10⁻⁶ of the view, the axis that is farthest from the
-/// view serves, as in the f32 path.
+/// The unit vector to the right of `forward`. If `up` is within 10⁻⁶ of the view direction, the axis farthest from it
+/// is used, as in the f32 path.
 fn right_of(forward: Wide, up: Vector) -> Option<Wide> {
     let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
     let mut axis = [0; 3];
     axis[least] = 1 << SINE_BITS;
     let by_up = unit(widen(up).map(i128::from), SINE_BITS).map(|up| cross(forward, up));
-    // Components with 60 bits behind the point, at most 2⁶¹; 2⁶⁰ · 10⁻⁶ is 2⁴⁰.
+    // Components with 60 fractional bits, at most 2⁶¹; 2⁶⁰ · 10⁻⁶ is 2⁴⁰.
     let is_aslant = |right: &[i128; 3]| right.iter().map(|c| c * c).sum::<i128>() > 1 << 80;
     by_up.filter(is_aslant).and_then(|right| unit(right, SINE_BITS)).or_else(|| unit(cross(forward, axis), SINE_BITS))
 }
 
-/// An object's position, turn and scale.
+/// An object's position, rotation and scale.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Placement {
     /// The position of the pivot, in units of the scene.
     pub position: Vector,
-    /// The point that it turns about, in the mesh's own coordinates.
+    /// The point that it rotates about, in the mesh's coordinates.
     pub pivot: Vector,
-    /// The angles about x, y and z: the turn about z comes first, then y, then x.
+    /// The angles about x, y and z: the rotation about z is applied first, then y, then x.
     pub angles: [BinaryAngle; 3],
-    /// The object's size in units of the mesh's; not negative.
+    /// The scale factor of the mesh; not negative.
     pub scale: I16F16,
 }
 
 impl Default for Placement {
-    /// The placement at the origin, as large as the mesh, not turned.
+    /// Places the mesh at the origin, unscaled and unrotated.
     fn default() -> Self {
         Self {
             position: Vector::default(),
@@ -178,18 +177,18 @@ impl Default for Placement {
 /// A vertex before its division: X, Y and W in 1/65,536 of the scene's unit, within ±2³².
 pub(super) type Homogeneous = Wide;
 
-/// An object's whole way: from its mesh to the screen.
+/// The whole transform of an object, from its mesh to the screen.
 ///
-/// A vertex p becomes `((matrix · p + offset) >> shift) + translation`: the matrix is the turn,
-/// seen from the camera, times the scale, whose power of two is left to the shift so that the
-/// entries keep their 16 bits behind the point at every size.
+/// A vertex p becomes `((matrix · p + offset) >> shift) + translation`: the matrix is the object's rotation in camera
+/// space times the scale, whose power of two is left to the shift, so that the entries keep 16 fractional bits at any
+/// scale.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectView {
     matrix: Matrix,
     offset: Wide,
     shift: u32,
     translation: Wide,
-    /// The turn alone, from the object's directions to the scene's, of length 2³⁰.
+    /// The object's rotation alone, from its directions to the scene's, of length 2³⁰.
     turn: Matrix,
     pub(super) lens: Lens,
     pub(super) near: i64,
@@ -199,8 +198,9 @@ impl ObjectView {
     /// The max distance of an object's point from the eye along an axis of the view, in 1/65,536: 65,536 units.
     pub(super) const REACH: i64 = 1 << 32;
 
-    /// The limit of projected coordinates, in quarters of a pixel either way; points beyond it are clipped. It lies beyond
-    /// the last pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by a quarter of a pixel.
+    /// The limit of projected coordinates, in quarter pixels, in both directions; points beyond it are clipped. It is
+    /// beyond the last pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by a quarter of a
+    /// pixel.
     pub(super) const LIMIT: i64 = 4 * 4096 - 1;
 
     pub(super) fn new<I: Index>(
@@ -211,16 +211,15 @@ impl ObjectView {
         let turn = wide_turn(placement.angles);
         let turned = product(&view.axes, &turn);
         let (mantissa, exponent) = normalised(placement.scale)?;
-        // At most 2¹⁷ · 2³⁰ and little more; the matrix then at most 2¹⁷ and little more.
+        // At most slightly above 2¹⁷ · 2³⁰; the matrix then at most slightly above 2¹⁷.
         let matrix = turned.map(|row| row.map(|c| round_shift(mantissa * c, SINE_BITS)));
 
-        // At most 2³² each; a row has the length 2³⁰, so the sum, and each part of it, is at most
-        // √3 · 2³² · 2³⁰ < 2⁶³.
+        // At most 2³² each; a row has length 2³⁰, so the sum, and each part of it, is at most √3 · 2³² · 2³⁰ < 2⁶³.
         let position = widen(placement.position);
         let to_position = [0, 1, 2].map(|i| position[i] - view.eye[i]);
         let translation = view.axes.map(|axis| round_shift(dot(axis, to_position), SINE_BITS));
 
-        // A position of 2¹⁶ in the mesh, times a scale of 2¹⁶, is 2^exponent of the scene.
+        // A position of 2¹⁶ in the mesh, times a scale of 2¹⁶, is 2^exponent in the scene.
         let shift = 16 - (exponent + mesh.exponent);
         if shift < 0 {
             return Err(IntegerError::TooFar);
@@ -228,24 +227,24 @@ impl ObjectView {
         // Beyond 50 bits nothing is left of any sum: the object is a point.
         let shift = shift.min(62) as u32;
         let far = mesh.radius + square(placement.pivot).isqrt() + 1;
-        // How far a vertex is from the pivot along any axis: at most 2³³ · (2¹⁷ + 2) < 2⁵¹. The rows
-        // are longer than the scale by less than 2, from the rounding of their entries.
+        // The max distance of a vertex from the pivot along any axis: at most 2³³ · (2¹⁷ + 2) < 2⁵¹. The rows exceed
+        // the scale by less than 2, because their entries are rounded.
         let reach = ((far as i64 * (mantissa + 2)) >> shift) + 1;
         if translation.iter().any(|c| c.abs() + reach >= Self::REACH) {
             return Err(IntegerError::TooFar);
         }
-        // The half unit that makes the shift round to the nearest comes with the offset. At most
-        // 2⁶¹ + 3 · 2¹⁷ · 2³¹, as for every vertex after it.
+        // The half unit that makes the shift round to the nearest is included in the offset. At most 2⁶¹ + 3 · 2¹⁷ ·
+        // 2³¹, and so for every vertex.
         let half = if shift == 0 { 0 } else { 1 << (shift - 1) };
         let pivot = widen(placement.pivot);
         let offset = matrix.map(|row| half - dot(row, pivot));
         Ok(Self { matrix, offset, shift, translation, turn, lens: view.lens, near: view.near })
     }
 
-    /// A direction of the scene, of length 2³⁰, in the object's own space, of length 65,536.
+    /// Transforms a direction of the scene, of length 2³⁰, into the object's own space, with length 65,536.
     pub(super) fn direction_in_object(&self, world: Wide) -> Vector {
         let column = |j: usize| [self.turn[0][j], self.turn[1][j], self.turn[2][j]];
-        // Sums below 2⁶²; at most 65,536 either way.
+        // Sums are below 2⁶²; results within ±65,536.
         [0, 1, 2].map(|j| I16F16::from_bits(round_shift(dot(column(j), world), 2 * SINE_BITS - 16) as i32))
     }
 
@@ -272,8 +271,8 @@ impl ObjectView {
     }
 }
 
-/// A vertex from coordinates in 1/256 pixel; `None` if they lie beyond the limit. A quarter of a pixel of room is left,
-/// because rounding may take a clipped point off the limit.
+/// A vertex from coordinates in 1/256 pixel; `None` if they are beyond the limit. A quarter of a pixel is allowed on
+/// top, because rounding may move a clipped point off the limit.
 #[inline]
 pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
     let limit = i128::from(ObjectView::LIMIT * 64 + 64);
@@ -281,7 +280,7 @@ pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex
     Vertex::new(within(x)?, within(y)?, shade, depth).ok()
 }
 
-/// A scale as mantissa, 65,536 to 131,071, and exponent; for 0 the mantissa is 0.
+/// Splits a scale into a mantissa, 65,536 to 131,071, and an exponent; for 0 the mantissa is 0.
 fn normalised(scale: I16F16) -> Result<(i64, i32), IntegerError> {
     let bits = scale.to_bits();
     if bits < 0 {

@@ -9,7 +9,7 @@ use crate::mesh::Bounds;
 
 pub(super) type Wide = [f64; 3];
 
-/// A sun as an object sees it: its direction turned into the object's own space.
+/// A sun transformed into an object's space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Beam {
     /// The unit direction towards the light.
@@ -20,7 +20,7 @@ pub(crate) struct Beam {
     pub(crate) channels: [f32; 3],
 }
 
-/// A lamp as an object sees it, in the object's own space and units.
+/// A lamp transformed into an object's space and units.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct LampBeam {
     pub(crate) position: Wide,
@@ -31,29 +31,29 @@ pub(crate) struct LampBeam {
     pub(crate) cone: Option<ConeBeam>,
 }
 
-/// The cone of a spot light as an object sees it.
+/// The cone of a spot light in an object's space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ConeBeam {
-    /// The unit direction back to the light along the cone's axis.
+    /// The unit direction along the cone's axis, back to the light.
     pub(crate) back: Wide,
     /// The cosine of the inner angle.
     pub(crate) inner: f64,
-    /// 1 / (cosine of the inner angle − that of the outer).
+    /// 1 / (cosine of the inner angle − cosine of the outer).
     pub(crate) inverse_width: f64,
 }
 
-/// The least difference of a cone's two cosines.
+/// The least difference between a cone's two cosines.
 const LEAST_WIDTH: f64 = 1.0 / 65_536.0;
 
 impl ConeBeam {
-    /// A cone, and its direction as the object has it, of any length; `None` for one that vanishes.
+    /// Makes a cone from its direction in the object's space, of any length; `None` if that vanishes.
     pub(crate) fn new(cone: &Cone, direction: Wide) -> Option<Self> {
         let inner = libm::cos(cone.inner.to_radians());
         let width = inner - libm::cos(cone.outer.to_radians());
         Some(Self { back: unit(three(direction, |c| -c))?, inner, inverse_width: 1.0 / width.max(LEAST_WIDTH) })
     }
 
-    /// The share of the light at a point from which the light lies in this unit direction.
+    /// The share of the light that reaches a point, given the unit direction from there to the light.
     #[inline]
     pub(crate) fn share(&self, towards: Wide) -> f64 {
         let x = positive(1.0 - positive((self.inner - dot(self.back, towards)) * self.inverse_width));
@@ -61,7 +61,7 @@ impl ConeBeam {
     }
 }
 
-/// 0 for numbers that are not above it, or not numbers.
+/// The number if it is above 0, otherwise, and for NaN, 0.
 fn positive(number: f64) -> f64 {
     if number > 0.0 { number } else { 0.0 }
 }
@@ -93,7 +93,7 @@ pub(crate) struct Reflectance {
     pub(crate) specular: f64,
     /// Above 0 if there is a highlight.
     pub(crate) shininess: f64,
-    /// The factors of the body's light, on three channels.
+    /// The factors of ambient and diffuse light, on three channels.
     pub(crate) color: Wide,
     /// The factors of the highlight, on three channels.
     pub(crate) highlight: Wide,
@@ -107,11 +107,11 @@ impl Reflectance {
     }
 }
 
-/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that `normal` (unit)
-/// points away from it, and for the other side: suns alone, on one channel, of a matt material.
+/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that the unit `normal` points away from,
+/// and for the other side: only suns, on one channel, for a matt material.
 ///
-/// The sum is taken in f64, in the order of the lights: a thousand lights of the greatest f32 stay
-/// finite there, whatever their signs.
+/// The sum is taken in f64, in the order of the lights: a thousand lights of the greatest f32 stay finite there,
+/// whatever their signs.
 #[inline]
 pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3) -> (f64, f64) {
     let (mut front, mut back) = (0.0, 0.0);
@@ -144,7 +144,7 @@ impl<const N: usize> Side<N> {
         }
     }
 
-    /// The light that the body gives back, and its highlight.
+    /// The ambient and diffuse light that the surface reflects, and its highlight.
     fn answer(&self, answer: &Reflectance) -> ([f64; N], [f64; N]) {
         let (mut body, mut highlight) = ([0.0; N], [0.0; N]);
         for i in 0..N {
@@ -156,9 +156,9 @@ impl<const N: usize> Side<N> {
 }
 
 impl Lights<'_> {
-    /// Sums all light on one channel, not yet clamped, for the side that `normal` (unit) points away from and for the
-    /// other: first the suns, then the lamps, each in their order. Without lamps and highlight these are the numbers of
-    /// [`both_sides`].
+    /// Sums all light on one channel, not yet clamped, for the side that the unit `normal` points away from and for the
+    /// other: first the suns, then the lamps, each in their order. Without lamps and highlights, the results are those
+    /// of [`both_sides`].
     #[inline(never)]
     pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
@@ -201,7 +201,7 @@ impl Lights<'_> {
         }
     }
 
-    /// Sums the light. Without highlights, `SHINES`, the eye is not looked at, and nothing is specular.
+    /// Sums the light. Without highlights (`SHINES`), the eye is not used, and nothing is specular.
     #[inline]
     fn sum_by<const N: usize, const SHINES: bool>(
         &self,
@@ -230,11 +230,11 @@ impl Lights<'_> {
         for lamp in lamps {
             let to_lamp = sub(lamp.position, at);
             let square = dot(to_lamp, to_lamp) * lamp.inverse_square;
-            // Beyond the range; NaN, of what is too far to be squared, too.
+            // Out of range, or NaN because the lamp is too far away to be squared.
             if square >= 1.0 || square.is_nan() {
                 continue;
             }
-            // A lamp at the point itself lies in the plane of any face through it, and lights none.
+            // A lamp at the point itself is in the plane of any face through it, and lights none.
             let Some(towards) = unit(to_lamp) else { continue };
             let cosine = dot(wide_normal, towards);
             let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);
@@ -254,9 +254,9 @@ impl Lights<'_> {
     }
 }
 
-/// max(0, r·v)^s, r being the light's direction mirrored at the surface; 0 if no highlight is requested.
+/// max(0, r·v)^s, where r is the light's direction mirrored at the surface; 0 if no highlight is requested.
 ///
-/// The normal comes in twice, so both sides of a surface have the same.
+/// The normal enters twice, so both sides of a surface give the same result.
 #[inline]
 fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shininess: Shininess) -> f64 {
     let Some(to_eye) = to_eye else { return 0.0 };

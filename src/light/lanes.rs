@@ -1,11 +1,12 @@
 //! The sum of all light at eight points of a surface at a time.
 //!
 //! Each point gets the numbers that [`Lights::one_channel`] and [`Lights::three_channels`] give: the operations and
-//! their order are the same, and each of them (sum, product, quotient, square root) rounds alike in a vector and alone.
-//! If a point has no part in a light, zero is added, which changes no sum: none is −0, as each begins at +0.
+//! their order are the same, and each of them (sum, product, quotient, square root) rounds the same in a vector as
+//! alone. If a light does not contribute to a point, zero is added, which changes no sum: none is −0, since each starts
+//! at +0.
 //!
-//! Lanes stay in vectors ([`F32Lanes8`]): of index loops over arrays the compiler once made some vectors and some single
-//! numbers, and three coloured lamps took a sixth longer.
+//! Lanes stay in vectors ([`F32Lanes8`]): the compiler turned index loops over arrays partly into vectors and partly
+//! into scalars, and three coloured lamps took a sixth longer.
 
 use super::ConeBeam;
 use super::intensity::{Lights, Reflectance, Wide};
@@ -43,8 +44,8 @@ impl<L: Lanes8, const N: usize> Front<L, N> {
     }
 }
 
-/// The normals at the points: as they are if they are `UNIT`, or made unit and rounded to f32; 0 for those that vanish
-/// because their ends cancel.
+/// The normals at the points: unchanged if they are `UNIT`, otherwise normalised and rounded to f32; 0 where they
+/// vanish because their ends cancel.
 #[inline(always)]
 fn normals_of<L: F32Lanes8, const UNIT: bool>(l: L, points: &Points) -> [L::F32; 3] {
     let [x, y, z] = [l.load_f32(&points[0]), l.load_f32(&points[1]), l.load_f32(&points[2])];
@@ -55,7 +56,7 @@ fn normals_of<L: F32Lanes8, const UNIT: bool>(l: L, points: &Points) -> [L::F32;
     let lengths = l.sqrt(dot(l, &wide, &wide));
     let parts = l.if_less(lengths, l.splat_f64(f64::INFINITY), l.div(l.splat_f64(1.0), lengths));
     let parts = l.if_less(l.splat_f64(0.0), lengths, parts);
-    // Of −0 too, as where one normal is made unit.
+    // Turns −0 into 0, like normalising a single normal.
     let zero = l.splat_f32(0.0);
     [
         l.add_f32(l.narrow(l.mul(wide[0], parts)), zero),
@@ -64,7 +65,7 @@ fn normals_of<L: F32Lanes8, const UNIT: bool>(l: L, points: &Points) -> [L::F32;
     ]
 }
 
-/// A light on one channel, or on red, green and blue.
+/// The intensities of a light on one channel, or on red, green and blue.
 #[inline(always)]
 fn channels<const N: usize>(intensity: f32, colors: [f32; 3]) -> [f64; N] {
     let mut channels = [f64::from(intensity); N];
@@ -85,7 +86,7 @@ impl Lights<'_> {
         self.one::<false>(answer, points, kernel)
     }
 
-    /// Sums all light on one channel for unit normals, which are taken as they are. Otherwise like
+    /// Sums all light on one channel for unit normals, which are used unchanged. Otherwise like
     /// [`front_of_one_channel`](Self::front_of_one_channel).
     pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         self.one::<true>(answer, points, kernel)
@@ -97,7 +98,7 @@ impl Lights<'_> {
         self.three::<false>(answer, points, kernel)
     }
 
-    /// Sums all light on three channels for unit normals, which are taken as they are. Otherwise like
+    /// Sums all light on three channels for unit normals, which are used unchanged. Otherwise like
     /// [`front_of_three_channels`](Self::front_of_three_channels).
     pub(crate) fn unit_front_of_three_channels(
         &self,
@@ -121,7 +122,7 @@ impl Lights<'_> {
         sum(level, self, answer, points)
     }
 
-    /// Sums the light that falls on the points. Without highlights, `SHINES`, the eye is not looked at, and nothing is
+    /// Sums the light that falls on the points. Without highlights (`SHINES`), the eye is not used, and nothing is
     /// specular.
     #[inline(always)]
     fn front<L: F32Lanes8, const N: usize, const SHINES: bool>(
@@ -136,7 +137,7 @@ impl Lights<'_> {
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(answer.shininess);
-        // Suns alone ask for neither.
+        // Suns without highlights need neither.
         let (mut normals, mut places) = ([zero; 3], [zero; 3]);
         if SHINES || !lamps.is_empty() {
             normals = [l.widen(narrow[0]), l.widen(narrow[1]), l.widen(narrow[2])];
@@ -148,7 +149,7 @@ impl Lights<'_> {
             let [x, y, z] = sun.towards.to_array();
             let sum = l.add_f32(l.mul_f32(narrow[0], l.splat_f32(x)), l.mul_f32(narrow[1], l.splat_f32(y)));
             let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.splat_f32(z)))));
-            // What is added is zero then. Only highlights are worth a branch.
+            // The contribution is zero then. Only highlights are worth a branch.
             if SHINES && l.is_zero(cosines) {
                 continue;
             }
@@ -163,7 +164,7 @@ impl Lights<'_> {
             let to_lamp = from(l, &lamp.position, &places);
             let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.splat_f64(lamp.inverse_square));
             let towards = unit(l, &to_lamp);
-            // NaN, of what is too far to be squared, is out of range too.
+            // NaN, from a lamp too far away to be squared, counts as out of range.
             let cosines = l.if_less(squares, one, positive(l, dot(l, &normals, &towards)));
             if SHINES && l.is_zero(cosines) {
                 continue;
@@ -198,7 +199,7 @@ fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
     let mut i = 0;
     while i < N {
         let mut own = l.add(ambient, l.mul(diffuse, front.diffuse[i]));
-        // Without a highlight zero is added: −0 becomes 0, as with one.
+        // Without a highlight, zero is added: −0 becomes 0, as it does with one.
         let mut mirrored = l.splat_f64(0.0);
         if SHINES {
             mirrored = l.mul(l.splat_f64(answer.specular), front.specular[i]);
@@ -215,7 +216,7 @@ fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
     lanes
 }
 
-/// [`sum`] on so many channels, with highlights or without, under a name of its own for `.ci/off_is_free`.
+/// [`sum`] for a number of channels, with or without highlights, under a separate name for `.ci/off_is_free`.
 macro_rules! sums {
     ($($name:ident = $by:ident: $channels:literal, $shines:literal;)*) => {
         $(
@@ -245,9 +246,9 @@ sums! {
 
 /// The eye, for highlights.
 struct Eye<L: Lanes8> {
-    /// The unit direction towards the eye; not a number if the eye is at the point itself.
+    /// The unit direction towards the eye; NaN if the eye is at the point itself.
     towards: Vectors<L>,
-    /// Its cosine with the normal.
+    /// The cosine between that direction and the normal.
     cosines: L::F64,
 }
 
@@ -257,7 +258,7 @@ impl<L: F32Lanes8> Eye<L> {
         Self { towards, cosines: dot(l, normals, &towards) }
     }
 
-    /// max(0, r·v)^s; 0 if the light's own cosine is.
+    /// max(0, r·v)^s; 0 where the light's own cosine is 0.
     #[inline(always)]
     fn highlights(&self, l: L, towards: &Vectors<L>, cosines: L::F64, shininess: Shininess) -> L::F64 {
         let mirrored = l.mul(l.mul(l.splat_f64(2.0), cosines), self.cosines);
@@ -267,7 +268,7 @@ impl<L: F32Lanes8> Eye<L> {
     }
 }
 
-/// Replaces values that are not above 0, or not numbers, by zero.
+/// Replaces values that are not above 0, and NaN, by zero.
 #[inline(always)]
 fn positive<L: F32Lanes8>(l: L, values: L::F64) -> L::F64 {
     l.if_less(l.splat_f64(0.0), values, values)
@@ -294,7 +295,7 @@ fn dot<L: Lanes8>(l: L, a: &Vectors<L>, b: &Vectors<L>) -> L::F64 {
     l.add(l.add(l.mul(a[0], b[0]), l.mul(a[1], b[1])), l.mul(a[2], b[2]))
 }
 
-/// The vectors made unit; not a number if there is no direction.
+/// The vectors normalised; NaN where there is no direction.
 #[inline(always)]
 fn unit<L: F32Lanes8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
     let parts = l.div(l.splat_f64(1.0), l.sqrt(dot(l, vectors, vectors)));
@@ -311,7 +312,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn vector() -> impl Strategy<Value = [f32; 3]> {
-        // Near 0, as a face has it, and at the ends of what there is.
+        // Near 0, as on a real face, and at the extremes.
         prop_oneof![
             8 => prop::array::uniform3(-2.0_f32..2.0),
             1 => Just([0.0; 3]),
@@ -363,7 +364,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
-        /// Every bit of every lane is that of one point alone.
+        /// Every bit of every lane equals the result for that point alone.
         #[test]
         fn eight_points_are_each_for_itself(
             ends in prop::array::uniform8((vector(), vector())),

@@ -1,4 +1,4 @@
-//! Materials: a surface's response to light.
+//! Materials: how surfaces respond to light.
 
 use alloc::string::String;
 
@@ -9,23 +9,24 @@ use crate::palette::{Palette, Ramp, Rgb};
 use crate::shared::Shared;
 use crate::texture::Texture;
 
-/// The place of a material's shades in the palette.
+/// Which palette entries hold a material's shades.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum RampChoice {
-    /// The palette's ramp of this number, counted round. A palette with one ramp always gives that. With a palette of no ramps
-    /// it means [`Nearest`](Self::Nearest); a white material is then drawn in the colours of the mesh's surface, and dithered.
+    /// The palette's ramp with this number, modulo the number of ramps, so a palette with one ramp always gives that.
+    /// If the palette has no ramps, it acts as [`Nearest`](Self::Nearest); a white material is then drawn in the
+    /// colours of the mesh's surface, and dithered.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
-    /// No ramp: whatever the palette, the material is lit on three channels in its own colour, grey or not, and drawn
-    /// in the nearest entries.
+    /// No ramp: with any palette, the material is lit on three channels in its own colour, grey or not, and drawn in
+    /// the nearest entries.
     Nearest,
 }
 
 impl RampChoice {
-    /// The entries in `palette`. A palette without ramps, or none at all, counts as one ramp of 256, and so does a
-    /// material that needs no ramp.
+    /// The entries in `palette`. A missing palette, or one without ramps, counts as one ramp of 256, and so does any
+    /// palette for a material that needs no ramp.
     #[must_use]
     pub fn in_palette(self, palette: Option<&Palette>) -> Ramp {
         match (self, palette) {
@@ -38,52 +39,52 @@ impl RampChoice {
     }
 }
 
-/// A material: a surface's response to light.
+/// A material: how a surface responds to light.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Material {
-    /// A name for people.
+    /// The display name.
     pub name: String,
-    /// ka: the share of the scene's ambient light that it gives back.
+    /// ka: the share of the scene's ambient light that it reflects.
     pub ambient: f32,
-    /// kd: the share of a light that it gives back in all directions.
+    /// kd: the share of a light that it reflects in all directions.
     pub diffuse: f32,
-    /// ks: the share of a light that it mirrors. 0 means no highlight.
+    /// ks: the share of a light that it reflects specularly. 0 means no highlight.
     pub specular: f32,
-    /// s: the shininess, the exponent of the highlight: 1 is a broad one, 100 a point. 0 means no highlight, whatever
-    /// `specular` is, as in modelling programs. A negative number is an error when a scene is drawn.
+    /// s: the shininess, the exponent of the highlight: 1 gives a broad one, 100 a point. 0 means no highlight,
+    /// whatever `specular` is, as in modelling programs. A negative number is an error when a scene is drawn.
     pub shininess: f32,
-    /// The entries of the palette, for a material that is lit on one channel and has no texture.
+    /// The palette entries, for a material that is lit on one channel and has no texture.
     pub ramp: RampChoice,
-    /// Red, green and blue of the material. If the three differ it is lit on three channels: its ambient and diffuse
-    /// light are multiplied with them, and it is drawn in the palette's nearest colours.
+    /// Red, green and blue of the material. If the three differ, it is lit on three channels: its ambient and diffuse
+    /// light are multiplied by them, and it is drawn in the palette's nearest colours.
     pub color: [f32; 3],
-    /// Red, green and blue of its highlight, on three channels: white, as a rule, so that it has the light's colour.
+    /// Red, green and blue of its highlight, on three channels: usually white, so that it has the light's colour.
     pub highlight: [f32; 3],
-    /// An image on it, by the mesh's texture coordinates; its shades are those of the image.
+    /// An image mapped by the mesh's texture coordinates; the shades are those of the image.
     pub texture: Option<Shared<Texture>>,
-    /// An environment map: an image of the surroundings, mirrored by the normal as the eye sees it. Used only without a
-    /// texture.
+    /// An environment map: an image of the surroundings, looked up by the normal as seen from the eye. Ignored if there
+    /// is a texture.
     pub environment: Option<Shared<Texture>>,
-    /// The way in which it covers what is behind it.
+    /// How it covers what is behind it.
     pub blend: Blend,
-    /// The material's own response to light, in place of the lighting model's intensity. The 16.16 path leaves it out.
+    /// The material's own response to light, applied to the lighting model's intensity. The 16.16 path ignores it.
     pub response: Option<LightResponse>,
 }
 
-/// The way in which a body covers what is behind it, by a table of 256 × 256 colours.
+/// How a surface covers what is behind it, by a table of 256 × 256 colours.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Blend {
-    /// The body hides what is behind it.
+    /// The surface hides what is behind it.
     #[default]
     Opaque,
-    /// So many 255ths of its own colour, and the rest of the colour behind it.
+    /// The opacity in 1/255: this share of its own colour, and the rest of the colour behind it.
     Mix(u8),
     /// Its colour is added to the one behind it: the glenz of the demos.
     Add,
 }
 
-/// A material that gives back all light, matt, in the palette's first ramp.
+/// A matt material that reflects all light, in the palette's first ramp.
 impl Default for Material {
     fn default() -> Self {
         Self::from_surface(&Surface::default(), 0)
@@ -91,11 +92,12 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The share of white light that a white surface gives back as ambient light; the rest is diffuse.
+    /// The share of white light that a white surface reflects as ambient light; the rest is diffuse.
     const AMBIENT_SHARE: f32 = 0.15;
 
-    /// Makes a material from an MTL file's, on one channel: Kd's and Ks's luminance, and a seventh of Kd's as ambient.
-    /// `number` chooses the ramp. The texture is left to the caller, who can read files: [`with_map`](Self::with_map).
+    /// Makes a material from one of an MTL file, on one channel: the luminance of Kd and Ks, and a share of Kd as
+    /// ambient. `number` chooses the ramp. The texture is left to the caller, who can read files:
+    /// [`with_map`](Self::with_map).
     #[must_use]
     pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);
@@ -110,7 +112,7 @@ impl Material {
             highlight: [1.0; 3],
             texture: None,
             environment: None,
-            // 1 to 254 of 255: the cast truncates after the half.
+            // 1 to 254 of 255: the cast truncates after 0.5 is added.
             blend: match surface.opacity {
                 opacity if opacity > 0.0 && opacity < 1.0 => {
                     Blend::Mix((opacity * 255.0 + 0.5).clamp(1.0, 254.0) as u8)
@@ -121,8 +123,8 @@ impl Material {
         }
     }
 
-    /// Puts the picture that an MTL file's `map_Kd` names on the material. Kd tints the picture: a coloured Kd goes
-    /// into a copy of it, a grey one leaves it as it is, to be shared.
+    /// Applies the picture that an MTL file's `map_Kd` names. Kd tints the picture: a coloured Kd is multiplied into a
+    /// copy of it, a grey one leaves it unchanged and shared.
     #[must_use]
     pub fn with_map(self, surface: &Surface, map: &Shared<Texture>) -> Self {
         let most = surface.diffuse.iter().copied().fold(0.0, f32::max);
@@ -139,8 +141,8 @@ impl Material {
     }
 
     /// The colours of the material and of its highlight, on three channels. If the material has none, they are those of
-    /// the surface that it was made from: Kd and Ks without their luminance, which the material's shares of light have.
-    /// A texture has its colours itself.
+    /// the surface that it was made from: Kd and Ks divided by their luminance, which the material's `diffuse` and
+    /// `specular` already contain. A texture brings its own colours.
     #[must_use]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
         let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };
@@ -148,8 +150,8 @@ impl Material {
         (color, or_else(self.highlight, surface.specular))
     }
 
-    /// A copy of the material in its [own colours](Self::own_colors) if it has a ramp by number only; otherwise a plain
-    /// copy. It is for a palette that has no ramps.
+    /// Copies the material, in its [own colours](Self::own_colors) if it has a ramp by number only. This is for a
+    /// palette that has no ramps.
     #[must_use]
     pub fn in_own_colors(&self, surface: &Surface) -> Self {
         if !matches!(self.ramp, RampChoice::Number(_)) {
@@ -166,7 +168,7 @@ impl Material {
     }
 
     /// Returns whether lighting it takes three channels: it is coloured, or drawn in the nearest entries. An image
-    /// alone takes but one.
+    /// alone needs only one.
     #[must_use]
     pub fn takes_channels(&self) -> bool {
         let has_image = self.texture.is_some() || self.environment.is_some();
@@ -191,7 +193,7 @@ impl Material {
     }
 }
 
-/// A colour without its luminance; white for a grey, for a colour without luminance, and beyond f32.
+/// A colour divided by its luminance; white for a grey, for a colour without luminance, and beyond f32.
 fn hue(color: [f32; 3]) -> [f32; 3] {
     let hue = color.map(|channel| channel / luminance(color));
     if is_colored(color) && luminance(color) > 0.0 && hue.iter().all(|channel| channel.is_finite()) {

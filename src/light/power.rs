@@ -1,29 +1,30 @@
-//! The power of a highlight.
+//! The exponent of a highlight.
 
 use crate::lanes::LANES;
 use crate::simd::F32Lanes8;
 
-/// The max whole shininess that is raised to by products.
+/// The max integer shininess that is computed by products.
 const MAX_EXPONENT: f64 = 1_024.0;
 
 /// The shininess of a highlight: an exponent, at least 0.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Shininess {
-    /// A whole number up to 1,024, as nearly all are. Computed by products, from the lowest bit of the exponent up,
+    /// An integer up to 1,024, as nearly all are. The power is computed by products, from the lowest bit of the
+    /// exponent up,
     ///
     /// ```text
     /// result = 1;  for every bit:  if it is set, result = result·square;  square = square·square
     /// ```
     ///
     /// each rounded once. No factor has more than s − 1 roundings, so the power is right to s parts in 2⁵³. It takes a
-    /// fifth of the time; several at once less.
+    /// fifth of the time of `pow`; several at once take less.
     Whole(u32),
-    /// Any other: `pow` of the `libm` crate.
+    /// Any other exponent: `pow` of the `libm` crate.
     Other(f64),
 }
 
 impl Shininess {
-    /// The shininess with this exponent, at least 0. A negative number and NaN count as 0.
+    /// The shininess with this exponent. Negative numbers and NaN count as 0.
     pub(crate) fn new(exponent: f64) -> Self {
         let exponent = exponent.max(0.0);
         // 0 to 1,024.
@@ -31,7 +32,7 @@ impl Shininess {
         if f64::from(whole) == exponent { Self::Whole(whole) } else { Self::Other(exponent) }
     }
 
-    /// base ^ exponent for a base above 0; 0 for any other.
+    /// base ^ exponent for a base above 0, otherwise 0.
     #[inline(never)]
     pub(crate) fn of(self, base: f64) -> f64 {
         if base <= 0.0 || base.is_nan() {
@@ -54,7 +55,7 @@ impl Shininess {
         }
     }
 
-    /// base ^ exponent of each base above 0; 0 of any other. Bit by bit what [`of`](Self::of) gives.
+    /// base ^ exponent for each base above 0, otherwise 0, bit for bit equal to [`of`](Self::of).
     #[inline(always)]
     pub(crate) fn of_lanes<L: F32Lanes8>(self, lanes: L, bases: L::F64) -> L::F64 {
         let zero = lanes.splat_f64(0.0);
@@ -89,7 +90,7 @@ mod tests {
     use super::*;
     use crate::simd::Portable;
 
-    /// By products within s parts in 2⁵³ of `pow`, which is right to one; all lanes alike.
+    /// Powers by products are within s parts in 2⁵³ of `pow`, which is within one; all lanes are equal.
     #[test]
     fn powers_are_powers() {
         for exponent in (0..=64).chain([99, 100, 255, 256, 511, 1_000, 1_023, 1_024]).map(f64::from) {

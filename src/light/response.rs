@@ -1,11 +1,11 @@
-//! A material's own answer to light.
+//! Custom responses of materials to light.
 
 use core::fmt;
 
 use crate::shared::Shared;
 
-/// A material's own answer to light: a function from the intensity that the lighting model gives, 0 to 1, to the one that
-/// is shown. It is asked wherever light is taken: at each vertex, face or pixel, on one channel or on each of three.
+/// A material's own response to light: a function from the intensity that the lighting model gives, 0 to 1, to the one
+/// shown. It is called wherever light is computed: at each vertex, face or pixel, on one channel or on each of three.
 ///
 /// ```
 /// use mode13h::light::LightResponse;
@@ -24,13 +24,13 @@ use crate::shared::Shared;
 pub struct LightResponse(Shared<dyn Fn(f32) -> f32 + Send + Sync>);
 
 impl LightResponse {
-    /// Makes a response of any function. Its result is clamped to 0 to 1, and counts as 0 if it is not a number.
+    /// Makes a response from any function. Its result is clamped to 0 to 1, and NaN counts as 0.
     #[must_use]
     pub fn new(respond: impl Fn(f32) -> f32 + Send + Sync + 'static) -> Self {
         Self(Shared::new(respond))
     }
 
-    /// The intensity that is shown, 0 to 1, for one that the lighting model gives, which is clamped to 0 to 1.
+    /// The intensity shown, 0 to 1, for the lighting model's intensity, which is clamped to 0 to 1.
     #[must_use]
     pub fn apply(&self, intensity: f32) -> f32 {
         let shown = (self.0)(intensity.clamp(0.0, 1.0));
@@ -38,7 +38,7 @@ impl LightResponse {
     }
 }
 
-/// Two are equal if one is a clone of the other.
+/// Two responses are equal if one is a clone of the other.
 impl PartialEq for LightResponse {
     fn eq(&self, other: &Self) -> bool {
         Shared::ptr_eq(&self.0, &other.0)

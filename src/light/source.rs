@@ -1,42 +1,43 @@
-//! Sources of light.
+//! Light sources.
 
 use crate::Angle;
 use glam::Vec3;
 
-/// A source of light.
+/// A light source.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Light {
-    /// A sun, so far away that its light comes from one direction everywhere.
+    /// A sun, so far away that its light comes from the same direction everywhere.
     Sun {
         /// Towards the light, in the world; any length but zero.
         direction: Vec3,
-        /// Id: 1 lights a white surface that faces it fully.
+        /// Id, the intensity: 1 lights a white surface that faces it fully.
         intensity: f32,
-        /// Red, green, blue, as a rule 0 to 1.
+        /// Red, green, blue, usually 0 to 1.
         color: [f32; 3],
     },
-    /// A lamp: a light at a place, falling off with the distance (the Russian textbook: the flash of a shot on a wall).
+    /// A lamp: a light with a position that falls off with the distance (the Russian textbook: the flash of a shot on a
+    /// wall).
     ///
-    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, and nothing beyond: all of it at the
-    /// lamp itself, 9/16 at half the range. It ends without an edge.
+    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, and beyond it none: all of it at the
+    /// lamp itself, 9/16 at half the range. It fades out without an edge.
     Lamp {
         /// The lamp's position, in the world.
         position: Vec3,
-        /// Id at the lamp itself.
+        /// Id, the intensity at the lamp itself.
         intensity: f32,
         /// The distance that it reaches, in the world's units; above 0.
         range: f32,
-        /// Red, green, blue, as a rule 0 to 1.
+        /// Red, green, blue, usually 0 to 1.
         color: [f32; 3],
-        /// The cone of a spot light; `None` for a lamp that shines all around.
+        /// The cone of a spot light; `None` for a lamp that shines in all directions.
         cone: Option<Cone>,
     },
 }
 
 /// The cone of a spot light.
 ///
-/// All of the light is left within `inner`, none beyond `outer`, and between the two a share that depends on the cosine of
+/// Light is at full intensity within `inner` and zero beyond `outer`. In between, the share depends on the cosine of
 /// the angle θ to `direction`:
 ///
 /// ```text
@@ -44,19 +45,19 @@ pub enum Light {
 /// share = x²·(3 − 2x)
 /// ```
 ///
-/// That is the `smoothstep` of RenderMan's spot light (S. Upstill, *The RenderMan Companion*, 1990), without an edge at
-/// either end. Cosines less than 2⁻¹⁶ apart count as 2⁻¹⁶ apart, so that equal angles make a sharp edge.
+/// This is the `smoothstep` of RenderMan's spot light (S. Upstill, *The RenderMan Companion*, 1990), which has no edge
+/// at either end. Cosines less than 2⁻¹⁶ apart count as 2⁻¹⁶ apart, so equal angles make a sharp edge.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Cone {
-    /// Away from the light, in the world; any length but zero.
+    /// The direction away from the light, in the world; any length but zero.
     pub direction: Vec3,
-    /// The half-angle within which all of the light is left; at most `outer`.
+    /// The half-angle of full intensity; at most `outer`.
     pub inner: Angle,
-    /// The half-angle beyond which none is left: above 0, at most 90 degrees.
+    /// The half-angle beyond which there is no light: above 0, at most 90 degrees.
     pub outer: Angle,
 }
 
-/// Neither red nor green nor blue.
+/// Plain white.
 const WHITE: [f32; 3] = [1.0; 3];
 
 impl Light {
@@ -66,14 +67,13 @@ impl Light {
         Self::Sun { direction: direction.into(), intensity: 1.0, color: WHITE }
     }
 
-    /// A white lamp of intensity 1 at `position` that reaches as far as `range`, above 0.
+    /// A white lamp of intensity 1 at `position`, with a range above 0.
     #[must_use]
     pub fn lamp(position: impl Into<Vec3>, range: f32) -> Self {
         Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: None }
     }
 
-    /// A white spot light of intensity 1: a lamp at `position` that reaches as far as `range`, above 0, and no farther to the
-    /// sides than `cone`.
+    /// A white spot light of intensity 1: a lamp at `position` with a range above 0, limited to `cone`.
     #[must_use]
     pub fn spot(position: impl Into<Vec3>, range: f32, cone: Cone) -> Self {
         Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: Some(cone) }
@@ -88,7 +88,7 @@ impl Light {
         self
     }
 
-    /// Sets the light's colour: red, green, blue, as a rule 0 to 1, or an [`Rgb`](crate::palette::Rgb).
+    /// Sets the light's colour: red, green, blue, usually 0 to 1, or an [`Rgb`](crate::palette::Rgb).
     #[must_use]
     pub fn with_color(mut self, new: impl Into<[f32; 3]>) -> Self {
         match &mut self {
@@ -113,7 +113,7 @@ impl Light {
         }
     }
 
-    /// Returns the intensity on one channel: for a coloured light, the luminance after ITU-R BT.601.
+    /// Returns the intensity for lighting on one channel: for a coloured light, times its luminance after ITU-R BT.601.
     #[must_use]
     pub fn brightness(&self) -> f32 {
         let color = self.color();
@@ -121,7 +121,7 @@ impl Light {
         share * self.intensity()
     }
 
-    /// Returns whether its three channels differ, so that lighting by it takes three.
+    /// Returns whether its three channels differ, so that it needs lighting on three channels.
     #[must_use]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color())
@@ -135,7 +135,7 @@ impl Light {
                 Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
             });
         }
-        // Infinity beside a number of the other sign would leave none.
+        // Infinity plus a number of the opposite sign would give NaN.
         let is_held = |share: f32| (share * self.intensity()).is_finite();
         if !(self.color().into_iter().all(is_held) && self.brightness().is_finite()) {
             return Err("its intensity times its colour must be finite");

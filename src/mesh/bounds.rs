@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::wide::{dot, sub, widen};
 
-/// The box and the sphere around a mesh.
+/// The bounding box and sphere of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bounds {
@@ -12,10 +12,10 @@ pub struct Bounds {
     pub min: Vec3,
     /// The greatest x, y and z.
     pub max: Vec3,
-    /// The middle of the box.
+    /// The centre of the box, and of the sphere.
     pub centre: Vec3,
-    /// The distance from the centre to the farthest vertex, rounded up. A mesh that reaches farther than `f32::MAX`, up
-    /// to √3 times that, has `f32::MAX`.
+    /// The distance from the centre to the farthest vertex, rounded up. Capped at `f32::MAX`, which a mesh can exceed
+    /// by up to √3.
     pub radius: f32,
 }
 
@@ -37,14 +37,14 @@ impl Bounds {
             let away = sub(widen(p), widen(centre));
             square = square.max(dot(away, away));
         }
-        // The root of the greatest square alone: a root keeps the order.
+        // Only the greatest square needs a root: it is monotonic.
         Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
     }
 }
 
 /// Rounds to the next f32 that is not less, or to `f32::MAX`. `value` ≥ 0.
 fn round_up(value: f64) -> f32 {
-    // To the nearest; beyond the range to infinity.
+    // To the nearest, or to infinity beyond the range.
     let nearest = value as f32;
     let up = if f64::from(nearest) < value { nearest.next_up() } else { nearest };
     up.min(f32::MAX)

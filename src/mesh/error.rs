@@ -1,8 +1,8 @@
-//! The errors of a mesh that is refused.
+//! Errors of invalid meshes.
 
 use core::fmt;
 
-/// An error of a mesh that is refused. Vertices and triangles are counted from 0.
+/// The reason why a mesh is rejected. Vertices and triangles are counted from 0.
 #[derive(Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -20,7 +20,7 @@ pub enum MeshError {
         /// The vertex.
         vertex: usize,
     },
-    /// A normal has length 0, so no direction.
+    /// A normal has length 0, and so no direction.
     NormalZero {
         /// The vertex.
         vertex: usize,
@@ -40,11 +40,11 @@ pub enum MeshError {
         /// The triangle.
         triangle: usize,
     },
-    /// A factor to stretch by is not finite or not above 0.
+    /// A scaling factor is not finite or not above 0.
     Factors,
-    /// Two lists that belong together are of different lengths.
+    /// Two corresponding lists have different lengths.
     Count {
-        /// The elements of the list that was given.
+        /// What the given list holds.
         what: &'static str,
         /// Its length.
         given: usize,

@@ -1,4 +1,4 @@
-//! Facts of a mesh that hold whoever draws it: found once, when it is made, and shared by all objects that show it.
+//! Derived properties of a mesh, computed once when it is made and shared by all objects that use it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::Mesh;
 use super::normals::face_normal;
 
-/// The facts of a mesh.
+/// The derived properties of a mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
     /// The index of each vertex's surface.
@@ -17,7 +17,7 @@ pub(super) struct Facts {
     is_faceted: bool,
 }
 
-/// They follow from the mesh, so two that belong to equal meshes are equal.
+/// Facts follow from the mesh, so equal meshes have equal facts.
 impl PartialEq for Facts {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -25,13 +25,13 @@ impl PartialEq for Facts {
 }
 
 impl Mesh {
-    /// The mesh with the facts that hold of it as it is now.
+    /// The mesh with its facts up to date.
     pub(super) fn with_facts(mut self) -> Self {
         self.find_facts();
         self
     }
 
-    /// Finds the facts of the mesh as it is now. Every change of a mesh ends so.
+    /// Recomputes the facts. Every change to a mesh ends with this.
     pub(super) fn find_facts(&mut self) {
         self.facts = Facts {
             vertex_surfaces: vertex_surfaces(self),
@@ -41,24 +41,25 @@ impl Mesh {
         };
     }
 
-    /// The index of each vertex's surface; 0 if no triangle uses it. In a mesh without [one surface a
+    /// The index of each vertex's surface; 0 if no triangle uses it. In a mesh without [one surface per
     /// vertex](Self::has_one_surface_a_vertex), that of the last triangle.
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
     }
 
-    /// The longest edge, in its own units, and the longest in texture coordinates.
+    /// The longest edge, in the mesh's own units, and the longest in texture coordinates.
     pub(crate) fn longest_edges(&self) -> (f32, f32) {
         self.facts.longest_edges
     }
 
-    /// For each surface, the max change of its texture coordinates over a unit of the mesh.
+    /// For each surface, the max change of its texture coordinates over one unit of the mesh.
     pub(crate) fn steepest_texcoords(&self) -> &[f64] {
         &self.facts.steepest_texcoords
     }
 
-    /// Returns whether every face has normals of its own, so that a distant light is equal at all its points.
+    /// Returns whether every face has its own normal at all its vertices, so that a distant light is constant over each
+    /// face.
     pub(crate) fn is_faceted(&self) -> bool {
         self.facts.is_faceted
     }
@@ -83,7 +84,7 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
     let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
     for &[a, b, c] in &mesh.triangles {
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            // In range, as every mesh is.
+            // In range, as in every mesh.
             let (from, to) = (from as usize, to as usize);
             edge = edge.max(mesh.positions[from].distance_squared(mesh.positions[to]));
             if let Some(texcoords) = &mesh.texcoords {
@@ -91,20 +92,20 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
             }
         }
     }
-    // The roots of the greatest squares alone: a root keeps the order.
+    // Only the greatest squares need a root: it is monotonic.
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
-/// For each surface, the max change of texture coordinates over a unit of its faces. Faces without area do not count.
+/// For each surface, the max change of texture coordinates over one unit of its faces. Faces without area do not count.
 ///
-/// On a face with the edges e and f, a change g of a coordinate along e and h along f, and g' and h' of another,
-/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). A step of one unit changes both coordinates
-/// together by no more than the root of the greater eigenvalue of these products.
+/// On a face with edges e and f, let a coordinate change by g along e and by h along f, and another by g' and h'. Then
+/// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). One unit changes both coordinates together by at
+/// most the root of the greater eigenvalue of the matrix of these products.
 fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
     let mut steepest = vec![0.0_f64; mesh.surfaces.len()];
     let Some(texcoords) = &mesh.texcoords else { return steepest };
     for (&corners, &surface) in mesh.triangles.iter().zip(&mesh.triangle_surfaces) {
-        // In range, as every mesh is.
+        // In range, as in every mesh.
         let [p, q, r] = corners.map(|i| mesh.positions[i as usize].to_array().map(f64::from));
         let [s, t, w] = corners.map(|i| texcoords[i as usize].to_array().map(f64::from));
         let (e, f) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
@@ -125,7 +126,8 @@ fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
     steepest
 }
 
-/// Returns whether the three normals of every face are that of its plane, to some 10⁻⁵ of an angle: a 400th of a shade.
+/// Returns whether the three normals of every face equal that of its plane, to an angle of about 10⁻⁵: 1/400 of a
+/// shade.
 fn is_faceted(mesh: &Mesh) -> bool {
     mesh.triangles.iter().all(|corners| {
         let [a, b, c] = corners.map(|i| mesh.positions[i as usize]);
@@ -144,7 +146,7 @@ mod tests {
     use super::super::{Mesh, Surface, Weight, shapes};
     use super::*;
 
-    /// Checks that the facts kept of a mesh equal those found anew, bit for bit.
+    /// Checks that the stored facts of a mesh equal freshly computed ones, bit for bit.
     fn check(what: &str, mesh: &Mesh) {
         let anew = mesh.clone().with_facts().facts;
         let Facts { vertex_surfaces, longest_edges: (edge, of_texture), steepest_texcoords, is_faceted } = &mesh.facts;

@@ -1,8 +1,8 @@
-//! Triangle meshes: vertices with normals, triangles, surfaces; and facts of the whole.
+//! Triangle meshes: vertices with normals, triangles, surfaces, and properties of the mesh as a whole.
 //!
-//! A [`Mesh`] comes from one of the [`shapes`], from the caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]), or
-//! from what a model's file gives ([`Mesh::from_parts`]). Once made it is sound: every position and normal is
-//! finite, every index in range, there is at least one triangle. Anything else is refused with a [`MeshError`].
+//! A [`Mesh`] comes from one of the [`shapes`], from the caller's own vertices ([`Mesh::new`], [`Mesh::with_normals`]),
+//! or from the contents of a model file ([`Mesh::from_parts`]). A mesh is always valid: every position and normal is
+//! finite, every index is in range, and there is at least one triangle. Anything else is rejected with a [`MeshError`].
 //!
 //! Triangles are counter-clockwise seen from outside, in a right-handed system; y is up.
 
@@ -63,8 +63,8 @@ pub struct Mesh {
     facts: facts::Facts,
 }
 
-/// The line of each triangle in the file that a mesh was read from; empty if it comes from none. It is no part of what the
-/// mesh is: the same one may stand elsewhere in another file.
+/// The line of each triangle in the file that the mesh was read from; empty if it comes from no file. Ignored when
+/// meshes are compared: the same mesh may be on other lines of another file.
 #[derive(Clone, Debug, Default)]
 struct Lines(Vec<u32>);
 
@@ -75,37 +75,37 @@ impl PartialEq for Lines {
 }
 
 impl Mesh {
-    /// The max number of vertices, and of triangles, of a mesh: 2²⁸, which leaves the renderer four bits beside a face's
-    /// index.
+    /// The max number of vertices, and of triangles, in a mesh: 2²⁸, which leaves the renderer four bits beside a
+    /// face's index.
     pub const MAX_COUNT: usize = 1 << 28;
 
-    /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex. A
-    /// vertex that is listed twice is a crease.
+    /// Makes a mesh with one plain [`Surface`] and normals averaged by angle over the triangles that share a vertex.
+    /// Listing a vertex twice makes a crease.
     ///
-    /// Vertices keep their numbers. A vertex whose faces' normals cancel is split, and the new vertices come at the end
+    /// Vertices keep their indices. A vertex whose faces' normals cancel is split, and the new vertices are appended
     /// (see [`normals`]).
     ///
     /// # Errors
-    /// A position that is not finite, an index out of range, no triangle, or more than
-    /// [`MAX_COUNT`](Self::MAX_COUNT) of either.
+    /// A position is not finite, an index is out of range, there is no triangle, or there are more than
+    /// [`MAX_COUNT`](Self::MAX_COUNT) vertices or triangles.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check(&positions, &triangles)?;
         let normals = vec![Vec3::Z; positions.len()];
         let points = topology::weld(&positions);
         let edges = topology::Edges::new(&triangles, &points);
         let mut mesh = Self::assemble_welded(positions, normals, triangles, &points, &edges);
-        // Numbers of vertices, which are below 2³¹.
+        // Vertex indices, which are below 2³¹.
         let own: Vec<u32> = (0..mesh.positions.len() as u32).collect();
         let known = vec![None; mesh.positions.len()];
         mesh.average(&own, Weight::Angle, None, known);
         Ok(mesh.with_facts())
     }
 
-    /// Makes a mesh with one plain [`Surface`] and the caller's normals, one for each vertex. They are made unit here.
+    /// Makes a mesh with one plain [`Surface`] and the caller's normals, one for each vertex, which are normalised.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new); a number of normals other than that of the vertices; a normal that is not finite,
-    /// or zero.
+    /// Those of [`new`](Self::new); a different number of normals than of vertices; a normal that is zero or not
+    /// finite.
     pub fn with_normals(
         positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -124,10 +124,10 @@ impl Mesh {
         Ok(Self::assemble(positions, normals, triangles))
     }
 
-    /// Gives the mesh texture coordinates, one pair for each vertex.
+    /// Sets the texture coordinates, one pair for each vertex.
     ///
     /// # Errors
-    /// A number of pairs other than that of the vertices; a pair that is not finite.
+    /// A different number of pairs than of vertices; a pair that is not finite.
     pub fn with_texcoords(mut self, texcoords: Vec<Vec2>) -> Result<Self, MeshError> {
         let (given, needed) = (texcoords.len(), self.positions.len());
         if given != needed {
@@ -140,10 +140,10 @@ impl Mesh {
         Ok(self.with_facts())
     }
 
-    /// Gives the mesh these surfaces, and each triangle the index of its own.
+    /// Sets the surfaces, and the index of each triangle's surface.
     ///
     /// # Errors
-    /// A number of indices other than that of the triangles; an index that is not below the number of surfaces.
+    /// A different number of indices than of triangles; an index that is not below the number of surfaces.
     pub fn with_surfaces(mut self, surfaces: Vec<Surface>, triangle_surfaces: Vec<u16>) -> Result<Self, MeshError> {
         let (given, needed) = (triangle_surfaces.len(), self.triangles.len());
         if given != needed {
@@ -157,15 +157,15 @@ impl Mesh {
         Ok(self.with_facts())
     }
 
-    /// Makes a mesh of finite positions, unit normals, indices in range: a shape, or input that was checked.
+    /// Makes a mesh from finite positions, unit normals and indices in range: a shape, or checked input.
     pub(in crate::mesh) fn assemble(positions: Vec<Vec3>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let points = topology::weld(&positions);
         let edges = topology::Edges::new(&triangles, &points);
         Self::assemble_welded(positions, normals, triangles, &points, &edges).with_facts()
     }
 
-    /// Does what [`assemble`](Self::assemble) does, if the points of the vertices and the edges are known, and the
-    /// other facts are still to be found.
+    /// Does the work of [`assemble`](Self::assemble) when the points of the vertices and the edges are already known,
+    /// and leaves finding the other facts to the caller.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -173,7 +173,7 @@ impl Mesh {
         points: &[u32],
         edges: &topology::Edges,
     ) -> Self {
-        // Made by pushing, they hold up to twice as much; a mesh stays for long.
+        // Vectors filled by pushing may hold twice the memory they need, and a mesh lives long.
         positions.shrink_to_fit();
         normals.shrink_to_fit();
         triangles.shrink_to_fit();
@@ -218,7 +218,7 @@ impl Mesh {
         self.texcoords.as_deref()
     }
 
-    /// The triangles: three vertices each, counter-clockwise seen from outside; at least one triangle.
+    /// The triangles, at least one: three vertices each, counter-clockwise seen from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
@@ -236,49 +236,49 @@ impl Mesh {
         &self.surfaces
     }
 
-    /// The surfaces, whose number stays.
+    /// The surfaces, to change them; their number is fixed.
     pub fn surfaces_mut(&mut self) -> &mut [Surface] {
         &mut self.surfaces
     }
 
-    /// The line of a triangle's face in the model's file, counted from 1; `None` if the mesh was not read from one.
+    /// The line of a triangle's face in the model file, counted from 1; `None` if the mesh was not read from a file.
     #[must_use]
     pub fn line(&self, triangle: usize) -> Option<u32> {
         self.lines.0.get(triangle).copied()
     }
 
-    /// The index of each vertex's point: vertices in one place share it.
+    /// The index of each vertex's point: vertices at the same position share one.
     pub(crate) fn points(&self) -> Vec<u32> {
         topology::weld(&self.positions)
     }
 
-    /// The box and the sphere around all vertices that a triangle uses.
+    /// The bounding box and sphere of all vertices used by a triangle.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Returns whether as many triangles run through every edge in one direction as in the other. Then the mesh bounds
-    /// a body, or several that may share edges and points. Vertices at the same position count as one, and triangles
-    /// with two corners in one point do not count.
+    /// Returns whether every edge is traversed equally often in both directions. Then the mesh bounds a solid, or
+    /// several that may share edges and points. Vertices at the same position count as one, and triangles with two
+    /// corners at one point do not count.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Returns whether the mesh is closed and looks outward everywhere. Then no back face of it can be seen from
+    /// Returns whether the mesh is closed and faces outward everywhere. Then none of its back faces can be seen from
     /// outside.
     ///
-    /// The mesh must wind round no point of space a negative number of times, which is tested along 64 × 64 rays of
-    /// each axis. A region that is turned the wrong way counts if some ray is in it for more than 1/32 of the longest
-    /// side of the mesh's box: thinner ones are the folds of scans.
+    /// No point of space may have a negative winding number, which is tested along 64 × 64 rays on each axis. An
+    /// inverted region counts only if some ray runs through it for more than 1/32 of the longest side of the mesh's
+    /// box: thinner ones are folds, as scans have them.
     #[must_use]
     pub fn is_outward(&self) -> bool {
         self.outward
     }
 
     /// Returns whether the mesh is certainly closed, convex and wound outward. Then its front faces never hide each
-    /// other. The test is exact: if rounding gave a face the slightest dent, the result is `false`, which costs time,
+    /// other. The test is exact: if rounding dents a face even slightly, the result is `false`, which costs time but
     /// never correctness.
     #[must_use]
     pub fn is_convex(&self) -> bool {
@@ -286,8 +286,7 @@ impl Mesh {
     }
 
     /// The volume inside a closed mesh, by the divergence theorem: the sum of the tetrahedra between the box's centre
-    /// and each triangle. It is negative if the triangles are wound inward, and means nothing if the mesh is not
-    /// closed.
+    /// and each triangle. It is negative if the triangles are wound inward, and meaningless if the mesh is not closed.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let centre = wide::widen(self.bounds.centre);
@@ -300,7 +299,7 @@ impl Mesh {
     }
 }
 
-/// Checks what every mesh must fulfil.
+/// Checks what every mesh must satisfy.
 fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.is_empty() {
         return Err(MeshError::NoTriangles);

@@ -1,17 +1,17 @@
 //! Normals of faces and of vertices.
 //!
 //! A face's normal is n = (p1 − p2) × (p1 − p3) (the Russian textbook, the Hungarian tutorial): outward for
-//! counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the normals of the faces around it
-//! (the Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial only divides by their
-//! number, which darkens a vertex the more the rounder the corner is: at a cube's corner the mean of three unit normals
-//! is 0.58 long.
+//! counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the normals of the faces around it (the
+//! Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial only divides by their number,
+//! which darkens a vertex, and the more so the sharper its corner: at a cube's corner the mean of three unit normals is
+//! 0.58 long.
 //!
-//! All is computed in f64 and rounded once, so a normal's length is 1 within 2⁻²³ for any finite
-//! positions, denormals and `f32::MAX` among them. Sums run in the order of the triangles.
+//! Everything is computed in f64 and rounded once, so a normal's length is 1 within 2⁻²³ for any finite positions,
+//! including denormals and `f32::MAX`. Sums are in triangle order.
 //!
 //! | case | normal |
 //! |---|---|
-//! | a face of no area | none; it has no weight in any vertex |
+//! | a face without area | none; it has no weight at any vertex |
 //! | face normals that cancel, as on a folded sheet | the vertex is split, each face keeps its own |
 //! | faces whose normals differ by more than the crease angle | the vertex is split, each side has its own |
 //! | a vertex that no face with an area uses | +z |
@@ -30,19 +30,19 @@ use crate::lanes::three;
 /// The weight of each face in the normal of a vertex.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq, Default)]
 pub enum Weight {
-    /// Equal weights, as in the source texts. The normal depends on how the faces are cut into triangles.
+    /// Equal weights, as in the source texts. The normal depends on the triangulation.
     Count,
     /// Weights by area.
     Area,
-    /// Weights by the angle of the face at the vertex. The normal does not depend on how the faces are cut.
+    /// Weights by the angle of the face at the vertex. The normal does not depend on the triangulation.
     #[default]
     Angle,
 }
 
 /// The unit normal of a face, outward if its corners are counter-clockwise seen from outside.
 ///
-/// Returns `None` if the face has no area: two corners in one point, or all three on a line (the sine
-/// of its largest angle is below 2⁻⁴⁸).
+/// Returns `None` if the face has no area: two corners coincide, or all three are collinear (the sine of the largest
+/// angle is below 2⁻⁴⁸).
 ///
 /// ```
 /// use mode13h::glam::Vec3;
@@ -56,7 +56,7 @@ pub fn face_normal(p1: Vec3, p2: Vec3, p3: Vec3) -> Option<Vec3> {
     (face.double_area > 0.0).then(|| narrow(face.normal))
 }
 
-/// Makes any finite vector but zero unit; `None` for others.
+/// Normalises any finite vector except zero; `None` for others.
 pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     let wide = widen(v);
     let length = length(wide);
@@ -72,16 +72,16 @@ struct Face {
 impl Face {
     fn new(corners: [Vec3; 3]) -> Self {
         let p = three(corners, widen);
-        // The formula holds for the corners in any cyclic order. With p1 opposite the longest edge
-        // the product is that of the two shorter ones and the sine of the largest angle, which is
-        // small only if the face really is a line, however far away one corner may be.
+        // The formula holds for the corners in any cyclic order. With p1 opposite the longest edge, the product is that
+        // of the two shorter edges and the sine of the largest angle, which is small only if the face really is a line,
+        // however distant one corner may be.
         let opposite = three([sub(p[1], p[2]), sub(p[2], p[0]), sub(p[0], p[1])], |edge| dot(edge, edge));
         let first = (0..3).fold(0, |best, i| if opposite[i] > opposite[best] { i } else { best });
         let (p1, p2, p3) = (p[first], p[(first + 1) % 3], p[(first + 2) % 3]);
         let (e2, e3) = (sub(p1, p2), sub(p1, p3));
         let n = cross(e2, e3);
         let double_area = length(n);
-        // Rounding makes less than 2⁻⁵⁰ of the edges' product.
+        // The rounding error is below 2⁻⁵⁰ of the product of the edges.
         if double_area > length(e2) * length(e3) * (1.0 / 281_474_976_710_656.0) {
             Self { normal: scale(n, 1.0 / double_area), double_area }
         } else {
@@ -103,41 +103,41 @@ fn angles(corners: [Vec3; 3]) -> [f64; 3] {
     })
 }
 
-/// The rule for which faces at one position count together in a normal.
+/// The rule that decides which faces at a position are averaged together.
 pub(super) struct Together<'a> {
-    /// The cosine of the greatest angle between two faces of no group that count together.
+    /// The cosine of the greatest angle between two ungrouped faces that are averaged together.
     least: f64,
     /// The index of each triangle's smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty if
-    /// none has one.
+    /// there are no groups.
     groups: &'a [u32],
     /// The edges of a mesh that may be a scan; otherwise `None`.
     edges: Option<topology::Edges>,
 }
 
 impl<'a> Together<'a> {
-    /// The group of faces that count with no other.
+    /// The group of faces that are averaged with no other.
     pub(super) const FLAT: u32 = 0;
     /// The group of faces whose group is unknown: the angle decides.
     pub(super) const NO_GROUP: u32 = u32::MAX;
 
-    /// Makes a rule by the angle between faces, and by groups if there are any.
+    /// Makes a rule from the angle between faces, and from groups if there are any.
     pub(super) fn new(crease: Angle, groups: &'a [u32]) -> Self {
-        // 2⁻⁴⁰ for rounding: faces at exactly the crease angle are smooth. No number at all leaves all faces flat.
+        // 2⁻⁴⁰ covers rounding: faces at exactly the crease angle are smooth. NaN leaves all faces flat.
         let least = libm::cos(crease.to_radians().clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
         Self { least, groups, edges: None }
     }
 
-    /// Makes a scan smooth everywhere: a mesh of these edges whose sharp ones are [scattered]. Otherwise the rule
-    /// stays.
+    /// Makes a mesh with these edges smooth everywhere if its sharp edges are [scattered], as on a scan. Otherwise the
+    /// rule is unchanged.
     ///
     /// [scattered]: Self::is_scattered
     pub(super) fn unless_scattered(self, edges: topology::Edges) -> Self {
         Self { edges: Some(edges), ..self }
     }
 
-    /// Returns whether sharp edges end anywhere, as noise makes them. Those of a model that was designed run on until
-    /// they meet others or the mesh's rim: nearly all of its points that have one sharp edge have two. On scans a third
-    /// of these points and more are ends; from an eighth on they count as scattered.
+    /// Returns whether sharp edges end anywhere, as noise makes them. On a designed model they run on until they meet
+    /// others or the mesh's rim: nearly all points with a sharp edge have two. On scans a third or more of these points
+    /// are ends; from an eighth on, edges count as scattered.
     fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
         const RIM: u8 = u8::MAX;
         let mut sharp = vec![0_u8; count];
@@ -171,12 +171,12 @@ impl<'a> Together<'a> {
 
 impl Mesh {
     /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices at the same
-    /// position count as one. With a crease angle two faces count together if the angle between their normals is no
-    /// greater, or if other faces at this position link them so. Vertices are split where they must be. The angle is 0
-    /// if two faces lie in one plane.
+    /// position count as one. With a crease angle, two faces are averaged together if the angle between their normals
+    /// is at most that, directly or through other faces at this position. The angle is 0 if two faces lie in one plane.
+    /// Vertices are split where they must be.
     ///
-    /// Vertices keep their numbers; new ones come at the end. If more than 64 faces share a position, not all are
-    /// compared with each other.
+    /// Vertices keep their indices; new ones come at the end. If more than 64 faces share a position, not all pairs are
+    /// compared.
     pub fn smooth(&mut self, weight: Weight, crease: Option<Angle>) {
         let points = topology::weld(&self.positions);
         let known = vec![None; self.positions.len()];
@@ -204,9 +204,9 @@ impl Mesh {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Gives normals as [`smooth`](Self::smooth) does. `points` says which vertices count as one (points are numbered
-    /// below the number of vertices); `known` says which of them keep the normal that it gives. Without `together` all
-    /// faces at a position count together.
+    /// Sets normals like [`smooth`](Self::smooth). `points` says which vertices count as one (points are numbered below
+    /// the number of vertices); vertices with a normal in `known` keep it. Without `together`, all faces at a position
+    /// are averaged.
     pub(super) fn average(
         &mut self,
         points: &[u32],
@@ -215,8 +215,8 @@ impl Mesh {
         known: Vec<Option<Vec3>>,
     ) {
         let faces = self.faces();
-        // One for each class, which is a point, or a part of the faces there. (One for each corner always would be 48
-        // bytes a corner: of ten million faces over a gigabyte.)
+        // One sum for each class: a point, or some of the faces there. (One for each corner would be 48 bytes per
+        // corner: for ten million faces over a gigabyte.)
         let classes = together.as_ref().and_then(|rule| {
             let classes = self.classes(points, &faces, rule)?;
             match &rule.edges {
@@ -227,7 +227,7 @@ impl Mesh {
                 _ => Some(classes),
             }
         });
-        // Not beside all that follows.
+        // Freed before the allocations that follow.
         if let Some(together) = &mut together {
             together.edges = None;
         }
@@ -251,15 +251,15 @@ impl Mesh {
                 *total += weight;
             }
         }
-        // A sum a millionth of its weights or shorter is what opposite faces leave over, not a
-        // direction. Rounding is 2⁻⁵⁰ of the weights, so what is longer is exact to 2⁻³⁰.
+        // A sum of at most a millionth of its weights is what opposite faces leave over, not a direction. Rounding is
+        // 2⁻⁵⁰ of the weights, so anything longer is exact to 2⁻³⁰.
         let mean = |(sum, total): &(Wide, f64)| {
             let long = length(*sum);
             (long > total * (1.0 / 1_048_576.0)).then(|| narrow(scale(*sum, 1.0 / long)))
         };
         let means: Vec<Option<Vec3>> = sums.iter().map(mean).collect();
         drop(sums);
-        // What is known was given; all that is found here for such a vertex is dropped.
+        // Known normals were given; those computed here for such vertices are discarded.
         let is_known: Vec<bool> = known.iter().map(Option::is_some).collect();
         let normal = |corner: usize, vertex: u32| {
             let face = &faces[corner / 3];
@@ -269,13 +269,13 @@ impl Mesh {
         self.give(normal, known);
     }
 
-    /// The class of faces that share a normal, for each corner: the index of its point, or, if the faces at a point do
-    /// not all count together, a number beyond those of all points. `None` if there is no such point.
+    /// The class of faces that share a normal, for each corner: the index of its point, or, if the faces at a point are
+    /// not all averaged together, a number beyond all points. `None` if there is no such point.
     fn classes(&self, points: &[u32], faces: &[Face], together: &Together<'_>) -> Option<Vec<u32>> {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
         let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
-        // If all faces count together with the first one there is nothing to find out: nearly everywhere on a scan.
+        // If every face goes with the first one, nothing more has to be compared: true nearly everywhere on a scan.
         let mut first = vec![NONE; count];
         let mut is_divided = vec![false; count];
         let mut any = false;
@@ -306,7 +306,7 @@ impl Mesh {
             let face = |place: u32| here[place as usize].1 as usize / 3;
             parts.find(here.len() as u32, |a, b| together.are(faces, face(a), face(b)));
             for (place, &(_, corner)) in (0..).zip(here) {
-                // The first face of a part stands for it, and has been here before the others.
+                // The first face of a part represents it, and comes before the others.
                 let stands = parts.sets.of(place);
                 classes[corner as usize] = if stands == place {
                     next += 1;
@@ -319,8 +319,8 @@ impl Mesh {
         Some(classes)
     }
 
-    /// Gives the corners of each vertex their normals; `None`: any will do. Splits the vertices whose corners need more
-    /// than one. `given`: the normals that vertices have already.
+    /// Sets the normals of each vertex's corners, where `None` accepts any. Splits the vertices whose corners need more
+    /// than one. `given`: the normals that vertices already have.
     fn give(&mut self, normal: impl Fn(usize, u32) -> Option<Vec3>, mut given: Vec<Option<Vec3>>) {
         let bits = |n: Vec3| [n.x, n.y, n.z].map(f32::to_bits);
         let mut splits: Vec<(u32, [u32; 3], u32)> = Vec::new();
@@ -350,7 +350,7 @@ impl Mesh {
     }
 }
 
-/// The faces at one point, in parts that are linked.
+/// The faces at one point, in groups that are connected.
 #[derive(Default)]
 struct Parts {
     sets: Sets,
@@ -358,9 +358,9 @@ struct Parts {
 }
 
 impl Parts {
-    /// The number of faces at a point that are all compared. Beyond them, faces are compared with these, with the last
-    /// eight, and with those that were linked with none of these: so the time of a point does not grow by the square of
-    /// its faces.
+    /// The number of faces at a point that are all compared with each other. Any further face is compared with these,
+    /// with the last eight, and with those that matched none of these, so the time per point does not grow
+    /// quadratically.
     const COMPARED: usize = 64;
 
     fn find(&mut self, count: u32, linked: impl Fn(u32, u32) -> bool) {

@@ -1,16 +1,16 @@
-//! The side of a face that a point lies on, exactly.
+//! The exact test for the side of a face on which a point lies.
 //!
-//! A determinant of differences, first in f64 with an error bound; where that cannot tell, in exact
-//! expansions after J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
-//! Geometric Predicates", 1997. Three differences of f32 values neither overflow nor underflow f64
-//! when multiplied: every term is a multiple of 2⁻⁴⁴⁷ and less than 2³⁹⁰.
+//! It is a determinant of differences, computed first in f64 with an error bound, and where that cannot decide, in
+//! exact expansions after J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+//! Predicates", 1997. Products of three differences of f32 values neither overflow nor underflow f64: every term is a
+//! multiple of 2⁻⁴⁴⁷ and less than 2³⁹⁰.
 
 use core::cmp::Ordering;
 
 use glam::Vec3;
 
-/// `Greater`: `d` is in front of the face `a`, `b`, `c` (which is counter-clockwise seen from there);
-/// `Equal`: in its plane; `Less`: behind it.
+/// Returns the side of the face `a`, `b`, `c` on which `d` lies: `Greater` in front (where the face is
+/// counter-clockwise), `Equal` in its plane, `Less` behind.
 pub(super) fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Ordering {
     // Rows: b − a, c − a, d − a; each difference is exactly high + low.
     let rows = [b, c, d].map(|p| {
@@ -24,8 +24,8 @@ pub(super) fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Ordering {
         determinant += term;
         magnitude += libm::fabs(term);
     }
-    // Three differences, two products and five sums, each off by 2⁻⁵³ of itself at most: under
-    // 11 · 2⁻⁵³ of `magnitude` all told, and 2⁻⁴⁸ is 32 · 2⁻⁵³.
+    // Three differences, two products and five sums, each with a relative error of at most 2⁻⁵³: under 11 · 2⁻⁵³ of
+    // `magnitude` in all, and 2⁻⁴⁸ is 32 · 2⁻⁵³.
     let bound = magnitude * (1.0 / 281_474_976_710_656.0);
     if determinant > bound {
         return Ordering::Greater;
@@ -52,7 +52,7 @@ pub(super) fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Ordering {
     sum.sign()
 }
 
-/// Column of each of the three rows, and the sign of the term.
+/// The column taken from each of the three rows, and the sign of the term.
 const PERMUTATIONS: [(usize, usize, usize, f64); 6] =
     [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0), (2, 0, 1, 1.0), (2, 1, 0, -1.0)];
 
@@ -73,8 +73,7 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - from_a) + (b - from_b))
 }
 
-/// `a · b` as a rounded value and its error (Dekker; without a fused multiply, which not every
-/// machine has).
+/// `a · b` as a rounded value and its error (Dekker's method, since not every machine has a fused multiply).
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let (a_high, a_low) = split(a);
@@ -83,29 +82,28 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, error)
 }
 
-/// Into 26 and 26 bits; 2²⁷ + 1 is Dekker's constant for 53 bits.
+/// Splits into 26 and 26 bits; 2²⁷ + 1 is Dekker's constant for 53 bits.
 fn split(a: f64) -> (f64, f64) {
     let shifted = 134_217_729.0 * a;
     let high = shifted - (shifted - a);
     (high, a - high)
 }
 
-/// A sum kept exactly: components that do not overlap, in order of rising magnitude.
+/// An exact sum: non-overlapping components in order of increasing magnitude.
 struct Expansion {
     components: [f64; Self::MAX],
     len: usize,
 }
 
 impl Expansion {
-    /// Six terms of 2 · 2 · 2 · 2 products of two components each; an addition makes at most one
-    /// component more.
+    /// Six terms of 2 · 2 · 2 · 2 products of two components each; an addition adds at most one component.
     const MAX: usize = 6 * 16 * 2;
 
     fn new() -> Self {
         Self { components: [0.0; Self::MAX], len: 0 }
     }
 
-    /// Shewchuk's GROW-EXPANSION, zeros left out.
+    /// Shewchuk's GROW-EXPANSION, with zeros dropped.
     fn add(&mut self, value: f64) {
         if value == 0.0 {
             return;
@@ -160,8 +158,8 @@ mod tests {
     }
 
     proptest! {
-        /// The fourth point a few units in the last place off the plane, or on it: its coordinates are
-        /// those of a + s·(b − a) + t·(c − a), rounded, and then moved.
+        /// The fourth point is on the plane or a few units in the last place off it: a + s·(b − a) + t·(c − a),
+        /// rounded, and then moved.
         #[test]
         fn near_the_plane(
             corners in prop::array::uniform3(prop::array::uniform3(-1.0f32..1.0)),
@@ -179,10 +177,10 @@ mod tests {
             }
         }
 
-        /// In one plane exactly, but with coordinates whose products f64 does not hold.
+        /// Points exactly in one plane, with coordinates whose products do not fit into f64.
         #[test]
         fn in_the_plane(p in prop::array::uniform3(prop::array::uniform2(finite())), z in finite()) {
-            // The plane x = y, and the two that the cyclic change of axes makes of it.
+            // The plane x = y, and its two images under cyclic permutation of the axes.
             let points = [p[0], p[1], p[2], [z, p[0][1]]].map(|[x, z]| Vec3::new(x, x, z));
             for turn in 0..3 {
                 let turned = points.map(|p| Vec3::from_array([p[turn], p[(turn + 1) % 3], p[(turn + 2) % 3]]));
@@ -190,7 +188,7 @@ mod tests {
             }
         }
 
-        /// Points of any size, denormals and f32::MAX among them.
+        /// Points of any magnitude, including denormals and `f32::MAX`.
         #[test]
         fn anywhere(p in prop::array::uniform4(prop::array::uniform3(finite()))) {
             let points = p.map(Vec3::from_array);

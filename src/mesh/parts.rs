@@ -1,4 +1,4 @@
-//! Meshes from what a model's file gives: corners that may lack a normal, smoothing groups, and faults of scans.
+//! Meshes from model files: corners that may lack a normal, smoothing groups, and the defects of scans.
 
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -12,10 +12,10 @@ use super::topology::Edges;
 use super::{Lines, Mesh, MeshError, Surface, Weight, check, normals, topology, twins};
 use crate::angle::Angle;
 
-/// The crease angle of models without one.
+/// The crease angle if neither the model nor the caller gives one.
 const CREASE: Angle = Angle::from_degrees(40.0);
 
-/// What a model's file gives, for [`Mesh::from_parts`]. A list that is empty is left out.
+/// The contents of a model file, for [`Mesh::from_parts`]. Empty lists count as absent.
 ///
 /// ```
 /// use mode13h::glam::Vec3;
@@ -30,11 +30,12 @@ const CREASE: Angle = Angle::from_degrees(40.0);
 pub struct Parts {
     /// The position of each vertex.
     pub positions: Vec<Vec3>,
-    /// A normal for each vertex, of any length. Where it is `None`, or zero, the faces that meet there give it.
+    /// A normal for each vertex, of any length. Where it is `None` or zero, it is computed from the faces around the
+    /// vertex.
     pub normals: Vec<Option<Vec3>>,
     /// A pair of texture coordinates for each vertex: u to the right, v up.
     pub texcoords: Vec<Vec2>,
-    /// Three vertices each, counter-clockwise seen from outside.
+    /// Three vertex indices each, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The surfaces.
     pub surfaces: Vec<Surface>,
@@ -45,35 +46,37 @@ pub struct Parts {
     /// The smoothing group of each triangle, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Normals are averaged
     /// within a group.
     pub groups: Vec<u32>,
-    /// The angle from which on two faces have an edge between them, in place of the groups. With `None` the groups hold,
-    /// and without groups 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    /// The crease angle: two faces that differ by more have a sharp edge between them. It replaces the groups. With
+    /// `None` the groups decide, and without groups 40°, except that a scan, whose sharp edges end anywhere, is smooth
+    /// everywhere.
     pub crease: Option<Angle>,
 }
 
 impl Parts {
-    /// The group of a triangle that is flat.
+    /// The group of a flat-shaded triangle.
     pub const FLAT: u32 = Together::FLAT;
-    /// The group of a triangle that is in none.
+    /// The group of a triangle in no group.
     pub const NO_GROUP: u32 = Together::NO_GROUP;
 }
 
-/// Counts of faces that were wrong in a closed mesh, and were mended.
+/// Counts of the defects repaired in a closed mesh.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
 pub struct Repairs {
-    /// The number of pairs of faces back to back that were left out.
+    /// The number of pairs of back-to-back faces that were removed.
     pub pairs: usize,
-    /// The number of bodies that were turned, being inside out.
+    /// The number of solids that were inside out and were flipped.
     pub turned: usize,
 }
 
 impl Mesh {
-    /// Makes a mesh of what a model's file gives, and mends two faults of scans if it is closed: pairs of triangles
-    /// back to back, of the same three points, are left out where other faces go on at their edges, and bodies that are
-    /// inside out are turned, unless they are cavities in others. Vertices that nothing uses then are dropped.
+    /// Makes a mesh from the contents of a model file, and if it is closed, repairs two defects of scans. Pairs of
+    /// back-to-back triangles, with the same three points, are removed where other faces continue at their edges; and
+    /// solids that are inside out are flipped, unless they are cavities in others. Vertices that become unused are
+    /// dropped.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`]; a list that is not empty and has not one entry for each vertex or triangle; a pair of
+    /// Those of [`Mesh::new`]; a list that is neither empty nor has one entry for each vertex or triangle; a pair of
     /// texture coordinates that is not finite; a surface that does not exist.
     pub fn from_parts(parts: Parts) -> Result<(Self, Repairs), MeshError> {
         let Parts {
@@ -113,7 +116,7 @@ impl Mesh {
         let mut repairs = Repairs::default();
         if edges.balance() {
             let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
-            // A mesh of nothing else stays as it is.
+            // A mesh that consists of nothing else stays as it is.
             if !pairs.is_empty() && 2 * pairs.len() < triangles.len() {
                 repairs.pairs = pairs.len();
                 let mut keep = vec![true; triangles.len()];
@@ -156,20 +159,20 @@ impl Mesh {
     }
 }
 
-/// Adds copies of entries to a list with one for each vertex, or none at all.
+/// Appends copies of the given entries to a list that has one entry per vertex, or none at all.
 fn copy<T: Copy>(list: &mut Vec<T>, copies: &[u32]) {
     if !list.is_empty() {
         list.extend(copies.iter().map(|&vertex| list[vertex as usize]).collect::<Vec<_>>());
     }
 }
 
-/// Removes the entries that are not to be kept from a list with one for each, or none at all.
+/// Removes the entries not marked in `keep` from a list of the same length, or an empty one.
 fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     list.retain(|_| keep.next().is_none_or(|&keep| keep));
 }
 
-/// Renumbers the vertices of triangles without those that no triangle uses. Returns for each vertex whether one uses it.
+/// Renumbers the triangles' vertices so that unused ones are skipped. Returns whether each vertex is used.
 fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
     let mut used = vec![false; vertices];
     triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
@@ -183,9 +186,9 @@ fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
     used
 }
 
-/// Turns faces round that are inside out, and with them their given normals, if more of these then look inward than
-/// outward in a body. Returns the vertices that need a copy, for such a face beside one that keeps its normal; the
-/// copies come at the end.
+/// Flips the faces that are inside out. If most of a solid's given normals then point inward, they are negated, too.
+/// Returns the vertices that need a copy because a face with negated normals shares them with one that keeps its own;
+/// the copies come at the end.
 fn turn(
     inside_out: &InsideOut,
     triangles: &mut [[u32; 3]],
@@ -208,7 +211,7 @@ fn turn(
             triangle.iter().for_each(|&vertex| is_shared[vertex as usize] = true);
         }
     }
-    // For each vertex of a turned face, the vertex that has the turned normal.
+    // For each vertex of a flipped face, the vertex with the negated normal.
     let mut turned: BTreeMap<u32, u32> = BTreeMap::new();
     let mut copies = Vec::new();
     for (number, triangle) in triangles.iter_mut().enumerate() {

@@ -1,12 +1,13 @@
-//! The bodies of a closed mesh, and those of them that are inside out.
+//! The solids that make up a closed mesh, and which of them are inside out.
 //!
-//! A **shell** is a part of the surface that is closed by itself. Faces are joined over edges of two faces. At edges of
-//! more, those parts are joined of which more faces run through the edge in one direction than in the other. So two
-//! boxes that touch along an edge are two shells.
+//! A **shell** is a part of the surface that is closed by itself. Two faces that share an edge with no third face are
+//! in the same shell. Where more faces meet at an edge, only the parts that do not balance there (more of their faces
+//! traverse the edge in one direction than in the other) are joined. So two boxes that touch along an edge are two
+//! shells.
 //!
-//! A shell whose volume is negative is inside out, unless it is a **cavity**: the larger shells, once they are turned
-//! themselves, wind at least once round its place. The place is a point of one of its faces, and the winding round it
-//! is counted along a ray from outside.
+//! A shell with negative volume is inside out, unless it is a **cavity**: the larger shells, once flipped themselves,
+//! wind at least once around it. This is tested at a point of one of its faces, by counting crossings along a ray from
+//! outside.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -22,29 +23,29 @@ use super::winding::{between, cross_row};
 pub(super) struct InsideOut {
     /// The shell of each triangle.
     shell_of: Vec<u32>,
-    /// Marks each shell that is to be turned.
+    /// Whether each shell is to be flipped.
     turned: Vec<bool>,
 }
 
 impl InsideOut {
-    /// The shell of a triangle, if it is to be turned.
+    /// The shell of a triangle, if it is to be flipped.
     pub(super) fn shell(&self, triangle: usize) -> Option<usize> {
         let shell = self.shell_of[triangle] as usize;
         self.turned[shell].then_some(shell)
     }
 
-    /// Counts the shells, to be turned or not.
+    /// Counts all shells.
     pub(super) fn shells(&self) -> usize {
         self.turned.len()
     }
 
-    /// Counts the shells to be turned.
+    /// Counts the shells to be flipped.
     pub(super) fn count(&self) -> usize {
         self.turned.iter().filter(|&&turned| turned).count()
     }
 }
 
-/// The shells of a closed mesh that are inside out; `None` if none is.
+/// The shells of a closed mesh that are inside out; `None` if there is none.
 pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edges) -> Option<InsideOut> {
     let (shell_of, count) = shells(triangles.len(), edges);
     let volumes = volumes(positions, triangles, &shell_of, count);
@@ -53,7 +54,7 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
         return None;
     }
     let enclosing = enclosing(positions, triangles, &shell_of, &suspects, count);
-    // The larger first.
+    // Larger shells first.
     let compare = |a: u32, b: u32| {
         let [a_size, b_size] = [a, b].map(|shell| volumes[shell as usize].abs());
         b_size.total_cmp(&a_size).then(a.cmp(&b))
@@ -73,7 +74,7 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
 
 /// The shell of each triangle, and the number of shells.
 fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
-    // Triangles are counted in 32 bits, see `Mesh::MAX_COUNT`.
+    // Triangles fit into 32 bits, see `Mesh::MAX_COUNT`.
     let mut sets = Sets::new(triangles as u32);
     let mut has_others = false;
     for mut faces in edges.faces_by_edge() {
@@ -83,7 +84,7 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
         }
     }
     if has_others {
-        // Which parts do not balance where they meet others. What is joined then balances.
+        // The parts that do not balance where they meet others. Joined, they balance.
         let mut joins = Vec::new();
         let mut here: Vec<(u32, i32)> = Vec::new();
         for faces in edges.faces_by_edge().filter(|faces| faces.clone().count() > 2) {
@@ -98,7 +99,7 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
         }
         joins.into_iter().for_each(|(a, b)| sets.join(a, b));
     }
-    // Numbered from 0 in the order of their first triangles, which stand for them.
+    // Shells are numbered from 0 in the order of their first triangles, which represent them.
     let (mut numbers, mut count) = (vec![0; triangles], 0);
     for triangle in 0..triangles {
         let stands = sets.of(triangle as u32) as usize;
@@ -112,9 +113,10 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     (numbers, count as usize)
 }
 
-/// The volume of each shell; 0 if it encloses none but for rounding.
+/// The volume of each shell; 0 if what it encloses is within rounding error.
 fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: usize) -> Vec<f64> {
-    // Six volumes of the tetrahedra from the first vertex of each shell, their sum and that of their sizes.
+    // Six times the volumes of the tetrahedra from each shell's first vertex: their sum, and the sum of their
+    // magnitudes.
     let mut sums: Vec<(Option<Wide>, f64, f64)> = vec![(None, 0.0, 0.0); count];
     for (triangle, &shell) in triangles.iter().zip(shell_of) {
         let [a, b, c] = triangle.map(|vertex| widen(positions[vertex as usize]));
@@ -124,13 +126,13 @@ fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: 
         *sum += six_volumes;
         *size += six_volumes.abs();
     }
-    // Of fewer than 2³¹ terms the sum is off by less than 2⁻²² of their sizes, and mostly by far less; a sheet whose two
-    // sides undo each other encloses nothing, and is not turned.
+    // With fewer than 2³¹ terms, the error of the sum is below 2⁻²² of the sum of magnitudes, and usually far smaller.
+    // A sheet whose two sides cancel encloses nothing, and is not flipped.
     sums.into_iter().map(|(_, sum, size)| if sum.abs() > size * (1.0 / 4_194_304.0) { sum } else { 0.0 }).collect()
 }
 
-/// The shells that wind round a place of each shell of `wanted`: other shells, with the parts of their winding numbers
-/// there, -1 or 1 for each of their faces before it along a ray.
+/// The shells that wind around a point of each shell in `wanted`: other shells, with their contributions to the winding
+/// number there, −1 or 1 for each of their faces that a ray crosses before it.
 fn enclosing(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
@@ -138,9 +140,9 @@ fn enclosing(
     wanted: &[u32],
     count: usize,
 ) -> Vec<Vec<(u32, i32)>> {
-    // Rays run along z, so that the third coordinate is how far along, and the second one a ray's row.
+    // Rays run along z, so the third coordinate is the distance along a ray, and the second one the ray's row.
     let corners = |triangle: &[u32; 3]| triangle.map(|vertex| widen(positions[vertex as usize]));
-    // Through the middle of that face of the shell that is largest, seen along the rays.
+    // The ray goes through the middle of the shell's largest face as seen along the rays.
     let mut largest = vec![(0.0, [0.0; 3]); count];
     for (triangle, &shell) in triangles.iter().zip(shell_of) {
         let [a, b, c] = corners(triangle);

@@ -1,4 +1,5 @@
-//! One surface a vertex. A vertex is lit once, with one material, so two surfaces that meet need a vertex each.
+//! Meshes with one surface per vertex. A vertex is lit once, with one material, so where two surfaces meet each needs
+//! its own.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -28,11 +29,12 @@ impl Mesh {
         })
     }
 
-    /// Copies the mesh, with every vertex that lies between surfaces split, one for each. New vertices come at the end.
+    /// Copies the mesh, splitting every vertex shared by several surfaces into one for each. New vertices come at the
+    /// end.
     #[must_use]
     pub fn with_one_surface_a_vertex(&self) -> Self {
         let mut mesh = self.clone();
-        // For each vertex the surface it belongs to, and the next vertex split off the same one.
+        // For each vertex, its surface and the next vertex split off from the same original.
         let mut links: Vec<(u32, u32)> = vec![(NONE, NONE); mesh.positions.len()];
         for (triangle, &surface) in mesh.triangles.iter_mut().zip(&mesh.triangle_surfaces) {
             for index in triangle {
@@ -46,8 +48,8 @@ impl Mesh {
                             at = next;
                             continue;
                         }
-                        // At most three vertices a triangle: the count stays below 2³³; of a mesh
-                        // that large the index would not fit, so it keeps its first surface.
+                        // With at most three vertices per triangle the count stays below 2³³. In a mesh so large that
+                        // the index does not fit, the triangle keeps the first surface's vertex.
                         let Ok(new) = u32::try_from(mesh.positions.len()) else { break };
                         links[at as usize].1 = new;
                         links.push((u32::from(surface), NONE));

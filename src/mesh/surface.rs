@@ -9,13 +9,13 @@ use crate::palette::Rgb;
 pub struct Surface {
     /// `newmtl`; empty if the mesh does not come from a file.
     pub name: String,
-    /// `Kd`: diffuse red, green, blue, as a rule 0 to 1.
+    /// `Kd`: diffuse red, green, blue, usually 0 to 1.
     pub diffuse: [f32; 3],
-    /// `Ks`: specular red, green, blue, as a rule 0 to 1.
+    /// `Ks`: specular red, green, blue, usually 0 to 1.
     pub specular: [f32; 3],
-    /// `Ns`: the specular exponent, as a rule 0 to 1,000. 0, or none in the file, means no highlight.
+    /// `Ns`: the specular exponent, usually 0 to 1,000. 0, or none in the file, means no highlight.
     pub shininess: f32,
-    /// `d`, or 1 − `Tr`: the share that hides what lies behind, 0 to 1; 1 is opaque.
+    /// `d`, or 1 − `Tr`: how much the surface hides of what lies behind it, 0 to 1; 1 is opaque.
     pub opacity: f32,
     /// `map_Kd`: the path of a texture, joined to the folder of the MTL file.
     pub texture: Option<String>,
@@ -28,15 +28,15 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// The colour in full light: `Kd`, each channel to the nearest of 0 to 255. Values below 0 and NaN count as 0,
-    /// values above 1 as 1.
+    /// The colour in full light: `Kd`, each channel rounded to the nearest of 0 to 255. Values below 0 and NaN count as
+    /// 0, values above 1 as 1.
     #[must_use]
     pub fn color(&self) -> Rgb {
         Rgb::from_intensities(self.diffuse)
     }
 
-    /// The colour in the middle of a highlight: `Kd` and `Ks` together, each channel at most 255. `None` for a matt
-    /// surface: `Ks` is black, or `Ns`, the exponent, is not above 0, with which a highlight would be everywhere.
+    /// The colour in the middle of a highlight: `Kd` plus `Ks`, each channel at most 255. `None` for a matt surface:
+    /// either `Ks` is black, or the exponent `Ns` is not above 0, so the highlight would be everywhere.
     ///
     /// ```
     /// use mode13h::mesh::Surface;

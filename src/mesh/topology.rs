@@ -1,5 +1,5 @@
-//! Facts of a mesh as a surface: which vertices are the same point, whether it is closed, whether it is convex. The
-//! plan decides by them which work can be left out, so they are exact, and "no" if that is not certain.
+//! Topology of a mesh: which vertices are the same point, whether it is closed, whether it is convex. The plan skips
+//! work on the strength of these, so they are exact, and "no" when in doubt.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -18,15 +18,15 @@ pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
     weld_by_hash(positions.len(), keys).unwrap_or_else(|| weld_by_sorting(keys()))
 }
 
-/// Welds by a table with open addressing, half full at most. Returns `None` if far more places are looked at than by
-/// chance: positions were made to collide.
+/// Welds with an open-addressing hash table, at most half full. Returns `None` if there are far more probes than chance
+/// would give: the positions were made to collide.
 fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K) -> Option<Vec<u32>> {
     const FREE: u32 = u32::MAX;
     let size = (2 * count).next_power_of_two();
-    // A key, and the number of its point, which is below 2³¹.
+    // A key, and the index of its point, which is below 2³¹.
     let mut table = vec![([0; 3], FREE); size];
     let mut points = Vec::with_capacity(count);
-    // Half full, a search looks at 2.5 places at most on average (Knuth, The Art of Computer Programming, 6.4).
+    // When half full, a search takes at most 2.5 probes on average (Knuth, The Art of Computer Programming, 6.4).
     let (mut next, mut left) = (0, count.saturating_mul(16) + 64);
     for key in keys() {
         let mut place = hash(key) & (size - 1);
@@ -47,7 +47,7 @@ fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K
     Some(points)
 }
 
-/// 2⁶⁴ over the golden ratio multiplies each word into all 64 bits, of which the upper ones are mixed best.
+/// Fibonacci hashing: multiplying by 2⁶⁴ over the golden ratio spreads each word over all 64 bits, the upper ones best.
 fn hash(key: [u32; 3]) -> usize {
     const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
     let mix = |hash: u64, word: u32| (hash ^ u64::from(word)).wrapping_mul(GOLDEN).rotate_left(29);
@@ -70,8 +70,8 @@ fn weld_by_sorting(keys: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
     points
 }
 
-/// Returns whether a triangle has two corners in one point. Such a line draws nothing, its two edges undo each other,
-/// and it is no part of the surface.
+/// Returns whether a triangle has two corners at one point. Such a line draws nothing, two of its edges cancel, and it
+/// is not part of the surface.
 pub(super) fn is_line(triangle: [u32; 3]) -> bool {
     triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]
 }
@@ -85,25 +85,26 @@ fn welded(triangle: [u32; 3], points: &[u32]) -> [u32; 3] {
     triangle.map(|vertex| points[vertex as usize])
 }
 
-/// The edges of a mesh from point to point, gathered by the lower of their two points.
+/// The edges of a mesh from point to point, grouped by the lower of their two points.
 pub(super) struct Edges {
-    /// The place where each point's edges begin, and where the last one's end.
+    /// The index where each point's edges begin, and where the last one's end.
     starts: Vec<u32>,
-    /// The edges, of each point in order. First the edge's higher point, twice, and 1 more if it runs downward; then
-    /// the corner that it comes from, counted through all triangles.
+    /// The edges, grouped by point in order. First comes twice the edge's higher point, plus 1 if the edge runs
+    /// downward; then the corner where it starts, counted through all triangles.
     edges: Vec<(u32, u32)>,
 }
 
 impl Edges {
     pub(super) fn new(triangles: &[[u32; 3]], points: &[u32]) -> Self {
         let surface = || triangles.iter().map(|&t| welded(t, points)).enumerate().filter(|(_, t)| !is_line(*t));
-        // Points are numbered below the number of vertices. Counted two places further on, the sums are where each
-        // point's edges begin, one place further on; and when all stand there, where the next one's begin.
+        // A counting sort; points are numbered below the number of vertices. Counts are stored two slots ahead, so the
+        // prefix sum leaves each point's start one slot ahead, and filling advances that slot to the start of the next
+        // point's edges.
         let mut starts = vec![0_u32; points.len() + 2];
         for (_, corners) in surface() {
             edges(corners).into_iter().for_each(|(from, to)| starts[from.min(to) as usize + 2] += 1);
         }
-        // Corners are counted in 32 bits, see `Mesh::MAX_COUNT`.
+        // Corners fit into 32 bits, see `Mesh::MAX_COUNT`.
         let mut sum = 0;
         starts.iter_mut().for_each(|start| {
             sum += *start;
@@ -126,13 +127,13 @@ impl Edges {
         edges
     }
 
-    /// The places of the edges whose lower point this is.
+    /// The indices of the edges whose lower point this is.
     fn of(&self, point: usize) -> Range<usize> {
         self.starts[point] as usize..self.starts[point + 1] as usize
     }
 
-    /// The faces at each edge, one edge after the other: its two points, the lower first; and for each face whether it
-    /// runs downward, and the corner that it comes from.
+    /// The faces at each edge, edge by edge: its two points, the lower first; then for each face whether it traverses
+    /// the edge downward, and the corner where that starts.
     pub(super) fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
         (0..self.starts.len() - 2).flat_map(|point| {
             // Points are below 2³¹.
@@ -141,10 +142,9 @@ impl Edges {
         })
     }
 
-    /// Returns whether every edge is run through as often in one direction as in the other: the surface bounds a body,
-    /// or several.
+    /// Returns whether every edge is traversed equally often in both directions: the surface bounds one or more solids.
     pub(super) fn balance(&self) -> bool {
-        // Nearly all edges have two faces, and need no count.
+        // Nearly all edges have two faces, and need no counting.
         let balances = |faces: &[(u32, u32)]| match faces {
             [up, down] => up.0 & 1 == 0 && down.0 & 1 == 1,
             faces => 2 * faces.iter().filter(|face| face.0 & 1 == 1).count() == faces.len(),
@@ -152,9 +152,9 @@ impl Edges {
         !self.edges.is_empty() && self.each().all(|(_, faces)| balances(faces))
     }
 
-    /// Returns whether every edge has exactly two faces, which run through it in opposite directions.
+    /// Returns whether every edge has exactly two faces, which traverse it in opposite directions.
     fn are_pairs(&self) -> bool {
-        // In order, such a mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
+        // Sorted, such a mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
         // upward, upward, downward, downward.
         let paired = |edges: &[(u32, u32)]| {
             let (pairs, rest) = edges.as_chunks::<2>();
@@ -163,30 +163,30 @@ impl Edges {
         !self.edges.is_empty() && (0..self.starts.len() - 2).all(|point| paired(&self.edges[self.of(point)]))
     }
 
-    /// The two corners that the two faces of each edge come to it from, if [all are pairs](Self::are_pairs).
+    /// For each edge, the corners where its two faces start it, if [all are pairs](Self::are_pairs).
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         self.edges.as_chunks::<2>().0.iter().map(|pair| pair.map(|(_, corner)| corner as usize))
     }
 
-    /// The faces at each edge: for each whether it runs downward, from the edge's higher point to the lower one, and
-    /// the corner that it comes from, counted through all triangles.
+    /// The faces at each edge: for each, whether it traverses the edge downward, from the higher point to the lower,
+    /// and the corner where that starts, counted through all triangles.
     pub(super) fn faces_by_edge(&self) -> impl Iterator<Item = impl Iterator<Item = (bool, usize)> + Clone> {
         self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
     }
 
-    /// Hands on the triangles that lie back to back with others, of the same three points and wound the other way:
-    /// those wound one way, and those wound the other. Neither list is empty; each is in ascending order.
+    /// Passes on the triangles that lie back to back, with the same three points and opposite winding: those wound one
+    /// way, and those wound the other. Neither list is empty; each is in ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
         let (mut ups, mut downs) = (Vec::new(), Vec::new());
         let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
         for ((_, higher), faces) in self.each() {
-            // Most edges have two faces, and these two other corners.
+            // Most edges have two faces, with different third corners.
             if let [a, b] = faces
                 && third(a.1) != third(b.1)
             {
                 continue;
             }
-            // All three edges of two such triangles are shared: they are found at the one between their lower points.
+            // Two such triangles share all three edges; they are reported at the edge between their two lower points.
             let mut thirds: Vec<u32> = faces.iter().map(|face| third(face.1)).filter(|&far| far > higher).collect();
             thirds.sort_unstable();
             thirds.dedup();
@@ -204,20 +204,21 @@ impl Edges {
     }
 }
 
-/// Returns whether a mesh is closed and convex, wound so that its faces look outward.
+/// Returns whether a mesh is closed and convex, and wound so that its faces look outward.
 ///
-/// Each edge has exactly two faces, which run through it in opposite directions. Three more things are asked for, which
-/// together suffice. (1) The mean of the vertices lies behind every
-/// face. (2) Seen from there the faces cover the sphere once: their solid angles add up to 4π. So the
-/// surface is one piece, is seen whole from that point, and nowhere passes through itself. (3) Over
-/// every edge the next face's far corner lies behind the face or in its plane. With (2) this makes the
-/// surface convex about every vertex as well, and a closed, connected surface that is convex about
-/// each of its points is convex (Tietze, Nakajima). (3) alone would not do: a double pyramid over a
-/// pentagram has only convex edges.
+/// Each edge must have exactly two faces, which traverse it in opposite directions. Three further conditions together
+/// suffice:
 ///
-/// (1) is tested in f64 with a margin, (3) exactly: a quad whose corners were rounded to f32 so that
-/// its diagonal lies 10⁻⁸ too deep makes the mesh not convex. A face of no area makes it not convex
-/// either.
+/// 1. The mean of the vertices lies behind every face.
+/// 2. Seen from there, the faces cover the sphere once: their solid angles add up to 4π. So the surface is one piece,
+///    is wholly visible from that point, and nowhere intersects itself.
+/// 3. Across every edge, the far corner of the next face lies behind the face or in its plane. With (2) this makes the
+///    surface convex about every vertex as well, and a closed, connected surface that is convex about each of its
+///    points is convex (Tietze, Nakajima). (3) alone would not suffice: a double pyramid over a pentagram has only
+///    convex edges.
+///
+/// (1) is tested in f64 with a margin, (3) exactly: a quad whose corners were rounded to f32 so that its diagonal lies
+/// 10⁻⁸ too deep makes the mesh not convex, as does a face without area.
 pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u32], edges: &Edges) -> bool {
     if !edges.are_pairs() {
         return false;
@@ -236,15 +237,15 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
     let seen = |triangle: &[u32; 3]| triangle.map(|vertex| sub(widen(positions[vertex as usize]), inside));
     let is_behind = |triangle: &[u32; 3]| {
         let [a, b, c] = seen(triangle);
-        // Rounding makes less than 2⁻⁴⁹ of the three lengths' product.
+        // The rounding error is below 2⁻⁴⁹ of the product of the three lengths.
         dot(a, cross(b, c)) > length(a) * length(b) * length(c) * (1.0 / 281_474_976_710_656.0)
     };
     if !surface().all(is_behind) {
         return false;
     }
 
-    // Before the solid angles, which take longer: few meshes are convex, and nearly all others have a dent at one of the
-    // first edges.
+    // Tested before the solid angles, which take longer: few meshes are convex, and nearly all others have a dent at
+    // one of the first edges.
     let far = |corner: usize| positions[triangles[corner / 3][(corner + 2) % 3] as usize];
     let dented = edges.pairs().any(|[one, other]| {
         let [a, b, c] = triangles[one / 3].map(|vertex| positions[vertex as usize]);
@@ -261,7 +262,7 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
         let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
         2.0 * libm::atan2(dot(a, cross(b, c)), below)
     });
-    // A whole number of spheres, so half a sphere is margin enough.
+    // The sum is a whole number of spheres, so half a sphere is margin enough.
     solid_angle.sum::<f64>() <= 6.0 * core::f64::consts::PI
 }
 
@@ -271,7 +272,7 @@ mod tests {
 
     use super::{hash, weld_by_hash, weld_by_sorting};
 
-    /// Numbers in the order in which they first come.
+    /// Renumbers the points in order of first appearance.
     fn in_order(points: &[u32]) -> Vec<usize> {
         let first = |point: &u32| points.iter().position(|other| other == point).expect("it is there");
         points.iter().map(first).collect()
@@ -279,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_hash_welds_as_sorting_does() {
-        // A grid, of which some points come twice and three times.
+        // A grid with some points two or three times.
         let keys = || (0..3_000_u32).map(|i| [(i * 7 % 1_000) << 20, i % 5, (i % 3) << 31]);
         let points = weld_by_hash(3_000, keys).expect("no collision beyond chance");
         assert_eq!(in_order(&points), in_order(&weld_by_sorting(keys())));
@@ -288,7 +289,7 @@ mod tests {
 
     #[test]
     fn positions_made_to_collide_are_sorted() {
-        // A hundred that begin at the same place of a table of 256.
+        // A hundred keys that hash to the same slot of a table of 256.
         let all = (0..).map(|i| [i, 1, 2]).filter(|key| hash(*key) & 255 == 0).take(100);
         let keys: Vec<[u32; 3]> = all.collect();
         assert_eq!(weld_by_hash(100, || keys.iter().copied()), None);

@@ -1,7 +1,7 @@
-//! Triangles that lie back to back: of the same three points, and wound in opposite ways.
+//! Triangles that lie back to back: same three points, opposite winding.
 //!
-//! Both have the same depth at every pixel. Only the one that looks toward the eye is seen, so the renderer leaves out
-//! the other. Leaves are made so, each side with a normal and a surface of its own. Scans have such triangles by
+//! Both have the same depth at every pixel. Only the one that faces the eye is visible, so the renderer skips the
+//! other. Leaves are modelled like this, each side with a normal and a surface of its own; scans have such triangles by
 //! mistake.
 
 use alloc::vec;
@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use super::Mesh;
 use super::topology::Edges;
 
-/// Marks the triangles that lie back to back with another, by a bit each, 64 in a word. Empty if none does.
+/// Marks each triangle that lies back to back with another by a bit, 64 per word. Empty if there is none.
 pub(super) fn mark(edges: &Edges, triangles: &[[u32; 3]], points: &[u32]) -> Vec<u64> {
     let mut twins = Vec::new();
     edges.opposites(triangles, points, |ups, downs| {
@@ -21,25 +21,27 @@ pub(super) fn mark(edges: &Edges, triangles: &[[u32; 3]], points: &[u32]) -> Vec
 }
 
 impl Mesh {
-    /// Returns whether a triangle lies back to back with another one: with the same three points, wound the other way.
-    /// The one of them that looks toward the eye is drawn.
+    /// Returns whether a triangle lies back to back with another: same three points, opposite winding. Of the two, the
+    /// one that faces the eye is drawn.
     #[must_use]
     pub fn has_twin(&self, triangle: usize) -> bool {
         self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
     }
 
-    /// A bit for each triangle, 64 in a word, as [`has_twin`](Self::has_twin) says; empty if no triangle has one.
+    /// The values of [`has_twin`](Self::has_twin), a bit for each triangle, 64 per word; empty if no triangle has a
+    /// twin.
     pub(crate) fn twins(&self) -> &[u64] {
         &self.twins
     }
 }
 
-/// The pairs of triangles back to back that a closed mesh has by mistake, in a list of both: membranes between faces
-/// that are there without them, and faces that are there once more and once the other way round.
+/// The pairs of back-to-back triangles that a closed mesh has by mistake, as the indices of both: membranes inside a
+/// surface that is complete without them, and faces that exist a second time together with a reversed copy.
 ///
-/// A **sheet** is no mistake. Its pairs are joined at edges where no other face is, and have a free rim, an edge of one
-/// pair alone, as a leaf or a fin has; or they touch nothing else, as a body whose faces are all there both ways. Two
-/// sides of different surfaces are no mistake either. Leaving out pairs changes no winding number.
+/// A **sheet** is intended: its pairs are joined at edges that no other face shares, and either have a free rim (an
+/// edge of a single pair), like a leaf or a fin, or touch nothing else, like a solid with every face in both
+/// orientations. Pairs whose sides have different surfaces are intended, too. Removing a pair changes no winding
+/// number.
 pub(super) fn mistaken(
     edges: &Edges,
     triangles: &[[u32; 3]],
@@ -51,7 +53,7 @@ pub(super) fn mistaken(
     const NONE: u32 = u32::MAX;
     let mut pairs: Vec<[u32; 2]> = Vec::new();
     edges.opposites(triangles, points, |ups, downs| {
-        // The last of each: what is left over keeps its place.
+        // Pairs are taken from the end, so that unpaired triangles keep their index.
         pairs.extend(ups.iter().rev().zip(downs.iter().rev()).map(|(&up, &down)| [up, down]));
     });
     if pairs.is_empty() {
@@ -59,7 +61,7 @@ pub(super) fn mistaken(
     }
     let mut pair_of = vec![NONE; triangles.len()];
     for (number, pair) in pairs.iter().enumerate() {
-        // Fewer than triangles.
+        // There are fewer pairs than triangles.
         pair.iter().for_each(|&triangle| pair_of[triangle as usize] = number as u32);
     }
     let mut sheets = Sets::new(pairs.len() as u32);
@@ -69,7 +71,7 @@ pub(super) fn mistaken(
         here.clear();
         here.extend(faces.map(|(_, corner)| pair_of[corner / 3]));
         here.sort_unstable();
-        // Each pair has both its triangles here.
+        // Both triangles of a pair are here.
         here.dedup();
         match *here.as_slice() {
             [NONE] => {}

@@ -1,8 +1,8 @@
-//! Vectors in f64, for what is computed once when a mesh is made.
+//! Vectors in f64, for the values computed once when a mesh is made.
 //!
-//! f32 would overflow: the difference of two positions may be twice `f32::MAX`, and a normal's
-//! squared length is a fourth power of a length. In f64 neither end of the range is reached:
-//! a fourth power of 2¹²⁹ is 2⁵¹⁶, of 2⁻¹⁴⁹ (the smallest f32) 2⁻⁵⁹⁶. So nothing needs scaling.
+//! f32 would overflow: the difference of two positions may be twice `f32::MAX`, and a normal's squared length is a
+//! fourth power of a length. In f64 neither end of the range is reached: the fourth power of 2¹²⁹ is 2⁵¹⁶, that of
+//! 2⁻¹⁴⁹ (the smallest f32) 2⁻⁵⁹⁶. So nothing needs scaling.
 
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ pub(super) fn widen(v: Vec3) -> Wide {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-/// Rounds each component to the nearest f32, and makes −0 0, so that equal vectors have equal bits.
+/// Rounds each component to the nearest f32, and turns −0 into 0, so that equal vectors have equal bits.
 pub(super) fn narrow(v: Wide) -> Vec3 {
     Vec3::new(v[0] as f32, v[1] as f32, v[2] as f32) + Vec3::ZERO
 }

@@ -1,13 +1,13 @@
-//! Winding numbers of a closed surface about the points of space, along rays.
+//! Winding numbers of a closed surface, counted along rays.
 //!
-//! The **winding number** of a point counts how often the surface encloses it: 0 outside, 1 inside a body, 2 where two
-//! bodies overlap, −1 inside a body whose faces look inward. Along a ray it grows by one at a face that looks back along
-//! the ray, and falls by one at a face that looks forward. Where no number is below 0, an eye outside (at 0) sees no face
-//! from behind: the first face of each ray must raise the number.
+//! The **winding number** of a point counts how often the surface encloses it: 0 outside, 1 inside a solid, 2 where two
+//! solids overlap, −1 inside a solid whose faces look inward. Along a ray it grows by one at a face that looks back
+//! along the ray, and falls by one at a face that looks forward. If it is nowhere below 0, an eye outside (at 0) sees
+//! no face from behind: the first face on each ray must raise it.
 //!
-//! Rays run along the three axes, 64 × 64 along each. Narrower parts are not found. A ray passes each edge on one side
-//! that both faces of the edge agree on: the place where an edge crosses a row of rays is computed from its two ends in
-//! one order, so the numbers along a ray always come back to 0.
+//! Rays run along the three axes, 64 × 64 along each, so narrower parts can be missed. A ray passes each edge on a side
+//! that both faces of the edge agree on: the point where an edge crosses a row of rays is computed from the edge's two
+//! ends in a fixed order, so the number along a ray always returns to 0.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -18,15 +18,15 @@ use glam::Vec3;
 use super::Bounds;
 use super::wide::{Wide, widen};
 
-/// Rays along each side of the box.
+/// The number of rays along each side of the box.
 const RAYS: u32 = 64;
 
-/// The least length of a negative region along a ray, in parts of the longest side of the box, that makes a mesh turned
-/// in part. Scans have folds, a few faces thin. An eye outside does not miss the side of a fold that is turned away:
-/// another face lies a fold's width behind it.
+/// The least length along a ray at which a negative region makes a mesh partly inverted, as a fraction of the longest
+/// side of the box. Scans have folds, a few faces thin. Culling the far side of a fold leaves no hole: another face
+/// lies a fold's width behind it.
 const THINNEST: f64 = 1.0 / 32.0;
 
-/// A ray's meeting with a face.
+/// The intersection of a ray with a face.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     ray: u32,
@@ -35,31 +35,33 @@ struct Meeting {
     step: i32,
 }
 
-/// The max number of meetings for each face, with [`MAX_MEETINGS`] beside. A mesh with more counts as turned in part. A
-/// surface of many faces has one or two for each; to have more it must cross the whole box again and again.
+/// The max number of intersections for each face, on top of [`MAX_MEETINGS`]. A mesh with more counts as partly
+/// inverted. A finely divided surface has one or two per face; to have more it must cross the whole box again and
+/// again.
 const MEETINGS_PER_FACE: u64 = 64;
-/// The meetings of a surface that crosses the box 64 times along each ray.
+/// The number of intersections of a surface that crosses the box 64 times along each ray.
 const MAX_MEETINGS: u64 = 64 * RAYS as u64 * RAYS as u64;
 
-/// Meetings that are held at a time, for each face; and beside.
+/// The number of intersections in memory at a time: per face, and on top of that.
 const HELD_PER_FACE: u64 = 2;
 const HELD: u64 = 256;
 
-/// Returns whether no point has a negative winding number, folds aside: then no back face of a closed mesh is seen from
-/// outside. Takes memory in proportion to the faces, and says no if it would take too long to find out.
+/// Returns whether no point has a negative winding number, folds aside: then no back face of a closed mesh is visible
+/// from outside. Takes memory in proportion to the number of faces, and returns `false` if the answer would take too
+/// long.
 pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bounds) -> bool {
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     let sides = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     let longest = sides.into_iter().fold(0.0, f64::max);
-    // In units of the rays' distance. Rays lie at the whole numbers 1 to 64; the part by which the box begins beside them
-    // is no simple fraction, so that no ray lies on the planes of a symmetrical model.
+    // In units of the ray spacing: rays lie at the integers 1 to 64. The box is offset from them by no simple fraction,
+    // so that no ray lies in a plane of a symmetrical model.
     let scale = sides.map(|side| if side > 0.0 { f64::from(RAYS) / side } else { 0.0 });
     let part = [0.618_034, 0.414_214, 0.732_051];
     let scaled = |p: Vec3| {
         let p = widen(p);
         [0, 1, 2].map(|axis| (p[axis] - min[axis]) * scale[axis] + part[axis])
     };
-    // Calls `visit` with each triangle that rays along an axis may meet, their direction last.
+    // Calls `visit` with each triangle that rays along an axis may hit, the ray direction as the last coordinate.
     let each = |axis: usize, visit: &mut dyn FnMut([Wide; 3])| {
         let (right, up) = ((axis + 1) % 3, (axis + 2) % 3);
         for triangle in triangles {
@@ -85,7 +87,8 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
         if met > most {
             return false;
         }
-        // Rays whose meetings are too many to be held are halved. A face meets a ray once at most, so one ray's can be held.
+        // Ranges of rays with too many intersections for the memory are halved. A face meets a ray at most once, so a
+        // single ray always fits.
         let mut left = vec![(all, met)];
         while let Some((rays, met)) = left.pop() {
             if rays.len() > 1 && met > held {
@@ -105,7 +108,7 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
     })
 }
 
-/// Returns whether no ray's winding number is below 0 for longer than `thinnest`.
+/// Returns whether no ray's winding number is below 0 over a length of more than `thinnest`.
 fn never_below(meetings: &mut [Meeting], thinnest: f64) -> bool {
     meetings.sort_unstable_by(|a, b| a.ray.cmp(&b.ray).then(a.at.total_cmp(&b.at)));
     meetings.chunk_by(|a, b| a.ray == b.ray).all(|ray| {
@@ -125,8 +128,8 @@ fn never_below(meetings: &mut [Meeting], thinnest: f64) -> bool {
     })
 }
 
-/// Calls `visit` for each of `rays` that meets a triangle. Rays run along the third coordinate, and lie where the other two
-/// are whole numbers.
+/// Calls `visit` for each of `rays` that hits a triangle. Rays run along the third coordinate, where the other two are
+/// integers.
 fn meet_all(corners: [Wide; 3], rays: &Range<u32>, mut visit: impl FnMut(Meeting)) {
     let rows = corners.map(|corner| corner[1]);
     let low = (rows[0].min(rows[1]).min(rows[2]) as u32 + 1).max(rays.start / (RAYS + 2));
@@ -142,9 +145,9 @@ fn meet_all(corners: [Wide; 3], rays: &Range<u32>, mut visit: impl FnMut(Meeting
     }
 }
 
-/// Crosses a triangle with the plane of a row of rays. Returns the place in the row and along the rays where that
-/// begins and where it ends, and the change of the winding number from one side to the other. `None` if it does not
-/// cross it. Corners on the plane count as above it.
+/// Intersects a triangle with the plane of a row of rays. Returns where the intersection begins and ends, each as the
+/// position in the row and along the rays, and the change of the winding number from one side of the triangle to the
+/// other. `None` if there is no intersection. Corners on the plane count as above it.
 pub(super) fn cross_row(corners: &[Wide; 3], row: f64) -> Option<([f64; 2], [f64; 2], i32)> {
     let (mut rising, mut falling) = (None, None);
     for i in 0..3 {
@@ -156,18 +159,18 @@ pub(super) fn cross_row(corners: &[Wide; 3], row: f64) -> Option<([f64; 2], [f64
         }
     }
     let (rising, falling) = (rising?, falling?);
-    // A triangle that is counter-clockwise here looks along the rays: its right side rises.
+    // A triangle that is counter-clockwise here faces along the rays: its right side rises.
     if falling[0] < rising[0] { Some((falling, rising, -1)) } else { Some((rising, falling, 1)) }
 }
 
-/// The point where an edge, from its lower end, crosses a row. No rounding takes it beyond the ends.
+/// The point where an edge, given from its lower end, crosses a row. Rounding never moves it beyond the ends.
 fn on_edge(low: Wide, high: Wide, row: f64) -> [f64; 2] {
     let part = (row - low[1]) / (high[1] - low[1]);
     let column = low[0] + part * (high[0] - low[0]);
     [column.clamp(low[0].min(high[0]), low[0].max(high[0])), low[2] + part * (high[2] - low[2])]
 }
 
-/// The distance along a ray of a meeting between two places of its row.
+/// The distance along a ray at which it intersects the segment between two points of its row.
 pub(super) fn between(from: [f64; 2], to: [f64; 2], column: f64) -> f64 {
     let wide = to[0] - from[0];
     if wide > 0.0 { from[1] + (column - from[0]) / wide * (to[1] - from[1]) } else { from[1] }

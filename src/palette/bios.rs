@@ -1,20 +1,18 @@
 //! The 256 colours that the VGA BIOS loads for mode 13h.
 //!
-//! The BIOS keeps no list of 768 numbers either, and the rule says more than the list: 16 colours of
-//! the text modes, 16 greys, then nine hue circles of 24 (three brightnesses of three saturations),
-//! then 8 black entries. Checked against the tables in DOSBox (`vga_palette` of `int10_modes.cpp`)
-//! and in KOS (`vp_gfx_256`), which agree.
+//! The BIOS does not store 768 numbers either, and the rule says more than the list would: the 16 colours of the text
+//! modes, 16 greys, then nine hue circles of 24 (three brightnesses of three saturations), then 8 black entries.
+//! Checked against the tables in DOSBox (`vga_palette` of `int10_modes.cpp`) and in KOS (`vp_gfx_256`), which agree.
 
 use super::Palette;
 
-/// The colours of mode 13h after the BIOS has set it. Every channel is a 6-bit value, expanded. The palette has no
-/// ramps.
+/// The colours of mode 13h as the BIOS sets them. Every channel is an expanded 6-bit value. The palette has no ramps.
 pub const BIOS: Palette = Palette::from_dac(&entries());
 
-/// Entries 16 to 31, red, green and blue alike.
+/// Entries 16 to 31, the same value for red, green and blue.
 const GREYS: [u8; 16] = [0, 5, 8, 11, 14, 17, 20, 24, 28, 32, 36, 40, 45, 50, 56, 63];
 
-/// The five levels between the least and the greatest channel of each hue circle.
+/// The five levels from the least to the greatest channel of each hue circle.
 const CIRCLES: [[u8; 5]; 9] = [
     [0, 16, 31, 47, 63],
     [31, 39, 47, 55, 63],
@@ -31,9 +29,8 @@ const fn entries() -> [[u8; 3]; 256] {
     let mut table = [[0; 3]; 256];
     let mut i = 0;
     while i < 16 {
-        // Bits of a text colour: blue 1, green 2, red 4, bright 8. Two thirds of full intensity for
-        // its own bit and one third for the bright one, but for the dark yellow, whose green is
-        // halved to make it brown.
+        // Bits of a text colour: blue 1, green 2, red 4, bright 8. A colour bit adds two thirds of full intensity and
+        // the bright bit one third, except for dark yellow, whose green is halved to make it brown.
         let bright = if i & 8 != 0 { 21 } else { 0 };
         let (r, g, b) = (i >> 2 & 1, i >> 1 & 1, i & 1);
         table[i] = [r as u8 * 42 + bright, g as u8 * 42 + bright, b as u8 * 42 + bright];
@@ -53,8 +50,8 @@ const fn entries() -> [[u8; 3]; 256] {
     table
 }
 
-/// A colour of a hue circle: from blue by magenta, red, yellow, green and cyan back towards blue, four steps each. One
-/// channel moves while the two others stand at the ends.
+/// A colour of a hue circle: from blue through magenta, red, yellow, green and cyan back towards blue, four steps each.
+/// One channel moves while the other two stay at the extremes.
 const fn color_of(levels: &[u8; 5], hue: usize) -> [u8; 3] {
     let (low, high) = (levels[0], levels[4]);
     let (rising, falling) = (levels[hue % 4], levels[4 - hue % 4]);
@@ -73,7 +70,7 @@ mod tests {
     use super::*;
     use crate::palette::Rgb;
 
-    /// Spot checks against the published table, one of every kind.
+    /// Spot checks against the published table, one of each kind.
     #[test]
     fn entries_are_those_of_the_published_table() {
         for (index, six) in [

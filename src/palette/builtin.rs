@@ -1,9 +1,9 @@
-//! The palettes that are compiled in, by name.
+//! The built-in palettes, by name.
 //!
-//! They are made here from their key colours (moved by a few units, by trial, to where the DAC's
-//! channels step one after the other: copper has 156 shades there for 141 before), by integers, when the crate is compiled; the files in
-//! `palettes/` are written from these tables and a test holds the two equal. All are our own work
-//! but for `bios`.
+//! They are computed here in integers, at compile time, from key colours. The keys were shifted by a few units, by
+//! trial, so that the DAC's channels step one after the other: copper has 156 shades there instead of 141. The files in
+//! `palettes/` are written from these tables, and a test ensures that both are equal. All are our own work except
+//! `bios`.
 
 use super::gradient::{Stop, fill};
 use super::{BIOS, Palette, Ramp, Rgb, cube};
@@ -12,7 +12,7 @@ use super::{BIOS, Palette, Ramp, Rgb, cube};
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Builtin {
-    /// Its name on the command line.
+    /// The name, as used on the command line.
     pub name: &'static str,
     /// The colours.
     pub palette: &'static Palette,
@@ -20,7 +20,7 @@ pub struct Builtin {
     pub provenance: &'static str,
 }
 
-/// All palettes that are compiled in.
+/// All built-in palettes.
 pub static ALL: [Builtin; 9] = [
     Builtin { name: "grey", palette: &GREY, provenance: "256 even greys; the DAC shows 64 of them. Made here." },
     Builtin {
@@ -65,7 +65,7 @@ pub static ALL: [Builtin; 9] = [
     },
 ];
 
-/// The palette of a name, exactly as in [`ALL`]. Returns `None` if there is none.
+/// The palette with a name, spelled as in [`ALL`]. Returns `None` if there is none.
 ///
 /// ```
 /// use mode13h::palette::builtin;
@@ -77,11 +77,11 @@ pub fn by_name(name: &str) -> Option<&'static Builtin> {
     ALL.iter().find(|builtin| builtin.name == name)
 }
 
-/// One ramp: entry `i` is `i, i, i`. On the DAC four neighbours look alike.
+/// One ramp: entry `i` is `i, i, i`. On the DAC four neighbouring entries look the same.
 pub static GREY: Palette = of_ramps(&[&[Stop::new(0, 0x000000), Stop::new(255, 0xffffff)]]);
 
-/// One ramp, grey but for two or three of 255. The channels run so far apart that on the DAC they
-/// step at different entries: 178 shades where [`GREY`] has 64.
+/// One ramp, grey to within two or three of 255. The channels differ just enough to step at different entries on the
+/// DAC: 178 shades where [`GREY`] has 64.
 pub static SILVER: Palette =
     of_ramps(&[&[Stop::new(0, 0x000204), Stop::new(97, 0x5f6062), Stop::new(195, 0xc1c2c4), Stop::new(255, 0xfcfeff)]]);
 
@@ -141,8 +141,8 @@ pub static MATERIALS_16X16: Palette = of_ramps(&[
     &material(0xd0607c),
 ]);
 
-/// The keys of a material's ramp: from a sixteenth of a colour by the colour itself at three fifths of the way, to a
-/// highlight, nine tenths of the way from it to white. No channel ever falls.
+/// The keys of a material's ramp: from a sixteenth of a colour, through the colour itself at three fifths of the way,
+/// to a highlight nine tenths of the way from the colour to white. No channel ever decreases.
 const fn material(rgb: u32) -> [Stop; 3] {
     let base = Rgb::from_u32(rgb);
     let dark = Rgb::new(base.r / 16, base.g / 16, base.b / 16);
@@ -151,7 +151,7 @@ const fn material(rgb: u32) -> [Stop; 3] {
 }
 
 const fn highlight(v: u8) -> u8 {
-    // At most 255, as it lies between v and 255.
+    // At most 255, since it is between v and 255.
     (v as u16 + (255 - v as u16) * 9 / 10) as u8
 }
 

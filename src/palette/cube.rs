@@ -1,12 +1,12 @@
-//! The colour cube: every mixture of six reds, six greens and six blues, and forty greys more.
+//! The colour cube: every mixture of six reds, six greens and six blues, plus forty greys.
 //!
-//! Entry `36·r + 6·g + b` holds level r of red, g of green, b of blue; entries 216 to 255 are greys,
-//! from dark to light, spread evenly over the DAC's levels that the cube's own six greys leave free.
-//! Every colour is one that the DAC shows exactly.
+//! Entry `36·r + 6·g + b` holds level r of red, g of green, b of blue; entries 216 to 255 are greys, from dark to
+//! light, spread evenly over the DAC levels that the cube's own six greys leave free. The DAC shows every colour
+//! exactly.
 
 use super::{Palette, Rgb, dac6_to_8};
 
-/// The six levels of a channel, in the DAC's 6 bits: `63·k/5` to the nearest.
+/// The six levels of a channel, in the DAC's 6 bits: `63·k/5` rounded to the nearest.
 pub(crate) const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
 
 /// The first of the greys.
@@ -15,11 +15,11 @@ const FIRST_GREY: usize = 216;
 /// The cube with its greys. It has no ramps.
 pub const CUBE: Palette = Palette::from_parts(colors(), 0);
 
-/// The colours, by reference: a `const` palette would be copied wherever it is used.
+/// The colours by reference, since a `const` palette would be copied wherever it is used.
 const COLORS: &[Rgb; 256] = CUBE.colors();
 
-/// The 6-bit level of grey `k`, 0 to 39, of the entries from 216 on. 58 of the DAC's 64 levels are no
-/// level of the cube; of these, number `57·k/39`, rounded down.
+/// The 6-bit levels of the forty greys, entry 216 onwards. 58 of the DAC's 64 levels are not levels of the cube; grey
+/// `k`, 0 to 39, is number `57·k/39` of these, rounded down.
 const GREYS: [u8; 40] = greys();
 
 const fn greys() -> [u8; 40] {
@@ -57,17 +57,17 @@ const fn colors() -> [Rgb; 256] {
     colors
 }
 
-/// The nearest of the six levels to each channel value, the lower of two equally near.
+/// The nearest of the six levels to each channel value; the lower if two are equally near.
 const LEVEL_OF: [u8; 256] = nearest_table(&LEVELS);
 
-/// The nearest of the forty greys to each value, the lower of two equally near.
+/// The nearest of the forty greys to each value; the lower if two are equally near.
 const GREY_OF: [u8; 256] = nearest_table(&GREYS);
 
 const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {
     let mut table = [0; 256];
     let (mut value, mut k) = (0, 0);
     while value < 256 {
-        // The nearest never goes back while the value rises.
+        // The nearest never decreases as the value rises.
         while k + 1 < N && dac6_to_8(rising[k + 1]).abs_diff(value as u8) < dac6_to_8(rising[k]).abs_diff(value as u8) {
             k += 1;
         }
@@ -78,7 +78,7 @@ const fn nearest_table<const N: usize>(rising: &[u8; N]) -> [u8; 256] {
     table
 }
 
-/// The entry of the 216 that is nearest to a colour: each channel for itself, by a table.
+/// The nearest of the cube's 216 entries to a colour, by table lookup for each channel.
 #[must_use]
 #[inline]
 pub const fn nearest_mixture(color: Rgb) -> u8 {
@@ -86,11 +86,10 @@ pub const fn nearest_mixture(color: Rgb) -> u8 {
     36 * LEVEL_OF[color.r as usize] + 6 * LEVEL_OF[color.g as usize] + LEVEL_OF[color.b as usize]
 }
 
-/// The entry of [`CUBE`] nearest to a colour: the one of [`Palette::nearest`], without its search.
+/// The entry of [`CUBE`] nearest to a colour: the result of [`Palette::nearest`], without a search.
 ///
-/// The squared distance to a grey v is 3·(v − m)² plus a term that is equal for all greys, m being the mean of the
-/// three channels. So only the grey nearest to m has to be looked at, or, because m is a number of thirds, the two
-/// around it.
+/// The squared distance to a grey v is 3·(v − m)² plus a term common to all greys, where m is the mean of the three
+/// channels. So only the grey nearest to m need be considered, or, because m is a number of thirds, the two around it.
 #[must_use]
 #[inline]
 pub const fn nearest(color: Rgb) -> u8 {

@@ -1,30 +1,30 @@
-//! Ramps from key colours.
+//! Ramps made from key colours.
 
 use super::{Ramp, Rgb};
 
-/// A colour at a place on a ramp.
+/// A key colour at a position on a ramp.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Stop {
-    /// The place: 0 is the ramp's first entry, 255 its last.
+    /// The position: 0 is the ramp's first entry, 255 its last.
     pub at: u8,
     /// The colour there.
     pub color: Rgb,
 }
 
 impl Stop {
-    /// A key at `at`, 0 to 255, of the colour `0xRRGGBB`.
+    /// A key at position `at`, 0 to 255, with the colour `0xRRGGBB`.
     #[must_use]
     pub const fn new(at: u8, rgb: u32) -> Self {
         Self { at, color: Rgb::from_u32(rgb) }
     }
 }
 
-/// Fills the entries of `ramp` by straight lines between keys, channel by channel.
+/// Fills the entries of `ramp` by linear interpolation between keys, channel by channel.
 ///
-/// Entry `i` of `n` lies at `255·i/(n − 1)`, the only entry of a ramp of one at 255. A channel's value is rounded to
-/// the nearest of 0 to 255, halves upward, from the exact fraction. Before the first key and behind the last their
-/// colours go on. The keys must stand in rising order of [`Stop::at`]; a key that does not rise above the one before it
-/// is ignored. Without keys nothing changes.
+/// Entry `i` of `n` is at position `255·i/(n − 1)`, and a single entry at 255. A channel's value is rounded to the
+/// nearest of 0 to 255, halves upward, from the exact fraction. Before the first key and after the last, their colours
+/// continue. The keys must be in increasing order of [`Stop::at`]; a key that is not above the one before it is
+/// ignored. Without keys nothing changes.
 ///
 /// ```
 /// use mode13h::palette::{Ramp, Rgb, gradient::{Stop, fill}};
@@ -43,12 +43,12 @@ pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Stop]) {
     }
 }
 
-/// The colour of entry `i` of `entries`, which are at most 1,025 (the products of `between`).
+/// The colour of entry `i` of `entries`, at most 1,025 because of the products in `between`.
 pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
     if keys.is_empty() {
         return None;
     }
-    // Places are held as numerators over `entries − 1`.
+    // Positions are stored as numerators over `entries − 1`.
     let (place, scale) = if entries == 1 { (255, 1) } else { (i as i32 * 255, entries as i32 - 1) };
     let mut below = keys[0];
     let mut k = 1;
@@ -58,7 +58,7 @@ pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
         }
         k += 1;
     }
-    // The next key that rises, if there is one.
+    // The next key above, if there is one.
     while k < keys.len() && keys[k].at <= below.at {
         k += 1;
     }
@@ -75,8 +75,8 @@ pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
     ))
 }
 
-/// `a + (b − a)·along/length`, to the nearest, halves upward. `length` is at most 255·1,024, so all products stay below
-/// 2²⁸; the result lies between `a` and `b`.
+/// `a + (b − a)·along/length`, rounded to the nearest, halves upward. `length` is at most 255·1,024, so all products
+/// stay below 2²⁸; the result is between `a` and `b`.
 const fn between(a: u8, b: u8, along: i32, length: i32) -> u8 {
     let twice = 2 * (a as i32 * length + (b as i32 - a as i32) * along) + length;
     (twice / (2 * length)) as u8

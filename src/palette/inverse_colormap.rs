@@ -1,14 +1,14 @@
-//! A map from 5 bits a channel to the nearest entry of a palette, and the reach of dither in it.
+//! A map from 15-bit colours to the nearest palette entry, and the spread of dithering in it.
 
 use alloc::boxed::Box;
 use core::fmt;
 
 use super::{NearestColors, Palette, Rgb};
 
-/// The nearest entry of a palette for every colour of 5 bits a channel.
+/// The nearest entry of a palette for every colour with 5 bits per channel.
 ///
-/// Entry `red << 10 | green << 5 | blue` is that of the colour `(v << 3) | (v >> 2)` a channel, in which 0 stays 0 and
-/// 31 becomes 255. The nearest is that by the colours that the card shows; the first of those equally near.
+/// Entry `red << 10 | green << 5 | blue` is for the colour `(v << 3) | (v >> 2)` in each channel, which maps 0 to 0 and
+/// 31 to 255. Distances are to the colours that the card shows; the first of several equally near entries is used.
 ///
 /// ```
 /// use mode13h::palette::{InverseColormap, Rgb, builtin};
@@ -38,14 +38,14 @@ impl InverseColormap {
         Self { entries, spread: spread(palette) }
     }
 
-    /// All entries, red in the index's highest bits.
+    /// All entries, with red in the highest bits of the index.
     #[must_use]
     #[inline]
     pub fn as_array(&self) -> &[u8; Self::BYTES] {
         &self.entries
     }
 
-    /// The entry for a colour, by the upper 5 bits of each channel.
+    /// The entry for a colour, from the upper 5 bits of each channel.
     #[must_use]
     #[inline]
     pub fn get(&self, color: Rgb) -> u8 {
@@ -53,12 +53,12 @@ impl InverseColormap {
         self.entries[five(color.r) << 10 | five(color.g) << 5 | five(color.b)]
     }
 
-    /// The distance that ordered dither should move every channel, from its lowest threshold to its highest, to reach
-    /// from a colour of the palette to its neighbours: the median, over the different colours that the card shows, of
-    /// the distance to the nearest other one. In 1/255 of full intensity, at most 255; 0 if there are no two different
-    /// colours.
+    /// The distance over which ordered dithering should move every channel, from its lowest threshold to its highest,
+    /// to reach from one palette colour to its neighbours: the median, over the distinct colours that the card shows,
+    /// of the distance to the nearest other one. In 1/255 of full intensity, at most 255; 0 if there are no two
+    /// distinct colours.
     ///
-    /// In the colour cube this is the distance between two levels, as ordered dither needs it there. In a
+    /// In the colour cube this is the distance between two levels, just what ordered dithering needs there. In a
     /// palette of ramps it is a step along a ramp.
     #[must_use]
     #[inline]
@@ -75,10 +75,10 @@ impl fmt::Debug for InverseColormap {
 
 /// See [`InverseColormap::spread`].
 ///
-/// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of blocks of 8 × 8
-/// are off, in the palette of 16 ramps, by 7.3 without dither and 1.9 with this spread, 20; in the cube
-/// by 11.7 and 1.4, with 49. More reaches colours that lie far from all entries, at the price of noise
-/// everywhere. The mean in place of the median would give the cube 41, as its greys lie close together.
+/// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of 8 × 8 blocks are off, in the
+/// palette of 16 ramps, by 7.3 without dithering and 1.9 with this spread, 20; in the cube by 11.7 and 1.4, with 49. A
+/// larger spread reaches colours that are far from all entries, at the price of noise everywhere. The mean instead of
+/// the median would give the cube 41, since its greys are close together.
 fn spread(palette: &Palette) -> u8 {
     let mut colors = *palette.on_dac().colors();
     colors.sort_unstable();
@@ -96,6 +96,6 @@ fn spread(palette: &Palette) -> u8 {
     distances.sort_unstable();
     let square = distances[count / 2];
     let root = square.isqrt();
-    // (r + ½)² = r² + r + ¼: what lies above is nearer to r + 1.
+    // (r + ½)² = r² + r + ¼: anything above is nearer to r + 1.
     u8::try_from(root + u32::from(square > root * root + root)).unwrap_or(u8::MAX)
 }

@@ -1,9 +1,9 @@
-//! Tables of 64 KiB: from two bytes to a third, as the pixel effects look them up.
+//! Tables of 64 KiB, from two bytes to a third, for the pixel effects.
 //!
-//! A row holds 256 bytes; `high` chooses the row, `low` the column, and the byte stands at `high << 8 | low`. Every
-//! colour in a table made from a palette is the nearest entry to an exact mixture rounded once, by the colours that the
-//! card shows ([`Palette::on_dac`]). So it is nearest on the screen; the first of entries equally near is taken. If a
-//! mixture is one of its two parts, the table gives that part's own byte, even if other entries look alike.
+//! A row holds 256 bytes; `high` selects the row, `low` the column, and the byte is at `high << 8 | low`. Every colour
+//! in a table made from a palette is the nearest entry to an exact mixture rounded once, by the colours that the card
+//! shows ([`Palette::on_dac`]), so it is nearest on the screen; the first of equally near entries is used. If a mixture
+//! equals one of its two parts, the table gives that part's own byte, even if other entries look the same.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -26,7 +26,7 @@ impl Lut64K {
     /// 64 KiB.
     pub(crate) const BYTES: usize = 65_536;
 
-    /// Makes a table of a byte for every row and column: `byte(high, low)`. Phong's table of shades is one.
+    /// Makes a table with `byte(high, low)` at every row and column. Phong's table of shades is one.
     #[must_use]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
@@ -34,7 +34,7 @@ impl Lut64K {
         table
     }
 
-    /// Fills this table anew, as [`from_fn`](Self::from_fn) would.
+    /// Refills this table as [`from_fn`](Self::from_fn) would.
     pub(crate) fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
         for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
             for (low, entry) in (0..=255).zip(row) {
@@ -43,8 +43,9 @@ impl Lut64K {
         }
     }
 
-    /// A table of shaded texels. Row: a shade, of 255 the full light; column: a texel. The entry is the nearest to
-    /// `colors[texel]·shade/255`; in full light it is the texel itself where the palette has the texel's colour there.
+    /// A table of shaded texels. Row: a shade, with 255 for full light; column: a texel. The entry is the nearest to
+    /// `colors[texel]·shade/255`; in full light it is the texel itself if the palette has the texel's colour at that
+    /// index.
     #[must_use]
     pub fn shades(palette: &Palette, colors: &[Rgb; 256]) -> Self {
         let search = NearestColors::of_shown(palette);
@@ -54,8 +55,8 @@ impl Lut64K {
         })
     }
 
-    /// A table of fog. Row: the share of fog, 0 none and 255 nothing else; column: the byte without fog. The entry is
-    /// the nearest to the mixture of that byte's colour with `fog`. Row 0 leaves every byte as it is.
+    /// A table of fog. Row: the share of fog, from 0 for none to 255 for nothing else; column: the byte without fog.
+    /// The entry is the nearest to the mixture of that byte's colour with `fog`. Row 0 leaves every byte unchanged.
     #[must_use]
     pub fn fog(palette: &Palette, fog: Rgb) -> Self {
         let shown = palette.on_dac();
@@ -66,9 +67,9 @@ impl Lut64K {
         })
     }
 
-    /// A table of glass. Row: the new byte; column: the byte that is there. The entry is the nearest to the mixture in
-    /// which the new one has `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the old one. A byte over
-    /// itself stays.
+    /// A table of glass. Row: the new byte; column: the old byte. The entry is the nearest to the mixture in which the
+    /// new one has the share `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the old one. A byte blended
+    /// over itself stays.
     #[must_use]
     pub fn blend(palette: &Palette, opacity: u8) -> Self {
         let shown = palette.on_dac();
@@ -81,9 +82,9 @@ impl Lut64K {
         })
     }
 
-    /// A table of glenz, glass that shines: the entry nearest to the sum of both, each channel at most 255. Row and
-    /// column as in [`blend`](Self::blend), but exchanging them does not change the picture. A byte that shows black
-    /// adds nothing: the other byte stays, of two such the old one.
+    /// A table of glenz, glass that shines: the entry nearest to the sum of both colours, each channel at most 255. Row
+    /// and column are as in [`blend`](Self::blend), but swapping them does not change the picture. A byte that shows
+    /// black adds nothing: the other byte stays, and if both are black, the old one.
     #[must_use]
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();
@@ -95,7 +96,7 @@ impl Lut64K {
         })
     }
 
-    /// All bytes of the table: that of row `high` and column `low` at `high << 8 | low`.
+    /// All bytes of the table, with row `high` and column `low` at `high << 8 | low`.
     #[must_use]
     #[inline]
     pub fn as_array(&self) -> &[u8; Self::BYTES] {

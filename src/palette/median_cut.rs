@@ -1,12 +1,12 @@
 //! Median cut: reduces many colours to a few.
 //!
-//! Median cut after Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a box around all
-//! colours is cut in two, then one of the two, and so on; each box becomes the mean of its colours. Heckbert cuts the
-//! longest side of the fullest box at the median. Here, of all boxes, sides and places, the cut is made which lowers
-//! the sum of the squared distances most (after Wu, "Efficient statistical computations for optimal color
-//! quantization", Graphics Gems II, 1991).
+//! After Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a box around all colours is cut
+//! in two, then one of the two, and so on; each box becomes the mean of its colours. Heckbert cuts the longest side of
+//! the fullest box at the median. Here the cut is made, out of all boxes, sides and positions, that lowers the sum of
+//! squared distances most (after Wu, "Efficient statistical computations for optimal color quantization", Graphics Gems
+//! II, 1991).
 //!
-//! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, choose by chance or do not tell the gain of
+//! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, use randomness, or do not report the gain of
 //! the next colour, which palettes made for a scene need.
 
 use alloc::vec;
@@ -18,7 +18,7 @@ use super::Rgb;
 /// The boxes after some cuts.
 #[derive(Clone, Debug)]
 pub struct MedianCut {
-    /// Colours with their weights, box by box.
+    /// Colours with their weights, grouped by box.
     colors: Vec<(Rgb, u32)>,
     boxes: Vec<ColorBox>,
 }
@@ -26,7 +26,7 @@ pub struct MedianCut {
 #[derive(Clone, Debug)]
 struct ColorBox {
     range: Range<usize>,
-    /// All weights, and the weighted sums of red, green and blue.
+    /// The total weight, and the weighted sums of red, green and blue.
     moments: Moments,
     /// The best cut; `None` if there is only one colour.
     cut: Option<Cut>,
@@ -36,9 +36,9 @@ struct ColorBox {
 #[derive(Clone, Copy, Debug)]
 struct Cut {
     channel: usize,
-    /// The least value of the upper part.
+    /// The least value in the upper part.
     from: u8,
-    /// The decrease of the sum of the weighted squares of the distances.
+    /// The decrease of the weighted sum of squared distances.
     gain: f64,
 }
 
@@ -49,8 +49,8 @@ struct Moments {
 }
 
 impl MedianCut {
-    /// Makes one box around colours with their weights. Colours without weight are left out, and those beyond 2²⁴, so that
-    /// no sum passes 2⁶⁴.
+    /// Makes one box around weighted colours. Colours without weight are dropped, and those beyond 2²⁴, so that no sum
+    /// exceeds 2⁶⁴.
     #[must_use]
     pub fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
         colors.retain(|&(_, weight)| weight > 0);
@@ -60,7 +60,7 @@ impl MedianCut {
         Self { colors, boxes }
     }
 
-    /// The box with the best cut; the first of equally good ones.
+    /// The box with the best cut; the first if several are equally good.
     fn best(&self) -> Option<(usize, Cut)> {
         let cuts = self.boxes.iter().enumerate().filter_map(|(i, b)| Some((i, b.cut?)));
         cuts.reduce(|best, next| if next.1.gain > best.1.gain { next } else { best })
@@ -84,7 +84,7 @@ impl MedianCut {
         true
     }
 
-    /// Cuts until there are `boxes` of them, or as many as there are different colours.
+    /// Cuts until there are `boxes` boxes, or as many as distinct colours.
     pub fn cut_to(&mut self, boxes: usize) {
         while self.boxes.len() < boxes && self.cut() {}
     }
@@ -94,7 +94,7 @@ impl MedianCut {
         self.boxes.len()
     }
 
-    /// The mean colour of each box, each channel to the nearest; the colour itself for a box of one colour.
+    /// The mean colour of each box, each channel rounded to the nearest; the colour itself for a box of one colour.
     pub fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
         self.boxes.iter().map(|b| b.moments.mean())
     }
@@ -137,8 +137,8 @@ impl Moments {
         Self { weight, sums: channels(color).map(|v| weight * u64::from(v)) }
     }
 
-    /// The difference between the squares about the one mean of both together and those about two means: W₁·W₂/(W₁ +
-    /// W₂) times the square of the distance between the two.
+    /// The sum of squares about the common mean minus that about two separate means: W₁·W₂/(W₁ + W₂) times the squared
+    /// distance between the two means.
     fn gain_beside(self, other: Self) -> f64 {
         let (w1, w2) = (self.weight as f64, other.weight as f64);
         let d = [0, 1, 2].map(|i| self.sums[i] as f64 / w1 - other.sums[i] as f64 / w2);
@@ -146,7 +146,7 @@ impl Moments {
     }
 
     fn mean(self) -> Rgb {
-        // At most 255, as every colour is. The sums are below 2⁶⁴, so twice them may not be.
+        // At most 255, like every colour. The sums are below 2⁶⁴, so doubling them could overflow.
         let [r, g, b] = self.sums.map(|sum| ((sum + self.weight / 2) / self.weight.max(1)) as u8);
         Rgb::new(r, g, b)
     }
@@ -177,7 +177,7 @@ fn channels(color: Rgb) -> [u8; 3] {
 mod tests {
     use super::*;
 
-    /// The sum of weight × squared distance to the mean, in fractions: Σw·c² − (Σw·c)²/Σw, times Σw.
+    /// The sum of weight × squared distance to the mean, exactly: Σw·c² − (Σw·c)²/Σw, times Σw.
     fn squares_times_weight(colors: &[(Rgb, u32)]) -> i128 {
         let sum = |of: &dyn Fn([u8; 3], i128) -> i128| -> i128 {
             colors.iter().map(|&(color, weight)| of(channels(color), i128::from(weight))).sum()
@@ -199,7 +199,7 @@ mod tests {
         (0..count).map(|i| (Rgb::from_u32(hash(i)), hash(i + count) >> 24)).collect()
     }
 
-    /// The first cut against every way to split the colours by one channel's value.
+    /// The first cut, against every way to split the colours by the value of one channel.
     #[test]
     fn the_cut_is_the_one_that_lowers_the_squares_most() {
         for seed in 0..50 {
@@ -214,7 +214,7 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             let mut cut = MedianCut::new(colors.clone());
             let gain = cut.gain().expect("different colours");
-            // Sums of 20 terms below 2²⁴, each operation within 2⁻⁵³ of it.
+            // Sums of 20 terms below 2²⁴, with a relative error of 2⁻⁵³ per operation.
             assert!((squares(&colors) - best - gain).abs() < 1e-6, "{gain}");
             assert!(cut.cut());
             let after: f64 = cut.boxes.iter().map(|b| squares(&cut.colors[b.range.clone()])).sum();

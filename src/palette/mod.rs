@@ -1,20 +1,20 @@
-//! 256 colours, and the ramps of shades among them.
+//! 256 colours, and the shade ramps among them.
 //!
 //! | item | what |
 //! |---|---|
 //! | [`Rgb`] | one colour; 8 bits a channel, and the DAC's 6 |
-//! | [`Ramp`] | neighbouring entries from dark to light, which a shade can never leave |
+//! | [`Ramp`] | consecutive entries from dark to light, which shades cannot leave |
 //! | [`Palette`] | 256 colours, with the ramps that they hold |
 //! | [`gradient`] | ramps from key colours |
 //! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
-//! | [`BIOS`] | the colours that mode 13h starts with |
-//! | [`builtin`] | the palettes that are compiled in, by name |
+//! | [`BIOS`] | the initial colours of mode 13h |
+//! | [`builtin`] | the built-in palettes, by name |
 //! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
 //! | [`Lut64K`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
 //!
-//! A palette has 8 bits a channel, the card 6. A palette keeps the 8 bits it was given, so a file is written as it was
+//! A palette has 8 bits a channel, the card 6. A palette stores the 8 bits it was given, so a file is written as it was
 //! read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
-//! [`Palette::on_dac`] shows the result.
+//! [`Palette::on_dac`] gives the result.
 
 mod bios;
 pub mod builtin;
@@ -75,12 +75,12 @@ impl Index<u8> for Palette {
 }
 
 impl Palette {
-    /// The max number of ramps that [`from_colors`](Self::from_colors) looks for: ramps of 8 entries.
+    /// The max number of ramps that [`from_colors`](Self::from_colors) looks for, each then of 8 entries.
     const MAX_RAMPS_FOUND: u16 = 32;
 
-    /// Makes a palette of 256 colours, and finds its ramps: of 1, 2, 4, 8, 16 and 32 equal ramps the fewest such that
-    /// within each no entry is darker than the one before it, and the last is brighter than the first
-    /// ([`Rgb::brightness`]); 0 if there is no such number. [`with_ramps`](Self::with_ramps) overrides it.
+    /// Makes a palette of 256 colours, and finds its ramps: the least of 1, 2, 4, 8, 16 and 32 equal ramps such that
+    /// within each ramp no entry is darker than the one before it, and the last is brighter than the first
+    /// ([`Rgb::brightness`]); 0 if none of these fits. [`with_ramps`](Self::with_ramps) overrides it.
     #[must_use]
     pub const fn from_colors(colors: [Rgb; 256]) -> Self {
         let mut ramps = 1;
@@ -93,7 +93,7 @@ impl Palette {
         Self { colors, ramps: 0 }
     }
 
-    /// Makes a palette of 256 DAC colours, 0 to 63 a channel.
+    /// Makes a palette of 256 DAC colours, 0 to 63 per channel.
     #[must_use]
     pub const fn from_dac(six: &[[u8; 3]; 256]) -> Self {
         let mut colors = [Rgb::BLACK; 256];
@@ -105,7 +105,7 @@ impl Palette {
         Self::from_colors(colors)
     }
 
-    /// Declares that the colours hold `ramps` equal ramps: 0 for none, or 1, 2, 4 … 256.
+    /// Declares that the colours form `ramps` equal ramps: 0 for none, or 1, 2, 4 … 256.
     ///
     /// Returns `None` for any other number.
     #[must_use]
@@ -124,7 +124,7 @@ impl Palette {
         &self.colors
     }
 
-    /// The number of equal ramps that the entries form; 0 if they are no ramps.
+    /// The number of equal ramps that the entries form; 0 if there are no ramps.
     #[must_use]
     #[inline]
     pub const fn ramps(&self) -> usize {
@@ -143,8 +143,8 @@ impl Palette {
         Ramp::new((i as u16 * entries) as u8, entries)
     }
 
-    /// The entry nearest to a colour, by the square of the distance in the RGB cube; the first of entries equally near.
-    /// Looks at all 256; for the cube palette there is [`cube::nearest`].
+    /// The entry nearest to a colour, by squared distance in the RGB cube; the first if several are equally near.
+    /// Searches all 256; for the cube palette there is [`cube::nearest`].
     #[must_use]
     pub const fn nearest(&self, color: Rgb) -> u8 {
         let (mut best, mut best_distance, mut i) = (0, u32::MAX, 0);
@@ -158,7 +158,7 @@ impl Palette {
         best
     }
 
-    /// The colours that the card shows for these: each through 6 bits and back. The ramps stay.
+    /// The colours that the card shows for these: each through 6 bits and back. The ramps are unchanged.
     #[must_use]
     pub const fn on_dac(&self) -> Self {
         let mut colors = self.colors;
@@ -176,7 +176,7 @@ impl Palette {
 }
 
 impl Default for Palette {
-    /// The colours that mode 13h starts with.
+    /// The initial colours of mode 13h.
     fn default() -> Self {
         BIOS
     }

@@ -1,21 +1,21 @@
-//! The nearest of up to 256 colours, exactly, without looking at all of them.
+//! An exact search for the nearest of up to 256 colours that does not look at all of them.
 //!
-//! The RGB cube is cut into 8 × 8 × 8 boxes. Among the colours there is one whose *farthest* point of a box is nearest;
-//! every point of the box has a colour at most that far away. So a colour whose *nearest* point of the box is farther
-//! than that is nearest to no point of it. Each box lists the colours that remain, a tenth or so, in their order: the
-//! first of those equally near remains the first.
+//! The RGB cube is divided into 8 × 8 × 8 boxes. For each box, take the colour that minimises the distance to the box's
+//! *farthest* point: every point of the box has a colour at most that far away. So a colour farther than that from the
+//! box's *nearest* point is not nearest to any point of it. Each box lists the remaining colours, about a tenth, in
+//! their order, so that ties still go to the first.
 //!
-//! Making the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With
-//! 16 boxes a side the lists take 2.3 ms, and the searches save less than that.
+//! Building the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With 16 boxes per
+//! side the lists take 2.3 ms, and the searches save less than that.
 
 use alloc::vec::Vec;
 
 use super::{Palette, Rgb};
 
-/// The number of boxes a side.
+/// The number of boxes per side.
 const SIDE: usize = 8;
 
-/// The number of a channel's values in a box.
+/// The number of values of a channel in a box.
 const WIDTH: u8 = 32;
 
 /// A search for the nearest of some colours.
@@ -27,12 +27,12 @@ const WIDTH: u8 = 32;
 /// ```
 #[derive(Clone, Debug)]
 pub struct NearestColors {
-    /// The candidates of all boxes: those of box `i` run from `starts[i]` up to `starts[i + 1]`.
+    /// The candidates of all boxes: box `i` has those from `starts[i]` up to `starts[i + 1]`.
     candidates: Candidates,
     starts: Vec<usize>,
 }
 
-/// Candidates, each channel in a list of its own, which the search reads as vectors.
+/// Candidates as one list per channel, for vectorised search.
 #[derive(Clone, Debug, Default)]
 struct Candidates {
     red: Vec<i16>,
@@ -56,7 +56,7 @@ struct Candidate {
     index: u8,
 }
 
-/// The squares of the distances from a colour to the nearest and to the farthest point of something.
+/// The squared distances from a colour to the nearest and the farthest point of a region.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reach {
     nearest: u32,
@@ -64,7 +64,7 @@ struct Reach {
 }
 
 impl NearestColors {
-    /// Makes a search among `colors`, of which the first 256 count.
+    /// Makes a search among the first 256 of `colors`.
     #[must_use]
     pub fn new(colors: &[Rgb]) -> Self {
         let mut distinct: Vec<Candidate> = Vec::new();
@@ -89,13 +89,13 @@ impl NearestColors {
         search
     }
 
-    /// Makes a search among the colours that the card shows for a palette's: the nearest is nearest on the screen.
+    /// Makes a search among the colours that the card shows for a palette, so the nearest is nearest on the screen.
     #[must_use]
     pub fn of_shown(palette: &Palette) -> Self {
         Self::new(palette.on_dac().colors())
     }
 
-    /// Lists the candidates of the box from `b` on in blue, whose other two sides are in `reaches`.
+    /// Lists the candidates of the box that starts at `b` in blue; `reaches` covers its other two sides.
     fn push_box(&mut self, colors: &[Candidate], reaches: &[Reach], b: u8) {
         let reaches = || reaches.iter().zip(colors).map(|(reach, c)| reach.and(c.color.b, b));
         let bound = reaches().map(|reach| reach.farthest).min().unwrap_or(0);
@@ -104,8 +104,8 @@ impl NearestColors {
         self.starts.push(self.candidates.index.len());
     }
 
-    /// The index of the colour nearest to `color` by [`Rgb::distance_squared`]; the first of those equally near. 0 if
-    /// there are none.
+    /// The index of the colour nearest to `color` by [`Rgb::distance_squared`]; the first if several are equally near.
+    /// 0 if there are no colours.
     #[must_use]
     #[inline]
     pub fn nearest(&self, color: Rgb) -> u8 {
@@ -118,8 +118,8 @@ impl NearestColors {
             let d = i32::from(a.wrapping_sub(b.into()));
             d.wrapping_mul(d)
         };
-        // A sum of squares is below 2¹⁸. With the index behind it the least is the first of the nearest. The loop has no
-        // branch, not even a check of overflow, so that it is one of vectors.
+        // A sum of squares is below 2¹⁸. With the index appended, the least key is the first of the nearest. The loop
+        // has no branch, not even an overflow check, so that it is vectorised.
         let keys = channels.zip(&index[of_box.clone()]).map(|(((&r, &g), &b), &index)| {
             let sum = square(r, color.r).wrapping_add(square(g, color.g)).wrapping_add(square(b, color.b));
             sum << 8 | i32::from(index)
@@ -129,9 +129,9 @@ impl NearestColors {
 }
 
 impl Reach {
-    /// The reach with one side more: the values from `low` on, if the colour has `v`.
+    /// Extends the reach by one channel: the box's values start at `low`, and the colour has `v`.
     fn and(self, v: u8, low: u8) -> Self {
-        // At most 255: the last box begins at 224.
+        // At most 255: the last box starts at 224.
         let high = low + (WIDTH - 1);
         let square = |d: u8| u32::from(d) * u32::from(d);
         let nearest = low.saturating_sub(v).max(v.saturating_sub(high));

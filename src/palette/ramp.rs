@@ -1,8 +1,8 @@
-//! A shade ramp: neighbouring palette entries from dark to light.
+//! Shade ramps: consecutive palette entries from dark to light.
 
 use core::ops::RangeInclusive;
 
-/// A run of palette entries that hold one colour from dark to light.
+/// A range of palette entries that hold one colour from dark to light.
 ///
 /// A material names a ramp; a shade is an index into it, 0 to `entries − 1`, and can never reach an entry of a
 /// neighbouring ramp.
@@ -17,9 +17,9 @@ impl Ramp {
     /// All 256 entries.
     pub const WHOLE: Self = Self { first: 0, entries: 256 };
 
-    /// The ramp of `entries` entries from `first` on.
+    /// The ramp of `entries` entries starting at `first`.
     ///
-    /// Returns `None` if it has no entry or would run beyond entry 255.
+    /// Returns `None` if it has no entry or would extend beyond entry 255.
     #[must_use]
     #[inline]
     pub const fn new(first: u8, entries: u16) -> Option<Self> {
@@ -30,21 +30,21 @@ impl Ramp {
         Some(Self { first, entries })
     }
 
-    /// The ramp of one entry, which is the index of every shade.
+    /// A ramp of one entry, the index of every shade.
     #[must_use]
     #[inline]
     pub const fn single(entry: u8) -> Self {
         Self { first: entry, entries: 1 }
     }
 
-    /// The darkest entry's palette index.
+    /// The palette index of the darkest entry.
     #[must_use]
     #[inline]
     pub const fn first(self) -> u8 {
         self.first
     }
 
-    /// The lightest entry's palette index.
+    /// The palette index of the lightest entry.
     #[must_use]
     #[inline]
     pub const fn last(self) -> u8 {

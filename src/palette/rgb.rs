@@ -1,8 +1,8 @@
-//! One colour, and the way between its 8 bits and the DAC's 6.
+//! Colours, and the conversion between their 8 bits and the DAC's 6.
 
 use core::fmt;
 
-/// A colour of 8 bits a channel.
+/// A colour with 8 bits per channel.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct Rgb {
     /// Red, 0 to 255.
@@ -13,8 +13,8 @@ pub struct Rgb {
     pub b: u8,
 }
 
-/// 6 bits to 8: `(v << 2) | (v >> 4)`, so that 0 stays 0 and 63 becomes 255. Bits above the sixth
-/// are dropped, as the DAC drops them.
+/// Expands 6 bits to 8: `(v << 2) | (v >> 4)`, so that 0 stays 0 and 63 becomes 255. Bits above the sixth are dropped,
+/// as in the DAC.
 #[must_use]
 #[inline]
 pub const fn dac6_to_8(six: u8) -> u8 {
@@ -22,26 +22,26 @@ pub const fn dac6_to_8(six: u8) -> u8 {
     (v << 2) | (v >> 4)
 }
 
-/// 8 bits to 6: `v >> 2`, rounded down. [`dac6_to_8`] undoes it for every value that `dac6_to_8` makes.
+/// Reduces 8 bits to 6: `v >> 2`, rounded down. It inverts [`dac6_to_8`] for every value that `dac6_to_8` produces.
 #[must_use]
 #[inline]
 pub const fn to_dac6(eight: u8) -> u8 {
     eight >> 2
 }
 
-/// The 6 bits whose [`dac6_to_8`] is nearest. `dac6_to_8` is at most a half from `255·six/63`, so that is
-/// the nearest of `63·v/255`; `p1_every_colour_has_a_nearest_one_on_the_dac` tries all values.
+/// The 6 bits whose [`dac6_to_8`] is nearest. `dac6_to_8` differs from `255·six/63` by at most a half, so that is the
+/// nearest to `63·v/255`; `p1_every_colour_has_a_nearest_one_on_the_dac` tests all values.
 const fn nearest_six(v: u8) -> u8 {
     // At most 63.
     ((v as u16 * 63 + 127) / 255) as u8
 }
 
-/// Between `a` and `b`, so it fits in 8 bits; the sums stay below 2¹⁷.
+/// The result is between `a` and `b`, so it fits in 8 bits; the sums stay below 2¹⁷.
 const fn mix(a: u8, b: u8, share: u8) -> u8 {
     ((a as u32 * (255 - share as u32) + b as u32 * share as u32 + 127) / 255) as u8
 }
 
-/// `0x00RRGGBB`; the top byte is dropped.
+/// Unpacks `0x00RRGGBB`; the top byte is dropped.
 impl From<u32> for Rgb {
     #[inline]
     fn from(rgb: u32) -> Self {
@@ -49,7 +49,7 @@ impl From<u32> for Rgb {
     }
 }
 
-/// Six digits: `{:06x}`.
+/// Writes six digits with `{:06x}`.
 impl fmt::LowerHex for Rgb {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::LowerHex::fmt(&self.to_u32(), f)
@@ -77,12 +77,12 @@ impl Rgb {
         Self { r, g, b }
     }
 
-    /// Makes a colour from intensities, as a rule 0 to 1: each channel to the nearest of 0 to 255. Values below 0 and
-    /// NaN count as 0, values above 1 as 1.
+    /// Makes a colour from intensities, usually 0 to 1: each channel rounded to the nearest of 0 to 255. Values below 0
+    /// and NaN count as 0, values above 1 as 1.
     #[must_use]
     pub const fn from_intensities(intensities: [f32; 3]) -> Self {
         let [r, g, b] = intensities;
-        // `as` keeps the whole part, stays within 0 to 255, and gives 0 for NaN.
+        // `as` truncates, saturates to 0 to 255, and gives 0 for NaN.
         Self::new((r * 255.0 + 0.5) as u8, (g * 255.0 + 0.5) as u8, (b * 255.0 + 0.5) as u8)
     }
 
@@ -112,8 +112,8 @@ impl Rgb {
         Self::from_dac(self.to_dac())
     }
 
-    /// The colour nearest to this one that the card can show. Given this one, the card shows [`on_dac`](Self::on_dac),
-    /// which may be a step darker.
+    /// The colour nearest to this one that the card can show. Given this one itself, the card shows
+    /// [`on_dac`](Self::on_dac), which may be a step darker.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
@@ -126,8 +126,8 @@ impl Rgb {
         Self::from_dac([nearest_six(self.r), nearest_six(self.g), nearest_six(self.b)])
     }
 
-    /// The colour on the way to `other`: 0 is this colour, 255 the other. Each channel is `(a·(255 − share) + b·share)
-    /// / 255`, to the nearest; a sum of 255ths is never half way.
+    /// Interpolates towards `other`: 0 is this colour, 255 the other. Each channel is `(a·(255 − share) + b·share) /
+    /// 255`, rounded to the nearest; ties cannot occur.
     ///
     /// ```
     /// use mode13h::palette::Rgb;
@@ -139,7 +139,7 @@ impl Rgb {
         Self::new(mix(self.r, other.r, share), mix(self.g, other.g, share), mix(self.b, other.b, share))
     }
 
-    /// This colour in a light, or on a surface, of the other: `a·b/255` a channel, to the nearest.
+    /// This colour in light, or on a surface, of the other colour: `a·b/255` per channel, rounded to the nearest.
     #[must_use]
     #[inline]
     pub const fn modulate(self, other: Self) -> Self {
@@ -170,22 +170,22 @@ impl Rgb {
 
     /// Packs the colour into 16 bits: 5 of red, 6 of green, 5 of blue, red on top.
     ///
-    /// Most small displays take this form. Each channel is rounded down.
+    /// Most small displays use this format. Each channel is rounded down.
     #[must_use]
     #[inline]
     pub const fn to_rgb565(self) -> u16 {
         ((self.r as u16 >> 3) << 11) | ((self.g as u16 >> 2) << 5) | (self.b as u16 >> 3)
     }
 
-    /// Brightness, 0 to 255,000: 299 red + 587 green + 114 blue, the weights of ITU-R BT.601 in
-    /// thousandths. Exact; for putting colours in order.
+    /// Brightness, 0 to 255,000: 299 red + 587 green + 114 blue, the weights of ITU-R BT.601 in thousandths. Exact, for
+    /// sorting colours.
     #[must_use]
     #[inline]
     pub const fn brightness(self) -> u32 {
         299 * self.r as u32 + 587 * self.g as u32 + 114 * self.b as u32
     }
 
-    /// The square of the distance to `other` in the RGB cube, 0 to 195,075.
+    /// The squared distance to `other` in the RGB cube, 0 to 195,075.
     #[must_use]
     #[inline]
     pub const fn distance_squared(self, other: Self) -> u32 {
@@ -196,14 +196,14 @@ impl Rgb {
     }
 }
 
-/// Red, green and blue of a light or a surface, 0 to 1: each channel's 255ths.
+/// Red, green and blue of a light or a surface, 0 to 1: each channel divided by 255.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
 /// assert_eq!(<[f32; 3]>::from(Rgb::new(255, 51, 0)), [1.0, 0.2, 0.0]);
 /// ```
 impl From<Rgb> for [f32; 3] {
-    // Compiled where it is called: on a processor without floating point nobody else has to pay for it.
+    // Inlined, so that on a processor without floating point only callers pay for it.
     #[inline]
     fn from(Rgb { r, g, b }: Rgb) -> Self {
         [r, g, b].map(|channel| f32::from(channel) / 255.0)

@@ -1,4 +1,4 @@
-//! The rules: a function for every effect that decides whether an object calls for it, with the reason.
+//! The rules: for each effect, a function that decides whether an object calls for it, with the reason.
 
 use super::hidden;
 use super::reason::Reason;
@@ -13,23 +13,23 @@ use crate::view::{ObjectView, ScreenBounds};
 /// The max error of an affine mapping, in texels: half of one.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
-/// The number of texels to a pixel, seen straight on, above which an object has mipmaps: half of the √2 up to which
-/// level 0 is shown. A face that is tilted by 60° has twice as many.
+/// The number of texels per pixel, seen straight on, above which an object gets mipmaps: half of the √2 up to which
+/// level 0 is used. A face tilted by 60° has twice as many.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// The inputs of decisions.
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: &'a Scene,
-    /// The views, one for each object.
+    /// One view for each object.
     pub(crate) views: &'a [ObjectView],
-    /// The changes, one for each object: whether it was drawn before, and is as it was.
+    /// One entry for each object: whether it was drawn before, and is unchanged.
     pub(crate) change: &'a [Change],
     pub(crate) forced: &'a Overrides,
-    /// The settings of the renderer and the scene, as one.
+    /// The merged settings of the renderer and the scene.
     pub(crate) settings: &'a Settings,
-    /// The frame holds the whole screen.
+    /// Whether the frame covers the whole screen.
     pub(crate) whole: bool,
-    /// An object may keep the results of its vertices.
+    /// Whether objects may cache their vertices.
     pub(crate) keeps: bool,
 }
 
@@ -41,7 +41,7 @@ pub(crate) enum Change {
     Unchanged,
 }
 
-/// The least near / w with which a depth of 30 bits keeps ten.
+/// The least near / w at which a 30-bit depth still has ten significant bits.
 const LEAST_DEPTH: f64 = 1.0 / 1_048_576.0;
 
 /// Makes the plan of a frame, in place.
@@ -82,18 +82,18 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     }
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
-    // That of the sources draws beyond a triangle's edges, and 16.16 clips in its own way.
+    // The vintage method draws beyond a triangle's edges, and 16.16 clips in its own way.
     if shading == Shading::GouraudVintage || is_integer {
         plan.seen = Rect::EVERYWHERE;
     }
 }
 
-/// Returns whether any of its materials has an own response to light, for which no bound is known.
+/// Returns whether any of its materials has a custom response to light, for which no bound is known.
 pub(crate) fn has_custom_response(object: &Object) -> bool {
     object.materials.iter().any(|material| material.response.is_some())
 }
 
-/// Returns whether the 16.16 path knows an effect.
+/// Returns whether the 16.16 path supports an effect.
 const fn in_integers(effect: Effect) -> bool {
     matches!(
         effect,
@@ -108,7 +108,7 @@ const fn in_integers(effect: Effect) -> bool {
     )
 }
 
-/// One object, and the facts that the rules look at.
+/// One object, and the facts that the rules use.
 struct Rules<'a> {
     scene: &'a Scene,
     place: usize,
@@ -117,11 +117,12 @@ struct Rules<'a> {
     reach: ScreenBounds,
     change: Change,
     inputs: &'a Inputs<'a>,
-    /// Vertices are made in 16.16.
+    /// Whether vertices are transformed in 16.16.
     is_integer: bool,
     /// The error budget, if there is one.
     max_error: Option<f32>,
-    /// The shading that is asked for, on the 16.16 path one that it has, within a budget the default; for an object without a bound, light at every pixel in place of a budget.
+    /// The requested shading: on the 16.16 path one that it supports, with a budget the default. For an object without
+    /// an error bound, light at every pixel in place of a budget.
     shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
@@ -156,7 +157,8 @@ impl Rules<'_> {
         plan
     }
 
-    /// The stages of the object, by its decisions; `forced`: whether an effect is on by hand alone.
+    /// The stages of the object, from its decisions. `forced`: whether an effect is on only because it was switched by
+    /// hand.
     fn stages(&self, plan: &ObjectPlan, forced: impl Fn(Effect) -> bool) -> Stages {
         let is_on = |effect| plan.is_on(effect);
         let channels = is_on(Effect::RgbChannels);
@@ -197,7 +199,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Leaves the shading of faces to a budget, unless one shading is known to be right for all of them.
+    /// Leaves the shading of faces to a budget, unless one shading is known to suffice for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
         if !plan.is_on(Effect::Lighting) || has_custom_response(self.object) {
             return;
@@ -209,7 +211,7 @@ impl Rules<'_> {
         }
     }
 
-    /// Returns whether light at every pixel would give each face one shade, that of its own normal.
+    /// Returns whether light at every pixel would give each face a single shade, that of its own normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
         self.object.mesh().is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
     }
@@ -372,7 +374,7 @@ impl Rules<'_> {
     }
 
     fn tessellation(&self, before: &ObjectPlan) -> Decision {
-        // Faces are split for their shades alone.
+        // Faces are split only for their shades.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before[Effect::Lighting].reason)
         } else if self.max_error.is_some() {
@@ -399,14 +401,13 @@ impl Rules<'_> {
         }
     }
 
-    /// The bound of the error of any triangle's texture if it is mapped linearly on the screen, in texels.
+    /// A bound on the error, in texels, of any triangle's texture if it is mapped linearly on the screen.
     ///
-    /// Linear on the screen and linear on the face weigh the three corners differently: one with a, the
-    /// other with a/w, made to add up to 1. The weights that go to the wrong corners are at most
-    /// (√ρ − 1) / (√ρ + 1), ρ being the greatest ratio of two w (with the mass m at the nearer end that
-    /// is mρ/(mρ + 1 − m) − m, greatest at m = 1/(1 + √ρ)), and no two corners' texels lie farther apart
-    /// than the longest edge in the texture. Between two vertices of a triangle w differs by no more than
-    /// the longest edge of the mesh.
+    /// Linear on the screen and linear on the face weigh the three corners differently: one by a, the other by a/w,
+    /// normalised to a sum of 1. The weight given to the wrong corners is at most (√ρ − 1) / (√ρ + 1), where ρ is the
+    /// greatest ratio of two w. (With mass m at the nearer end it is mρ/(mρ + 1 − m) − m, which is greatest at
+    /// m = 1/(1 + √ρ).) No two corners' texels are farther apart than the longest edge in the texture, and between two
+    /// vertices of a triangle w differs by at most the longest edge of the mesh.
     fn affine_error(&self) -> f64 {
         let nearest = self.reach.nearest.max(f64::from(self.view.near()));
         let (edge, texture_edge) = self.object.mesh().longest_edges();
@@ -451,7 +452,8 @@ impl Rules<'_> {
         if self.misses_ramp() { Decision::on(Reason::NoRamps) } else { Decision::off(Reason::NoColor) }
     }
 
-    /// Returns whether a material without an image and a colour of its own names a ramp, and the scene's palette has none.
+    /// Returns whether a material without an image and without its own colour names a ramp, but the scene's palette has
+    /// none.
     fn misses_ramp(&self) -> bool {
         let has_image = |material: &Material| material.texture.is_some() || material.environment.is_some();
         let is_plain = |material: &Material| !material.takes_channels() && !has_image(material);
@@ -482,8 +484,8 @@ impl Rules<'_> {
     }
 }
 
-/// The choice for an effect that is switched by hand. If the plan would have textures affine, perspective that is
-/// switched on is exact at every pixel.
+/// The choice for an effect that is switched by hand. Where the plan would map textures affinely, forcing perspective
+/// makes it exact at every pixel.
 fn forced_choice(on: bool, planned: Choice) -> Choice {
     match planned {
         _ if !on => Choice::Only,
@@ -501,9 +503,9 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
     }
 }
 
-/// The max number of texels of an object's images to a pixel, counted along a side of the pixel, for a face parallel to
+/// The max number of texels of an object's images per pixel, counted along a side of the pixel, for a face parallel to
 /// the screen and at most `farthest` away along the view: the texels of an image's longer side, times the change of
-/// texture coordinates over a unit, times a pixel's longer side.
+/// texture coordinates per unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
     let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
     let steepest = images.filter_map(|(material, change)| {

@@ -1,27 +1,28 @@
-//! The effects, and the changes that each of them may make.
+//! The effects, and what each of them may change.
 
 use crate::names::named;
 
 named! {
     /// A decision that the plan makes for every object.
     pub enum Effect, "effect" {
-        /// The object's vertices are transformed and projected; else last frame's are kept.
+        /// Transforms and projects the object's vertices; otherwise the last frame's are reused.
         Transform = "transform",
-        /// Every vertex is tested against the near plane; else none is.
+        /// Tests every vertex against the near plane; otherwise none.
         NearClipping = "near-clipping",
-        /// The raster clips rows at the frame's edges; else it takes them as they are.
+        /// The raster clips rows at the frame's edges; otherwise it takes them as they are.
         ScreenClipping = "screen-clipping",
-        /// Faces turned away are left out; else both sides are drawn.
+        /// Skips back faces; otherwise both sides are drawn.
         BackFaceCulling = "back-face-culling",
-        /// Hidden surfaces are left out in some way, beyond back faces.
+        /// Removes hidden surfaces by some method beyond back-face culling.
         HiddenSurfaces = "hidden-surfaces",
-        /// Vertices are lit; else the shade is constant, and no normal is looked at.
+        /// Vertices are lit; otherwise the shade is constant, and normals are not read.
         Lighting = "lighting",
-        /// Lamps and spot lights in range: a distance, a direction and a fall-off for every vertex; else suns alone.
+        /// Lamps and spot lights in range: a distance, a direction and a fall-off for every vertex; otherwise only
+        /// suns.
         PositionalLights = "positional-lights",
         /// Highlights: a power for every vertex and light.
         Specular = "specular",
-        /// Shades run over the faces; else each is one plain fill.
+        /// Shades vary across faces; otherwise each face is a plain fill.
         Gouraud = "gouraud",
         /// Distant surfaces fade, by a table.
         Fog = "fog",
@@ -29,37 +30,37 @@ named! {
         Phong = "phong",
         /// Faces are split along their edges.
         Tessellation = "tessellation",
-        /// Texture coordinates follow the perspective; else they are linear on the screen.
+        /// Texture coordinates follow the perspective; otherwise they are linear on the screen.
         Perspective = "perspective",
-        /// Red, green and blue are lit each for itself.
+        /// Red, green and blue are lit separately.
         RgbChannels = "rgb-channels",
         /// An image on the surface.
         Texture = "texture",
-        /// An image of the surroundings that the surface mirrors.
+        /// An image of the surroundings, reflected by the surface.
         EnvironmentMap = "environment-map",
-        /// A distant image is drawn from a smaller copy of it; else its own texels everywhere.
+        /// A distant image is drawn from a smaller copy; otherwise its own texels are used everywhere.
         Mipmaps = "mipmaps",
-        /// Surfaces behind shine through, by a table.
+        /// Surfaces behind show through, by a table.
         Transparency = "transparency",
         /// Shades between two entries become a pattern of both.
         Dither = "dither",
-        /// The DAC is loaded anew as time passes, and nothing is drawn.
+        /// The DAC is reloaded over time, without drawing anything.
         PaletteAnimation = "palette-animation",
     }
 }
 
-/// The possible change by leaving an effect out.
+/// What leaving out an effect may change.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Class {
     /// Nothing: always doing the full work gives the same bytes.
     SavesWork,
-    /// The picture, where the scene calls for it.
+    /// The picture, where the scene calls for the effect.
     ChangesPicture,
 }
 
 impl Effect {
-    /// Returns whether it keeps triangles inside what the raster can draw: if it is called for, it cannot be switched
-    /// off.
+    /// Returns whether the effect keeps triangles within what the raster can draw: if it is called for, it cannot be
+    /// switched off.
     pub(super) const fn keeps_inside(self) -> bool {
         matches!(self, Self::NearClipping | Self::ScreenClipping)
     }
@@ -67,7 +68,7 @@ impl Effect {
     /// The number of effects.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// The possible change by leaving it out.
+    /// What leaving it out may change.
     #[must_use]
     pub const fn class(self) -> Class {
         match self {
@@ -94,9 +95,9 @@ impl Effect {
         }
     }
 
-    /// Returns whether this build leaves it out: then it is off, whatever a scene calls for, and the compiler drops its
-    /// stages. It serves the proof that an effect which is off costs nothing (`.ci/off_is_free`); no feature of this
-    /// crate does that.
+    /// Returns whether this build leaves the effect out: then it is off whatever a scene calls for, and the compiler
+    /// drops its stages. This serves the proof that a disabled effect costs nothing (`.ci/off_is_free`); no feature of
+    /// this crate enables it.
     #[inline]
     pub(crate) const fn is_left_out(self) -> bool {
         match self {

@@ -1,4 +1,4 @@
-//! The shading of a face: the choices of a budget, and the keys of its counts.
+//! Shadings of single faces: what a budget chooses from, and the keys of its counts.
 
 use core::fmt;
 
@@ -6,16 +6,16 @@ use crate::raster::Interpolation;
 use crate::raster::effects::SampleSpacing;
 use crate::settings::Shading;
 
-/// The shading of a face: one of the [`Shading`]s, or an approximation of light at every pixel that only an error
-/// budget chooses.
+/// The shading of a face: one of the [`Shading`]s, or an approximation of per-pixel light that only an error budget
+/// chooses.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum FaceShading {
-    /// One of the shadings that may be requested.
+    /// One of the shadings that can be requested.
     By(Shading),
-    /// Quadratic on the screen, through light at six points of the face: its corners and the middles of its edges.
+    /// Quadratic on the screen, through light at six points of the face: its corners and the midpoints of its edges.
     Quadratic,
-    /// Light at pixels of a row that lie apart, linear between.
+    /// Light at every few pixels of a row, linear in between.
     PhongEvery(SampleSpacing),
 }
 
@@ -50,7 +50,7 @@ impl FaceShading {
         }
     }
 
-    /// Returns whether light beyond that of the corners is computed for the face.
+    /// Returns whether light is computed at points of the face other than its corners.
     #[must_use]
     pub const fn lights_pixels(self) -> bool {
         match self {
@@ -59,7 +59,7 @@ impl FaceShading {
         }
     }
 
-    /// The raster's interpolation of the corners' shades, if these are shown.
+    /// The raster's interpolation of the corners' shades, where those are drawn.
     pub(crate) const fn interpolation(self) -> Interpolation {
         match self {
             Self::By(shading) => shading.interpolation(),

@@ -1,4 +1,4 @@
-//! Facts about an object that drawing finds beyond its plan, and their words.
+//! Facts about an object that are only known after drawing, and their text.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,18 +9,18 @@ use super::{Effect, FaceShading};
 use crate::raster::effects::SampleSpacing;
 use crate::settings::Shading;
 
-/// Facts that drawing found about an object.
+/// What was found out about an object while drawing it.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Findings {
-    /// Counts of its faces by shading, if an error budget chose that.
+    /// The number of its faces by shading, if an error budget chose the shading.
     pub face_counts: Option<FaceCounts>,
-    /// The max distance of linear shades from light at every pixel, in shades of 1/255 of full intensity, if it is
-    /// known.
+    /// The max difference between linear shades and light at every pixel, in shades of 1/255 of full intensity, if it
+    /// is known.
     pub linear_error: Option<f64>,
 }
 
 impl Findings {
-    /// The words beside the reason for an effect, if there are any.
+    /// The text added to the reason for an effect; may be empty.
     pub(super) fn words(&self, effect: Effect, on: bool) -> String {
         match (effect, &self.face_counts, self.linear_error) {
             (Effect::Gouraud, Some(counts), _) => format!(": {counts}"),
@@ -32,16 +32,16 @@ impl Findings {
     }
 }
 
-/// Counts of an object's faces by the shading that an error budget gave them.
+/// The number of an object's faces by the shading that an error budget gave them.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct FaceCounts {
-    /// Each shading that any face had, from cheap to exact, with the number of its faces.
+    /// Each shading in use, from cheap to exact, with the number of its faces.
     pub drawn: Vec<(FaceShading, u64)>,
-    /// The number of faces without a decision, because they are not seen.
+    /// The number of faces without a decision, because they are not visible.
     pub not_drawn: u64,
 }
 
-/// Each count with its reason, and last those that were not drawn.
+/// Writes each count with its reason, then the number of faces not drawn.
 impl fmt::Display for FaceCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (shading, count) in &self.drawn {
@@ -51,7 +51,7 @@ impl fmt::Display for FaceCounts {
     }
 }
 
-/// The budget's reason for choosing it.
+/// The budget's reason for choosing a shading.
 fn why(shading: FaceShading) -> &'static str {
     match shading {
         FaceShading::By(Shading::Flat) => "one shade at their corners, or near enough",

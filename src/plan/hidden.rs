@@ -1,8 +1,8 @@
-//! The way to leave out hidden surfaces that a scene calls for: the cheapest that is right.
+//! Chooses the hidden-surface method for a scene: the cheapest that is correct.
 //!
-//! One convex object hides nothing but its own back faces. Among several that are convex and whose depths are apart,
-//! the nearer hides the farther, whole. Any other scene needs a depth for every pixel. Bodies that shine through are
-//! drawn last, far to near, over the others, unless these hide them.
+//! A single convex object hides nothing but its own back faces. Among several convex objects whose depths do not
+//! overlap, the nearer wholly hide the farther. Any other scene needs a depth for every pixel. Transparent objects are
+//! drawn last, far to near, over the others where these do not hide them.
 
 use alloc::vec::Vec;
 
@@ -12,12 +12,12 @@ use crate::scene::{Object, Scene};
 use crate::settings::HiddenSurfaces;
 use crate::view::ObjectView;
 
-/// Returns whether any of an object's materials shines through.
+/// Returns whether any of an object's materials is transparent.
 pub(super) fn is_transparent(object: &Object) -> bool {
     object.materials.iter().any(|Material { blend, .. }| *blend != Blend::Opaque)
 }
 
-/// Chooses the way for `scene`, with the reason. Puts the objects' places in `order` as they are to be drawn.
+/// Chooses the method for `scene`, with the reason. Fills `order` with the objects' indices in drawing order.
 pub(super) fn choose(
     scene: &Scene,
     views: &[ObjectView],
@@ -54,11 +54,10 @@ pub(super) fn choose(
     }
 }
 
-/// Puts the objects far to near if their depths are apart: if every vertex of one is nearer than all
-/// of the next, in the whole units by which the depth buffer decides. Otherwise leaves `order` as it
-/// was and returns `false`.
+/// Sorts the objects far to near if their depths do not overlap: if every vertex of one is nearer than all of the next,
+/// in the integer units that the depth buffer compares. Otherwise leaves `order` unchanged and returns `false`.
 ///
-/// The depths are those of the objects' boxes: a few sums an object, whatever its number of vertices.
+/// The depths are those of the objects' boxes: a few sums per object, however many vertices it has.
 fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) -> bool {
     let depths = |i: usize| views[i].depths(objects[i].mesh().bounds());
     order.sort_unstable_by_key(|&i| (depths(i), i));
@@ -69,11 +68,11 @@ fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [us
     apart
 }
 
-/// Puts faces far to near by the sum of the depths of their three vertices, which orders as the mean does; among equal
-/// ones the first submitted is painted first. `order` then holds that sum and the place of each.
+/// Sorts faces far to near by the sum of the depths of their three vertices, which gives the same order as the mean; of
+/// equal ones the first submitted is painted first. Fills `order` with that sum and the index of each face.
 pub(crate) fn far_to_near(depths: impl Iterator<Item = u64>, order: &mut Vec<(u64, usize)>) {
     order.clear();
     order.extend(depths.zip(0..));
-    // No two are equal, so nothing is lost by a sort that needs no memory.
+    // No two entries are equal, so an unstable sort, which needs no memory, is safe.
     order.sort_unstable();
 }

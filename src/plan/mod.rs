@@ -1,18 +1,19 @@
-//! From a scene to the effects that it calls for, for each object, each with its reason.
+//! Decides which effects each object of a scene calls for, and why.
 //!
 //! | file | what |
 //! |---|---|
 //! | `effect` | [`Effect`]: the list, and what each may change |
 //! | `reason` | [`Reason`]: the reasons |
-//! | `stages` | what is done for an object, as values; [`Choice`] |
+//! | `stages` | the work for an object, as values; [`Choice`] |
 //! | `face_shading` | [`FaceShading`]: how a face is shaded |
-//! | `findings` | what drawing found out, in words |
-//! | `decide` | the rules, a function an effect |
-//! | `hidden` | which way to leave out hidden surfaces |
+//! | `findings` | facts found while drawing, as text |
+//! | `decide` | the rules, a function per effect |
+//! | `hidden` | which hidden-surface method to use |
 //!
-//! A plan is made once a frame: some comparisons and a few products an object, nothing for a vertex. The renderer goes
-//! by [`ObjectPlan::is_on`]; [`Plan::rows`] tells people the decisions. An effect that is off costs nothing per vertex,
-//! triangle, span or pixel, and no memory; that of one which was on is kept for when it is on again.
+//! A plan is made once per frame: some comparisons and a few products per object, nothing per vertex. The renderer
+//! follows [`ObjectPlan::is_on`]; [`Plan::rows`] reports the decisions as text. A disabled effect costs nothing per
+//! vertex, triangle, span or pixel, and no memory, except that the memory of an effect that was on before is retained
+//! for the next time.
 
 mod decide;
 mod effect;
@@ -41,13 +42,13 @@ use crate::raster::Rect;
 use crate::scene::Scene;
 use crate::settings::{HiddenSurfaces, Mapping, Shading};
 
-/// A decision on an effect.
+/// The decision on an effect.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Decision {
-    /// The effect is on.
+    /// Whether the effect is on.
     pub on: bool,
-    /// The way in which the effect is done, of several.
+    /// The variant of the effect, if there are several.
     pub choice: Choice,
     /// The reason.
     pub reason: Reason,
@@ -81,13 +82,13 @@ impl Index<Effect> for ObjectPlan {
     type Output = Decision;
 
     fn index(&self, effect: Effect) -> &Decision {
-        // One for each.
+        // There is one decision per effect.
         &self.decisions[effect.index()]
     }
 }
 
 impl ObjectPlan {
-    /// A plan without decisions yet, for an object that is not drawn.
+    /// A plan without decisions so far, for an object that is not drawn.
     fn new(shading: Shading) -> Self {
         let stages = Stages {
             switches: Switches::default(),
@@ -123,8 +124,8 @@ impl ObjectPlan {
         self.shading
     }
 
-    /// The budget that its triangles are shaded by, each as is cheapest: the number of shades of error that are
-    /// accepted. `None` if there is none, or one shading is known to be the cheapest for all.
+    /// The error budget by which each of its triangles gets the cheapest shading: the accepted error in shades. `None`
+    /// if there is no budget, or if one shading is known to be the cheapest for all.
     #[must_use]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
@@ -135,11 +136,11 @@ impl ObjectPlan {
     }
 }
 
-/// Effects that are switched by hand: `None` leaves one to the plan.
+/// Effects switched by hand: `None` leaves one to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Overrides {
     everywhere: [Option<bool>; Effect::COUNT],
-    /// Objects that differ from that, by their places.
+    /// Overrides for single objects, by index.
     single: Vec<(usize, Effect, bool)>,
 }
 
@@ -149,20 +150,20 @@ impl Overrides {
         self.everywhere[effect.index()] = on;
     }
 
-    /// Returns how an effect is switched for every object.
+    /// Returns how an effect is overridden for every object.
     #[must_use]
     pub(crate) fn get(&self, effect: Effect) -> Option<bool> {
         self.everywhere[effect.index()]
     }
 
-    /// Switches an effect on or off for one object, by its place in the scene, whatever holds for every object;
-    /// `None` takes that back.
+    /// Switches an effect on or off for one object, by its index in the scene, regardless of the setting for every
+    /// object; `None` removes the override.
     pub(crate) fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.single.retain(|(place, of, _)| (*place, *of) != (object, effect));
         self.single.extend(on.map(|on| (object, effect, on)));
     }
 
-    /// Returns how an effect is switched for an object.
+    /// Returns how an effect is overridden for an object.
     #[must_use]
     pub(crate) fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
         let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
@@ -173,16 +174,16 @@ impl Overrides {
 /// The decisions for a frame of a scene.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Plan {
-    /// The way to leave out hidden surfaces.
+    /// The hidden-surface method.
     pub(crate) hidden_surfaces: HiddenSurfaces,
-    /// The plan chose it: it was not requested.
+    /// Whether the plan chose the method, rather than being asked for it.
     pub(crate) chosen: bool,
     pub(crate) objects: Vec<ObjectPlan>,
-    /// The objects as they are drawn.
+    /// The indices of the objects in drawing order.
     pub(crate) order: Vec<usize>,
-    /// The part of the screen that may show any of them.
+    /// The part of the screen where any of them may be visible.
     pub(crate) seen: Rect,
-    /// Vertices are made in 16.16.
+    /// Whether vertices are transformed in 16.16.
     pub(crate) is_integer: bool,
     /// See [`Plan::near_needed`].
     pub(crate) near_needed: Option<f32>,
@@ -203,24 +204,25 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// A near distance for the camera that depths need, if its own is too small for them: 2⁻²⁰ of the distance that the
-    /// farthest visible object reaches to.
+    /// The near distance that the camera needs, if its own is too small: 2⁻²⁰ of the farthest distance that a visible
+    /// object reaches.
     ///
-    /// Depths are near / w in steps of 2⁻³⁰. Below this they have fewer than ten bits for what is far, which then hides and
-    /// is hidden at random; perspective-correct shades and textures and the error budget are off there, too.
+    /// Depths are near / w in steps of 2⁻³⁰. With a smaller near distance they have fewer than ten bits for distant
+    /// surfaces, which then hide each other at random; perspective-correct shades and textures and the error budget are
+    /// wrong there, too.
     #[must_use]
     pub fn near_needed(&self) -> Option<f32> {
         self.near_needed
     }
 
-    /// The way to leave out hidden surfaces.
+    /// The hidden-surface method.
     #[must_use]
     pub fn hidden_surfaces(&self) -> HiddenSurfaces {
         if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
-    /// Returns whether the plan chose the way to leave out hidden surfaces, without a request. Then an object that is
-    /// painted far to near is convex, and its faces are drawn in any order.
+    /// Returns whether the plan chose the hidden-surface method, without a request. If so, any object painted far to
+    /// near is convex, and its faces are drawn in any order.
     #[must_use]
     pub fn is_chosen(&self) -> bool {
         self.chosen
@@ -238,13 +240,13 @@ impl Plan {
         self.objects.iter().any(|plan| plan.is_on(effect))
     }
 
-    /// Every decision in words: object by object, in the order of [`Effect::ALL`].
+    /// Every decision as text: object by object, in the order of [`Effect::ALL`].
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<Row> {
         self.rows_with(scene, |_| Findings::default())
     }
 
-    /// Every decision in words, with the findings of drawing about each object.
+    /// Every decision as text, with what was found out about each object while drawing.
     #[must_use]
     pub(crate) fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
@@ -267,19 +269,19 @@ impl Plan {
     }
 }
 
-/// One decision in words.
+/// A decision as text.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Row {
-    /// The object's place in the scene.
+    /// The object's index in the scene.
     pub place: usize,
     /// The object's name.
     pub object: String,
     /// The effect.
     pub effect: Effect,
-    /// The effect is on.
+    /// Whether the effect is on.
     pub on: bool,
-    /// The way in which the effect is done, of several; empty if there is but one.
+    /// The variant of the effect; empty if there is only one.
     pub choice: &'static str,
     /// The reason.
     pub reason: String,

@@ -1,11 +1,11 @@
-//! The reasons for decisions: kept as small values, put into words when somebody reads them.
+//! The reasons for decisions, stored as small values and turned into text on demand.
 
 use alloc::format;
 use alloc::string::{String, ToString};
 
 use crate::scene::{Object, Scene};
 
-/// The reason for an effect to be on or off for an object.
+/// The reason why an effect is on or off for an object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Reason {
@@ -17,9 +17,9 @@ pub enum Reason {
     Changed,
     /// Nothing that it depends on changed since the last frame.
     Unchanged,
-    /// Vertices are not kept from frame to frame.
+    /// Vertices are not cached between frames.
     NotKept,
-    /// This build has no such effect.
+    /// This build does not contain the effect.
     LeftOut,
     /// The distances of the object and of the near plane.
     Nearest {
@@ -28,60 +28,60 @@ pub enum Reason {
         /// The near plane's distance.
         near: f64,
     },
-    /// Its bounds reach the near plane, so they may lie anywhere on the screen.
+    /// Its bounds reach the near plane, so they may project anywhere on the screen.
     CrossesNear,
-    /// Its bounds reach a screen's edge.
+    /// Its bounds reach an edge of the screen.
     LeavesScreen,
-    /// Its bounds lie on the screen.
+    /// Its bounds lie within the screen.
     OnScreen,
-    /// A part of the screen is drawn.
+    /// Only a part of the screen is drawn.
     Band,
-    /// The mesh is closed: no back face of it can be seen from outside.
+    /// The mesh is closed: none of its back faces can be seen from outside.
     Closed,
-    /// The mesh is not closed: both sides of its faces may be seen.
+    /// The mesh is not closed: both sides of its faces may be visible.
     Open,
-    /// The mesh is closed, but parts of it are inside out: their back faces may be seen.
+    /// The mesh is closed, but parts of it are inside out: their back faces may be visible.
     InsideOut,
-    /// A body that shines through shows its own far side too.
+    /// A transparent object shows its own far side as well.
     SeenThrough,
     /// The scene's only object is convex.
     OneConvex,
     /// There is nothing to draw.
     Empty,
-    /// All objects are convex, and one lies behind the other.
+    /// All objects are convex, and their depths do not overlap.
     ConvexApart,
     /// An object of the scene is not convex.
     NotConvex {
-        /// Its place in the scene.
+        /// Its index in the scene.
         object: usize,
     },
-    /// Two or more objects are convex, but their depths overlap.
+    /// There are two or more objects, all convex, but their depths overlap.
     Overlap,
-    /// Bodies that shine through are drawn last, far to near.
+    /// Transparent objects are drawn last, far to near.
     TransparentLast,
-    /// Every body shines through, so all are drawn far to near.
+    /// Every object is transparent, so all are drawn far to near.
     AllTransparent,
     /// It was requested, by the scene or by hand.
     Asked,
     /// It was not requested.
     NotAsked,
-    /// The scan-line method was requested, which knows one face a pixel; something shines through.
+    /// The scan-line method was requested, which handles one face per pixel, but some surface is transparent.
     ScanLineShowsOneFace,
-    /// Lights of an intensity that is not 0.
+    /// Lights whose intensity is not 0.
     Lights {
         /// The number of lights.
         count: usize,
     },
-    /// There is no light, or none that is not dark.
+    /// There is no light, or all are dark.
     NoLight,
-    /// No material gives back light but ambient light.
+    /// No material reflects anything but ambient light.
     NoResponse,
     /// Lamps in range.
     LampsInRange {
         /// The number of lamps.
         count: usize,
     },
-    /// No lamp.
+    /// There is no lamp.
     NoLamp,
     /// Lamps, none of which reaches the object.
     LampsOutOfRange {
@@ -90,28 +90,28 @@ pub enum Reason {
     },
     /// A material has it.
     MaterialHas {
-        /// Its place among the object's materials.
+        /// Its index among the object's materials.
         material: usize,
     },
-    /// A material has a specular share, but none has a shininess above 0 beside it.
+    /// A material has a specular share, but none has a shininess above 0 with it.
     NoShininess {
-        /// Its place among the object's materials.
+        /// Its index among the object's materials.
         material: usize,
     },
     /// No material of the object has it.
     NoMaterialHas,
     /// The shades of the vertices differ.
     ShadesDiffer,
-    /// An error budget is kept to, face by face.
+    /// An error budget is met face by face.
     Budget {
-        /// The number of shades of error that are accepted.
+        /// The accepted error in shades.
         max_error: f32,
     },
-    /// An error budget keeps shades near the light, face by face.
+    /// An error budget already limits the error, face by face.
     LeftToBudget,
-    /// Every normal is that of its face, and the lights are far away: one shade for a face is right.
+    /// Every normal is that of its face, and the lights are distant: one shade per face is exact.
     Faceted,
-    /// One shade for a face was requested.
+    /// One shade per face was requested.
     FlatAsked,
     /// Every vertex has the same shade.
     OneShade,
@@ -119,54 +119,54 @@ pub enum Reason {
     SceneHasNone,
     /// The object reaches into the fog.
     ReachesInto {
-        /// The distance that the object reaches along the view.
+        /// The farthest distance of the object along the view.
         farthest: f64,
         /// The distance at which the fog begins.
         start: f64,
     },
-    /// The object lies nearer than the fog.
+    /// The object is nearer than the fog.
     NearerThan {
-        /// The distance that the object reaches along the view.
+        /// The farthest distance of the object along the view.
         farthest: f64,
         /// The distance at which the fog begins.
         start: f64,
     },
-    /// The affine mapping's error, in texels, over any triangle is at most this.
+    /// The bound on the affine mapping's error over any triangle, in texels.
     AffineError {
         /// The error in texels.
         texels: f64,
     },
-    /// There are no texture coordinates that would follow the perspective.
+    /// There are no texture coordinates to follow the perspective.
     NoTexture,
     /// No material has a texture.
     NoImage,
-    /// The max number of texels to a pixel, on a face parallel to the screen.
+    /// The max number of texels per pixel, on a face parallel to the screen.
     TexelsToPixel {
         /// The number along a pixel's side.
         texels: f64,
     },
     /// A light is coloured.
     ColoredLight {
-        /// Its place in the scene.
+        /// Its index in the scene.
         light: usize,
     },
     /// A material is coloured, or drawn in the nearest entries.
     ColoredMaterial {
-        /// Its place among the object's materials.
+        /// Its index among the object's materials.
         material: usize,
     },
-    /// Neither light nor material is coloured.
+    /// No light and no material is coloured.
     NoColor,
-    /// A material names a ramp, and the palette has none.
+    /// A material names a ramp, but the palette has none.
     NoRamps,
-    /// Shades come from a table of whole ones: nothing lies between two of them.
+    /// Shades come from a table of whole shades, with nothing in between.
     WholeShades,
-    /// The vertex path in 16.16 does not know it.
+    /// The 16.16 vertex path does not support it.
     NotInIntegers,
 }
 
 impl Reason {
-    /// The reason in words, for `object` of `scene`.
+    /// The reason as text, for `object` of `scene`.
     #[must_use]
     pub fn words(&self, scene: &Scene, object: usize) -> String {
         let material = |i: usize| {
@@ -238,7 +238,7 @@ impl Reason {
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::NoImage => "no material has a texture".to_string(),
-            // A bound is rounded up.
+            // Rounded up, being a bound.
             Self::TexelsToPixel { texels } => {
                 format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)
             }
@@ -252,7 +252,7 @@ impl Reason {
     }
 }
 
-/// The object's name, or its place.
+/// The object's name, or its index.
 #[must_use]
 pub fn name_of(scene: &Scene, object: usize) -> String {
     match scene.objects().get(object).map(|Object { name, .. }| name) {

@@ -1,33 +1,33 @@
-//! The stages that an object goes through, as values for the renderer. Words and reasons are for people alone.
+//! The stages that an object goes through, as values for the renderer, without names or reasons.
 
 use super::Effect;
 use crate::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 
-/// The way in which an effect is done, of several.
+/// The variant of an effect.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum Choice {
-    /// There is only one way.
+    /// The only one.
     #[default]
     Only,
-    /// Shading by this technique.
+    /// Shading by this method.
     Shading(Shading),
-    /// Shading that an error budget chooses for each face.
+    /// Shading chosen for each face by an error budget.
     Budget,
-    /// Hidden surfaces are left out in this way.
+    /// This hidden-surface method.
     HiddenSurfaces(HiddenSurfaces),
-    /// Texture coordinates run in this way.
+    /// This mapping of texture coordinates.
     Mapping(Mapping),
-    /// Mipmaps: a level for each face.
+    /// Mipmaps with a level for each face.
     LevelPerFace,
-    /// Mipmaps: a level for each 16 pixels of a row.
+    /// Mipmaps with a level for every 16 pixels of a row.
     LevelPer16Pixels,
-    /// Dither by this pattern.
+    /// Dithering with this pattern.
     Dither(DitherPattern),
 }
 
 impl Choice {
-    /// The choice's name; empty if there is only one way.
+    /// The choice's name; empty if there is only one variant.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -46,15 +46,16 @@ impl Choice {
 /// The work on an object's vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum VertexStage {
-    /// Those of last frame are kept.
+    /// The last frame's vertices are reused.
     Keep,
-    /// They are made.
+    /// Vertices are computed.
     Make,
-    /// They are made, and with them all that is kept beside them: by force, or because nothing is kept.
+    /// Vertices are computed, together with everything cached beside them: because it was forced, or because nothing is
+    /// cached.
     MakeAnew,
 }
 
-/// The light that is computed for shades.
+/// The light that contributes to shades.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Lighting {
     /// None: each surface has one shade.
@@ -82,21 +83,21 @@ pub(crate) enum LitAt {
 pub(crate) enum Lamps {
     None,
     InRange,
-    /// All lamps, in range or not: by force.
+    /// All lamps, in range or not, because it was forced.
     All,
 }
 
-/// The dither that replaces the half that is otherwise added to a shade.
+/// The dithering that replaces the constant half that is otherwise added to a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Dither {
     None,
     By(DitherPattern),
-    /// Thresholds that change nothing: by force.
+    /// Thresholds that change nothing, because it was forced.
     Neutral,
 }
 
-/// Stages that an object goes through or does not, by the effects that call for them. None is there in a build that leaves
-/// its effect out, so the compiler leaves it out as well.
+/// Stages that an object may or may not go through, with the effects that call for them. In a build that leaves out the
+/// effect its stage is constantly `false`, so the compiler drops it as well.
 macro_rules! switches {
     ($($(#[$doc:meta])* $name:ident: $first:ident $(| $other:ident)*;)+) => {
         /// The stages that an object goes through.
@@ -106,7 +107,7 @@ macro_rules! switches {
         }
 
         impl Switches {
-            /// The stages of an object for which these effects are on.
+            /// The stages of an object with these effects.
             pub(super) fn of(is_on: impl Fn(Effect) -> bool) -> Self {
                 Self { $($name: is_on(Effect::$first) $(|| is_on(Effect::$other))*,)+ }
             }
@@ -125,27 +126,27 @@ macro_rules! switches {
 }
 
 switches! {
-    /// Returns whether vertices may lie before the near plane or outside the guard band.
+    /// Returns whether vertices may lie in front of the near plane or outside the guard band.
     clips: NearClipping | ScreenClipping;
-    /// Returns whether faces turned away are culled.
+    /// Returns whether back faces are culled.
     culls: BackFaceCulling;
     /// Returns whether suns or lamps shine on it.
     is_lit: Lighting;
     /// Returns whether some material has a highlight.
     has_highlights: Specular;
-    /// Returns whether a face has shades that differ.
+    /// Returns whether the shades of a face may differ.
     interpolates: Gouraud;
     /// Returns whether light is computed at pixels.
     lights_pixels: Phong;
     /// Returns whether faces are split.
     tessellates: Tessellation;
-    /// Returns whether fog lies before it.
+    /// Returns whether fog affects it.
     has_fog: Fog;
     /// Returns whether there are three channels of light.
     has_channels: RgbChannels;
     /// Returns whether some surface has a texture.
     has_texture: Texture;
-    /// Returns whether some surface mirrors an image.
+    /// Returns whether some surface reflects an environment map.
     has_environment: EnvironmentMap;
     /// Returns whether textures have mipmaps.
     has_mipmaps: Mipmaps;
@@ -162,7 +163,7 @@ switches! {
 pub(crate) struct Stages {
     pub(super) switches: Switches,
     pub(crate) vertices: VertexStage,
-    /// The least distance of the object's bounds, along the view.
+    /// The least distance of the object's bounds along the view.
     pub(crate) nearest: f64,
     pub(crate) lighting: Lighting,
     pub(crate) lit_at: LitAt,
@@ -170,8 +171,8 @@ pub(crate) struct Stages {
     /// The mapping of texture coordinates.
     pub(crate) mapping: Mapping,
     pub(crate) dither: Dither,
-    /// Surfaces without an image get one that changes nothing: by force.
+    /// Whether surfaces without an image get one that changes nothing, because it was forced.
     pub(crate) neutral_image: bool,
-    /// Opaque surfaces pass through a table that changes nothing: by force.
+    /// Whether opaque surfaces go through a table that changes nothing, because it was forced.
     pub(crate) neutral_blend: bool,
 }

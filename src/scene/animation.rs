@@ -1,4 +1,4 @@
-//! Colours that move while the picture stays: the DAC is loaded anew, and nothing is drawn.
+//! Colours that move while the picture stays: only the DAC is reloaded, and nothing is drawn.
 
 use core::ops::RangeInclusive;
 
@@ -6,23 +6,23 @@ use super::motion::part;
 use crate::palette::Palette;
 use crate::vga::Vga;
 
-/// A change of the palette as time passes.
+/// A change of the palette over time.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 #[expect(clippy::large_enum_variant, reason = "a scene has one at most")]
 pub enum PaletteAnimation {
     /// A fade to another palette and back.
     Fade {
-        /// The other one.
+        /// The other palette.
         to: Palette,
-        /// The time of both ways together, in seconds; above 0.
+        /// The time there and back, in seconds; above 0.
         period: f64,
     },
-    /// Entries move up, round and round.
+    /// A range of entries rotates upward.
     Cycle {
-        /// The entries that move.
+        /// The range.
         range: RangeInclusive<u8>,
-        /// The time of one round, in seconds; above 0.
+        /// The time of one rotation, in seconds; above 0.
         period: f64,
     },
 }
@@ -34,7 +34,7 @@ impl PaletteAnimation {
             Self::Fade { to, period } => {
                 let part = part(seconds, *period);
                 let there = if part > 0.5 { 2.0 - 2.0 * part } else { 2.0 * part };
-                // 0 to 256; the cast truncates after the half.
+                // 0 to 256; the cast truncates after 0.5 is added.
                 vga.fade(palette, to, (there * 256.0 + 0.5) as u16);
             }
             Self::Cycle { range, period } => {

@@ -1,38 +1,37 @@
-//! The eye.
+//! The camera.
 
 use glam::Vec3;
 
 use crate::angle::Angle;
 
-/// The eye: a perspective camera.
+/// A perspective camera.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
     /// The position of the eye.
     pub eye: Vec3,
-    /// The point that it looks at: the middle of the picture.
+    /// The point that it looks at, in the middle of the picture.
     pub target: Vec3,
-    /// The direction that is up in the picture. If it lies along the view, another axis is taken.
+    /// The direction that is up in the picture. If it is parallel to the view, another axis is used.
     pub up: Vec3,
-    /// The angle between the upper and the lower edge of the picture; above 0, below 180°.
+    /// The vertical field of view; above 0, below 180°.
     pub field_of_view: Angle,
-    /// The near distance, in the scene's units, above 0: nothing nearer is drawn. It also sets the unit of depth, so it
-    /// is best not much smaller than needed.
+    /// The near distance, in the scene's units, above 0: nothing nearer is drawn. It also sets the unit of depth, so do
+    /// not make it much smaller than needed.
     pub near: f32,
 }
 
 impl Camera {
-    /// 40°, rounded to an f32: about that of a 4:3 screen at the length of an arm and a half.
+    /// 40°, rounded to an f32: about what a 4:3 screen covers at one and a half arm's lengths.
     pub const FIELD_OF_VIEW: Angle = Angle::from_radians((40.0 * core::f32::consts::PI / 180.0) as f64);
 
-    /// The share of the picture's height that a framed sphere fills.
+    /// The fraction of the picture's height that a framed sphere fills.
     const FILL: f32 = 15.0 / 16.0;
 
-    /// Makes a camera that looks along −z at a sphere, which fills fifteen sixteenths of the picture's height.
+    /// Makes a camera looking along −z at a sphere, which fills fifteen sixteenths of the picture's height.
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
-        // Half the angle under which the sphere is seen, and the distance at which its sine is that.
-        // The distance is at most f32::MAX, so that a sphere of that size is still something to look
-        // at.
+        // Half the angle that the sphere subtends, and the distance at which its sine gives the radius. The distance is
+        // at most f32::MAX, so even a sphere of that size is in front of the eye.
         let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW.to_radians() as f32 / 2.0));
         let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
         let eye = centre + Vec3::Z * distance;
@@ -45,7 +44,7 @@ impl Camera {
         }
     }
 
-    /// The near distance that suffices for a target at a distance: a 128th of it.
+    /// The near distance that suffices for a target at this distance: 1/128 of it.
     #[must_use]
     pub fn near_for(distance: f32) -> f32 {
         (distance / 128.0).max(f32::MIN_POSITIVE)
@@ -53,7 +52,7 @@ impl Camera {
 }
 
 impl Default for Camera {
-    /// The camera that looks along −z at the unit sphere round the origin, in which every shape lies.
+    /// The camera that looks along −z at the unit sphere around the origin, into which every built-in shape fits.
     fn default() -> Self {
         Self::framing(Vec3::ZERO, 1.0)
     }

@@ -2,7 +2,7 @@
 
 use crate::palette::Rgb;
 
-/// Fog, by distance along the view.
+/// Fog that thickens linearly with the distance along the view.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fog {
     /// The colour that everything fades into.
@@ -25,7 +25,7 @@ impl Fog {
         Ok(())
     }
 
-    /// The share of fog at a distance: 0, none, to 1, nothing else.
+    /// The share of fog at a distance, from 0 (none) to 1 (nothing but fog).
     #[must_use]
     pub fn level(&self, distance: f64) -> f64 {
         let (start, end) = (f64::from(self.start), f64::from(self.end));

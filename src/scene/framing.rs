@@ -1,17 +1,17 @@
-//! Cameras whose picture holds everything, by hulls: no sphere about a body, and no trial pictures.
+//! Cameras that fit everything into the picture, computed from hulls: without bounding spheres or trial renderings.
 //!
-//! The eye looks along −z from the depth d and the height c. A view whose half height is k at the distance 1 holds the
-//! point (x, y, z) if −k·(d − z) ≤ y − c ≤ k·(d − z). That is so for every point of a body if and only if
+//! The eye looks along −z from depth d and height c. A view whose half height is k at distance 1 contains the point (x,
+//! y, z) if −k·(d − z) ≤ y − c ≤ k·(d − z). This holds for every point of an object if and only if
 //!
 //! ```text
 //! max(y + k·z) − k·d  ≤  c  ≤  k·d − max(−y + k·z)
 //! ```
 //!
-//! Some c fits if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The width has the same inequality. So the least distance
-//! comes from the body's farthest points in four directions, in one pass over its vertices.
+//! A suitable c exists if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The width has the same inequality. So the least
+//! distance follows from the object's extreme points in four directions, in one pass over its vertices.
 //!
-//! A vertex of a body that turns about an axis sweeps a ring. Its point with the greatest product with n lies in the
-//! plane of n and the axis: r·|n⊥| + h·n∥, for the ring's radius r and its height h.
+//! A vertex of an object that turns about an axis sweeps a ring. The ring's extreme point in direction n lies in the
+//! plane of n and the axis, and its product with n is r·|n⊥| + h·n∥, for the ring's radius r and height h.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -21,18 +21,18 @@ use glam::Vec3;
 use super::{Camera, Object, Path, object};
 use crate::angle::Angle;
 
-/// The share of the picture's width or height that is filled, whichever is filled more.
+/// The fraction of the picture's width or height that is filled, whichever is filled more.
 const FILL: f64 = 0.9;
-/// The picture's width to its height: that of the screens of 1994.
+/// The aspect ratio of the picture: that of the screens of 1994.
 const ASPECT: f64 = 4.0 / 3.0;
-/// The min distance of the eye from the nearest point, in parts of the depth of everything.
+/// The min distance of the eye from the nearest point, as a fraction of the depth of everything.
 const CLEARANCE: f64 = 1.0 / 64.0;
-/// Rounds until the picture is centred. Each comes closer quadratically; two or three are enough.
+/// The max number of iterations until the picture is centred. Convergence is quadratic; two or three suffice.
 const ROUNDS: usize = 8;
 
 type Row = [f64; 3];
 
-/// The way in which an object turns.
+/// How an object turns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Turning {
     /// It does not turn.
@@ -49,15 +49,15 @@ pub struct Swept {
     shape: Shape,
 }
 
-/// The places that the pivot goes to.
+/// The positions of the pivot.
 enum Places {
-    /// One point, or any place between two of these.
+    /// One point, or anything between two or more.
     Points(Vec<Row>),
-    /// A circle round a centre, by two radii.
+    /// A circle: its centre, and two radius vectors.
     Round(Row, [Row; 2]),
 }
 
-/// The shape that is covered about the pivot.
+/// The shape covered about the pivot.
 enum Shape {
     Points(Vec<Row>),
     /// Rings about an axis: radius and height.
@@ -67,7 +67,7 @@ enum Shape {
 }
 
 impl Swept {
-    /// The space that `object` covers, turning so, and going along `path` if there is one.
+    /// The space that `object` covers while it turns in this way, and moves along `path` if there is one.
     pub fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
             Turning::Still => Shape::Points(points(object, object.angles)),
@@ -92,7 +92,7 @@ impl Swept {
         Self { path, shape }
     }
 
-    /// The point that is farthest in each direction.
+    /// The extreme point in each direction.
     fn farthest<const N: usize>(&self, directions: &[Row; N]) -> [Row; N] {
         let offsets: [Row; N] = match &self.shape {
             Shape::Points(points) => best(points, |point, i| dot(*point, directions[i])),
@@ -103,7 +103,7 @@ impl Swept {
                 let ring: [_; N] = best(rings, |[radius, height], i| radius * lengths[i] + height * along[i]);
                 core::array::from_fn(|i| {
                     let [radius, height] = ring[i];
-                    // Seen along the axis every point of a ring is as far.
+                    // Seen along the axis, all points of a ring are equally far.
                     let part = if lengths[i] > 0.0 { radius / lengths[i] } else { 0.0 };
                     added(axis.map(|c| c * height), across[i], part)
                 })
@@ -123,21 +123,21 @@ impl Swept {
     }
 }
 
-/// The side and the angle from which everything is looked at.
+/// The direction and field of view for a camera that is to be placed.
 pub struct Viewpoint {
-    /// The direction towards the eye, of any length but zero.
+    /// The direction towards the eye, of any length except zero.
     pub direction: Vec3,
     /// Up in the picture.
     pub up: Vec3,
-    /// The angle from the picture's upper to its lower edge.
+    /// The vertical field of view.
     pub field_of_view: Angle,
-    /// The middle of the picture, if it is given.
+    /// The middle of the picture, if it is fixed.
     pub target: Option<Vec3>,
 }
 
 impl Viewpoint {
-    /// Returns the nearest camera that has everything within nine tenths of its picture; `None` if there is nothing, or if
-    /// it reaches farther than f32.
+    /// Returns the nearest camera with everything inside nine tenths of its picture; `None` if there is nothing to
+    /// show, or if it reaches beyond f32.
     pub fn camera(&self, everything: &[Swept]) -> Option<Camera> {
         let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
         let axes @ [right, up, towards] = axes(towards.map(|c| -c), widen(self.up))?;
@@ -165,7 +165,7 @@ impl Viewpoint {
         };
         let place = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
         let target = self.target.map_or(place(z), widen);
-        // So far that f32 tells the eye from what it looks at.
+        // Far enough away that in f32 the eye differs from the target.
         let least =
             target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
         let distance = (depth - z).max(least);
@@ -184,11 +184,11 @@ impl Viewpoint {
     }
 }
 
-/// The middle of the picture to the right and up, for an eye at this depth, such that equally much is seen to either
-/// side of it.
+/// The centre of the picture, to the right and up, for an eye at this depth, such that the margins on opposite sides
+/// are equal.
 ///
-/// A view of half height k that touches an upper and a lower point has its middle between them. The points that are
-/// farthest for it give the next k: Newton's method on a convex function, which the true k makes zero.
+/// A view of half height k that touches an upper and a lower point has its centre between them. The extreme points for
+/// it give the next k: Newton's method on a convex function whose root is the true k.
 fn middle(everything: &[Swept], towards: Row, edges: [(Row, f64); 2], depth: f64) -> Option<[f64; 2]> {
     let (mut edges, mut middles) = (edges, [0.0; 2]);
     for _ in 0..ROUNDS {
@@ -208,13 +208,13 @@ fn middle(everything: &[Swept], towards: Row, edges: [(Row, f64); 2], depth: f64
     Some(middles)
 }
 
-/// Across each edge of a picture: right, left, up, down.
+/// The normals of the four edges of a picture: right, left, up, down.
 fn sides(towards: Row, [(right, wide), (up, high)]: [(Row, f64); 2]) -> [Row; 4] {
     let side = |axis: Row, k: f64, sign: f64| added(axis.map(|c| sign * c), towards, k);
     [side(right, wide, 1.0), side(right, wide, -1.0), side(up, high, 1.0), side(up, high, -1.0)]
 }
 
-/// The farthest point of everything in each direction.
+/// The extreme point of everything in each direction.
 fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Option<[Row; N]> {
     let each: Vec<[Row; N]> = everything.iter().map(|swept| swept.farthest(directions)).collect();
     (!each.is_empty()).then(|| {
@@ -223,7 +223,7 @@ fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Opti
     })
 }
 
-/// The entry of a list, which is not empty, with the greatest of each of N values; of equals the first.
+/// The entry of a non-empty list with the greatest of each of N values; the first if several are equal.
 fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -> [T; N] {
     let mut best = [(list[0], f64::NEG_INFINITY); N];
     for entry in list {
@@ -237,7 +237,7 @@ fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -
     best.map(|(entry, _)| entry)
 }
 
-/// The vertices that an object's triangles use, about its pivot, at these angles.
+/// The vertices used by an object's triangles, relative to its pivot, at these angles.
 fn points(object: &Object, angles: [Angle; 3]) -> Vec<Row> {
     let mesh = object.mesh();
     let mut used = vec![false; mesh.positions().len()];
@@ -249,11 +249,11 @@ fn points(object: &Object, angles: [Angle; 3]) -> Vec<Row> {
     places.map(|(p, _)| turn.map(|row| dot(row, added(widen(*p), pivot, -1.0)))).collect()
 }
 
-/// The unit directions right, up and backwards, for a view in the unit direction `forward`. Returns `None` only if that
-/// is no direction.
+/// The unit vectors right, up and backwards for a view in the unit direction `forward`. Returns `None` only if
+/// `forward` is not a direction.
 pub(crate) fn axes(forward: Row, up: Row) -> Option<[Row; 3]> {
-    // The axis that is farthest from the view serves where `up` lies along it. Within 10⁻⁶ of it the direction of the
-    // product is mostly rounding of the f32 that made it.
+    // If `up` is parallel to the view, the axis farthest from the view replaces it. Within 10⁻⁶ of parallel, the cross
+    // product's direction is mostly rounding error of the f32 input.
     let least = (0..3).fold(0, |best, i| if forward[i].abs() < forward[best].abs() { i } else { best });
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
@@ -283,22 +283,22 @@ pub(crate) fn unit(v: Row) -> Option<Row> {
     (length > 0.0).then(|| v.map(|c| c / length))
 }
 
-/// `a` and so many times `b`.
+/// `a` + `times` · `b`.
 fn added(a: Row, b: Row, times: f64) -> Row {
     [a[0] + b[0] * times, a[1] + b[1] * times, a[2] + b[2] * times]
 }
 
-/// To the nearest f32 that is finite.
+/// Rounds to the nearest finite f32.
 fn narrow(v: Row) -> Vec3 {
     let [x, y, z] = v.map(|c| (c as f32).clamp(-f32::MAX, f32::MAX));
     Vec3::new(x, y, z)
 }
 
-/// The tilt at which an object that turns about its own upward axis fills the height of a 4:3 picture as well as its
-/// width: the lower it is, the more it is seen from above. It is `least` or more.
+/// The tilt at which an object that turns about its own up axis fills the height of a 4:3 picture as well as its width:
+/// flatter objects are seen more from above. It is at least `least`.
 ///
-/// The object turns within a cylinder of radius r and height h. Seen from far away and tilted by θ, that is 2r wide and
-/// 2r·sin θ + h·cos θ high, which is √(4r² + h²)·sin(θ + atan(h / 2r)).
+/// The object turns within a cylinder of radius r and height h. Seen from far away and tilted by θ, the cylinder is 2r
+/// wide and 2r·sin θ + h·cos θ high, which is √(4r² + h²)·sin(θ + atan(h / 2r)).
 pub fn tilt(object: &Object, least: Angle) -> Angle {
     let (mut square, mut low, mut high) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
     for [x, y, z] in points(object, [Angle::default(); 3]) {
@@ -306,19 +306,19 @@ pub fn tilt(object: &Object, least: Angle) -> Angle {
         (low, high) = (low.min(y), high.max(y));
     }
     let (width, height) = (2.0 * libm::sqrt(square), high - low);
-    // Not a number for a point, infinite for what is higher than the picture.
+    // NaN for a single point, infinite for an object higher than the picture.
     let sine = width / ASPECT / libm::sqrt(width * width + height * height);
     let tilt = libm::asin(sine) - libm::atan2(height, width);
     if tilt > least.to_radians() { Angle::from_radians(tilt) } else { least }
 }
 
 impl Camera {
-    /// Makes a camera that looks along −z at an object that turns about its own upward axis: its `angles` about x and z
-    /// stay, the one about y goes round. Over the whole turn it fills nine tenths of a 4:3 picture's width or height,
-    /// whichever it fills more, and stays in the middle.
+    /// Makes a camera looking along −z at an object that turns about its own up axis: its `angles` about x and z stay,
+    /// the one about y runs through the full circle. Over the whole turn the object fills nine tenths of a 4:3
+    /// picture's width or height, whichever it fills more, and stays centred.
     ///
-    /// The hull counts, not a sphere about it, and the space that the hull sweeps over. That takes a few passes over
-    /// the vertices.
+    /// The fit uses the space swept by the object's hull, not a bounding sphere. That takes a few passes over the
+    /// vertices.
     ///
     /// ```
     /// use mode13h::Angle;
@@ -337,8 +337,7 @@ impl Camera {
         Self::framing_object(object, Turning::Upright)
     }
 
-    /// Makes a camera that looks along −z at an object as it stands, which fills as much of the picture and is in the
-    /// middle of it.
+    /// Makes a camera looking along −z at an object in its current pose, filling as much of the picture, and centred.
     #[must_use]
     pub fn framing_still(object: &Object) -> Self {
         Self::framing_object(object, Turning::Still)
@@ -347,7 +346,7 @@ impl Camera {
     fn framing_object(object: &Object, turning: Turning) -> Self {
         let from = Viewpoint { direction: Vec3::Z, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, target: None };
         let swept = Swept::new(object, turning, None);
-        // A body that reaches farther than f32 cannot be framed exactly.
+        // An object that reaches beyond f32 cannot be framed exactly.
         from.camera(&[swept]).unwrap_or_else(|| {
             let bounds = object.mesh().bounds();
             let radius = (bounds.radius + bounds.centre.distance(object.pivot)) * object.scale;
@@ -364,15 +363,15 @@ mod tests {
     use crate::scene::{Scene, UpAxis};
     use core::f64::consts::TAU;
 
-    /// The number of angles of a turn that are tried.
+    /// The number of angles tested per turn.
     const ANGLES: u32 = 720;
-    /// Between two of them a vertex comes nearer to where it is farthest by at most 1 − cos(π / 720) of its radius,
-    /// 9.5·10⁻⁶; perspective makes up to 1.2 times that of it, as the eye is at least 2.3 radii away. The camera's numbers
-    /// are f32, of 2⁻²⁴ each.
+    /// Between two tested angles a vertex misses its extreme by at most 1 − cos(π / 720) of its radius, 9.5·10⁻⁶;
+    /// perspective magnifies that up to 1.2 times, since the eye is at least 2.3 radii away. The camera's numbers are
+    /// f32, with an error of 2⁻²⁴ each.
     const MIN: f64 = FILL - 2e-5;
     const MAX: f64 = FILL + 2e-6;
 
-    /// The parts of the picture that are reached over a turn, −1 to 1 from edge to edge, the slow way: every vertex at every
+    /// The extent of the picture covered over a turn, −1 to 1 from edge to edge, the slow way: every vertex at every
     /// angle. To the left, right, below and above.
     fn reached(object: &Object, camera: &Camera) -> [f64; 4] {
         let towards = unit(added(widen(camera.eye), widen(camera.target), -1.0)).expect("a direction");
@@ -410,7 +409,7 @@ mod tests {
         );
     }
 
-    /// So many corners in a box about a middle.
+    /// A mesh of `corners` random vertices in a box around `middle`.
     fn mesh(random: &mut Random, corners: u32, sizes: [f64; 3], middle: [f64; 3]) -> Mesh {
         let place = |i: usize, random: &mut Random| (middle[i] + random.around_zero(sizes[i])) as f32;
         let positions = (0..corners).map(|_| Vec3::from_array(core::array::from_fn(|i| place(i, random)))).collect();
@@ -426,7 +425,7 @@ mod tests {
             match number % 6 {
                 // Flat.
                 1 => sizes[number / 6 % 3] = 0.0,
-                // A needle, as far as the tilt lets it be seen.
+                // A needle, as thin as the tilt lets it be seen.
                 2 => (sizes[number / 6 % 3], sizes[(number / 6 + 1) % 3]) = (size * 1e-4, size * 1e-4),
                 _ => {}
             }
@@ -436,7 +435,7 @@ mod tests {
             object.up_axis = if number % 2 == 0 { UpAxis::Y } else { UpAxis::Z };
             let scene = Scene::showing(object.clone());
             check(&alloc::format!("mesh {number}"), &scene.objects()[0], &scene.camera);
-            // About another point, tilted otherwise, elsewhere and of another size.
+            // With another pivot, tilt, position and scale.
             object.pivot = object.mesh().bounds().centre + Vec3::splat(size as f32 * 0.5);
             object.position = Vec3::new(random.around_zero(size) as f32, size as f32, 0.0);
             object.scale = 2.5;
@@ -449,8 +448,8 @@ mod tests {
         }
     }
 
-    /// The cylinder that a box turns in is 3/4 as high as it is wide, seen from far away, if it is low; a high one and what
-    /// has no size keep the least tilt.
+    /// A flat box: seen from far away, the cylinder it turns in is 3/4 as high as it is wide. A high object and one
+    /// without extent keep the least tilt.
     #[test]
     fn a_low_object_is_tilted_until_it_fills_the_height() {
         let least = Angle::from_radians(0.35);
@@ -469,7 +468,7 @@ mod tests {
         }
     }
 
-    /// A vertex that triangles do not use is not seen.
+    /// A vertex that no triangle uses is not visible.
     #[test]
     fn a_vertex_that_no_triangle_uses_does_not_count() {
         let corners = vec![Vec3::X, Vec3::Y, Vec3::Z];
@@ -479,7 +478,7 @@ mod tests {
         assert_eq!(plain, with_more);
     }
 
-    /// Points, lines seen end on, the least and the greatest sizes: a camera that looks somewhere, with the mesh beyond
+    /// Points, lines seen end on, the least and the greatest sizes: the camera has a direction, and the mesh is beyond
     /// its near plane.
     #[test]
     fn what_has_no_size_or_too_much_has_a_legal_camera() {
@@ -509,8 +508,7 @@ mod tests {
         }
     }
 
-    /// A still object is held by its points, whatever side it is seen from, and one that turns anyhow by its sphere;
-    /// along paths, too.
+    /// A still object is framed by its points from any side, one that turns freely by its sphere; along paths, too.
     #[test]
     fn everything_is_in_the_picture_wherever_it_moves() {
         let mut random = Random::again(2);
@@ -551,7 +549,7 @@ mod tests {
                 fullest[number % 3] = fullest[number % 3].min(most);
             }
         }
-        // A still one exactly; of the others not every angle was looked at.
+        // Exact for a still object; for the others not every angle was tested.
         assert!(fullest[0] > FILL - 1e-5 && fullest[1] > 0.88, "{fullest:?}");
     }
 }

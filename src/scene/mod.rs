@@ -1,15 +1,15 @@
-//! Scenes: objects, a camera, lights, fog, a palette; their motions; settings.
+//! Scenes: objects, a camera, lights, fog, a palette, their motions, and settings.
 //!
 //! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it again. Errors in it
-//! (a position that is not finite, a camera that looks nowhere) are refused when it is drawn.
+//! (a position that is not finite, a camera without a direction) are reported when it is drawn.
 //!
 //! | file | what |
 //! |---|---|
-//! | `object` | [`Object`]: a mesh, where it is, what it is made of |
+//! | `object` | [`Object`]: a mesh, its position and rotation, its materials |
 //! | `camera` | [`Camera`] |
-//! | `framing` | from where a picture holds everything |
+//! | `framing` | cameras that fit everything into the picture |
 //! | `fog` | [`Fog`] |
-//! | `motion` | [`Motion`]: everything from absolute time |
+//! | `motion` | [`Motion`]: positions and angles from absolute time |
 //! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
 
 mod animation;
@@ -38,45 +38,45 @@ pub use motion::{Motion, Moving, Path};
 pub(crate) use object::matrix_product;
 pub use object::{Object, UpAxis};
 
-/// An object of a scene, as [`Scene::add`] returned it. Valid until the object is removed.
+/// An object in a scene, as returned by [`Scene::add`]. Valid until the object is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct ObjectId(u32);
 
-/// A light of a scene, as [`Scene::add_light`] returned it. Valid until the light is removed.
+/// A light in a scene, as returned by [`Scene::add_light`]. Valid until the light is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct LightId(u32);
 
 /// A scene: everything that is drawn.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// A name for people.
+    /// The display name.
     pub name: String,
-    /// The eye.
+    /// The camera.
     pub camera: Camera,
     /// Ia: the intensity of ambient light.
     pub ambient: f32,
-    /// The index that the frame is cleared to.
+    /// The palette index that the frame is cleared to.
     pub background: u8,
-    /// The colour that [`background`](Self::background) was chosen for, if it was: another palette has another nearest
-    /// entry.
+    /// The colour that [`background`](Self::background) was chosen for, if any; in another palette its nearest entry
+    /// differs.
     pub background_color: Option<Rgb>,
-    /// The palette that the DAC is loaded with when the scene is drawn; with `None` it is left alone.
-    /// Materials that name ramps are drawn in the nearest entries, dithered, if it has none.
+    /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
+    /// no ramps, materials that name one are drawn with the nearest entries, dithered.
     pub palette: Option<Palette>,
-    /// The change of the palette as time passes.
+    /// The change of the palette over time.
     pub palette_animation: Option<PaletteAnimation>,
     /// The fog between the eye and distant surfaces.
     pub fog: Option<Fog>,
-    /// How it is to be drawn, where the renderer's own settings are silent.
+    /// How to draw the scene, where the renderer's own settings leave it open.
     pub settings: Settings,
-    /// The palette is to be made from the scene's materials, by whoever draws it: `mode13h_assets::auto_palette`.
+    /// Asks the caller to make the palette from the scene's materials: `mode13h_assets::auto_palette`.
     pub auto_palette: bool,
-    /// The motions; [`set_time`](Self::set_time) puts objects, lights and camera in their places.
+    /// The motions; [`set_time`](Self::set_time) moves objects, lights and camera accordingly.
     pub motions: Vec<Motion>,
-    /// The duration of one round, in seconds; above 0. A film of that length that is played again and again has no
-    /// seam, if its motions take whole parts of it.
+    /// The duration of one loop, in seconds; above 0. An animation of that length repeats without a seam if every
+    /// motion's period divides it.
     pub duration: f64,
-    /// The moment of a single picture, in seconds: that which shows the scene's subject best.
+    /// The time of a still picture, in seconds: the moment that shows the scene's subject best.
     pub picture: f64,
     time: f64,
     objects: Vec<Object>,
@@ -85,16 +85,15 @@ pub struct Scene {
     lights: Vec<Light>,
     /// The ids, one for each light, ascending.
     light_ids: Vec<LightId>,
-    /// The id that is given next.
+    /// The next id to hand out.
     next_id: u32,
 }
 
 impl Scene {
-    /// The tilt of the upper end of a [shown](Self::showing) object towards the eye.
+    /// The angle by which the top of a [shown](Self::showing) object is tilted towards the eye.
     pub const TILT: Angle = Angle::from_radians(0.35);
 
-    /// Makes an empty scene, dark but for ambient light, in greys, seen by the default camera; a round of it takes four
-    /// seconds.
+    /// Makes an empty scene with ambient light only, a grey palette, the default camera, and a loop of four seconds.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -120,12 +119,12 @@ impl Scene {
         }
     }
 
-    /// Makes a scene that shows a mesh, or an object with materials and an upward axis of its own: in the middle,
-    /// filling the picture, turning about its middle, one sun from the upper right behind the eye.
+    /// Makes a scene that shows a mesh, or an object with its own materials and up axis: centred, filling the picture,
+    /// turning about its centre, lit by one sun from the upper right behind the eye.
     ///
-    /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once in a
-    /// [round](Self::duration): [`set_time`](Self::set_time) puts it in its place. Over the whole turn it fills nine
-    /// tenths of the picture's width or height ([`Camera::framing_turn`]).
+    /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once per
+    /// [loop](Self::duration), driven by [`set_time`](Self::set_time). Over the whole turn it fills nine tenths of the
+    /// picture's width or height ([`Camera::framing_turn`]).
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -141,8 +140,8 @@ impl Scene {
         Self::showing_turned(object.into(), |_| [Self::TILT, Angle::default()])
     }
 
-    /// Makes a scene that [shows](Self::showing) an object at other angles about x and y at first. `angles` is given the object
-    /// in its place.
+    /// Makes a scene that [shows](Self::showing) an object with other initial angles about x and y. `angles` receives
+    /// the object once it is centred.
     #[must_use]
     pub fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
         let mut object = object.centred();
@@ -158,7 +157,7 @@ impl Scene {
         scene
     }
 
-    /// Adds an object behind those there are.
+    /// Appends an object.
     pub fn add(&mut self, object: Object) -> ObjectId {
         let id = ObjectId(self.new_id());
         self.objects.push(object);
@@ -166,8 +165,8 @@ impl Scene {
         id
     }
 
-    /// Removes an object and returns it; `None` if it was removed before. The objects behind it move up by one index.
-    /// Motions that name it move nothing, and its children stand where their own positions put them.
+    /// Removes an object and returns it; `None` if it was removed before. The objects after it move down by one index.
+    /// Motions that name it have no effect, and its children are placed by their own positions alone.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -196,25 +195,25 @@ impl Scene {
         self.objects.get(self.index_of(id)?)
     }
 
-    /// An object, to change it; `None` if it was removed.
+    /// An object, mutably; `None` if it was removed.
     pub fn get_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
         let index = self.index_of(id)?;
         self.objects.get_mut(index)
     }
 
-    /// The ids of [`objects`](Self::objects), one for each.
+    /// The ids of [`objects`](Self::objects), in the same order.
     #[must_use]
     pub fn object_ids(&self) -> &[ObjectId] {
         &self.object_ids
     }
 
-    /// The ids of [`lights`](Self::lights), one for each.
+    /// The ids of [`lights`](Self::lights), in the same order.
     #[must_use]
     pub fn light_ids(&self) -> &[LightId] {
         &self.light_ids
     }
 
-    /// Adds a light behind those there are.
+    /// Appends a light.
     pub fn add_light(&mut self, light: Light) -> LightId {
         let id = LightId(self.new_id());
         self.lights.push(light);
@@ -235,43 +234,42 @@ impl Scene {
         self.light_ids.clear();
     }
 
-    /// A light, to change it; `None` if it was removed.
+    /// A light, mutably; `None` if it was removed.
     fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
         let index = self.light_ids.binary_search(&id).ok()?;
         self.lights.get_mut(index)
     }
 
-    /// Makes an id. Ids ascend, and none is given twice within 2³².
+    /// Makes an id. Ids ascend, and only repeat after 2³².
     fn new_id(&mut self) -> u32 {
         let id = self.next_id;
         self.next_id = self.next_id.wrapping_add(1);
         id
     }
 
-    /// The objects, in the order in which they were put in.
+    /// The objects, in the order in which they were added.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         &self.objects
     }
 
-    /// The objects, to change them.
+    /// The objects, mutably.
     pub fn objects_mut(&mut self) -> &mut [Object] {
         &mut self.objects
     }
 
-    /// The lights, in the order in which they were put in and are summed.
+    /// The lights, in the order in which they were added, which is the order of summation.
     #[must_use]
     pub fn lights(&self) -> &[Light] {
         &self.lights
     }
 
-    /// The lights, to change them.
+    /// The lights, mutably.
     pub fn lights_mut(&mut self) -> &mut [Light] {
         &mut self.lights
     }
 
-    /// Puts everything that moves in its place at a time, in seconds. Motions that name a missing object or light move
-    /// nothing.
+    /// Moves everything to its state at a time, in seconds. Motions that name a missing object or light have no effect.
     pub fn set_time(&mut self, seconds: f64) {
         self.time = seconds;
         for i in 0..self.motions.len() {
@@ -303,7 +301,7 @@ impl Scene {
         }
     }
 
-    /// The time that it was last [set](Self::set_time) to, in seconds; 0 at first.
+    /// The time it was last [set](Self::set_time) to, in seconds; initially 0.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time
@@ -325,7 +323,7 @@ impl Default for Scene {
     }
 }
 
-/// Panics, at the place of the caller who indexed the scene.
+/// Panics, naming the line of the caller who indexed the scene.
 #[cold]
 #[track_caller]
 fn not_there(what: &str) -> ! {
@@ -336,7 +334,7 @@ impl Index<ObjectId> for Scene {
     type Output = Object;
 
     /// # Panics
-    /// If the object was removed, or `id` is of another scene. [`get`](Scene::get) does not panic.
+    /// If the object was removed, or `id` is from another scene. [`get`](Scene::get) does not panic.
     #[track_caller]
     fn index(&self, id: ObjectId) -> &Object {
         self.get(id).unwrap_or_else(|| not_there("object"))
@@ -347,7 +345,7 @@ impl Index<LightId> for Scene {
     type Output = Light;
 
     /// # Panics
-    /// If the light was removed, or `id` is of another scene.
+    /// If the light was removed, or `id` is from another scene.
     #[track_caller]
     fn index(&self, id: LightId) -> &Light {
         let index = self.light_ids.binary_search(&id);
@@ -357,7 +355,7 @@ impl Index<LightId> for Scene {
 
 impl IndexMut<LightId> for Scene {
     /// # Panics
-    /// If the light was removed, or `id` is of another scene.
+    /// If the light was removed, or `id` is from another scene.
     #[track_caller]
     fn index_mut(&mut self, id: LightId) -> &mut Light {
         self.light_mut(id).unwrap_or_else(|| not_there("light"))
@@ -366,7 +364,7 @@ impl IndexMut<LightId> for Scene {
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
-    /// If the object was removed, or `id` is of another scene. [`get_mut`](Scene::get_mut) does not panic.
+    /// If the object was removed, or `id` is from another scene. [`get_mut`](Scene::get_mut) does not panic.
     #[track_caller]
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
         self.get_mut(id).unwrap_or_else(|| not_there("object"))

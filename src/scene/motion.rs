@@ -1,6 +1,6 @@
-//! Motions of a scene: from absolute time, never by adding up small steps.
+//! Motions in a scene, computed from absolute time, never by accumulating small steps.
 //!
-//! Frame n does not depend on whether the frames before it were drawn; a step of an hour, or back, is a step like any
+//! Frame n does not depend on whether the frames before it were drawn; a step of an hour, or backwards, works like any
 //! other.
 
 use core::f64::consts::TAU;
@@ -20,10 +20,10 @@ pub enum Motion {
         object: ObjectId,
         /// Its angles about x, y and z at time 0.
         start: [Angle; 3],
-        /// Turns a second about x, y and z. Whole turns over a film's length make it seamless.
+        /// Turns per second about x, y and z. Whole turns over an animation's length make it seamless.
         turns: [f64; 3],
     },
-    /// Something goes along a path.
+    /// Something moves along a path.
     Path {
         /// The thing that moves.
         what: Moving,
@@ -46,37 +46,36 @@ pub enum Moving {
     Target,
 }
 
-/// A path, and the time that it takes.
+/// A path with its period.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Path {
     /// Straight from one point to another, then again from the first.
     Line {
-        /// The point where it begins.
+        /// The starting point.
         from: Vec3,
-        /// The point where it ends.
+        /// The end point.
         to: Vec3,
-        /// The time that it takes, in seconds; above 0.
+        /// The period, in seconds; above 0.
         period: f64,
-        /// The path comes back the same way; both ways together then take the period.
+        /// Whether the path returns the same way; then there and back together take one period.
         back: bool,
     },
-    /// Round an axis through a point.
+    /// Around an axis through a point.
     Circle {
-        /// The middle.
+        /// The centre.
         centre: Vec3,
-        /// The radius to the point where it begins; it turns from there towards `towards`.
+        /// The radius vector to the starting point; from there it turns towards `towards`.
         from: Vec3,
-        /// The radius to the point a quarter of the way on.
+        /// The radius vector a quarter of the way around.
         towards: Vec3,
-        /// The time that a round takes, in seconds; above 0.
+        /// The time of one revolution, in seconds; above 0.
         period: f64,
     },
 }
 
 impl Path {
-    /// The point at a time in seconds. With a period that is not above 0, or a time that is not finite, the point where
-    /// the path begins.
+    /// The point at a time in seconds; the starting point if the period is not above 0 or the time is not finite.
     #[must_use]
     pub fn at(&self, seconds: f64) -> Vec3 {
         match *self {
@@ -104,16 +103,16 @@ impl Path {
     }
 }
 
-/// The part of a period that has passed since it last began: 0 to 1, below 1.
+/// The fraction of the current period that has passed: at least 0, below 1.
 pub(super) fn part(seconds: f64, period: f64) -> f64 {
     let periods = seconds / period;
     let part = periods - libm::floor(periods);
-    // The beginning, for a value that is not finite, and if rounding makes it 1.
+    // 0 for a value that is not finite, and where rounding makes it 1.
     if part < 1.0 { part } else { 0.0 }
 }
 
-/// Angles at a time: `start`, and `turns` a second. Whole turns are left out first, so that
-/// nothing is lost however late it is.
+/// The angles at a time: `start` plus `turns` per second. Whole turns are removed first, so no precision is lost at
+/// late times.
 pub(super) fn spun(start: [Angle; 3], turns: [f64; 3], seconds: f64) -> [Angle; 3] {
     core::array::from_fn(|i| {
         if turns[i] == 0.0 { start[i] } else { start[i] + Angle::TURN * part(seconds, 1.0 / turns[i]) }

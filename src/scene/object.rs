@@ -1,4 +1,4 @@
-//! A mesh in a scene: its place, its turn, its materials.
+//! Meshes in a scene, with position, rotation and materials.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -16,41 +16,41 @@ pub enum UpAxis {
     /// y, as in the scene.
     #[default]
     Y,
-    /// z: the mesh is laid back a quarter turn about x, exactly.
+    /// z: the mesh is first rotated back by a quarter turn about x, exactly.
     Z,
 }
 
-/// A mesh in the scene: its place, its turn, its materials.
+/// A mesh in a scene, with position, rotation and materials.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// A name for people.
+    /// The display name.
     pub name: String,
     mesh: Shared<Mesh>,
     /// The materials, one for each surface of the mesh.
     pub materials: Vec<Material>,
-    /// The point of the mesh, in its own coordinates, that it turns about.
+    /// The point that it rotates about, in the mesh's coordinates.
     pub pivot: Vec3,
-    /// The position of the pivot in the scene, or in the parent's own coordinates.
+    /// The position of the pivot in the scene, or in the parent's coordinates.
     pub position: Vec3,
-    /// The size in units of the mesh's; not negative.
+    /// The scale factor of the mesh; not negative.
     pub scale: f32,
     /// The axis of the mesh that points up.
     pub up_axis: UpAxis,
-    /// The object is drawn. The children of an object that is not drawn are not drawn either.
+    /// Whether the object is drawn. The children of an invisible object are not drawn either.
     pub visible: bool,
-    /// The object that it moves, turns and grows with; its position is then in that object's own coordinates, those of
-    /// the parent's mesh. A parent that was removed counts as none.
+    /// The object that it moves, rotates and scales with; its position is then in the coordinates of the parent's mesh.
+    /// A parent that was removed counts as none.
     pub parent: Option<ObjectId>,
-    /// The angles about x, y and z. The turn about z comes first, then y, then x: y spins the object like a turntable,
-    /// x tilts the table.
+    /// The angles about x, y and z. The rotation about z is applied first, then y, then x: y spins the object like a
+    /// turntable, x tilts the table.
     ///
-    /// The matrix is computed from the angles for every frame, never from a product of small steps, so it stays a
-    /// rotation for ever. Set from the time, frame n does not depend on whether the frames before it were drawn.
+    /// The matrix is computed from the angles in every frame, never as a product of small steps, so it always stays a
+    /// rotation. If the angles are set from the time, frame n does not depend on whether earlier frames were drawn.
     pub angles: [Angle; 3],
 }
 
 impl Object {
-    /// Returns whether any of its surfaces has a colour of its own: a texture, or a diffuse colour that is not grey.
+    /// Returns whether any of its surfaces is coloured: it has a texture, or a diffuse colour that is not grey.
     #[must_use]
     pub fn has_colors(&self) -> bool {
         let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
@@ -58,13 +58,13 @@ impl Object {
             || self.materials.iter().any(|material| material.texture.is_some())
     }
 
-    /// Makes an object of the mesh at the origin, not turned, in materials made from its surfaces: the first in the
-    /// palette's first ramp, the second in its second, and so on round.
+    /// Makes an object of the mesh at the origin, unrotated, with materials made from its surfaces: the first uses the
+    /// palette's first ramp, the second its second, and so on, wrapping around.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = mesh.into();
         let mesh = if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) };
-        // A palette has at most 256 ramps, a power of two, and they are counted round.
+        // A palette has at most 256 ramps, a power of two, and their numbers wrap around.
         let numbers = (0..=u16::MAX).cycle();
         let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
         Self {
@@ -81,14 +81,14 @@ impl Object {
         }
     }
 
-    /// Gives the object a name for people.
+    /// Sets the display name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// Puts the object at a position of the scene, or of its parent's coordinates.
+    /// Sets the position, in the scene or in the parent's coordinates.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -105,21 +105,21 @@ impl Object {
         self
     }
 
-    /// Gives the object a size, in units of its mesh's.
+    /// Sets the scale factor.
     #[must_use]
     pub fn scaled(mut self, scale: f32) -> Self {
         self.scale = scale;
         self
     }
 
-    /// Turns the object by angles about x, y and z, as in [`angles`](Self::angles).
+    /// Sets the angles about x, y and z, as in [`angles`](Self::angles).
     #[must_use]
     pub fn turned(mut self, angles: [Angle; 3]) -> Self {
         self.angles = angles;
         self
     }
 
-    /// Makes the object turn about the middle of its mesh, which then lies at `position`.
+    /// Moves the pivot to the centre of the mesh, which then lies at `position`.
     #[must_use]
     pub fn centred(mut self) -> Self {
         self.pivot = self.mesh.bounds().centre;
@@ -132,12 +132,12 @@ impl Object {
         &self.mesh
     }
 
-    /// The mesh, to be kept.
+    /// The mesh, for callers who store it.
     pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
         &self.mesh
     }
 
-    /// A copy with another mesh, and everything else as it is: `materials` must be those of the mesh.
+    /// Copies the object with another mesh and its `materials`, and everything else unchanged.
     pub(crate) fn with_mesh(&self, mesh: Shared<Mesh>, materials: Vec<Material>) -> Self {
         Self { mesh, materials, ..self.clone() }
     }
@@ -174,27 +174,26 @@ impl Object {
         Ok(())
     }
 
-    /// Turns the object further about the x axis.
+    /// Rotates the object further about the x axis.
     pub fn rotate_x(&mut self, angle: Angle) {
         self.angles[0] += angle;
     }
 
-    /// Turns the object further about the y axis.
+    /// Rotates the object further about the y axis.
     pub fn rotate_y(&mut self, angle: Angle) {
         self.angles[1] += angle;
     }
 
-    /// Turns the object further about the z axis.
+    /// Rotates the object further about the z axis.
     pub fn rotate_z(&mut self, angle: Angle) {
         self.angles[2] += angle;
     }
 
-    /// Sets the angles from a rotation, as a quaternion or a matrix gives it (`Mat3::from_quat`): afterwards
-    /// [`rotation`](Self::rotation) is that matrix, within 2 · 10⁻⁶ of each number. The up axis comes before it, as it does
-    /// before the angles.
+    /// Sets the angles from a rotation matrix, for instance `Mat3::from_quat`: afterwards [`rotation`](Self::rotation)
+    /// is that matrix, within 2 · 10⁻⁶ in each element, applied after the up axis, like the angles.
     ///
-    /// The columns are taken to be of unit length and at right angles, x to y to z as a right hand has them; any other matrix
-    /// gives some rotation. Numbers that are not finite are an error when the object is drawn.
+    /// The columns should be orthonormal and right-handed; any other matrix gives some rotation. Numbers that are not
+    /// finite are an error when the object is drawn.
     ///
     /// ```
     /// use mode13h::glam::{Mat3, Quat, Vec3};
@@ -211,19 +210,18 @@ impl Object {
         // The first row of x·y·z is (cy·cz, −cy·sz, sy).
         let cy = libm::hypot(at(0, 0), at(0, 1));
         let y = libm::atan2(at(0, 2), cy);
-        // Where y is a right angle, turns about x and about z are the same: all of it is one about x.
+        // At y = ±90° (gimbal lock), rotations about x and z coincide: all of it goes to x.
         let z = if cy > 1e-6 { libm::atan2(-at(0, 1), at(0, 0)) } else { 0.0 };
-        // What turns (sz, cz, 0) to (0, cx, sx): beside a right angle x makes up for what z is off by.
+        // The rotation that takes (sz, cz, 0) to (0, cx, sx): close to a right angle x makes up for the error of z.
         let (sz, cz) = libm::sincos(z);
         let x = libm::atan2(at(2, 0) * sz + at(2, 1) * cz, at(1, 0) * sz + at(1, 1) * cz);
         self.angles = [x, y, z].map(Angle::from_radians);
     }
 
-    /// The matrix that turns the mesh's directions into the scene's: its up axis, then its angles.
-    /// Orthonormal within 10⁻⁶.
+    /// The matrix from the mesh's directions to the scene's: its up axis, then its angles. Orthonormal within 10⁻⁶.
     #[must_use]
     pub fn rotation(&self) -> Mat3 {
-        // Rows, each rounded to the nearest f32.
+        // By rows, each number rounded to the nearest f32.
         Mat3::from_cols_array_2d(&self.turn().map(|row| row.map(|c| c as f32))).transpose()
     }
 
@@ -236,16 +234,16 @@ impl Object {
     pub(super) fn turned_by(&self, angles: [Angle; 3]) -> [[f64; 3]; 3] {
         match self.up_axis {
             UpAxis::Y => turn(angles),
-            // (x, y, z) stands up as (x, z, −y).
+            // (x, y, z) becomes (x, z, −y).
             UpAxis::Z => turn(angles).map(|[x, y, z]| [x, -z, y]),
         }
     }
 }
 
-/// An object's place in the world, its parents included: world = position + scale · turn · (point − pivot).
+/// An object's transform to the world, its parents included: world = position + scale · turn · (point − pivot).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Placement {
-    /// The turn, by rows.
+    /// The rotation matrix, by rows.
     pub(crate) turn: [[f64; 3]; 3],
     pub(crate) scale: f64,
     /// The position of its pivot.
@@ -253,13 +251,13 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// The place of an object without a parent.
+    /// The transform of an object without regard to its parent.
     pub(crate) fn of(object: &Object) -> Self {
         let position = object.position.to_array().map(f64::from);
         Self { turn: object.turn(), scale: f64::from(object.scale), position }
     }
 
-    /// The place in the coordinates of `parent`.
+    /// The transform applied within the coordinates of `parent`.
     fn within(self, parent: &Object) -> Self {
         let above = Self::of(parent);
         let pivot = parent.pivot.to_array().map(f64::from);
@@ -277,19 +275,19 @@ impl Placement {
 }
 
 impl Scene {
-    /// The objects that an object hangs from, the nearest first; at most as many as there are objects.
+    /// The parent of an object, its parent, and so on; at most as many as there are objects.
     fn ancestors(&self, index: usize) -> impl Iterator<Item = &Object> {
         let parent = |object: &Object| object.parent.and_then(|id| self.get(id));
         let first = self.objects().get(index).and_then(parent);
         core::iter::successors(first, move |object| parent(object)).take(self.objects().len())
     }
 
-    /// The place of an object, by its index.
+    /// The transform of the object with this index.
     pub(crate) fn placement(&self, index: usize) -> Placement {
         self.ancestors(index).fold(Placement::of(&self.objects()[index]), Placement::within)
     }
 
-    /// Returns whether an object is drawn, by its index: it and all that it hangs from are visible.
+    /// Returns whether the object with this index is drawn: it and all its ancestors are visible.
     #[must_use]
     pub fn is_visible(&self, index: usize) -> bool {
         self.objects().get(index).is_some_and(|object| object.visible)
@@ -323,7 +321,7 @@ impl From<Shared<Mesh>> for Object {
     }
 }
 
-/// The turn of angles about x, y and z, by rows: z first, then y, then x.
+/// The rotation matrix of angles about x, y and z, by rows: z is applied first, then y, then x.
 #[must_use]
 pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
     let [(sx, cx), (sy, cy), (sz, cz)] = angles.map(|angle| libm::sincos(angle.to_radians()));
@@ -361,7 +359,7 @@ mod tests {
     }
 
     proptest! {
-        /// Any rotation comes back, also beside where y is a right angle.
+        /// Any rotation is recovered, even close to gimbal lock.
         #[test]
         fn a_rotation_that_is_set_is_the_objects(
             (x, y, z) in (-4.0_f32..4.0, -4.0_f32..4.0, -4.0_f32..4.0),

@@ -1,5 +1,5 @@
-//! How to draw: the shadings, error budgets, ways to hidden surfaces and textures, and one struct of them all, for a scene
-//! and for a renderer alike.
+//! Drawing options: shadings, error budgets, hidden-surface methods, texture mappings, and one struct of all of them,
+//! used by scenes and renderers.
 
 #[cfg(feature = "alloc")]
 mod options;

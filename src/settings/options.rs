@@ -1,4 +1,4 @@
-//! One struct of choices, for a scene and for a renderer alike, and whose choice counts.
+//! The options struct that scenes and renderers share, and how the two are merged.
 
 use core::fmt;
 
@@ -6,47 +6,47 @@ use super::{DitherPattern, Mapping, Shading};
 use crate::names::named;
 
 named! {
-    /// The way to leave out hidden surfaces.
+    /// A method for removing hidden surfaces.
     pub enum HiddenSurfaces, "way to hidden surfaces" {
-        /// Faces turned away are not drawn; that is enough for one convex object.
+        /// Back faces are culled, which is enough for a single convex object.
         BackFaces = "back-faces",
-        /// Far to near, each over those before it. Right for convex objects that lie one behind the other, drawn object
-        /// by object. On request it is the painter's algorithm face by face, by the mean depth of a face's vertices:
-        /// wrong where faces overlap in a circle or pass through each other.
+        /// Far to near, each object over those before it. Correct for convex objects that lie one behind the other,
+        /// drawn object by object. If requested explicitly, it is the painter's algorithm by face, sorted by the mean
+        /// depth of a face's vertices: wrong where faces overlap cyclically or intersect.
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
-        /// All faces of the frame at once, row by row, each pixel written once
-        /// (`raster::scan_line`). The bytes equal those with the depth buffer.
+        /// All faces of the frame at once, row by row, each pixel written once (`raster::scan_line`). The bytes equal
+        /// those with the depth buffer.
         ScanLine = "scan-line",
     }
 }
 
 named! {
-    /// A way from a mesh to projected vertices. From there on both are drawn by the same raster.
+    /// A path from a mesh to projected vertices. From there on, the same raster draws both.
     #[derive(Default)]
     pub enum VertexPath, "vertex path" {
         /// Vertices in f32.
         #[default]
         Float = "float",
         /// Vertices in 16.16, by [`integer`](crate::integer). The scene's own numbers are floats, so they are
-        /// converted: a mesh when it is first seen, angles to the nearest 65,536th of a turn.
+        /// converted: a mesh when it is first seen, angles to the nearest 1/65,536 of a turn.
         Integer = "fixed",
     }
 }
 
-/// Accuracy of shades: one choice, so that a shading and a budget cannot both be set.
+/// The accuracy of shades: one enum, so that a shading and a budget cannot both be set.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Accuracy {
-    /// Every face gets this shading, and shades are as exact as it makes them.
+    /// Every face gets this shading, with whatever error it has.
     Shading(Shading),
-    /// Within this many shades of error, 1/255 of full intensity each: every face gets the cheapest shading that is known to
-    /// keep within. A number that is not above 0 and finite is an error when a scene is drawn.
+    /// An error of at most this many shades, each 1/255 of full intensity: every face gets the cheapest shading known
+    /// to stay within it. A number that is not above 0 and finite is an error when a scene is drawn.
     WithinError(f32),
 }
 
 impl Accuracy {
-    /// The shading; within an error the default, which is what faces get on which nothing has to be decided.
+    /// The shading; for an error budget the default, which faces get that need no decision.
     #[must_use]
     pub fn shading(self) -> Shading {
         match self {
@@ -55,7 +55,7 @@ impl Accuracy {
         }
     }
 
-    /// Accepted error in shades, if shadings are chosen by that.
+    /// The accepted error in shades, if there is an error budget.
     #[must_use]
     pub const fn max_error(self) -> Option<f32> {
         match self {
@@ -77,7 +77,7 @@ impl From<Shading> for Accuracy {
     }
 }
 
-/// The shading's name, or `within 4 shades`.
+/// Writes the shading's name, or `within 4 shades`.
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -89,8 +89,8 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// How to draw: what a scene asks for, and what a renderer is told instead. What is `None` in both is left to the plan,
-/// which chooses the cheapest that is right.
+/// Drawing options: a scene states its preferences, and a renderer may override them. Anything that is `None` in both
+/// is left to the plan, which chooses the cheapest method that is correct.
 ///
 /// ```
 /// use mode13h::settings::Settings;
@@ -102,29 +102,29 @@ impl fmt::Display for Accuracy {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Settings {
-    /// Accuracy of shades: a shading, or an error budget.
+    /// The accuracy of shades: a shading, or an error budget.
     pub accuracy: Option<Accuracy>,
-    /// Method for hidden surfaces, right or wrong.
+    /// The hidden-surface method, correct for the scene or not.
     pub hidden_surfaces: Option<HiddenSurfaces>,
-    /// Mapping of textures.
+    /// The mapping of textures.
     pub mapping: Option<Mapping>,
-    /// Mipmaps of textures, on or off.
+    /// Whether textures are mipmapped.
     pub mipmaps: Option<bool>,
-    /// The tessellation error, in shades of 1/255 of full intensity, above 0: faces are split until the shades on their
-    /// edges are linear to this. [`Shading::GouraudTessellated`] alone uses one shade.
+    /// The tessellation error, in shades of 1/255 of full intensity, above 0: faces are split until the shades along
+    /// their edges are linear to within this. [`Shading::GouraudTessellated`] alone uses one shade.
     pub tessellation: Option<f32>,
-    /// The pattern in which shades between two entries of a ramp are shown.
+    /// The dither pattern for shades between two entries of a ramp.
     pub dither: Option<DitherPattern>,
-    /// The numbers that vertices are made in; f32 unless 16.16 is asked for. 16.16 knows no error budget and not every
-    /// shading: there the shading is the nearest that it has.
+    /// The arithmetic for vertices; f32 unless 16.16 is requested. 16.16 has no error budget and not every shading; it
+    /// uses the nearest one that it has.
     pub vertex_path: Option<VertexPath>,
 }
 
 impl Settings {
-    /// The tessellation error that is asked for by a shading alone, in shades.
+    /// The tessellation error, in shades, if only the shading requests tessellation.
     const DEFAULT_TESSELLATION: f32 = 1.0;
 
-    /// These settings, and another's where these leave the choice open.
+    /// These settings, completed by those of `other`.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
         Self {
@@ -138,7 +138,7 @@ impl Settings {
         }
     }
 
-    /// The accuracy that the vertex path offers for what is asked.
+    /// The accuracy that the vertex path can provide for the one requested.
     #[must_use]
     pub fn drawn_accuracy(&self) -> Accuracy {
         match self.accuracy.unwrap_or_default() {
@@ -148,19 +148,19 @@ impl Settings {
         }
     }
 
-    /// Returns whether vertices are made in 16.16.
+    /// Returns whether vertices are transformed in 16.16.
     pub(crate) fn is_integer(&self) -> bool {
         self.vertex_path == Some(VertexPath::Integer)
     }
 
-    /// Returns whether faces are to be split. An error budget makes shades follow the light otherwise.
+    /// Returns whether faces are to be split. An error budget makes shades follow the light in other ways.
     pub(crate) fn tessellates(&self) -> bool {
         let accuracy = self.drawn_accuracy();
         let asks_for_splitting = accuracy.shading() == Shading::GouraudTessellated || self.tessellation.is_some();
         asks_for_splitting && accuracy.max_error().is_none()
     }
 
-    /// The shades to which the edges of faces that are split are linear.
+    /// The tolerance, in shades, to which the shades along the edges of split faces are linear.
     pub(crate) fn tolerance(&self) -> f32 {
         self.tessellation.unwrap_or(Self::DEFAULT_TESSELLATION)
     }
@@ -179,7 +179,7 @@ impl Settings {
 mod tests {
     use super::*;
 
-    /// Every combination of what a renderer and a scene may say about accuracy, against the table that it stands for.
+    /// Every combination of what a renderer and a scene may say about accuracy, against a table.
     #[test]
     fn the_renderer_counts_before_the_scene() {
         let phong = Accuracy::Shading(Shading::Phong);
@@ -193,7 +193,7 @@ mod tests {
                     assert_eq!(merged.accuracy.unwrap_or_default(), asked);
                     let drawn = match (vertex_path, asked) {
                         (VertexPath::Float, asked) => asked,
-                        // 16.16 has flat shades, and no light at pixels and no budget.
+                        // 16.16 has flat shading, but neither per-pixel light nor a budget.
                         (_, Accuracy::Shading(Shading::Flat)) => asked,
                         _ => Accuracy::default(),
                     };
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(of(Shading::GouraudTessellated.into(), Some(3.0)), (true, 3.0));
         assert_eq!(of(Shading::Phong.into(), Some(3.0)), (true, 3.0));
         assert_eq!(of(Shading::Phong.into(), None), (false, 1.0));
-        // Switched on by hand faces are split as the scene says.
+        // If switched on by hand, faces are split to the scene's tolerance.
         assert_eq!(of(Accuracy::WithinError(2.0), Some(3.0)), (false, 3.0));
     }
 }

@@ -1,4 +1,4 @@
-//! The shading of a face, as a scene, a renderer and the 16.16 path name it.
+//! Shadings of faces, as named by scenes, renderers and the 16.16 path.
 
 use crate::names::named;
 use crate::raster::Interpolation;
@@ -9,39 +9,40 @@ named! {
     pub enum Shading, "shading" {
         /// One shade for each face.
         Flat = "flat",
-        /// The method printed in the sources: vertices on whole pixels, a step for every span by a division that cuts.
-        /// Without exact cover (`raster::vintage`).
+        /// The method printed in the sources: vertices on whole pixels, and for every span a step from a truncating
+        /// division. Its cover is not exact (`raster::vintage`).
         GouraudVintage = "gouraud-vintage",
-        /// Linear between the vertices in 8.8, each row of a triangle one span.
+        /// Linear between the vertices in 8.8, with each row of a triangle as one span.
         Gouraud88 = "gouraud-8.8",
-        /// Linear between the vertices in 8.8, started anew every 64 pixels, each row of a triangle one span: the
+        /// Linear between the vertices in 8.8, reseeded every 64 pixels, with each row of a triangle as one span: the
         /// default.
         #[default]
         Gouraud88Reseeded = "gouraud-8.8-reseeded",
-        /// Linear between the vertices in 16.16, each row of a triangle one span.
+        /// Linear between the vertices in 16.16, with each row of a triangle as one span.
         Gouraud1616 = "gouraud-16.16",
-        /// Linear on the face in space, so perspective-correct: a quotient for every pixel.
+        /// Linear on the face in space, so perspective-correct: a division for every pixel.
         GouraudHyperbolic = "gouraud-hyperbolic",
         /// Faces split along their edges until linear shading fits.
         GouraudTessellated = "gouraud-tessellated",
-        /// The Phong of 1994: the normal's x and y linear, light from a table of 256 × 256 shades.
+        /// The Phong shading of 1994: the normal's x and y are linear, and light comes from a table of 256 × 256
+        /// shades.
         PhongTable = "phong-table",
-        /// The normal at every pixel, perspective-correct and made unit again, and the whole model.
+        /// The interpolated normal at every pixel, perspective-correct and renormalised, with the full lighting model.
         Phong = "phong",
-        /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: the method of a
-        /// program of today.
+        /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: what a program would
+        /// do today.
         Float = "gouraud-float",
     }
 }
 
 impl Shading {
-    /// Returns whether light is computed at every pixel, and not at the vertices or for a face.
+    /// Returns whether light is computed at every pixel rather than per vertex or per face.
     #[must_use]
     pub const fn lights_pixels(self) -> bool {
         matches!(self, Self::PhongTable | Self::Phong)
     }
 
-    /// The raster's interpolation for faces whose vertices are lit, if their shades differ.
+    /// The raster's interpolation for faces lit at their vertices, if the shades differ.
     #[must_use]
     pub const fn interpolation(self) -> Interpolation {
         match self {
@@ -59,13 +60,13 @@ impl Shading {
         }
     }
 
-    /// Returns whether its faces cover the pixels whose centres are in them, and no others.
+    /// Returns whether its faces cover exactly the pixels whose centres are inside them.
     #[must_use]
     pub const fn has_exact_cover(self) -> bool {
         self.interpolation().has_exact_cover()
     }
 
-    /// The shading of the 16.16 vertex path for it: itself, or the default if that path lacks it.
+    /// The shading used in its place on the 16.16 vertex path: itself, or the default if that path lacks it.
     #[must_use]
     pub const fn in_integers(self) -> Self {
         match self {

@@ -1,5 +1,5 @@
-//! The textures that are compiled in: integers from a hash, the same on every machine. `checker` and
-//! `bricks` repeat without a seam; `crate` is one side of a box, and `sky` is looked up by a normal.
+//! The built-in textures, computed in integers from a hash, so the same on every machine. `checker` and `bricks` tile
+//! seamlessly; `crate` is one side of a box, and `sky` is looked up by a normal.
 
 use alloc::vec::Vec;
 use core::str::FromStr;
@@ -9,14 +9,14 @@ use crate::UnknownName;
 use crate::palette::gradient::{Stop, fill};
 use crate::palette::{Ramp, Rgb};
 
-/// The texture of a name, of those that are compiled in.
+/// The built-in texture with this name.
 ///
 /// | name | texels | what |
 /// |---|---|---|
 /// | `crate` | 128 × 128 | the side of a wooden crate: planks, a frame, a brace across |
 /// | `checker` | 64 × 64 | squares of 8 × 8, light and dark |
 /// | `bricks` | 128 × 128 | a wall in running bond, eight courses |
-/// | `sky` | 128 × 128 | what a mirror sees outdoors, as a sphere map: a bright horizon, the sun, dark ground |
+/// | `sky` | 128 × 128 | what a mirror reflects outdoors, as a sphere map: a bright horizon, the sun, dark ground |
 impl FromStr for Texture {
     type Err = UnknownName;
 
@@ -32,10 +32,10 @@ impl FromStr for Texture {
 }
 
 impl Texture {
-    /// The names of the textures that are compiled in.
+    /// The names of the built-in textures.
     pub const NAMES: [&'static str; 4] = ["crate", "checker", "bricks", "sky"];
 
-    /// A square of 2^`bits` texels a side; `texel(x, y)` with y from the bottom up.
+    /// A square of 2^`bits` texels per side; `texel(x, y)` with y from the bottom up.
     fn square(bits: u32, colors: [Rgb; 256], texel: impl Fn(i32, i32) -> u8) -> Self {
         let side = 0..1 << bits;
         let texels: Vec<u8> =
@@ -44,7 +44,7 @@ impl Texture {
     }
 }
 
-/// Ramps one after the other, each of so many entries through these keys.
+/// Consecutive ramps, each with a number of entries and its keys.
 fn ramps(of: &[(u16, &[Stop])]) -> [Rgb; 256] {
     let mut colors = [Rgb::BLACK; 256];
     let mut first = 0_u16;
@@ -57,13 +57,13 @@ fn ramps(of: &[(u16, &[Stop])]) -> [Rgb; 256] {
     colors
 }
 
-/// An entry of a ramp: `first` and up to `entries` − 1 more.
+/// An entry of a ramp: `first` plus `shade`, clamped to 0 to `entries` − 1.
 fn entry(first: i32, entries: i32, shade: i32) -> u8 {
-    // At most 255, by the ramps above each.
+    // At most 255, since the ramps of each texture fit into 256 entries.
     (first + shade.clamp(0, entries - 1)) as u8
 }
 
-/// A hash, 0 to 255, that looks random.
+/// A pseudo-random hash, 0 to 255.
 fn hash(x: i32, y: i32, seed: u32) -> i32 {
     // The mixing step of MurmurHash3, on two coordinates; the signs do not matter.
     let mut h =
@@ -73,12 +73,12 @@ fn hash(x: i32, y: i32, seed: u32) -> i32 {
     ((h ^ (h >> 16)) & 255) as i32
 }
 
-/// Value noise, 0 to 255, on a lattice of cells of 2^`bits.0` × 2^`bits.1` texels that repeats after
-/// 128 texels each way.
+/// Value noise, 0 to 255, on a lattice with cells of 2^`bits.0` × 2^`bits.1` texels, with a period of 128 texels in
+/// both directions.
 fn noise(x: i32, y: i32, bits: (u32, u32), seed: u32) -> i32 {
     let (columns, rows) = (128 >> bits.0, 128 >> bits.1);
     let (cx, cy) = (x >> bits.0, y >> bits.1);
-    // How far into the cell, 0 to 255, eased: 3t² − 2t³.
+    // The position in the cell, 0 to 255, eased: 3t² − 2t³.
     let ease = |v: i32, bits: u32| {
         let t = ((v & ((1 << bits) - 1)) << 8) >> bits;
         (t * t * (768 - 2 * t)) >> 16
@@ -97,11 +97,11 @@ const WOOD: &[Stop] = &[
     Stop::new(255, 0xf0cc90),
 ];
 
-/// Entries of the wood's ramp.
+/// The number of entries of the wood's ramp.
 const WOODS: i32 = 96;
 
-/// A board: the shade of its wood where `along` runs with the grain and `across` lies `edge` texels from
-/// its lit edge and `far` from the other.
+/// A board: the shade of its wood, where `along` runs with the grain and `across` is `edge` texels from the lit edge
+/// and `far` from the other.
 fn board(along: i32, across: i32, edge: i32, far: i32, number: u32) -> i32 {
     let tone = 56 + hash(number as i32, 7, 11) % 13 - 6;
     let fibres = (noise(along, across, (4, 0), number) - 128) / 12;
@@ -130,7 +130,7 @@ fn wooden_crate() -> Texture {
             let lit = if nx == 0 && ny == 0 { 6 } else { 3 };
             return entry(WOODS, 8, lit - i32::from(y > 64 && from_bottom < 9 || y < 64 && y > 9) * 2);
         }
-        // Level boards above and below, over the uprights.
+        // Horizontal boards at top and bottom, over the uprights.
         if y < FRAME {
             return entry(0, WOODS, board(x, y, y, FRAME - 1 - y, 1));
         }
@@ -142,13 +142,13 @@ fn wooden_crate() -> Texture {
             let (across, number) = if x < FRAME { (x, 3) } else { (FRAME - 1 - from_right, 4) };
             return entry(0, WOODS, board(y, x, across, FRAME - 1 - across, number) - shadow(y - FRAME));
         }
-        // The brace from the lower left to the upper right corner; its width along x + y.
+        // The brace from the lower left to the upper right corner; `across` is its width, measured along x + y.
         let across = x + y - 127;
         if across.abs() <= 12 {
             let under = shadow(y - FRAME).max(shadow(x - FRAME));
             return entry(0, WOODS, board((x - y) & 127, across, across + 12, 12 - across, 5) - under);
         }
-        // Upright planks behind, 92 texels in five and a bit.
+        // Upright planks behind it: 92 texels make five and a bit.
         let (plank, place) = ((x - FRAME) / 18, (x - FRAME) % 18);
         let deep = shadow(y - FRAME).max(shadow(x - FRAME)).max(if across > 0 { shadow(across - 13) } else { 0 });
         // At most five planks.
@@ -156,7 +156,7 @@ fn wooden_crate() -> Texture {
     })
 }
 
-/// The darkness so many texels from an edge that casts a shadow.
+/// The darkening at this distance, in texels, from an edge that casts a shadow.
 fn shadow(distance: i32) -> i32 {
     (26 - 6 * distance).max(0)
 }
@@ -198,13 +198,13 @@ fn bricks() -> Texture {
     })
 }
 
-/// A sphere map. The texel at (u, v) is the reflection in a mirror whose normal, seen by the eye, is n = (2u − 1, 2v −
-/// 1, nz). The ray back along the view is r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight up half way from the middle to
-/// the top. The horizon runs across the middle and all round the rim, beyond which it goes on.
+/// A sphere map. The texel at (u, v) is the reflection in a mirror whose normal, in eye space, is n = (2u − 1, 2v − 1,
+/// nz). The view ray is reflected to r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight up half way from the middle to the
+/// top. The horizon runs across the middle and all around the rim, beyond which it continues.
 fn sky() -> Texture {
     const SKIES: i32 = 96;
     const GROUNDS: i32 = 64;
-    /// 1.0; its square, twice, fits in 32 bits.
+    /// 1.0; twice its square fits in 32 bits.
     const ONE: i32 = 1 << 14;
     let sky = [
         Stop::new(0, 0xfffcf0),
@@ -216,7 +216,7 @@ fn sky() -> Texture {
     let ground = [Stop::new(0, 0x2c2214), Stop::new(60, 0x4c3a22), Stop::new(255, 0xa88a58)];
     let colors = ramps(&[(96, &sky), (64, &ground)]);
     Texture::square(7, colors, |x, y| {
-        // The middle of a texel, −127/128 to 127/128.
+        // The centre of a texel, −127/128 to 127/128.
         let (nx, ny) = ((2 * x - 127) * (ONE / 128), (2 * y - 127) * (ONE / 128));
         let nz = (ONE * ONE - nx * nx - ny * ny).max(0).isqrt();
         let times = |a: i32, b: i32| a * b / ONE;
@@ -224,8 +224,8 @@ fn sky() -> Texture {
         if ny < 0 {
             return entry(SKIES, GROUNDS, -ry * (GROUNDS - 1) / ONE);
         }
-        // The sun stands at (−0.43, 0.55, 0.72): 1 − cos of the angle from it to the ray. Its glow ends
-        // at 28°, where that is 0.117.
+        // The sun is at (−0.43, 0.55, 0.72); this is 1 − cos of the angle from it to the ray. Its glow ends at 28°,
+        // where that is 0.117.
         let from_sun = ONE - (times(-7045, rx) + times(9011, ry) + times(11796, rz));
         let glow = from_sun.max(0) * 8 - ONE / 12;
         entry(0, SKIES, times(ry.min(glow), SKIES - 1))

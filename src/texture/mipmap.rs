@@ -1,5 +1,5 @@
-//! Mipmaps: a texture and smaller copies of it, each half as wide and half as high as the one before (L. Williams,
-//! *Pyramidal Parametrics*, SIGGRAPH 1983). A texel of level n is the mean of the 2ⁿ × 2ⁿ texels that it stands for.
+//! Mipmaps: a texture with smaller copies, each half as wide and half as high as the one before (L. Williams,
+//! *Pyramidal Parametrics*, SIGGRAPH 1983). A texel of level n is the mean of the 2ⁿ × 2ⁿ texels that it represents.
 
 use alloc::vec::Vec;
 
@@ -8,12 +8,12 @@ use crate::palette::MedianCut;
 use crate::palette::{NearestColors, Rgb};
 use crate::span::texture::Levels;
 
-/// The smaller copies of a texture, level 1 and up, and the colours that all its levels share.
+/// The smaller copies of a texture, level 1 and up, and the colours shared by all levels.
 ///
-/// Means are taken of colours, as values of the DAC with no gamma, in whole sums rounded once; a side of one texel is
-/// not halved. Means that are no colour of the texture get the entries that none of its texels has. If there is too
-/// little room for all of them, they are reduced to the room by median cut, and each texel then has the nearest. The
-/// texture's own texels keep their entries and their colours, so one table of shades serves every level.
+/// Colours are averaged as DAC values without gamma, in integer sums rounded once; a side of one texel is not halved.
+/// Means that are not a colour of the texture get the entries that none of its texels uses. If these are too few, the
+/// means are reduced by median cut, and each texel then gets the nearest. The texture's own texels keep their entries
+/// and colours, so one table of shades serves every level.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -26,7 +26,7 @@ use crate::span::texture::Levels;
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Mipmap {
-    /// The texels, level after level, from 1 on.
+    /// The texels, level by level, from level 1.
     texels: Vec<u8>,
     colors: [Rgb; 256],
     width_bits: u32,
@@ -63,13 +63,13 @@ impl Mipmap {
         Self { texels, colors, width_bits, height_bits }
     }
 
-    /// The colours of the texels of all levels, level 0 among them. Entries without a texel may be anything.
+    /// The colours of the texels of all levels, including level 0. Unused entries may be anything.
     #[must_use]
     pub fn colors(&self) -> &[Rgb; 256] {
         &self.colors
     }
 
-    /// The levels from 1 on.
+    /// The levels from 1 up.
     #[must_use]
     pub fn levels(&self) -> Levels<'_> {
         match Levels::new(&self.texels, self.width_bits, self.height_bits) {
@@ -78,10 +78,10 @@ impl Mipmap {
         }
     }
 
-    /// The colours of all levels with their weights: each level's together half as much as the one before's. `texture`
-    /// is the one that it was made from.
+    /// The colours of all levels with their weights: each level has half the total weight of the one before. `texture`
+    /// is the one that the mipmap was made from.
     pub fn weights(&self, texture: &Texture) -> Vec<(Rgb, u32)> {
-        // In 256ths of a texel of level 0.
+        // In 1/256 of a texel of level 0.
         let mut weights = texture.histogram().map(|count| count << 8);
         let mut rest = &self.texels[..];
         for level in 1..=Levels::deepest(self.width_bits, self.height_bits) {
@@ -94,14 +94,14 @@ impl Mipmap {
         self.colors.into_iter().zip(weights).collect()
     }
 
-    /// The number of bytes that it holds beside those of its texture.
+    /// The number of bytes that it takes in addition to its texture.
     #[must_use]
     pub(crate) fn bytes(&self) -> usize {
         self.texels.capacity() + size_of::<Self>()
     }
 }
 
-/// The mean colour of every texel of the levels from 1 on, and the number of texels of level 0 that it stands for.
+/// The mean colour of every texel of the levels from 1 up, and the number of level-0 texels that it represents.
 fn means(texture: &Texture) -> Vec<(Rgb, u32)> {
     let (width_bits, height_bits) = (texture.width_bits(), texture.height_bits());
     let mut means = Vec::with_capacity(Levels::length(width_bits, height_bits));
@@ -116,7 +116,7 @@ fn means(texture: &Texture) -> Vec<(Rgb, u32)> {
         .collect();
     for level in 1..=Levels::deepest(width_bits, height_bits) {
         let (width, height) = (1 << width_bits.saturating_sub(level), 1 << height_bits.saturating_sub(level));
-        // One or two of the level before.
+        // One or two columns and rows of the level before.
         let (columns, rows) = (1 + usize::from(level <= width_bits), 1 + usize::from(level <= height_bits));
         let sum = |x: usize, y: usize| {
             let of = |channel: usize| {

@@ -1,15 +1,15 @@
-//! Textures: 8-bit texels with their own colours, as they were drawn from in 1994.
+//! Textures: 8-bit texels with their own colours, as in 1994.
 //!
 //! | item | what |
 //! |---|---|
-//! | [`Texture`] | texels of powers of two, and up to 256 colours of their own |
+//! | [`Texture`] | texels with power-of-two sides, and up to 256 colours of their own |
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
-//! | `name.parse::<Texture>()` | those that are compiled in: crate, checker, bricks, sky |
-//! | [`Mipmap`] | a texture's smaller copies, for where it is far away |
+//! | `name.parse::<Texture>()` | the built-in ones: crate, checker, bricks, sky |
+//! | [`Mipmap`] | a texture's smaller copies, for distant surfaces |
 //! | `load`, `decode` | from a PNG file (feature `png`); a JPEG, TGA, BMP, GIF or WebP (feature `images`) |
 //!
-//! A texel is shaded by a table that [`Lut64K::shades`](crate::palette::Lut64K::shades) makes from a
-//! palette and the texture's colours, so a texture knows nothing of any palette.
+//! A texel is shaded by a table that [`Lut64K::shades`](crate::palette::Lut64K::shades) makes from a palette and the
+//! texture's colours, so a texture does not depend on any palette.
 
 mod builtin;
 mod mipmap;
@@ -24,22 +24,22 @@ use crate::palette::MedianCut;
 use crate::palette::{NearestColors, Rgb};
 pub use mipmap::Mipmap;
 
-/// The errors of texels, or pixels, that are no texture.
+/// The reason why texels or pixels cannot be made into a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TextureError {
-    /// A side of an indexed texture is no power of two up to 256.
+    /// A side of an indexed texture is not a power of two up to 256.
     Side {
-        /// Texels in a row.
+        /// The number of texels in a row.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
     },
     /// A side of a picture is 0 or above 4,096.
     Size {
-        /// Pixels in a row.
+        /// The number of pixels in a row.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
     },
     /// The number of texels or pixels is not width times height.
@@ -73,10 +73,9 @@ impl core::error::Error for TextureError {}
 
 /// A rectangle of texels, each an index into the texture's own colours.
 ///
-/// Width and height are powers of two from 1 to 256, so a texture repeats by leaving out bits: texel (x, y) stands at
-/// `(y mod height) << width_bits | (x mod width)`. Row 0 is at v = 0 and v runs up, as in OBJ files: row 0 is a
-/// picture's *bottom* row. Texel (x, y) covers u from x/width up to (x + 1)/width, v from y/height up to (y +
-/// 1)/height.
+/// Width and height are powers of two from 1 to 256, so wrapping is masking: texel (x, y) is at `(y mod height) <<
+/// width_bits | (x mod width)`. Row 0 is at v = 0 and v points up, as in OBJ files: row 0 is a picture's *bottom* row.
+/// Texel (x, y) covers u from x/width up to (x + 1)/width, v from y/height up to (y + 1)/height.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -109,13 +108,13 @@ impl Texture {
     /// The max number of texels in a row, and of rows.
     pub const MAX_SIDE: u32 = 256;
 
-    /// The max number of pixels in a row, and of rows, of a picture that becomes a texture.
+    /// The max number of pixels in a row, and of rows, of a picture made into a texture.
     pub const MAX_PICTURE_SIDE: u32 = 4096;
 
-    /// Makes a texture of texels, row after row from v = 0 up, and their colours.
+    /// Makes a texture from texels, row by row from v = 0 up, and their colours.
     ///
     /// # Errors
-    /// A side that is no power of two from 1 to 256; a number of texels other than `width·height`.
+    /// A side that is not a power of two from 1 to 256; a number of texels other than `width·height`.
     pub fn new(width: u32, height: u32, texels: Vec<u8>, colors: [Rgb; 256]) -> Result<Self, TextureError> {
         let is_side = |side: u32| side.is_power_of_two() && side <= Self::MAX_SIDE;
         if !is_side(width) || !is_side(height) {
@@ -129,18 +128,18 @@ impl Texture {
         Ok(Self { texels, colors, width_bits: width.ilog2(), height_bits: height.ilog2() })
     }
 
-    /// Makes a texture of one texel of one colour, which leaves a surface as plain as without it.
+    /// Makes a texture of a single texel, which leaves a surface as plain as without a texture.
     #[must_use]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
     }
 
-    /// Makes a texture of a picture's pixels, row after row from its top row down.
+    /// Makes a texture from a picture's pixels, row by row from its top row down.
     ///
-    /// Each side becomes the power of two up to 256 whose ratio to it is nearest to 1, by averaging
-    /// over the area that a texel covers, in exact fractions rounded once. (Values of the DAC are
-    /// averaged, with no gamma, as then.) More than 256 colours are reduced by median cut, and each
-    /// pixel gets the nearest that is left; up to 256 stay what they are.
+    /// Each side becomes the power of two up to 256 whose ratio to it is nearest to 1, by averaging over the area that
+    /// a texel covers, in exact fractions rounded once. (DAC values are averaged without gamma, as was usual then.)
+    /// More than 256 colours are reduced by median cut, and each pixel gets the nearest remaining one; up to 256 stay
+    /// unchanged.
     ///
     /// # Errors
     /// A side of 0 or above 4,096; a number of pixels other than `width·height`.
@@ -174,22 +173,22 @@ impl Texture {
         Self { texels, colors, ..*self }
     }
 
-    /// The texels, row after row from v = 0 up.
+    /// The texels, row by row from v = 0 up.
     #[must_use]
     #[inline]
     pub fn texels(&self) -> &[u8] {
         &self.texels
     }
 
-    /// The colours of the texels. Entries without a texel may be anything.
+    /// The colours of the texels. Unused entries may be anything.
     #[must_use]
     #[inline]
     pub fn colors(&self) -> &[Rgb; 256] {
         &self.colors
     }
 
-    /// The texture's colours on a surface of another: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
-    /// them as they are.
+    /// The texture's colours on a coloured surface: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
+    /// them unchanged.
     #[must_use]
     pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {
         self.colors.map(|color| color.modulate(tint))
@@ -201,34 +200,34 @@ impl Texture {
         self.recolored(self.tinted(tint))
     }
 
-    /// The texture with its texels in other colours.
+    /// The texture with other colours for its texels.
     #[must_use]
     pub fn recolored(&self, colors: [Rgb; 256]) -> Self {
         Self { texels: self.texels.clone(), colors, ..*self }
     }
 
-    /// The logarithm of the width: 0 to 8.
+    /// The binary logarithm of the width: 0 to 8.
     #[must_use]
     #[inline]
     pub fn width_bits(&self) -> u32 {
         self.width_bits
     }
 
-    /// The logarithm of the height: 0 to 8.
+    /// The binary logarithm of the height: 0 to 8.
     #[must_use]
     #[inline]
     pub fn height_bits(&self) -> u32 {
         self.height_bits
     }
 
-    /// Texels in a row: a power of two up to 256.
+    /// The number of texels in a row: a power of two up to 256.
     #[must_use]
     #[inline]
     pub fn width(&self) -> u32 {
         1 << self.width_bits
     }
 
-    /// Rows: a power of two up to 256.
+    /// The number of rows: a power of two up to 256.
     #[must_use]
     #[inline]
     pub fn height(&self) -> u32 {
@@ -253,8 +252,8 @@ impl fmt::Debug for Texture {
     }
 }
 
-/// Reduces the pixels to at most `most` colours, darkest first. Returns them and for each pixel the index of the
-/// nearest.
+/// Reduces the pixels to at most `most` colours, darkest first. Returns the index of the nearest colour for each pixel,
+/// and the colours.
 fn reduced(pixels: &[Rgb], most: u16) -> (Vec<u8>, [Rgb; 256]) {
     let mut sorted = pixels.to_vec();
     sorted.sort_unstable();

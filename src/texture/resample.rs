@@ -1,4 +1,4 @@
-//! Resamples a picture of any size by area to one whose sides are powers of two.
+//! Resampling by area from pictures of any size to power-of-two sides.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 use super::Texture;
 use crate::palette::Rgb;
 
-/// The logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1. Two equally near, which no whole
-/// number has, would give the larger.
+/// The binary logarithm of the power of two up to 256 whose ratio to `side` is nearest to 1. A tie, which no integer
+/// can produce, would give the larger.
 pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     let lower = side.ilog2();
     // 2ˡ and 2ˡ⁺¹ are equally near at their geometric mean, whose square is 2²ˡ⁺¹. At most 2²⁴.
@@ -15,8 +15,8 @@ pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     bits.min(Texture::MAX_SIDE.ilog2())
 }
 
-/// The parts of a row's pixels that lie in texel `i` of `to`: the pixels, and the share of each. A pixel counts `to`
-/// and a texel `from` units, so both rows are `from·to` long.
+/// The parts of a row's pixels that lie in texel `i` of `to`: each pixel with its share. A pixel is `to` and a texel
+/// `from` units long, so both rows are `from·to` long.
 fn parts(i: usize, from: usize, to: usize) -> impl Iterator<Item = (usize, u32)> {
     let (start, end) = (i * from, (i + 1) * from);
     (start / to..end.div_ceil(to)).map(move |pixel| {

@@ -7,9 +7,9 @@
 //! | 3C8h | index to write to | the index that the next third write would change |
 //! | 3C9h | red, green, blue in turn | red, green, blue in turn |
 //!
-//! There is one address register and one count of three for both directions, as in the chip that IBM took (Inmos IMS
-//! G171). Setting a read index leaves the address one further, so 3C8h then reads one more. Sources: IBM PS/2 technical
-//! reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does so too.
+//! There is one address register and one modulo-3 counter for both directions, as in the chip that IBM used (Inmos IMS
+//! G171). Setting a read index leaves the address one higher, so 3C8h then reads one more. Sources: IBM PS/2 technical
+//! reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does the same.
 
 use core::ops::{Bound, RangeBounds};
 
@@ -18,15 +18,15 @@ use crate::palette::{BIOS, Palette, Rgb};
 /// The palette registers of the card.
 #[derive(Clone, Debug)]
 pub struct Dac {
-    /// 0x00RRGGBB, each channel an expanded 6-bit value: the form that the scan-out looks up.
+    /// 0x00RRGGBB, each channel an expanded 6-bit value: the format that the scan-out looks up.
     pub(super) shown: [u32; 256],
     /// The pixel mask: every pixel's byte is ANDed with it on its way to the table.
     pub(super) mask: u8,
     address: u8,
     reading: bool,
-    /// The channel that comes next: 0 red, 1 green, 2 blue.
+    /// The next channel: 0 red, 1 green, 2 blue.
     channel: u8,
-    /// The colour on its way, in 6 bits.
+    /// The partly written colour, in 6 bits.
     latch: [u8; 3],
 }
 
@@ -50,7 +50,7 @@ impl Dac {
         Self { shown, mask: 0xFF, address: 0, reading: false, channel: 0, latch: [0; 3] }
     }
 
-    /// An entry as it is stored, 0 to 63 a channel; the pixel mask plays no part.
+    /// An entry as it is stored, 0 to 63 per channel, regardless of the pixel mask.
     #[must_use]
     pub const fn entry(&self, index: u8) -> [u8; 3] {
         Rgb::from_u32(self.shown[index as usize]).to_dac()

@@ -6,7 +6,7 @@
 //! | `vga/dac.rs` | [`Dac`]: 256 colours of 3 × 6 bits |
 //! | `vga/timing.rs` | [`timing`]: the beam, and the clock that the caller advances |
 //! | `vga/scan_out.rs` | bytes to RGB |
-//! | `vga/stamp.rs` | whether anyone touched the memory |
+//! | `vga/stamp.rs` | whether the memory was accessed |
 
 mod dac;
 mod scan_out;
@@ -23,7 +23,7 @@ use stamp::Stamp;
 
 /// A VGA card in mode 13h.
 ///
-/// It holds its 64 KiB in itself: on a small stack put it into a `static` or a box.
+/// It contains its 64 KiB of memory: if the stack is small, put it into a `static` or a box.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -48,34 +48,33 @@ pub struct Vga {
 }
 
 impl Vga {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub const WIDTH: usize = 320;
-    /// Rows.
+    /// The number of rows.
     pub const HEIGHT: usize = 200;
-    /// Bytes from a pixel to the one below it.
+    /// The number of bytes from a pixel to the one below it.
     pub const PITCH: usize = 320;
-    /// Bytes of memory that are shown: 64,000.
+    /// The number of bytes displayed: 64,000.
     pub const SHOWN: usize = Self::PITCH * Self::HEIGHT;
-    /// Bytes of memory: 65,536.
+    /// The number of bytes of memory: 65,536.
     pub const MEMORY: usize = 65_536;
-    /// A pixel's width to its height: 320 × 200 of them fill a 4:3 screen.
+    /// The ratio of a pixel's width to its height: 320 × 200 of them fill a 4:3 screen.
     pub const PIXEL_ASPECT: (u32, u32) = (5, 6);
 
-    /// The card as the BIOS leaves it: memory clear, the BIOS's colours, pixel mask 0xFF, the beam
-    /// at the first pixel.
+    /// The card as the BIOS leaves it: memory clear, the BIOS's colours, pixel mask 0xFF, the beam at the first pixel.
     #[must_use]
     pub const fn new() -> Self {
         Self { memory: [0; Self::MEMORY], stamp: Stamp::new(), dac: Dac::new(), ramps: 0, beam: Beam::new() }
     }
 
-    /// All 65,536 bytes; the first 64,000 are shown.
+    /// All 65,536 bytes; the first 64,000 are displayed.
     #[must_use]
     #[inline]
     pub const fn memory(&self) -> &[u8; Self::MEMORY] {
         &self.memory
     }
 
-    /// All 65,536 bytes, to be changed. Counts as an access, as [`stamp`](Self::stamp) shows.
+    /// All 65,536 bytes, mutably. Counts as an access for [`stamp`](Self::stamp).
     #[must_use]
     #[inline]
     pub fn memory_mut(&mut self) -> &mut [u8; Self::MEMORY] {
@@ -90,22 +89,21 @@ impl Vga {
         self.memory[wrapped(offset)]
     }
 
-    /// Stores a byte. Offsets wrap at 65,536; from 64,000 on the byte is stored but not shown.
+    /// Stores a byte. Offsets wrap at 65,536; from 64,000 on, the byte is stored but not displayed.
     #[inline]
     pub fn poke(&mut self, offset: u32, byte: u8) {
         self.stamp.renew();
         self.memory[wrapped(offset)] = byte;
     }
 
-    /// The 64,000 bytes that are shown: 320 × 200, row-major.
+    /// The 64,000 bytes that are displayed: 320 × 200, row-major.
     #[must_use]
     #[inline]
     pub const fn pixels(&self) -> &[u8] {
         self.memory.split_at(Self::SHOWN).0
     }
 
-    /// The 64,000 bytes that are shown, to be changed. Counts as an access, as
-    /// [`stamp`](Self::stamp) shows.
+    /// The 64,000 bytes that are displayed, mutably. Counts as an access for [`stamp`](Self::stamp).
     #[must_use]
     #[inline]
     pub fn pixels_mut(&mut self) -> &mut [u8] {
@@ -115,8 +113,8 @@ impl Vga {
 
     /// A number that changes with every mutable access to the memory, whether or not a byte changed.
     ///
-    /// Two cards with equal stamps hold equal bytes (see `vga/stamp.rs` for processors without
-    /// atomic instructions). The value means nothing else, and differs from run to run.
+    /// Two cards with equal stamps hold equal bytes (see `vga/stamp.rs` for processors without atomic instructions).
+    /// The value has no other meaning, and differs from run to run.
     #[must_use]
     #[inline]
     pub const fn stamp(&self) -> u64 {
@@ -152,8 +150,8 @@ impl Vga {
     /// Input status: bit 3 vertical retrace, bit 0 not displaying.
     const INPUT_STATUS: u16 = 0x3DA;
 
-    /// Lets time pass for port 3DAh. Any number of calls ends where one call with their sum would:
-    /// nothing is rounded.
+    /// Advances the clock behind port 3DAh. Nothing is rounded: any number of calls has the same effect as one call
+    /// with their sum.
     pub const fn advance(&mut self, nanoseconds: u64) {
         self.beam.advance(nanoseconds);
     }
@@ -170,16 +168,16 @@ impl Vga {
         &self.dac
     }
 
-    /// Loads all 256 entries, rounded down to 6 bits. The memory and the ports' index and count stay as they are; this
+    /// Loads all 256 entries, rounded down to 6 bits. The memory and the ports' index and counter are unchanged; this
     /// also holds for [`fade`](Self::fade) and [`cycle`](Self::cycle).
     pub fn set_palette(&mut self, palette: &Palette) {
         self.fade(palette, palette, 0);
     }
 
-    /// The palette as it is displayed: entry `i` is the colour of a pixel whose byte is `i`, through
-    /// the pixel mask, 6 bits expanded to 8. [`dac`](Self::dac) has the entries as they are stored.
+    /// The palette as it is displayed: entry `i` is the colour of a pixel whose byte is `i`, through the pixel mask,
+    /// with 6 bits expanded to 8. [`dac`](Self::dac) has the entries as they are stored.
     ///
-    /// Its ramps are those of the palette that was set last.
+    /// Its ramps are those of the palette that was last set.
     #[must_use]
     pub fn palette(&self) -> Palette {
         let mut colors = [Rgb::BLACK; 256];
@@ -189,17 +187,16 @@ impl Vga {
         Palette::from_parts(colors, self.ramps)
     }
 
-    /// Loads the palette that lies `t`/256 of the way from `from` to `to`: channel by channel
-    /// `(from·(256 − t) + to·t) >> 8` in 8 bits, then down to 6. `t` above 256 counts as 256. At 0
-    /// and 256 these are the palettes themselves.
+    /// Loads the palette `t`/256 of the way from `from` to `to`: channel by channel `(from·(256 − t) + to·t) >> 8` in 8
+    /// bits, then reduced to 6. `t` above 256 counts as 256. At 0 and 256 the result is `from` and `to` themselves.
     pub fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
         self.dac.fade(from, to, t);
         // At most 256.
         self.ramps = to.ramps() as u16;
     }
 
-    /// Moves the colours of a range of entries `steps` entries up, those pushed out at the top back
-    /// in at the bottom; negative steps move them down. A range that runs backwards is empty.
+    /// Rotates a range of entries upward by `steps`: entries pushed out at the top come back in at the bottom. Negative
+    /// steps rotate downward. A reversed range is empty.
     ///
     /// ```
     /// # use mode13h::vga::Vga;

@@ -1,13 +1,13 @@
-//! From bytes to colours, as the DAC does it on the fly.
+//! Conversion of frames from bytes to colours, which the DAC does on the fly.
 
 use super::Vga;
 
 impl Vga {
-    /// The frame as 64,000 pixels `0x00RRGGBB`, row-major: each byte ANDed with the pixel mask,
-    /// looked up, its 6 bits a channel expanded to 8.
+    /// Writes the frame as 64,000 pixels `0x00RRGGBB`, row-major: each byte is ANDed with the pixel mask, looked up,
+    /// and its 6 bits per channel are expanded to 8.
     ///
-    /// Fills as much of `out` as there is, from the start: all of a shorter buffer, the first
-    /// 64,000 pixels of a longer one; the rest is left alone.
+    /// Fills as much of `out` as there is, from the start: all of a shorter buffer, the first 64,000 pixels of a longer
+    /// one; the rest is left alone.
     ///
     /// ```
     /// use mode13h::vga::Vga;
@@ -22,7 +22,7 @@ impl Vga {
         let shown = out.len().min(Self::SHOWN);
         let (eights, rest) = self.pixels()[..shown].as_chunks::<8>();
         let (groups, out_rest) = out[..shown].as_chunks_mut::<8>();
-        // Eight bytes are loaded and masked at once: 16.6 µs a frame where one at a time took 21.5.
+        // Eight bytes are loaded and masked at once: 16.6 µs per frame instead of 21.5 one at a time.
         let masks = u64::from_le_bytes([self.dac.mask; 8]);
         for (group, eight) in groups.iter_mut().zip(eights) {
             let masked = (u64::from_le_bytes(*eight) & masks).to_le_bytes();
@@ -33,13 +33,12 @@ impl Vga {
         }
     }
 
-    /// A row as 320 pixels of 5 bits red, 6 green, 5 blue (red on top), for a display that is fed
-    /// row by row from a small buffer.
+    /// Writes a row as 320 pixels of 5 bits red, 6 green, 5 blue (red on top), for a display that is fed row by row
+    /// from a small buffer.
     ///
-    /// Fills as much of `out` as there is, as [`scan_out`](Self::scan_out) does. A row of 200 or
-    /// more leaves `out` alone.
+    /// Fills as much of `out` as there is, like [`scan_out`](Self::scan_out). A row of 200 or more leaves `out` alone.
     pub fn scan_out_row_rgb565(&self, row: usize, out: &mut [u16]) {
-        // Each colour is converted where it stands: a table of 256 for a row of 320 would hardly pay.
+        // Each colour is converted on the spot: a table of 256 would hardly pay for a row of 320.
         let Some(pixels) = self.pixels().chunks_exact(Self::WIDTH).nth(row) else { return };
         for (color, &pixel) in out.iter_mut().zip(pixels) {
             *color = self.dac.color_of(pixel).to_rgb565();

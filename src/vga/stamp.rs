@@ -1,22 +1,22 @@
-//! A number that tells whether the frame's memory was accessed.
+//! A number that shows whether the frame's memory was accessed.
 
 #[cfg(target_has_atomic = "ptr")]
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-/// The number of stamps that a machine takes from the common store at once: one atomic addition in so many accesses.
+/// The number of stamps that a machine reserves at once: one atomic addition per this many accesses.
 const BLOCK: u64 = 1 << 20;
 
-/// The number of blocks given out so far. Block 0 is for memory that was never touched: all of it is alike.
+/// The number of blocks given out so far. Block 0 is for memory that was never touched, which is the same everywhere.
 #[cfg(target_has_atomic = "ptr")]
 static BLOCKS: AtomicUsize = AtomicUsize::new(1);
 
-/// A stamp. Equal stamps mean equal memory, also between two machines: a renderer that drew into one would otherwise
-/// take the other's untouched frame for its own. (On a processor without atomic additions the stamps of two machines
-/// can meet; there a stamp speaks for one machine alone.)
+/// A stamp. Equal stamps mean equal memory, even between two machines; otherwise a renderer that drew into one could
+/// mistake the other's frame for its own, untouched. (On a processor without atomic additions the stamps of two
+/// machines can coincide; there a stamp is only valid for one machine.)
 #[derive(Debug)]
 pub(super) struct Stamp {
     value: u64,
-    /// The last stamp of the block that is this machine's own.
+    /// The last stamp of the block reserved for this machine.
     last: u64,
 }
 
@@ -41,7 +41,7 @@ impl Stamp {
 }
 
 impl Clone for Stamp {
-    /// The stamp of a copy. The copy's memory is equal, so its stamp is; its next one comes from a block of its own.
+    /// The stamp of a copy: the memory is equal, so the stamp is, too; its next one comes from a block of its own.
     fn clone(&self) -> Self {
         Self { value: self.value, last: self.value }
     }

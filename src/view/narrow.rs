@@ -1,11 +1,11 @@
-//! An object's way to the screen in f32, for vertices that are projected eight at a time.
+//! An object's transform in f32, for vertices that are projected eight at a time.
 
 use glam::{Mat3, Vec3};
 
 use super::ObjectView;
 use crate::raster::Vertex;
 
-/// An object's way to the screen in f32.
+/// An object's transform to the screen in f32.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Narrow {
     pub(crate) matrix: Mat3,
@@ -15,7 +15,7 @@ pub(crate) struct Narrow {
 }
 
 impl ObjectView {
-    /// The way in f32, unless f32 could overflow.
+    /// The transform in f32, unless f32 could overflow.
     pub(crate) fn narrow(&self) -> Option<Narrow> {
         let (matrix, offset) = self.fast?;
         Some(Narrow { matrix, offset, centre: self.centre, near: self.near })

@@ -1,13 +1,13 @@
-//! The window's own pixels, to be drawn on over the picture.
+//! The window's own pixels, for drawing over the picture.
 
 use super::area::Area;
 use crate::palette::Rgb;
 
-/// The window's pixels after the picture was stretched to them. [`Window::show_over`](super::Window::show_over) lends
-/// one.
+/// The window's pixels, after the picture was stretched over them, as lent by
+/// [`Window::show_over`](super::Window::show_over).
 ///
 /// With the feature `embedded-graphics` it is a `DrawTarget` of `Rgb888`: text, lines and shapes at the window's own
-/// resolution. Parts beyond the window are left out.
+/// resolution. Anything beyond the window is clipped.
 #[derive(Debug)]
 pub struct Canvas<'a> {
     pixels: &'a mut [u32],
@@ -17,7 +17,7 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas of its own, with a picture as large as fits, as in a window of this size. `None` unless there are
+    /// A standalone canvas with a picture as large as fits, as in a window of this size. `None` unless there are
     /// `width` × `height` pixels.
     pub fn new(pixels: &'a mut [u32], width: usize, height: usize) -> Option<Canvas<'a>> {
         (width.checked_mul(height) == Some(pixels.len())).then(|| Canvas {
@@ -28,7 +28,7 @@ impl<'a> Canvas<'a> {
         })
     }
 
-    /// The pixels of a picture that was stretched; as many as its size says.
+    /// The pixels of a stretched picture; their number must match its size.
     pub(super) fn over(pixels: &'a mut [u32], (width, height): (usize, usize), picture: Area) -> Canvas<'a> {
         Canvas { pixels, width, height, picture }
     }
@@ -53,8 +53,8 @@ impl<'a> Canvas<'a> {
         self.pixels
     }
 
-    /// The rows of a rectangle, as far as it lies on the canvas: for each its number, counted from the rectangle's top,
-    /// and its pixels.
+    /// The rows of the part of a rectangle that is on the canvas: for each, its number, counted from the rectangle's
+    /// top, and its pixels.
     fn rows_mut(&mut self, area: Area) -> impl Iterator<Item = (usize, &mut [u32])> {
         let across = area.left.min(self.width)..area.left.saturating_add(area.width).min(self.width);
         let rows = self.pixels.chunks_exact_mut(self.width.max(1)).skip(area.top).take(area.height);
@@ -66,15 +66,15 @@ impl<'a> Canvas<'a> {
         self.rows_mut(area).for_each(|(_, row)| row.fill(color.to_u32()));
     }
 
-    /// Fills a rectangle so that the pixels under it shine through: `share` of 255 is the new colour.
+    /// Blends a rectangle over the pixels under it: `share`, out of 255, is the opacity of the new colour.
     pub fn blend(&mut self, area: Area, color: Rgb, share: u8) {
         for pixel in self.rows_mut(area).flat_map(|(_, row)| row) {
             *pixel = Rgb::from_u32(*pixel).mix(color, share).to_u32();
         }
     }
 
-    /// Stretches a picture of `columns` pixels a row over a rectangle. Each pixel shows the one of the picture that its
-    /// centre falls in.
+    /// Stretches a picture with `columns` pixels per row over a rectangle. Each pixel shows the one of the picture that
+    /// contains its centre.
     pub fn stretch(&mut self, area: Area, colors: &[Rgb], columns: usize) {
         let rows = colors.len().checked_div(columns).unwrap_or(0);
         if rows == 0 {
@@ -118,7 +118,7 @@ mod draw_target {
         type Color = Rgb888;
         type Error = Infallible;
 
-        /// Pixels outside of the canvas are left out.
+        /// Pixels outside the canvas are ignored.
         fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(&mut self, pixels: I) -> Result<(), Infallible> {
             for Pixel(at, color) in pixels {
                 let (Ok(x), Ok(y)) = (usize::try_from(at.x), usize::try_from(at.y)) else { continue };
@@ -131,7 +131,7 @@ mod draw_target {
 
         fn fill_solid(&mut self, area: &Rectangle, color: Rgb888) -> Result<(), Infallible> {
             let area = area.intersection(&Rectangle::new(Point::zero(), self.size()));
-            // Not negative: the area lies on the canvas.
+            // Not negative: the area is on the canvas.
             let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
             let (width, height) = (area.size.width as usize, area.size.height as usize);
             self.fill(Area { left, top, width, height }, rgb(color));
@@ -146,7 +146,7 @@ mod tests {
 
     const SIZE: (usize, usize) = (7, 5);
 
-    /// Draws on a canvas of one colour and returns its pixels.
+    /// Draws on a single-coloured canvas and returns its pixels.
     fn drawn(draw: impl FnOnce(&mut Canvas<'_>)) -> Vec<u32> {
         let mut pixels = vec![0x102030; SIZE.0 * SIZE.1];
         draw(&mut Canvas::new(&mut pixels, SIZE.0, SIZE.1).expect("the right number of pixels"));

@@ -1,4 +1,4 @@
-//! From the pixels of a picture to a window of any shape.
+//! Stretching of pictures to windows of any shape.
 
 use std::mem;
 
@@ -7,17 +7,17 @@ use super::canvas::Canvas;
 use crate::export::Picture;
 use crate::vga::Vga;
 
-/// The stretched picture, kept from frame to frame so that nothing is allocated while the window keeps its size.
+/// The stretched picture, reused so that nothing is allocated while the window size is unchanged.
 #[derive(Default)]
 pub(super) struct Stretched {
-    /// The sizes of the window and of the picture in pixels, and the picture's width to its height.
+    /// The sizes of the window and of the picture in pixels, and the picture's aspect ratio.
     sizes: [(usize, usize); 3],
     place: Area,
-    /// For each column of the window's rectangle, the picture's column.
+    /// The picture's column for each column of the window's rectangle.
     columns: Vec<usize>,
     colors: Vec<u32>,
     pixels: Vec<u32>,
-    /// Something may be drawn beside the picture.
+    /// Whether something may have been drawn beside the picture.
     is_drawn_over: bool,
 }
 
@@ -33,14 +33,14 @@ impl Stretched {
     }
 
     /// Stretches the picture that `vga` displays to a window of this size: 0x00RRGGBB, row by row, black beside the
-    /// picture. Each pixel shows the one of the picture that its centre falls in.
+    /// picture. Each pixel shows the one of the picture that contains its centre.
     pub(super) fn vga(&mut self, vga: &Vga, window: (usize, usize)) -> &[u32] {
         self.colors.resize(Vga::SHOWN, 0);
         vga.scan_out(&mut self.colors);
         self.stretch([window, (Vga::WIDTH, Vga::HEIGHT), (4, 3)])
     }
 
-    /// Stretches a picture that was [checked](Picture::check) as [`vga`](Self::vga) does.
+    /// Stretches a [checked](Picture::check) picture in the same way as [`vga`](Self::vga).
     pub(super) fn picture(&mut self, picture: &Picture<'_>, window: (usize, usize)) -> &[u32] {
         let &Picture { width, height, palette, shape, .. } = picture;
         self.colors.clear();
@@ -69,7 +69,7 @@ impl Stretched {
             let start = (top + y) * width + left;
             let from = source(y, down, rows);
             if drawn == Some(from) {
-                // The same row of the picture as the row above, which is there already.
+                // This row shows the same row of the picture as the one above, so copy that.
                 self.pixels.copy_within(start - width..start - width + across, start);
             } else {
                 let row = &self.colors[from * columns..][..columns];
@@ -94,7 +94,7 @@ impl Stretched {
     }
 }
 
-/// The pixel of `from` that the centre of pixel `at` of `to` falls in: floor((at + ½) · from / to).
+/// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
 fn source(at: usize, to: usize, from: usize) -> usize {
     (2 * at + 1) * from / (2 * to)
 }
@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// A picture of any size and pitch, whose pixels have any shape.
+    /// A picture of any size and pitch, with pixels of any shape.
     #[test]
     fn a_picture_of_any_size_fills_what_fits_of_its_shape() {
         let palette = builtin::COPPER.clone();
@@ -171,7 +171,7 @@ mod tests {
                 assert_eq!(pixel, if is_beside { 0 } else { palette[index()].to_u32() }, "{x}, {y}");
             }
         }
-        // A picture of mode 13h is what its machine shows.
+        // A mode 13h picture equals what its machine shows.
         let mut vga = Vga::new();
         vga.pixels_mut().iter_mut().enumerate().for_each(|(i, byte)| *byte = (i * 7) as u8);
         let palette = vga.palette();
@@ -198,7 +198,7 @@ mod tests {
         for (x, y) in [(0.0, 0.0), (320.0, 200.0), (17.5, 99.25)] {
             let (wx, wy) = area.from_frame(x, y);
             let (bx, by) = area.to_picture(wx, wy, (320, 200));
-            // Four roundings of numbers below 1,024, of 24 bits: half of 2⁻¹⁴ each.
+            // Four roundings of numbers below 1,024 with 24 bits: half of 2⁻¹⁴ each.
             assert!((bx - x).abs() <= 2.0 / 16384.0 && (by - y).abs() <= 2.0 / 16384.0, "{bx}, {by}");
         }
         assert_eq!(area.from_frame(0.0, 0.0), (area.left as f32, area.top as f32));

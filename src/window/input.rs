@@ -9,54 +9,54 @@ use minifb::{InputCallback, MouseButton, MouseMode, Window};
 use super::area::Area;
 use super::key::Key;
 
-/// A notch of what minifb reports. On X11, where a wheel is a button, it counts its going down and its coming up.
+/// The value that minifb reports for one notch. On X11, where the wheel is a button, it counts both press and release.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
 
-/// The mouse's buttons that are down.
+/// The mouse buttons that are down.
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Buttons {
-    /// The left one.
+    /// The left button.
     pub left: bool,
-    /// The middle one.
+    /// The middle button.
     pub middle: bool,
-    /// The right one.
+    /// The right button.
     pub right: bool,
 }
 
-/// The user's input since the last frame, and the keys and buttons that are held.
+/// The user's input since the last frame, and the keys and buttons that are down.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Input {
     pressed: Vec<Key>,
-    /// The keys of `pressed` that went down while Shift was down.
+    /// The keys in `pressed` that went down while Shift was down.
     shifted: Vec<Key>,
     held: Vec<Key>,
     released: Vec<Key>,
-    /// The seconds since the last frame: what a game moves by.
+    /// The seconds since the last frame, for moving things in a game.
     pub elapsed: f64,
-    /// The characters that were typed since the last frame, by the user's own keyboard layout. A key that is held
-    /// repeats, as the desktop is set up.
+    /// The characters typed since the last frame, in the user's keyboard layout. Held keys repeat as configured on the
+    /// desktop.
     pub typed: String,
     /// The position of the mouse, in pixels of the picture, from the top left corner: 0 to 320 across and 0 to 200 down
-    /// while it is on a picture of mode 13h, `None` while it is outside of the window.
+    /// on a mode 13h picture; `None` outside the window.
     pub mouse: Option<(f32, f32)>,
-    /// The mouse's buttons that are down.
+    /// The mouse buttons that are down.
     pub buttons: Buttons,
-    /// The distance that the mouse was drawn with its left button down since the last frame, in pixels of the picture: to
-    /// the right and down.
+    /// How far the mouse was dragged with the left button since the last frame, in pixels of the picture: to the right
+    /// and down.
     pub drag: (f32, f32),
     /// The number of notches that the wheel was turned since the last frame; away from the user is positive.
     pub wheel: f32,
 }
 
 impl Input {
-    /// Returns whether the key went down since the last frame, however short it was.
+    /// Returns whether the key went down since the last frame, however briefly.
     pub fn pressed(&self, key: Key) -> bool {
         self.pressed.contains(&key)
     }
 
-    /// Returns whether the key went down since the last frame while Shift was down, however short both were.
+    /// Returns whether the key went down since the last frame while Shift was down, however briefly.
     pub fn pressed_with_shift(&self, key: Key) -> bool {
         self.shifted.contains(&key)
     }
@@ -66,12 +66,13 @@ impl Input {
         self.held.contains(&key)
     }
 
-    /// Returns whether the key was let go since the last frame. One that is held while the window is left counts as let go.
+    /// Returns whether the key was released since the last frame. A key that is down when the window loses focus counts
+    /// as released.
     pub fn released(&self, key: Key) -> bool {
         self.released.contains(&key)
     }
 
-    /// Returns whether the user did anything, or holds anything, after `before`.
+    /// Returns whether the user did anything since `before`, or holds a key or button.
     pub(super) fn differs(&self, before: &Input) -> bool {
         let Input { pressed, shifted: _, held, released: _, elapsed: _, typed, mouse, buttons, drag, wheel } = self;
         !(pressed.is_empty() && held.is_empty() && typed.is_empty())
@@ -80,15 +81,15 @@ impl Input {
     }
 }
 
-/// Keys and characters in the order in which the desktop reported them. minifb's own list of keys that were pressed
-/// leaves out those that went down and up again between two frames.
+/// Keys and characters in the order in which the desktop reported them. minifb's own list of pressed keys omits those
+/// that went down and up again between two frames.
 #[derive(Default)]
 struct Queue {
     keys: Vec<(Key, bool)>,
     typed: String,
 }
 
-/// Keys that went down, in order, those of them that did while Shift was down, and keys that were let go.
+/// The keys that went down, in order; those of them that did so while Shift was down; and the keys that were released.
 #[derive(Default)]
 struct Pressed {
     pressed: Vec<Key>,
@@ -102,7 +103,7 @@ pub(super) struct Events {
     queue: Rc<RefCell<Queue>>,
     held: Vec<Key>,
     active: bool,
-    /// The position of the mouse while its left button was down, in pixels of the frame.
+    /// The last position of the mouse with its left button down, in pixels of the frame.
     drawn_from: Option<(f32, f32)>,
 }
 
@@ -117,12 +118,12 @@ impl InputCallback for Events {
 }
 
 impl Events {
-    /// Collects the input since the last call.
-    /// `place` is the rectangle of the window that the picture fills, and `size` the picture's columns and rows.
+    /// Collects the input since the last call. `place` is the rectangle of the window that the picture fills, and
+    /// `size` the picture's columns and rows.
     pub(super) fn collect(&mut self, window: &Window, place: Area, size: (usize, usize)) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
         let Pressed { pressed, shifted, mut released } = self.follow(&keys);
-        // A window that is left hears nothing of keys that are let go meanwhile.
+        // A window without focus does not see key releases.
         let was_active = mem::replace(&mut self.active, window.is_active());
         if was_active && !self.active {
             released.append(&mut self.held);
@@ -139,13 +140,12 @@ impl Events {
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
-        // The window says how long the frame took.
+        // The window fills in how long the frame took.
         let (held, elapsed) = (self.held.clone(), 0.0);
         Input { pressed, shifted, held, released, elapsed, typed, mouse, buttons, drag, wheel }
     }
 
-    /// Applies key events in their order and gives the keys that went down. A key that repeats while it is held does
-    /// not go down again.
+    /// Applies key events in order and returns the keys that went down. Repeats of a held key do not count.
     fn follow(&mut self, events: &[(Key, bool)]) -> Pressed {
         let mut keys = Pressed::default();
         for &(key, down) in events {
@@ -164,7 +164,7 @@ impl Events {
         keys
     }
 
-    /// The distance that the mouse moved since the last call, if its button is and was down.
+    /// How far the mouse moved since the last call, if its button was down then and is now.
     fn draw(&mut self, at: Option<(f32, f32)>) -> (f32, f32) {
         let from = mem::replace(&mut self.drawn_from, at);
         match (from, at) {
@@ -184,7 +184,7 @@ mod tests {
         let keys = events.follow(&[(Key::S, true), (Key::S, false)]);
         assert_eq!((&keys.pressed[..], &keys.released[..]), (&[Key::S][..], &[Key::S][..]));
         assert!(events.held.is_empty());
-        // One that was not down is not let go.
+        // A key that was not down cannot be released.
         assert_eq!(events.follow(&[(Key::S, false)]).released, []);
     }
 
@@ -201,11 +201,11 @@ mod tests {
     fn shift_counts_if_it_is_down_when_the_key_goes_down() {
         let (down, up) = (true, false);
         let mut events = Events::default();
-        // Shift and the key both between two frames.
+        // Both Shift and the key go down and up between two frames.
         let keys = [(Key::LeftShift, down), (Key::B, down), (Key::B, up), (Key::LeftShift, up)];
         assert_eq!(events.follow(&keys).shifted, [Key::B]);
         assert_eq!(events.follow(&[(Key::B, down), (Key::B, up), (Key::RightShift, down)]).shifted, []);
-        // Shift since the frame before.
+        // Shift has been down since the frame before.
         assert_eq!(events.follow(&[(Key::B, down), (Key::RightShift, up)]).shifted, [Key::B]);
         assert_eq!(events.follow(&[(Key::B, up), (Key::B, down)]).shifted, []);
     }

@@ -1,9 +1,9 @@
 //! The keys of a keyboard.
 
-/// Lists the keys, each once: minifb's enum may change with its version, ours is the engine's.
+/// Lists the keys: minifb's enum may change between versions, while this one belongs to the engine.
 macro_rules! keys {
     ($($key:ident)*) => {
-        /// A key, named by what a keyboard of the United States has on it.
+        /// A key, named by its label on a US keyboard.
         #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
         #[non_exhaustive]
         #[expect(missing_docs, reason = "a key is its name")]

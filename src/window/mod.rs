@@ -1,7 +1,7 @@
-//! A window that shows a [`Vga`] or any other picture, and the user's input in it.
+//! A window that shows a [`Vga`] or any other picture, and its user input.
 //!
-//! [`run`] is a whole game's frame; [`Window`] is the same for programs that keep their own loop. Without a display
-//! both give a [`WindowError`] and no panic.
+//! [`run`] is the whole frame loop of a game; [`Window`] is for programs with their own loop. Without a display, both
+//! return a [`WindowError`] and do not panic.
 
 mod area;
 mod canvas;
@@ -28,12 +28,12 @@ use input::Events;
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
 const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
 
-/// The interval in which [`Window::rest`] looks for input: a key is answered within a twentieth of a second.
+/// The interval at which [`Window::rest`] checks for input: a key is answered within a twentieth of a second.
 const LOOK: Duration = Duration::from_millis(25);
-/// The interval in which [`Window::rest`] sends the picture again.
+/// The interval at which [`Window::rest`] resends the picture.
 const RESEND: Duration = Duration::from_millis(500);
 
-/// The decision whether the window stays open after a frame.
+/// Whether the window stays open after a frame.
 #[derive(Clone, Copy, Hash, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The next frame follows.
@@ -42,10 +42,10 @@ pub enum Flow {
     Close,
 }
 
-/// The result of a frame function of [`run`]: nothing (the window stays open), a [`Flow`], or a `Result` with either in
-/// it, whose error ends the run and is returned by it.
+/// The result of a frame function of [`run`]: nothing (the window stays open), a [`Flow`], or a `Result` with either,
+/// whose error ends the loop and is returned.
 pub trait FrameResult {
-    /// The error that [`run`] fails with.
+    /// The error type of [`run`].
     type Error: From<WindowError>;
 
     /// Returns whether the window stays open.
@@ -88,12 +88,12 @@ impl<E: From<WindowError>> FrameResult for Result<Flow, E> {
     }
 }
 
-/// Opens a window and calls `frame` for every frame, at most 70 times a second, until it returns [`Flow::Close`] or an
-/// error, or the user closes the window.
+/// Opens a window and calls `frame` for every frame, at most 70 times per second, until it returns [`Flow::Close`] or
+/// an error, or the user closes the window.
 ///
-/// `frame` is given the machine to draw on, the user's input since the last frame, and the seconds since the window
-/// opened. These are absolute: after a pause the next frame is drawn for the time that it is then, and no missed frame
-/// is made up for. The machine's own clock, which port 3DAh shows, moves with them.
+/// `frame` receives the machine to draw on, the user's input since the last frame, and the seconds since the window
+/// opened. This time is absolute: after a pause the next frame is drawn for the current time, and missed frames are not
+/// made up for. The machine's own clock, which port 3DAh shows, advances with it.
 ///
 /// # Errors
 ///
@@ -160,7 +160,7 @@ pub struct Window {
     window: minifb::Window,
     events: Events,
     input: Input,
-    /// The user did something in the time of the input.
+    /// Whether the user did something in the frame of `input`.
     has_input: bool,
     picture: Stretched,
     opened: Instant,
@@ -176,9 +176,9 @@ pub struct Window {
 
 impl Window {
     /// Opens a window: the largest of 4:3 that fits the screen, at most 960 × 720. The user may resize it; the picture
-    /// stays 4:3, with black beside it.
+    /// stays 4:3, with black bars beside it.
     ///
-    /// The screen is asked for its size on X11. Elsewhere the window opens at 960 × 720.
+    /// The size of the screen is only known on X11. Elsewhere the window opens at 960 × 720.
     ///
     /// # Errors
     ///
@@ -187,7 +187,7 @@ impl Window {
         screen::open(&printable(title)).map(Window::of).map_err(WindowError::new)
     }
 
-    /// Opens a window of this many columns and rows of the screen. The user may resize it.
+    /// Opens a window of this size in screen pixels. The user may resize it.
     ///
     /// # Errors
     ///
@@ -201,7 +201,7 @@ impl Window {
     }
 
     fn of(mut window: minifb::Window) -> Window {
-        // The loop below waits by itself, so that a late frame puts off those that follow.
+        // `wait` does the waiting, so that a late frame delays those after it.
         window.set_target_fps(0);
         let events = Events::default();
         window.set_input_callback(Box::new(events.clone()));
@@ -221,7 +221,7 @@ impl Window {
         }
     }
 
-    /// Changes the title.
+    /// Sets the title.
     pub fn set_title(&mut self, title: &str) {
         self.window.set_title(&printable(title));
     }
@@ -249,7 +249,7 @@ impl Window {
         self.send()
     }
 
-    /// Shows a picture of any size as [`show`](Self::show) shows a machine's: as large as fits, its pixels in their shape,
+    /// Shows a picture of any size, like [`show`](Self::show): as large as fits, its pixels in their aspect ratio,
     /// black beside it.
     ///
     /// # Errors
@@ -263,8 +263,8 @@ impl Window {
         self.send()
     }
 
-    /// Shows the picture as [`show`](Self::show) does, and what `over` draws over it, at the window's own resolution:
-    /// text that stays readable, panels that leave the picture as it is.
+    /// Shows the picture like [`show`](Self::show), with what `over` draws on top, at the window's own resolution: text
+    /// that stays readable, panels that leave the frame itself unchanged.
     ///
     /// # Errors
     ///
@@ -278,9 +278,9 @@ impl Window {
     }
 
     /// Leaves the last picture as it is, and waits until the user does something, at most for `longest`: next to no
-    /// work for a picture that stands still. Input is looked for every 25 ms.
+    /// work for a still picture. Input is checked every 25 ms.
     ///
-    /// A display may forget what a window shows while it is covered. So the picture is sent again twice a second.
+    /// A display may forget the contents of a covered window, so the picture is resent twice a second.
     ///
     /// # Errors
     ///
@@ -301,7 +301,7 @@ impl Window {
         }
     }
 
-    /// The window's columns and rows, for which the next picture is stretched.
+    /// The window's size in pixels, which the next picture is stretched to.
     pub fn size(&self) -> (usize, usize) {
         self.window.get_size()
     }
@@ -311,7 +311,7 @@ impl Window {
         let (width, height) = self.size();
         match self.picture.last(width, height) {
             Some(pixels) => self.window.update_with_buffer(pixels, width, height).map_err(WindowError::new)?,
-            // A window of no size, which a tiling desktop can make, or one that was resized since.
+            // A window of size zero, which a tiling desktop can make, or one that was resized since.
             None => self.window.update(),
         }
         self.sent = Instant::now();
@@ -327,8 +327,8 @@ impl Window {
         if self.window.is_open() { Flow::Continue } else { Flow::Close }
     }
 
-    /// Waits until so long after the last frame began. A late frame puts off those that follow: no missed frame is made
-    /// up for.
+    /// Waits until `period` has passed since the last frame began. A late frame delays those after it: missed frames
+    /// are not made up for.
     fn wait(&mut self, period: Duration) {
         let (now, due) = (Instant::now(), self.begun + period);
         self.begun = due.max(now);
@@ -336,12 +336,12 @@ impl Window {
     }
 }
 
-/// The display system takes no zero characters in a title; minifb prints to standard output when it is given one.
+/// Display systems accept no NUL in a title, and minifb prints to standard output when given one.
 fn printable(title: &str) -> String {
     title.replace('\0', " ")
 }
 
-/// The error of a display that does not exist or that went away, or of a picture that no window can show.
+/// The error of a missing or lost display, or of a picture that no window can show.
 pub struct WindowError {
     reason: Reason,
 }
@@ -357,7 +357,7 @@ impl WindowError {
     }
 }
 
-/// The first line of what another library says, without a stop at its end.
+/// The first line of another library's message, without a full stop at its end.
 fn first_line(said: &str) -> &str {
     said.lines().next().unwrap_or_default().trim_end_matches('.')
 }

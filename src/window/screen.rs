@@ -1,19 +1,19 @@
-//! The window's first size: the largest 4:3 that fits the screen, at most 960 × 720.
+//! The window's initial size: the largest 4:3 that fits the screen, at most 960 × 720.
 
 use minifb::{Result, Scale, ScaleMode, Window, WindowOptions};
 
-/// The largest window that is opened, in screen pixels: 4:3, every pixel of the frame 3 wide and 3.6 high.
+/// The largest initial size, in screen pixels: 4:3, every pixel of the frame 3 wide and 3.6 high.
 const LARGEST: (usize, usize) = (960, 720);
 
 pub(super) fn open(title: &str) -> Result<Window> {
     let options = WindowOptions { resize: true, scale_mode: ScaleMode::Stretch, ..WindowOptions::default() };
-    // Kept until the window is there: a display without a desktop begins anew, refusing others meanwhile, whenever the
-    // last window on it goes.
+    // Alive until the window exists: when its last window closes, a display without a desktop restarts, and refuses
+    // connections meanwhile.
     let probe = Probe::new()?;
     if probe.fits_largest() {
         Window::new(title, LARGEST.0, LARGEST.1, options)
     } else {
-        // The largest multiple of 4 × 3 on this screen, which is below LARGEST.
+        // The largest multiple of 4 × 3 on this screen, which is smaller than LARGEST.
         Window::new(title, 4, 3, WindowOptions { scale: Scale::FitScreen, ..options })
     }
 }
@@ -24,9 +24,10 @@ pub(super) fn open_of_size(title: &str, width: usize, height: usize) -> Result<W
     Window::new(title, width, height, options)
 }
 
-/// minifb tells nobody the size of the screen. But it opens a window at the largest multiple of a size that the screen
-/// holds, and says which: a strip one pixel wide and half as high as the question is doubled if the screen is that
-/// high. Two such strips, a few pixels thin and gone at once, tell what opening a window that does not fit would show.
+/// Finds out whether the screen is large enough. minifb does not report the size of the screen, but it can open a
+/// window at the largest multiple of a size that fits, and reports that: a strip one pixel wide and half as high as the
+/// size in question is doubled if the screen is that high. Two such strips, a few pixels thin and gone at once, are
+/// less visible than opening a window that does not fit.
 #[cfg(all(unix, not(target_os = "macos")))]
 struct Probe {
     wide: Window,
@@ -48,7 +49,7 @@ impl Probe {
     }
 }
 
-/// Strips are of no use where windows have a least size. There a window that is too large is cut by the desktop.
+/// Strips do not work where windows have a minimum size. There the desktop crops a window that is too large.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 struct Probe;
 

@@ -1,8 +1,8 @@
-//! Animated PNG films, written frame by frame: each frame cropped to what it changes, with transparent pixels where that
-//! is shorter, and with a delay that is the exact fraction of a second.
+//! Animated PNGs, written frame by frame: each frame is cropped to what it changes, with transparent pixels where that
+//! is shorter, and its delay is the exact fraction of a second.
 //!
-//! The file says up front how many frames there are, and which colours. So a frame that changes nothing is one
-//! unchanged pixel, and a film whose palette changes is written in true colour.
+//! The file states at its start how many frames there are, and which colours. So a frame that changes nothing is
+//! written as one unchanged pixel, and an animation whose palette changes is written in true colour.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,36 +16,36 @@ use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
 use super::{AnimationError, AnimationErrorKind, FrameRate};
 
-/// The colours of a film.
+/// The colours of an animation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FilmColors {
-    /// The colours of a palette that does not change: a byte a pixel.
+    /// The colours of a palette that does not change: one byte per pixel.
     Palette(Box<[Rgb; 256]>),
     /// Any colours: red, green and blue of each pixel.
     True,
 }
 
-/// A frame of an [`ApngFile`], ready to be written. It depends only on the frame and the one before it, so several can
-/// be made at a time, on any threads, and then be added in their order.
+/// A frame of an [`ApngFile`], ready to be written. It only depends on the frame and the one before it, so several can
+/// be made at a time, on any threads, and then be added in order.
 pub struct ApngFrame {
-    /// The film's size in pixels: width and height.
+    /// The animation's size in pixels: width and height.
     size: (u32, u32),
     density: (u32, u32),
     colors: FilmColors,
     area: Area,
-    /// Transparent pixels let through what stood there.
+    /// Whether transparent pixels show what was there before.
     blends: bool,
     /// The compressed rows.
     data: Vec<u8>,
 }
 
 impl ApngFrame {
-    /// Makes a frame that follows `before`, or the first of its film. Only its differences are written.
+    /// Makes a frame that follows `before`, or the first of its animation. Only the differences are written.
     ///
     /// # Errors
     ///
-    /// Sizes that do not fit the bytes, are not those of `before`, or are too large when enlarged; a colour that the
-    /// film's palette has not; no memory.
+    /// Sizes that do not fit the bytes, differ from those of `before`, or are too large when enlarged; a colour that is
+    /// not in the animation's palette; not enough memory.
     pub fn new(
         before: Option<&Picture<'_>>,
         picture: &Picture<'_>,
@@ -83,7 +83,7 @@ impl ApngFrame {
         let table = ColorTable::of_all(palette);
         let places = table.places(picture.palette, &pixels).ok_or(AnimationErrorKind::OtherColors)?;
         pixels.iter_mut().for_each(|index| *index = places[usize::from(*index)]);
-        // Neighbours in a ramp are neighbours in the palette: what a filter foretells is near.
+        // Neighbours in a ramp are neighbours in the palette, so a filter's prediction is close.
         let mut best = (compressed(sides, ColorType::Indexed, &pixels, Filter::Adaptive)?, false);
         let mut keep_better = |data: Vec<u8>, blends: bool| {
             if data.len() < best.0.len() {
@@ -113,7 +113,7 @@ fn compressed(
         encoder.set_color(color);
         encoder.set_depth(BitDepth::Eight);
         if color == ColorType::Indexed {
-            // One that is thrown away: the film has its own.
+            // A dummy: the animation has its own.
             encoder.set_palette(vec![0; 768]);
         }
         encoder.set_compression(Compression::Balanced);
@@ -123,12 +123,12 @@ fn compressed(
         writer.finish()?;
         Ok(file)
     };
-    // The sizes agree and a vector takes whatever is written to it; memory alone can run out.
+    // The sizes agree, and writing to a vector only fails for lack of memory.
     let file = encode().map_err(|_| PictureError::Memory { bytes: pixels.len() })?;
     Ok(chunks(&file).filter(|(name, _)| name == b"IDAT").flat_map(|(_, data)| data).copied().collect())
 }
 
-/// An animated PNG that goes round for ever, as a file that is whole or not there.
+/// An animated PNG that loops for ever, as a file that is either complete or absent.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -151,12 +151,12 @@ pub struct ApngFile {
 }
 
 impl ApngFile {
-    /// Begins a film of a given number of frames, in the file `path`.
+    /// Begins an animation with a given number of frames, in the file `path`.
     ///
     /// # Errors
     ///
-    /// [`AnimationError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has
-    /// it.
+    /// [`AnimationError`] if no file can be written there, for the reasons given at
+    /// [`write_atomically`](mode13h::export::write_atomically).
     pub fn create(path: impl AsRef<Path>, rate: FrameRate, frames: u32) -> Result<ApngFile, AnimationError> {
         let path = path.as_ref();
         let out = AtomicFile::create(path)?;
@@ -164,23 +164,23 @@ impl ApngFile {
         Ok(ApngFile { path: path.to_path_buf(), film })
     }
 
-    /// Adds a frame that was made beside the frame that was added before it.
+    /// Adds a frame that was made from the frame added before it.
     ///
     /// # Errors
     ///
-    /// [`AnimationErrorKind::OtherSize`] or [`AnimationErrorKind::OtherColors`] if this frame has another size or other
-    /// [`FilmColors`] than the first, and the film can go on without it; [`AnimationErrorKind::FrameCount`] if it is one
-    /// too many; any other if writing failed and the film cannot go on.
+    /// [`AnimationErrorKind::OtherSize`] or [`AnimationErrorKind::OtherColors`] if this frame's size or [`FilmColors`]
+    /// differ from the first frame's; the animation can go on without it. [`AnimationErrorKind::FrameCount`] if it is
+    /// one too many; any other if writing failed and the animation cannot go on.
     pub fn add(&mut self, frame: &ApngFrame) -> Result<(), AnimationError> {
         self.film.add(frame).map_err(|error| error.in_file(&self.path))
     }
 
-    /// Ends the film, and gives the file its name. Returns how many bytes it has.
+    /// Ends the animation and renames the file. Returns the number of bytes.
     ///
     /// # Errors
     ///
-    /// [`AnimationErrorKind::NoFrames`] if none were promised; [`AnimationErrorKind::FrameCount`] if frames are missing;
-    /// any other if writing fails or failed before. The file is then removed.
+    /// [`AnimationErrorKind::NoFrames`] if none were promised; [`AnimationErrorKind::FrameCount`] if frames are
+    /// missing; any other if writing fails or failed before. The file is then removed.
     pub fn finish(self) -> Result<u64, AnimationError> {
         let ApngFile { path, film } = self;
         let (file, bytes) = film.finish().map_err(|error| error.in_file(&path))?;
@@ -189,19 +189,19 @@ impl ApngFile {
     }
 }
 
-/// The writer of the film's chunks.
+/// The writer of the animation's chunks.
 struct Writer<W> {
     out: W,
     rate: FrameRate,
-    /// The number of frames that the file's head promises.
+    /// The number of frames that the file's header promises.
     frames: u32,
     given: u32,
-    /// The sequence number of the next chunk of a frame.
+    /// The sequence number of a frame's next chunk.
     sequence: u32,
     /// The first frame's size and colours.
     first: Option<((u32, u32), FilmColors)>,
     bytes: u64,
-    /// Writing failed, perhaps amid a chunk: nothing may follow.
+    /// Set once writing failed, perhaps amid a chunk: nothing more may be written.
     failed: Option<io::ErrorKind>,
 }
 
@@ -240,7 +240,7 @@ impl<W: Write> Writer<W> {
         let [width, height, left, top] = [area.right - area.left, area.bottom - area.top, area.left, area.top]
             .map(|side| (side as u32).to_be_bytes());
         let sequence = self.next();
-        // What is there stays when the next frame comes.
+        // The next frame is drawn over this one.
         let ends = [0, u8::from(*blends)];
         let control: [&[u8]; 8] =
             [&sequence, &width, &height, &left, &top, &below.to_be_bytes(), &above.to_be_bytes(), &ends];
@@ -266,12 +266,12 @@ impl<W: Write> Writer<W> {
             FilmColors::Palette(palette) => Some(ColorTable::of_all(palette)),
             FilmColors::True => None,
         };
-        // 8 bits; of a palette or of three channels; compression, filters and order as they always are.
+        // 8 bits; palette or three channels; the only defined compression, filters and order.
         let kind = [8, if table.is_some() { 3 } else { 2 }, 0, 0, 0];
         self.chunk(*b"IHDR", &[&width.to_be_bytes(), &height.to_be_bytes(), &kind])?;
         let (across, down) = first.density;
         self.chunk(*b"pHYs", &[&across.to_be_bytes(), &down.to_be_bytes(), &[0]])?;
-        // Round for ever.
+        // Loops for ever.
         let frames = self.frames.to_be_bytes();
         self.chunk(*b"acTL", &[&frames, &[0; 4]])?;
         if let Some(table) = table {
@@ -301,7 +301,7 @@ impl<W: Write> Writer<W> {
 
     fn next(&mut self) -> [u8; 4] {
         let sequence = self.sequence;
-        // Two for each frame but the first: at most 2³² with more frames than are ever given.
+        // Two for each frame except the first: at most 2³², more frames than anyone adds.
         self.sequence = sequence.wrapping_add(1);
         sequence.to_be_bytes()
     }

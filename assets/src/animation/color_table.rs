@@ -1,11 +1,12 @@
-//! Colour tables of films: each colour once, however many entries of a palette have it.
+//! Colour tables of animations: each colour once, however many entries of a palette have it.
 //!
-//! A palette of 256 entries has few colours where its ramps are of one hue: a DAC of 6 bits a channel has 64 greys. Indices
-//! of one colour are made one, which leaves a compressor more that is alike: a turn of the torus takes half the bytes.
+//! A palette of 256 entries has few colours where its ramps are of a single hue: a DAC with 6 bits per channel has 64
+//! greys. Merging the indices of equal colours gives the compressor more repetition: a turn of the torus takes half the
+//! bytes.
 
 use mode13h::palette::Rgb;
 
-/// Different colours, at most 256.
+/// Distinct colours, at most 256.
 pub(super) struct ColorTable {
     colors: Vec<Rgb>,
 }
@@ -16,7 +17,7 @@ impl ColorTable {
         ColorTable::new(palette.iter())
     }
 
-    /// The colours that these indices of a palette stand for, in the order of its entries.
+    /// The colours of these palette indices, in the order of the palette's entries.
     pub(super) fn of_used(palette: &[Rgb; 256], indices: &[u8]) -> ColorTable {
         let used = used(indices);
         ColorTable::new(palette.iter().zip(used).filter_map(|(color, used)| used.then_some(color)))
@@ -32,7 +33,7 @@ impl ColorTable {
         ColorTable { colors }
     }
 
-    /// For each entry of a palette its place in this table; nothing if the indices stand for a colour that is not in it.
+    /// For each entry of a palette, its index in this table; `None` if the indices use a colour that is not in it.
     pub(super) fn places(&self, palette: &[Rgb; 256], indices: &[u8]) -> Option<[u8; 256]> {
         let mut places = [0; 256];
         for ((place, color), used) in places.iter_mut().zip(palette).zip(used(indices)) {
@@ -44,12 +45,12 @@ impl ColorTable {
         Some(places)
     }
 
-    /// The first index of the table that none of these uses, for pixels without a colour.
+    /// The first index of the table that none of these pixels uses, to mark transparent pixels.
     pub(super) fn free(&self, indices: &[u8]) -> Option<u8> {
         used(indices).iter().take(self.entries()).position(|used| !used).map(|free| free as u8)
     }
 
-    /// The entry behind the colours, if there is room for one: no pixel of any frame has it.
+    /// The entry after the colours, if there is room for one: no pixel of any frame has it.
     pub(super) fn spare(&self) -> Option<u8> {
         u8::try_from(self.colors.len()).ok()
     }
@@ -86,7 +87,7 @@ mod tests {
         assert_eq!([0, 3, 4, 255].map(|i| places[i]), [0, 0, 1, 63]);
         assert_eq!(table.free(&[0, 1, 3]), Some(2));
         assert_eq!(table.free(&std::array::from_fn::<u8, 64, _>(|i| i as u8)), Some(64));
-        // A colour that it lacks matters where it is used.
+        // A missing colour only matters where it is used.
         palette[9] = Rgb::WHITE;
         assert!(table.places(&palette, &[8]).is_some() && table.places(&palette, &[9]).is_none());
         assert_eq!(ColorTable::of_used(&palette, &[9, 9, 0]).bytes(), [0, 0, 0, 255, 255, 255, 0, 0, 0]);

@@ -1,11 +1,11 @@
-//! Differences between a frame of a film and the one before it.
+//! Differences between a frame of an animation and the one before it.
 
 use mode13h::export::Picture;
 use mode13h::export::Scaled;
 
 use super::{AnimationError, AnimationErrorKind};
 
-/// A rectangle of the film, in its pixels: from `left` and `top` to before `right` and `bottom`.
+/// A rectangle of the animation, in pixels: from `left` and `top` up to, but without, `right` and `bottom`.
 #[derive(Clone, Copy)]
 pub(super) struct Area {
     pub(super) left: usize,
@@ -26,7 +26,7 @@ impl Area {
         (self.right - self.left) * (self.bottom - self.top)
     }
 
-    /// The least area that holds this one, if there is one, and a row from `left` to before `right`.
+    /// The smallest area that contains this one, if there is one, and a row from `left` up to `right`.
     fn with_row(area: Option<Area>, y: usize, left: usize, right: usize) -> Area {
         match area {
             Some(area) => {
@@ -37,8 +37,8 @@ impl Area {
     }
 }
 
-/// Finds the least rectangle with all pixels that `now` shows in another colour than `before`, whether the index or the
-/// palette is the reason. Returns `None` if there is none. An index that stands for an equal colour changes nothing.
+/// Finds the smallest rectangle with all pixels whose colour differs between `before` and `now`, whether because of the
+/// index or of the palette. Returns `None` if there is none. An index with an equal colour does not count as a change.
 pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<Area>, AnimationError> {
     let (picture, columns, rows) = now.sources();
     let (first, size) = ((before.width, before.height), (picture.width, picture.height));
@@ -57,7 +57,7 @@ pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<A
         Some((left, right))
     };
     let mut area = None;
-    // Rows of the film that are one row of the frame are compared once.
+    // Rows of the animation that show the same row of the frame are compared once.
     let mut last = None;
     for (y, &row) in rows.iter().enumerate() {
         let ends = match last {
@@ -72,8 +72,8 @@ pub(super) fn changed(before: &Picture<'_>, now: &Scaled<'_>) -> Result<Option<A
     Ok(area)
 }
 
-/// Yields for each pixel of a part of the film, row by row, whether `now` shows it in the colour that `before` did.
-/// `was` and `is` are the part's palette indices in the two.
+/// Yields for each pixel of a part of the animation, row by row, whether its colour is the same in `now` as in
+/// `before`. `was` and `is` are the part's palette indices in the two.
 pub(super) fn kept<'a>(
     before: &'a Picture<'_>,
     was: &'a [u8],

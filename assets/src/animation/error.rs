@@ -1,4 +1,4 @@
-//! The error of animations.
+//! Errors of animations.
 
 use std::error::Error;
 use std::fmt;
@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 
 use mode13h::export::{ExportError, ExportErrorKind, PictureError};
 
-/// The frames per second that a film may show.
+/// The range of an animation's frames per second.
 pub(super) const FRAME_RATES: RangeInclusive<f64> = 0.1..=50.0;
 
-/// An error of an animation that was not written.
+/// The error of an animation that was not written.
 #[non_exhaustive]
 pub struct AnimationError {
     /// The file that was to be written; `None` if there is none, or not yet.
@@ -26,26 +26,26 @@ pub struct AnimationError {
 pub enum AnimationErrorKind {
     /// A frame cannot be exported at all.
     Picture(PictureError),
-    /// A frame shows another colour than the film's fixed ones.
+    /// A frame shows a colour that is not among the animation's fixed ones.
     OtherColors,
-    /// A frame has another size than the film's first.
+    /// A frame's size differs from the first frame's.
     OtherSize {
-        /// Pixels in a row, and rows, of the first frame.
+        /// Width and height of the first frame, in pixels.
         first: (usize, usize),
-        /// Pixels in a row, and rows, of this frame.
+        /// Width and height of this frame, in pixels.
         now: (usize, usize),
     },
-    /// The rate does not lie between [`FrameRate::LOWEST`](super::FrameRate::LOWEST) and
+    /// The rate is not between [`FrameRate::LOWEST`](super::FrameRate::LOWEST) and
     /// [`FrameRate::HIGHEST`](super::FrameRate::HIGHEST).
     FrameRate {
-        /// The rate that was given.
+        /// The rate given.
         frames_per_second: f64,
     },
-    /// The film has no frame.
+    /// The animation has no frame.
     NoFrames,
-    /// The film has more or fewer frames than were promised.
+    /// The animation has more or fewer frames than promised.
     FrameCount {
-        /// The number of frames that the film's head promises.
+        /// The number of frames that the file's header promises.
         promised: u32,
         /// The number of frames that were added.
         given: u32,
@@ -57,7 +57,7 @@ pub enum AnimationErrorKind {
 }
 
 impl AnimationError {
-    /// The error of a film that was to stand in this file. What its writer reports is then the file's.
+    /// Adds the file to the error, so that a write error names it.
     pub(super) fn in_file(self, path: &Path) -> AnimationError {
         match self.kind {
             AnimationErrorKind::Io(error) => ExportError::new(path, ExportErrorKind::from_writing(error)).into(),
@@ -69,7 +69,7 @@ impl AnimationError {
 impl fmt::Display for AnimationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.path, &self.kind) {
-            // It names the file itself.
+            // This error names the file itself.
             (_, AnimationErrorKind::Export(error)) => write!(f, "{error}"),
             (Some(path), kind) => write!(f, "{}: {kind}", path.display()),
             (None, kind) => write!(f, "{kind}"),

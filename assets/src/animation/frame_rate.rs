@@ -1,20 +1,20 @@
-//! Frames a second, and how long each frame then stays in hundredths of a second, the unit of GIF.
+//! Frames per second, and the resulting delay of each frame in 1/100 s, the unit of GIF.
 
 use super::error::{AnimationError, AnimationErrorKind, FRAME_RATES};
 
-/// A film's frames per second, 0.1 to 50.
+/// An animation's frames per second, 0.1 to 50.
 ///
-/// Browsers keep to at most 50 frames a second: a frame that is to stay for less than 2/100 s they show for 10/100 s
-/// instead. 35, the default, is every second retrace of the machine.
+/// Browsers show at most 50 frames per second: a delay below 2/100 s becomes 10/100 s there. 35, the default, is every
+/// second retrace of the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRate(f64);
 
-/// From frames a second, 0.1 to 50.
+/// Converts from frames per second, 0.1 to 50.
 impl TryFrom<f64> for FrameRate {
     type Error = AnimationError;
 
     fn try_from(frames_per_second: f64) -> Result<FrameRate, AnimationError> {
-        // NaN lies in no range.
+        // NaN is in no range.
         match FRAME_RATES.contains(&frames_per_second) {
             true => Ok(FrameRate(frames_per_second)),
             false => Err(AnimationErrorKind::FrameRate { frames_per_second }.into()),
@@ -28,12 +28,12 @@ impl FrameRate {
     /// The highest rate.
     pub const HIGHEST: FrameRate = FrameRate(*FRAME_RATES.end());
 
-    /// Returns the rate in frames a second.
+    /// Returns the rate in frames per second.
     pub fn frames_per_second(self) -> f64 {
         self.0
     }
 
-    /// The rate as a fraction of two numbers of 16 bits, the nearest that there is: 35 is 35/1, 29.97 is 2997/100.
+    /// The nearest fraction of two 16-bit numbers: 35 is 35/1, 29.97 is 2997/100.
     ///
     /// ```
     /// use mode13h_assets::animation::FrameRate;
@@ -45,8 +45,8 @@ impl FrameRate {
         fraction(self.0)
     }
 
-    /// The time that frame `number`, counted from 0, stays, in 1/100 s: 2 to 1,000. A frame begins at the first
-    /// hundredth that is not before its time, ⌈100·number / rate⌉, whatever the frames before it: nothing adds up.
+    /// The delay of frame `number`, counted from 0, in 1/100 s: 2 to 1,000. A frame begins at the first hundredth that
+    /// is not before its time, ⌈100·number / rate⌉, regardless of the frames before it, so errors do not add up.
     ///
     /// ```
     /// use mode13h_assets::animation::FrameRate;
@@ -54,12 +54,12 @@ impl FrameRate {
     /// assert_eq!(delays, [3, 3, 3, 3, 3, 3, 2, 3]);
     /// ```
     pub fn delay(self, number: u64) -> u16 {
-        // A rate of 0.1 or more has its last bit at 2⁻⁵⁶ or before it: this is a whole number, below 2⁶².
+        // The last bit of a rate of at least 0.1 is at 2⁻⁵⁶ or above: this is an integer below 2⁶².
         let rate = (self.0 * (1_u64 << 56) as f64) as u128;
         // 100 · 2⁶⁴ · 2⁵⁶ is below 2¹²⁷.
         let begins = |number: u128| ((100 * number) << 56).div_ceil(rate);
         let number = u128::from(number);
-        // 100 / rate is 2 to 1,000; so is the difference of two sums that are that far apart, each rounded up.
+        // 100 / rate is 2 to 1,000, and so is the difference of two values that far apart, each rounded up.
         (begins(number + 1) - begins(number)) as u16
     }
 }
@@ -70,7 +70,7 @@ impl Default for FrameRate {
     }
 }
 
-/// The last convergent of a positive number's continued fraction of which both numbers are below 2¹⁶. No fraction of
+/// The last convergent of a positive number's continued fraction whose two numbers are below 2¹⁶. No fraction of
 /// smaller numbers is nearer.
 fn fraction(number: f64) -> (u16, u16) {
     let (mut before, mut last) = ((0_u16, 1_u16), (1_u16, 0_u16));
@@ -83,7 +83,7 @@ fn fraction(number: f64) -> (u16, u16) {
         };
         let (Some(above), Some(below)) = (next(last.0, before.0), next(last.1, before.1)) else { return last };
         (before, last) = (last, (above, below));
-        // What f64 knows no better is that number.
+        // The fraction equals the number to the precision of f64.
         if f64::from(above) / f64::from(below) == number || rest == whole {
             return last;
         }

@@ -1,12 +1,12 @@
-//! GIF films, written frame by frame: each frame cropped to what it changes, with transparent pixels where that is
-//! shorter. A frame has a palette of its own only if the first frame's lacks a colour that it uses. Indices of one
-//! colour are made one.
+//! GIF animations, written frame by frame: each frame is cropped to what it changes, with transparent pixels where that
+//! is shorter. A frame only has a palette of its own if the first frame's lacks a colour that it uses. Indices of equal
+//! colours are merged.
 //!
-//! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the time
-//! as well, at 25 bytes and one more image for every reader.) How long a frame stays is therefore known only when the next
-//! change comes, so the last one is held back until then.
+//! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the
+//! timing as well, at 25 bytes and one more image for every reader.) A frame's delay is therefore only known at the
+//! next change, so the last frame is held back until then.
 //!
-//! Nearly all the time goes into making each [`GifFrame`] beside the one before it: several can be made at a time.
+//! Nearly all the time goes into making each [`GifFrame`] from the one before it: several can be made at a time.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -19,10 +19,10 @@ use super::color_table::ColorTable;
 use super::gif_frame::{GifFrame, Image};
 use super::{AnimationError, AnimationErrorKind, FrameRate};
 
-/// A film that goes round for ever, as a GIF, written to `W` while its frames are given.
+/// A looping GIF animation, written to `W` while its frames are added.
 ///
-/// The writer keeps one frame and its compressed image, and those of the next while it is added, so a film may be of
-/// any length. GIF knows square pixels only: a mode 13h frame has its shape at [`Scale::FiveBySix`] or 640 × 480.
+/// The writer holds one frame and its compressed image, and the next while it is being added, so an animation may have
+/// any length. GIF only has square pixels: a mode 13h frame has its aspect ratio at [`Scale::FiveBySix`] or 640 × 480.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -50,7 +50,7 @@ pub struct GifWriter<W: Write> {
     film: Film,
 }
 
-/// The counts of a film that was written.
+/// Counts of a finished animation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Film {
@@ -58,7 +58,7 @@ pub struct Film {
     pub width: u16,
     /// The height in pixels.
     pub height: u16,
-    /// The number of frames that were given.
+    /// The number of frames added.
     pub frames: u64,
     /// The number of images in the file: the frames without those that change nothing.
     pub images: u64,
@@ -69,7 +69,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// The length of one round of the film, in seconds.
+    /// The length of one loop of the animation, in seconds.
     pub fn seconds(&self) -> f64 {
         let hundredths: u64 = self.delays.iter().map(|(&delay, &images)| u64::from(delay) * images).sum();
         hundredths as f64 / 100.0
@@ -77,19 +77,20 @@ impl Film {
 }
 
 impl<W: Write> GifWriter<W> {
-    /// Begins a film of no frames yet. Nothing is written before the second frame or [`finish`](Self::finish).
+    /// Begins an animation without frames so far. Nothing is written before the second frame or
+    /// [`finish`](Self::finish).
     pub fn new(out: W, scale: Scale, rate: FrameRate) -> GifWriter<W> {
         let palette = Box::new([Rgb::BLACK; 256]);
         GifWriter { scale, rate, out: Out::Unopened(out), palette, held: None, film: Film::default() }
     }
 
-    /// Adds a frame by its bytes and colours. The shape of its pixels is ignored.
+    /// Adds a frame from its bytes and colours. The shape of its pixels is ignored.
     ///
     /// # Errors
     ///
     /// [`AnimationErrorKind::Picture`] if its sizes do not fit its bytes or are too large when enlarged, and
-    /// [`AnimationErrorKind::OtherSize`] if they are not those of the first frame: the film can then go on without it.
-    /// [`AnimationErrorKind::Io`] if writing failed: the film cannot go on.
+    /// [`AnimationErrorKind::OtherSize`] if they are not those of the first frame: the animation can then go on without
+    /// it. [`AnimationErrorKind::Io`] if writing failed: the animation cannot go on.
     pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), AnimationError> {
         self.out.check()?;
         let frame = match &self.held {
@@ -99,17 +100,17 @@ impl<W: Write> GifWriter<W> {
         self.add_frame(frame)
     }
 
-    /// Adds a frame that was made ready: the first by [`GifFrame::first`], each other by [`GifFrame::after`]. Each must
-    /// be made beside the frame that was added before it, in this film's scale and with the colours of its first frame.
-    /// Made beside another, it shows what that other would have left.
+    /// Adds a prepared frame: the first from [`GifFrame::first`], each other from [`GifFrame::after`]. Each must be
+    /// made from the frame that was added before it, with this animation's scale and the colours of its first frame.
+    /// Made from another, it shows what that other would have left.
     ///
     /// # Errors
     ///
-    /// Those of [`add`](Self::add); [`AnimationErrorKind::OtherSize`] too if it was enlarged to another size than the
+    /// Those of [`add`](Self::add); also [`AnimationErrorKind::OtherSize`] if it was enlarged to another size than the
     /// first.
     pub fn add_frame(&mut self, frame: GifFrame) -> Result<(), AnimationError> {
         self.out.check()?;
-        // Nothing stands before it.
+        // There is no frame before it.
         let frame = match &self.held {
             None if !frame.is_whole() => GifFrame::first(&frame.picture(), self.scale)?,
             _ => frame,
@@ -134,7 +135,7 @@ impl<W: Write> GifWriter<W> {
                         self.film.frames += 1;
                         return Ok(());
                     }
-                    // No image stays longer than 655.35 s: another begins, which draws one pixel as it was.
+                    // No image stays longer than 655.35 s: then another begins, which redraws one pixel unchanged.
                     (false, None) => Some(frame.first_pixel(self.scale, &self.palette)?),
                 }
             }
@@ -145,7 +146,7 @@ impl<W: Write> GifWriter<W> {
         Ok(())
     }
 
-    /// Writes the rest, and returns the writer, not flushed, and the film's counts.
+    /// Writes the rest, and returns the writer, not flushed, and the animation's counts.
     ///
     /// # Errors
     ///
@@ -165,7 +166,7 @@ impl<W: Write> GifWriter<W> {
         }
     }
 
-    /// Writes the frame that is held, if there is one.
+    /// Writes the held frame, if there is one.
     fn write_held(&mut self) -> Result<(), AnimationError> {
         let Some(Held { frame, image, delay }) = self.held.take() else { return Ok(()) };
         let Some(Image { area, palette, transparent, data }) = image.or_else(|| frame.into_image()) else {
@@ -175,7 +176,7 @@ impl<W: Write> GifWriter<W> {
         *self.film.delays.entry(delay).or_default() += 1;
         let frame = Frame {
             delay,
-            // Within the film, whose sides are at most 16,384.
+            // Within the animation, whose sides are at most 16,384.
             left: area.left as u16,
             top: area.top as u16,
             width: (area.right - area.left) as u16,
@@ -189,7 +190,7 @@ impl<W: Write> GifWriter<W> {
     }
 }
 
-/// The last frame that changed something. The film shows it now.
+/// The last frame that changed something, currently on display.
 struct Held {
     frame: GifFrame,
     /// The image to write for it, if that is not its own.
@@ -198,9 +199,9 @@ struct Held {
     delay: u16,
 }
 
-/// The destination of the film, by its state.
+/// The destination of the animation, by its state.
 enum Out<W: Write> {
-    /// Nothing is written yet: the first frame gives the film its size and its colours.
+    /// Nothing is written yet: the first frame determines the size and the colours.
     Unopened(W),
     Open(Encoder<Counted<W>>),
     /// Writing failed with this error.
@@ -215,9 +216,9 @@ impl<W: Write> Out<W> {
         }
     }
 
-    /// Writes an image that is compressed, and the file's head before the first.
+    /// Writes a compressed image, and before the first the file's header.
     fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), AnimationError> {
-        // Should this fail, the file ends amid an image, and nothing may follow.
+        // If this fails, the file ends amid an image, and nothing more may be written.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));
         let written = out.opened(size, palette).and_then(|mut encoder| {
             encoder.write_lzw_pre_encoded_frame(image)?;
@@ -249,7 +250,7 @@ impl<W: Write> Out<W> {
     }
 }
 
-/// A writer that counts the bytes.
+/// A writer that counts bytes.
 struct Counted<W: Write> {
     out: W,
     bytes: u64,
@@ -267,8 +268,8 @@ impl<W: Write> Write for Counted<W> {
     }
 }
 
-/// The disk's error. The encoder refuses nothing else: it is never given a palette of no or too many colours, or a
-/// frame that is too short.
+/// The underlying I/O error. The encoder has no other reason to fail: it is never given an empty or oversized palette,
+/// or a frame that is too short.
 fn reason(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,

@@ -1,4 +1,4 @@
-//! A GIF film as a file that is whole or not there.
+//! GIF animations as files that are either complete or absent.
 
 use std::path::{Path, PathBuf};
 
@@ -6,10 +6,10 @@ use mode13h::export::{AtomicFile, Picture, Scale};
 
 use super::{AnimationError, Film, FrameRate, GifFrame, GifWriter};
 
-/// A film that goes round for ever, written to a file frame by frame as [`GifWriter`] does.
+/// A looping GIF animation, written to a file frame by frame, like [`GifWriter`].
 ///
-/// The file is written beside its name and gets it when the film is finished. If it is dropped before, it is removed,
-/// and the file that stood under the name is as it was.
+/// The file is written under a temporary name and renamed when the animation is finished. If it is dropped before that,
+/// it is removed, and a previous file is unchanged.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -35,29 +35,29 @@ pub struct GifFile {
 }
 
 impl GifFile {
-    /// Begins a film of no frames yet, to stand under `path`.
+    /// Begins an animation without frames so far, in the file `path`.
     ///
     /// # Errors
     ///
-    /// [`AnimationError`] if no file can be written there, as [`write_atomically`](mode13h::export::write_atomically) has
-    /// it.
+    /// [`AnimationError`] if no file can be written there, for the reasons given at
+    /// [`write_atomically`](mode13h::export::write_atomically).
     pub fn create(path: impl AsRef<Path>, scale: Scale, rate: FrameRate) -> Result<GifFile, AnimationError> {
         let path = path.as_ref();
         let file = AtomicFile::create(path)?;
         Ok(GifFile { path: path.to_path_buf(), writer: GifWriter::new(file, scale, rate) })
     }
 
-    /// Adds a frame, as [`GifWriter::add`] does.
+    /// Adds a frame, like [`GifWriter::add`].
     ///
     /// # Errors
     ///
-    /// [`AnimationErrorKind::Export`](super::AnimationErrorKind::Export) if writing failed and the film cannot go on; any
-    /// other if this frame cannot be part of the film, which can go on without it.
+    /// [`AnimationErrorKind::Export`](super::AnimationErrorKind::Export) if writing failed and the animation cannot go
+    /// on; any other if this frame cannot be part of the animation, which can go on without it.
     pub fn add(&mut self, picture: &Picture<'_>) -> Result<(), AnimationError> {
         self.writer.add(picture).map_err(|error| error.in_file(&self.path))
     }
 
-    /// Adds a frame that was made ready, as [`GifWriter::add_frame`] does.
+    /// Adds a prepared frame, like [`GifWriter::add_frame`].
     ///
     /// # Errors
     ///
@@ -66,11 +66,12 @@ impl GifFile {
         self.writer.add_frame(frame).map_err(|error| error.in_file(&self.path))
     }
 
-    /// Ends the film, and gives the file its name.
+    /// Ends the animation and renames the file.
     ///
     /// # Errors
     ///
-    /// [`AnimationError`] if the film has no frame, or if writing fails or failed before: the file is then removed.
+    /// [`AnimationError`] if the animation has no frame, or if writing fails or failed before: the file is then
+    /// removed.
     pub fn finish(self) -> Result<Film, AnimationError> {
         let (file, film) = self.writer.finish().map_err(|error| error.in_file(&self.path))?;
         file.commit()?;

@@ -1,4 +1,4 @@
-//! A frame of a film, made ready to be written: cropped to what it changes, enlarged and compressed.
+//! Frames of GIF animations, prepared for writing: cropped to what they change, enlarged and compressed.
 
 use gif::Frame;
 use mode13h::export::Scaled;
@@ -9,8 +9,9 @@ use super::AnimationError;
 use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
 
-/// A frame of a [film](super::GifWriter) and its compressed image. It depends only on the frame and the one before it,
-/// so several can be made at a time, on any threads, and then be [added](super::GifWriter::add_frame) in their order.
+/// A frame of an [animation](super::GifWriter) and its compressed image. It only depends on the frame and the one
+/// before it, so several can be made at a time, on any threads, and then be [added](super::GifWriter::add_frame) in
+/// order.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -28,41 +29,41 @@ use super::difference::{Area, changed, kept};
 /// # Ok::<(), mode13h_assets::animation::AnimationError>(())
 /// ```
 pub struct GifFrame {
-    /// The pixels that were given, without gaps between the rows.
+    /// The given pixels, without gaps between the rows.
     pixels: Vec<u8>,
     width: usize,
     height: usize,
     palette: Box<[Rgb; 256]>,
-    /// The film's size in pixels: width and height.
+    /// The animation's size in pixels: width and height.
     size: (u16, u16),
-    /// The image to write; none if the frame changes nothing.
+    /// The image to write; `None` if the frame changes nothing.
     image: Option<Image>,
 }
 
-/// The image that is written for a frame.
+/// The image written for a frame.
 pub(super) struct Image {
     pub(super) area: Area,
-    /// A palette of its own, if it shows a colour that the film's palette lacks.
+    /// A palette of its own, if it shows a colour that the animation's palette lacks.
     pub(super) palette: Option<Vec<u8>>,
-    /// The index of pixels that stay as they were.
+    /// The index of unchanged pixels.
     pub(super) transparent: Option<u8>,
-    /// Its indices of the colour table, row by row, compressed.
+    /// Its colour table indices, row by row, compressed.
     pub(super) data: Vec<u8>,
 }
 
 impl GifFrame {
-    /// Makes the first frame of a film: all of it is written, and its colours are the film's.
+    /// Makes the first frame of an animation: all of it is written, and its colours are the animation's.
     ///
     /// # Errors
     ///
-    /// Sizes that do not fit the bytes, or are too large when enlarged; no memory.
+    /// Sizes that do not fit the bytes, or are too large when enlarged; not enough memory.
     pub fn first(picture: &Picture<'_>, scale: Scale) -> Result<GifFrame, AnimationError> {
         let scaled = Scaled::new(picture, scale)?;
         let image = Image::new(None, &scaled, Area::whole(&scaled), picture.palette)?;
         GifFrame::new(&scaled, Some(image))
     }
 
-    /// Makes a frame that follows `before`: its differences are written. `film`: the colours of the first frame.
+    /// Makes a frame that follows `before`: only the differences are written. `film`: the colours of the first frame.
     ///
     /// # Errors
     ///
@@ -85,7 +86,7 @@ impl GifFrame {
     fn new(scaled: &Scaled<'_>, image: Option<Image>) -> Result<GifFrame, AnimationError> {
         let (picture, ..) = scaled.sources();
         let &Picture { width, height, palette, .. } = picture;
-        // The picture has been checked: so many are there.
+        // The picture has been checked, so it has this many.
         let bytes = width * height;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
@@ -105,7 +106,7 @@ impl GifFrame {
         &self.palette
     }
 
-    /// The film's size in pixels: width and height.
+    /// The animation's size in pixels: width and height.
     pub(super) fn size(&self) -> (u16, u16) {
         self.size
     }
@@ -115,7 +116,7 @@ impl GifFrame {
         self.image.is_some()
     }
 
-    /// Returns whether all of it is written, whatever the frame before it showed.
+    /// Returns whether all of it is written, regardless of the frame before it.
     pub(super) fn is_whole(&self) -> bool {
         let pixels = usize::from(self.size.0) * usize::from(self.size.1);
         self.image.as_ref().is_some_and(|image| image.area.pixels() == pixels && image.transparent.is_none())
@@ -125,19 +126,19 @@ impl GifFrame {
         self.image
     }
 
-    /// Its first pixel, for a frame that changes nothing and yet must be written.
+    /// Its first pixel, for a frame that changes nothing but has to be written.
     pub(super) fn first_pixel(&self, scale: Scale, film: &[Rgb; 256]) -> Result<Image, PictureError> {
         Image::new(None, &Scaled::new(&self.picture(), scale)?, Area::FIRST_PIXEL, film)
     }
 }
 
-/// The least length of a row of unchanged pixels that are left transparent. Shorter ones would break up the pixels
-/// around them, which costs more than it saves: on the torus 16 came to less than 1, 4, 8 and 32.
+/// The min length of a run of unchanged pixels that become transparent. Shorter runs would break up the pixels around
+/// them, which costs more than it saves: on the torus 16 gave smaller files than 1, 4, 8 and 32.
 const TRANSPARENT_RUN: usize = 16;
 
 impl Image {
-    /// A part of a frame: compressed as it is and, beside a frame that stands before it, with transparent pixels; the
-    /// shorter of both.
+    /// A part of a frame, compressed as it is and, if there is a frame before it, with transparent pixels; the shorter
+    /// of both.
     fn new(
         before: Option<&Scaled<'_>>,
         scaled: &Scaled<'_>,
@@ -162,7 +163,7 @@ impl Image {
             Some(places) => (None, places),
             None => {
                 let own = ColorTable::of_used(picture.palette, &indices);
-                // It holds all that is used.
+                // The table contains every colour in use.
                 let places = own.places(picture.palette, &indices).unwrap_or([0; 256]);
                 (Some(own), places)
             }
@@ -183,7 +184,7 @@ impl Image {
     }
 }
 
-/// Makes long rows of pixels that stay as they were transparent. Returns whether there are any.
+/// Makes long runs of unchanged pixels transparent. Returns whether there are any.
 fn leave_out(indices: &mut [u8], kept: &[bool], width: usize, transparent: u8) -> bool {
     let mut any = false;
     for (indices, kept) in indices.chunks_mut(width).zip(kept.chunks(width)) {
@@ -202,7 +203,7 @@ fn leave_out(indices: &mut [u8], kept: &[bool], width: usize, transparent: u8) -
 
 /// Compresses indices as in GIF.
 fn compressed(indices: &[u8]) -> Result<Vec<u8>, PictureError> {
-    // The compressor asks for this much at first, and for an image larger than memory says so by a panic.
+    // The compressor allocates this much at first, and panics if that fails.
     let bytes = indices.len() / 2;
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| PictureError::Memory { bytes })?;
     let mut frame = Frame { buffer: indices.into(), ..Frame::default() };

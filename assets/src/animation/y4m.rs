@@ -1,5 +1,5 @@
-//! Frames as a stream of YUV4MPEG2, which `ffmpeg` reads from a pipe: a line that says size and rate, then each frame as
-//! three planes of bytes, the luma and two differences of colour, none of them at less than the full resolution.
+//! A YUV4MPEG2 stream of frames, which `ffmpeg` reads from a pipe: a line with size and rate, then each frame as three
+//! planes of bytes, the luma and two colour differences, all at full resolution.
 
 use mode13h::export::Scaled;
 use mode13h::export::{Picture, PictureError, Scale};
@@ -7,7 +7,7 @@ use mode13h::palette::Rgb;
 
 use super::AnimationError;
 
-/// The line that a stream of frames like this one begins with. `rate`: frames a second as a fraction.
+/// The header line of a stream of frames like this one. `rate`: frames per second as a fraction.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -20,10 +20,11 @@ use super::AnimationError;
 ///
 /// # Errors
 ///
-/// [`AnimationErrorKind::Picture`](super::AnimationErrorKind::Picture) if the picture's sizes do not fit its bytes or are too large when enlarged.
+/// [`AnimationErrorKind::Picture`](super::AnimationErrorKind::Picture) if the picture's sizes do not fit its bytes or
+/// are too large when enlarged.
 pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Result<String, AnimationError> {
     let scaled = Scaled::new(picture, scale)?;
-    // Pixels per unit of length: of many across, each is narrow.
+    // Pixels per unit of length: the more across, the narrower each is.
     let (across, down) = scaled.density();
     let Scaled { width, height, .. } = scaled;
     Ok(format!("YUV4MPEG2 W{width} H{height} F{}:{} Ip A{down}:{across} C444\n", rate.0, rate.1))
@@ -33,7 +34,7 @@ pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Resu
 ///
 /// # Errors
 ///
-/// Those of [`y4m_header`]; no memory.
+/// Those of [`y4m_header`]; not enough memory.
 pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, AnimationError> {
     const HEADING: &[u8] = b"FRAME\n";
     let scaled = Scaled::new(picture, scale)?;
@@ -51,7 +52,8 @@ pub fn y4m_frame(picture: &Picture<'_>, scale: Scale) -> Result<Vec<u8>, Animati
     Ok(frame)
 }
 
-/// Y, Cb and Cr of a colour, by ITU-R BT.601 in 8 bits, Y being 16 to 235 and the others 16 to 240; to the nearest.
+/// Y, Cb and Cr of a colour after ITU-R BT.601 in 8 bits, Y from 16 to 235 and the others from 16 to 240, rounded to
+/// the nearest.
 fn luma_and_differences(Rgb { r, g, b }: Rgb) -> [u8; 3] {
     let (r, g, b) = (i32::from(r), i32::from(g), i32::from(b));
     // In 1/255,000: each sum of weights is 219,000, or 112,000 on either side of zero.
@@ -68,8 +70,8 @@ mod tests {
     use super::*;
     use mode13h::export::PixelShape;
 
-    /// By the standard's own words: E'Y = 0.299 R + 0.587 G + 0.114 B; the differences are (B − Y) / 1.772 and
-    /// (R − Y) / 1.402.
+    /// Against the standard's definition: E'Y = 0.299 R + 0.587 G + 0.114 B; the differences are (B − Y) / 1.772 and (R
+    /// − Y) / 1.402.
     #[test]
     fn colors_are_those_of_the_standard() {
         for color in (0..4096).map(|i| [i >> 8, (i >> 4) & 15, i & 15].map(|nibble| (nibble * 17) as u8)) {
@@ -78,7 +80,7 @@ mod tests {
             let exact = [16.0 + 219.0 * y, 128.0 + 224.0 * (b - y) / 1.772, 128.0 + 224.0 * (r - y) / 1.402];
             let bytes = luma_and_differences(Rgb::new(color[0], color[1], color[2]));
             for (byte, exact) in bytes.into_iter().zip(exact) {
-                // Half, and what the weights of five digits are off: below 3 · 255 · ½ / 255,000.
+                // One half, plus the error of five-digit weights: below 3 · 255 · ½ / 255,000.
                 assert!((f64::from(byte) - exact).abs() <= 0.5 + 0.0015, "{color:?}: {byte}, {exact}");
             }
         }

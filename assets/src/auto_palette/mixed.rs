@@ -1,8 +1,8 @@
-//! Colours that lie on no ramp: in fog, behind what shines through, under coloured light.
+//! Colours that are on no ramp: in fog, behind transparent surfaces, under coloured light.
 //!
-//! They are found by drawing the scene in true colour, as three pictures in grey, one for each channel: lights,
-//! materials, images and fog have the intensity there that they have on that channel. So light, fog, glass and images
-//! are the renderer's own, and no pixel knows of any palette.
+//! They are found by rendering the scene in true colour, as three grey pictures, one for each channel: lights,
+//! materials, images and fog have their intensity on that channel there. So light, fog, glass and images are the
+//! renderer's own, and no pixel depends on a palette.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
@@ -19,9 +19,9 @@ use super::seen::{Numbers, Picture, moments};
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);
 
-/// The colours of the pixels that are mixed, or of those `everywhere`, as the card shows them, each with its area in
-/// parts of all covered pixels. The background's colour is among them, if one was chosen. `own` are the colours of the
-/// scene's materials, of all objects one after the other.
+/// The colours of mixed pixels, or of all pixels if `everywhere`, as the card shows them, each with its area as a
+/// fraction of all covered pixels. The background's colour is among them, if one was chosen. `own` are the colours of
+/// the scene's materials, of all objects in order.
 pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let materials = scene.objects().iter().flat_map(|object| &object.materials);
     let shines: Vec<bool> = materials.clone().map(|material| material.blend != Blend::Opaque).collect();
@@ -30,7 +30,7 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Resu
         return Ok(Vec::new());
     }
     let mut numbers = Numbers::new(scene, false);
-    // The channels of what is grey are equal.
+    // If everything is grey, the three channels are equal.
     let is_grey = scene.fog.is_none()
         && !has_colored_light(scene)
         && own.iter().all(|colors| *colors == ([1.0; 3], [1.0; 3]))
@@ -60,12 +60,12 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Resu
     Ok(counts.into_iter().map(|(color, count)| (color, count as f32 / covered.max(1) as f32)).collect())
 }
 
-/// Returns whether a light in the scene is coloured, so that all is lit on three channels.
+/// Returns whether a light in the scene is coloured, so that everything is lit on three channels.
 pub(super) fn has_colored_light(scene: &Scene) -> bool {
     scene.lights().iter().any(|light| light.is_colored() && light.intensity() != 0.0)
 }
 
-/// The palette whose entry i is the grey nearest to i that the card shows.
+/// The palette whose entry i is the grey nearest to i that the card can show.
 fn grey() -> Palette {
     // Below 256.
     Palette::from_colors(core::array::from_fn(|i| even(i as u8).nearest_on_dac()))
@@ -75,7 +75,7 @@ fn even(value: u8) -> Rgb {
     Rgb::new(value, value, value)
 }
 
-/// A channel of the scene, 0 to 2, in grey.
+/// One channel of the scene, 0 to 2, as a grey picture.
 fn picture(scene: &Scene, own: &[OwnColors], channel: usize) -> Picture {
     let of = |color: Rgb| [color.r, color.g, color.b][channel];
     let mut images: Vec<(Shared<Texture>, Shared<Texture>)> = Vec::new();

@@ -1,9 +1,9 @@
-//! A palette for a scene: each of its materials is measured over a round, and the entries are made from that.
+//! Palettes made for a scene: each of its materials is measured over a loop, and the entries are derived from that.
 //!
 //! | file | what |
 //! |---|---|
-//! | `seen` | area and brightness of every material, from pictures in which shades are intensities, or numbers |
-//! | `mixed` | colours that lie on no ramp, from pictures in true colour |
+//! | `seen` | area and brightness of every material, from pictures whose shades are intensities or material numbers |
+//! | `mixed` | colours that are on no ramp, from pictures in true colour |
 
 mod mixed;
 mod seen;
@@ -36,8 +36,8 @@ pub struct AutomaticPalette {
 }
 
 impl AutomaticPalette {
-    /// Gives `scene` the palette, and its objects their materials in it. The scene is the one that the palette was made
-    /// for, or one with the same objects. Objects with other numbers of materials stay as they are. The scene's
+    /// Sets the scene's palette, and its objects' materials for it. The scene must be the one that the palette was made
+    /// for, or one with the same objects. Objects with a different number of materials are left unchanged. The scene's
     /// preference for such a palette is cleared.
     pub fn apply(&self, scene: &mut Scene) {
         scene.auto_palette = false;
@@ -53,22 +53,22 @@ impl AutomaticPalette {
     }
 }
 
-/// A palette for a scene, by [`share_beside`], and its materials in it.
+/// Makes a palette for a scene, by [`share_beside`], and its materials for it.
 ///
-/// Area and brightness are measured from what is seen over a round. A material that has no colour of its own and no
-/// image, and names a coloured ramp of the scene's palette, keeps the colours of that ramp. Any other material's colour
-/// is its [own](Material::own_colors), in the light that it gives back in full light, ambient and diffuse together; its
-/// highlight adds to that. On its ramp that colour stands at the intensity `full_light` of [`Entries::Ramp`]. So its
-/// ambient and diffuse shares are divided up to that, in the proportion that they have, and the rest is the
-/// highlight's. The material then needs no channels any more, because its colour is in the ramp, and a `ramp` that it
-/// named is replaced. A material with an image keeps its shares. The image's colours, tinted by the material's, are the
-/// base of entries at the brightnesses seen. If its plan calls for mipmaps, their colours count too, those of each
-/// level half as much as those of the level before.
+/// Area and brightness are measured from what is visible over a loop. A material without a colour of its own and
+/// without an image that names a coloured ramp of the scene's palette keeps the colours of that ramp. Any other
+/// material's colour is its [own](Material::own_colors), in the light that it reflects in full light, ambient and
+/// diffuse together; its highlight adds to that. On its ramp that colour is at the intensity `full_light` of
+/// [`Entries::Ramp`]. So its ambient and diffuse shares are scaled to add up to that, in the same proportion, and the
+/// rest is the highlight's. The material then no longer needs channels, because its colour is in the ramp, and a `ramp`
+/// that it named is replaced. A material with an image keeps its shares. The image's colours, tinted by the material's,
+/// are the base of entries at the visible brightnesses. If its plan calls for mipmaps, their colours count, too, each
+/// level half as much as the level before.
 ///
-/// Colours that are mixed on the screen lie on no ramp: those in fog and behind bodies that shine through, and all
-/// colours under a coloured light. They are measured in true colour, and share the block of the textures. Under
-/// coloured light there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the
-/// nearest of the measured colours.
+/// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
+/// under a coloured light. They are measured in true colour, and share the block of the textures. Under coloured light
+/// there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
+/// measured colours.
 ///
 /// ```
 /// use mode13h::mesh::shapes;
@@ -106,7 +106,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let seen = seen(scene)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
     for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
-        // The shades of an image, or of a ramp that is taken over, are not divided anew.
+        // The shades of an image, or of a ramp that is taken over, are not rescaled.
         let part = if body.image.is_some() || body.along.is_some() { body.full } else { 1.0 };
         uses.push(Use {
             color: body.color,
@@ -125,7 +125,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     let mut entries = entries.into_iter();
     let mut automatic = AutomaticPalette { palette, entries: Vec::new(), materials: Vec::new() };
     for (object, bodies) in scene.objects().iter().zip(&bodies) {
-        // One for each body.
+        // One for each of the object's materials.
         let own: Vec<Entries> = entries.by_ref().take(bodies.len()).collect();
         let materials = object.materials.iter().zip(bodies).zip(&own);
         automatic.materials.push(materials.map(|((m, body), own)| body.material(m, *own, in_channels)).collect());
@@ -134,8 +134,8 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     Ok(automatic)
 }
 
-/// The colours that a scene without a chosen background shows over a round, as the card has them, whatever the palette:
-/// each with its area in parts of all covered pixels.
+/// The colours that a scene without a chosen background shows over a loop, as the card shows them, independent of any
+/// palette: each with its area as a fraction of all covered pixels.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -149,7 +149,7 @@ pub(crate) fn colors_seen(scene: &Scene) -> Result<Vec<(Rgb, f32)>, RenderError>
     mixed::colors(scene, &own.collect::<Vec<_>>(), true)
 }
 
-/// Returns for each object whether its plan calls for mipmaps at any moment.
+/// Returns for each object whether its plan ever calls for mipmaps.
 fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
     let mut any = vec![false; scene.objects().len()];
     if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
@@ -165,7 +165,7 @@ fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
 
 /// The target colours of one material of an object.
 struct Body {
-    /// The share of full light that it gives back, of 1: ambient and diffuse together.
+    /// The share of full light that it reflects, ambient and diffuse together; at most 1.
     full: f32,
     /// Its colours on three channels.
     own: OwnColors,
@@ -177,7 +177,7 @@ struct Body {
     image: Option<Shared<Texture>>,
 }
 
-/// A body for each material.
+/// The target colours of each material.
 fn bodies(object: &Object, scene: &Scene, tints: &mut Tints) -> Vec<Body> {
     let plain = Surface::default();
     let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
@@ -235,7 +235,7 @@ impl Body {
     }
 }
 
-/// The colours of the ramp that a material names in a palette; `None` if they are greys, or the palette has no ramps.
+/// The colours of the ramp that a material names in a palette; `None` if they are grey, or if the palette has no ramps.
 fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
     let ramp = material.ramp.in_palette(Some(palette));
     let is_named = matches!(material.ramp, RampChoice::Entries(_)) || palette.ramps() > 0;
@@ -244,7 +244,8 @@ fn colors_of_ramp(material: &Material, palette: &Palette) -> Option<Vec<Rgb>> {
     (is_named && material.ramp != RampChoice::Nearest && has_color && colors.len() > 1).then_some(colors)
 }
 
-/// The two colours that stand for a ramp where light is mixed: that in full light, and what the highlight adds to it.
+/// The two colours that represent a ramp where light is mixed: the one in full light, and what the highlight adds to
+/// it.
 fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let shown = |intensity: f32| {
         // From the first to the last.
@@ -256,7 +257,7 @@ fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     (color.map(|channel| channel / full), highlight)
 }
 
-/// Images in the colours of their materials, each once.
+/// Images tinted with the colours of their materials, each once.
 #[derive(Default)]
 struct Tints(Vec<(Shared<Texture>, Rgb, Shared<Texture>)>);
 

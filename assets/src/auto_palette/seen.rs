@@ -1,9 +1,9 @@
-//! Area and brightness of each material of a scene, as they are seen.
+//! Area and brightness of each material of a scene, as far as it is visible.
 //!
-//! Each moment is drawn once with shades that are intensities, and once with the materials' numbers in place of shades,
-//! one byte of the number after the other: so visibility is the renderer's own. Adding up projected areas would be
-//! cheaper, but would count hidden areas too. Behind bodies that shine through, materials are seen as well: the scene
-//! is drawn again without those bodies.
+//! Each moment is drawn once with intensities as shades, and once with the materials' numbers in place of shades, one
+//! byte of the number at a time: so visibility is the renderer's own. Adding up projected areas would be cheaper, but
+//! would include hidden areas. Materials behind transparent surfaces are visible, too: the scene is drawn again without
+//! those surfaces.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -16,23 +16,23 @@ use mode13h::scene::Scene;
 use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
-/// Pictures over one round.
+/// The number of pictures per loop.
 const POSES: u32 = 16;
 
-/// The pixels that show a material, over one round of the scene.
+/// What is visible of a material over one loop of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Seen {
-    /// The share of its pixels among all that are covered, 0 to 1.
+    /// The share of its pixels among all covered pixels, 0 to 1.
     pub area: f32,
-    /// The least intensity of ambient and diffuse light that it shows there, 0 to 1, full light being 1; 0 if it is
-    /// never in sight.
+    /// The least intensity of ambient and diffuse light that it shows there, 0 to 1, with 1 for full light; 0 if it is
+    /// never visible.
     pub darkest: f32,
     /// The greatest such intensity.
     pub brightest: f32,
 }
 
-/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a round of the scene, or in one if
-/// nothing in it moves.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, or at one if
+/// nothing moves.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -53,14 +53,14 @@ pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
 }
 
-/// The moments of a round that are drawn, in seconds.
+/// The moments of a loop that are drawn, in seconds.
 pub(super) fn moments(scene: &Scene) -> impl Iterator<Item = f64> {
     let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
     let duration = scene.duration;
     (0..poses).map(move |pose| from + duration * f64::from(pose) / f64::from(POSES))
 }
 
-/// A scene as it is measured, and the renderer that draws it.
+/// A scene prepared for measuring, and the renderer that draws it.
 pub(super) struct Picture {
     scene: Scene,
     renderer: Renderer,
@@ -68,8 +68,8 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// A picture of `scene` on one channel, without effects on its pixels. `change` changes the materials; it is given
-    /// their numbers from 0.
+    /// A picture of `scene` on one channel, without effects on its pixels. `change` modifies the materials, given their
+    /// numbers from 0.
     pub(super) fn new(scene: &Scene, mut change: impl FnMut(usize, &mut Material)) -> Self {
         let mut scene = scene.clone();
         scene.palette = None;
@@ -99,7 +99,7 @@ impl Picture {
     }
 }
 
-/// Intensities and material numbers, with the bodies that shine through drawn as opaque, or left out.
+/// Intensities and material numbers, with transparent surfaces either opaque or left out.
 struct Layer {
     intensities: Picture,
     numbers: Numbers,
@@ -120,7 +120,7 @@ impl Layer {
         Self { intensities, numbers: Numbers::new(scene, through) }
     }
 
-    /// Counts the pixels of the materials that `counts`.
+    /// Counts the pixels of the materials for which `counts` is true.
     fn add(&mut self, seconds: f64, tallies: &mut [Tally], counts: impl Fn(usize) -> bool) -> Result<(), RenderError> {
         let intensities = self.intensities.at(seconds)?;
         for (number, &intensity) in self.numbers.at(seconds)?.iter().zip(intensities) {
@@ -132,16 +132,16 @@ impl Layer {
     }
 }
 
-/// Without images; hiding what is behind it, or, if it shines through and that is asked for, not there.
+/// Removes the images and makes the material opaque, or, if it is transparent and `through`, invisible.
 fn become_plain(material: &mut Material, through: bool) {
     (material.texture, material.environment) = (None, None);
     let is_left_out = through && material.blend != Blend::Opaque;
     material.blend = if is_left_out { Blend::Mix(0) } else { Blend::Opaque };
 }
 
-/// The number of the material that every pixel shows.
+/// The number of the material at every pixel.
 pub(super) struct Numbers {
-    /// One picture for each byte of the number. Numbers are counted from 1 in there, as the background is 0.
+    /// One picture for each byte of the number. Numbers are counted from 1 there, since the background is 0.
     bytes: Vec<Picture>,
     found: Vec<Option<usize>>,
 }
@@ -152,12 +152,12 @@ impl Numbers {
         let places = (0..usize::BITS).step_by(8).take_while(|&place| count >> place > 0);
         let picture = |place: u32| {
             let mut picture = Picture::new(scene, |number, material| {
-                // The lowest byte of what is left. On a ramp of one entry every shade is that entry.
+                // The lowest byte after the shift. On a ramp of one entry, every shade is that entry.
                 let byte = ((number + 1) >> place) as u8;
                 material.ramp = RampChoice::Entries(Ramp::single(byte));
                 become_plain(material, through);
             });
-            // In the dark, by the cheapest shading.
+            // Unlit, with the cheapest shading.
             let scene = picture.scene_mut();
             scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.0));
             scene.settings = Settings { hidden_surfaces: scene.settings.hidden_surfaces, ..Settings::default() };
@@ -166,7 +166,7 @@ impl Numbers {
         Self { bytes: places.map(picture).collect(), found: vec![None; Vga::SHOWN] }
     }
 
-    /// For each pixel the number of its material, from 0, all objects' one after the other.
+    /// For each pixel the number of its material, from 0, through all objects in order.
     pub(super) fn at(&mut self, seconds: f64) -> Result<&[Option<usize>], RenderError> {
         let mut numbers = vec![0; Vga::SHOWN];
         for (place, picture) in (0..).step_by(8).zip(&mut self.bytes) {
@@ -196,7 +196,7 @@ impl Tally {
         self.pixels += 1;
     }
 
-    /// Among `all` pixels, which are at most 32 pictures full: 2,048,000.
+    /// The result, relative to `all` pixels, which are at most those of 32 full pictures: 2,048,000.
     fn of(self, all: u32) -> Seen {
         Seen {
             area: self.pixels as f32 / all.max(1) as f32,
@@ -206,8 +206,8 @@ impl Tally {
     }
 }
 
-/// The share of full light that a material gives back, ambient and diffuse together. It is at most 1, as no more is
-/// shown, and 1 for a material that gives nothing back.
+/// The share of full light that a material reflects, ambient and diffuse together. It is at most 1, since no more can
+/// be shown, and 1 for a material that reflects nothing.
 pub(super) fn full_light(material: &Material, ambient: f32) -> f32 {
     let full = material.ambient * ambient + material.diffuse;
     if full > 0.0 { full.min(1.0) } else { 1.0 }

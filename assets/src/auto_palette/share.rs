@@ -1,31 +1,30 @@
-//! A palette made for the surfaces in sight: a ramp for each material, a block for the textures.
+//! A palette made for the visible surfaces: a ramp for each material, a block for the textures.
 //!
-//! Entry 0 is black, for the background, and entry 255 white, for what a program writes on the
-//! picture. The 254 between are shared out so that the sum, over all visible pixels, of the squared
-//! distance between wanted and shown colour falls most with every entry given:
+//! Entry 0 is black, for the background, and entry 255 white, for text and graphics drawn over the picture. The 254 in
+//! between are distributed so that the sum, over all visible pixels, of the squared distance between wanted and
+//! displayed colour falls most with every entry given:
 //!
-//! - A ramp of n entries has n − 1 steps. Rounding to its entries is off by a twelfth of the square of
-//!   a step on average, so with a share `area` of the pixels, and colours `length` apart between the
-//!   darkest and the brightest that is seen, it costs `area·length²/(12·(n − 1)²)`.
-//! - The textures' colours at all brightnesses seen are reduced by median cut, whose cuts have known gains. All
-//!   textures share one block: their shades look for the nearest entry of the whole palette
-//!   ([`Lut64K::shades`](mode13h::palette::Lut64K::shades)), and so use the ramps' entries too.
-//! - Colours that are mixed on the screen and lie on no ramp (in fog, behind glass, under coloured light) are points of
-//!   the same cloud, as they are.
+//! - A ramp of n entries has n − 1 steps. Rounding to its entries has a mean squared error of a twelfth of the squared
+//!   step, so with a share `area` of the pixels, and colours `length` apart between the darkest and the brightest
+//!   visible, it costs `area·length²/(12·(n − 1)²)`.
+//! - The textures' colours at all visible brightnesses are reduced by median cut, whose cuts have known gains. All
+//!   textures share one block: their shades use the nearest entry of the whole palette
+//!   ([`Lut64K::shades`](mode13h::palette::Lut64K::shades)), and so the ramps' entries, too.
+//! - Colours that are mixed on the screen and on no ramp (in fog, behind glass, under coloured light) are points of the
+//!   same cloud, without change of brightness.
 //!
-//! The gain of a ramp's next entry shrinks with each. So it is best for the ramps to give one entry at a
-//! time to who gains most. A ramp never gets more than there are colours on it that the card can show.
+//! The gain of a ramp's next entry shrinks with each entry, so a greedy choice is optimal for the ramps: one entry at a
+//! time to the one that gains most. A ramp never gets more entries than it has colours that the card can show.
 //!
-//! **Ramps.** Entry i of n is the colour at intensity i/(n − 1): black at 0, the material's own colour
-//! at full light, on a straight line. They begin at black, not at the darkest shade seen: a shade is an
-//! index into the ramp and 0 its first entry, whatever the light, and a light that moves needs the
-//! darker ones. On the ramp of a material with a highlight a second line leads from the colour to the
-//! highlight's. The two share the ramp in proportion to their lengths, so that all its steps are
-//! equally wide: [`Entries::Ramp`] says where they meet.
+//! **Ramps.** Entry i of n is the colour at intensity i/(n − 1): black at 0, the material's own colour at full light,
+//! on a straight line. Ramps begin at black, not at the darkest visible shade: a shade is an index into the ramp and 0
+//! its first entry, whatever the light, and a moving light needs the darker ones. On the ramp of a material with a
+//! highlight a second line leads from the colour to the highlight's. The two share the ramp in proportion to their
+//! lengths, so that all its steps are equally wide: [`Entries::Ramp`] says where they meet.
 //!
 //! **More materials than room.** 63 ramps of 4 entries fill the palette. The materials that lose most without a ramp
 //! get one: first the one with the largest area; then always the one for which area × squared distance to the nearest
-//! colour chosen so far is largest. All others share the ramp that is nearest; two of one colour always share it.
+//! colour chosen so far is largest. All others share the nearest ramp; two of one colour always share it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -34,25 +33,25 @@ use mode13h::palette::MedianCut;
 use mode13h::palette::gradient::{Stop, color_at, fill};
 use mode13h::palette::{Palette, Ramp, Rgb};
 
-/// A surface's demands on a palette.
+/// What a surface needs from a palette.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Use<'a> {
     /// The colour in full light.
     pub color: Rgb,
     /// The colour in the middle of a highlight in full light; `None` if it is matt.
     pub highlight: Option<Rgb>,
-    /// The share of the visible pixels: any unit, not negative. A surface that is never in sight counts as a millionth
-    /// of all, so that it has a colour when it does come into sight.
+    /// The share of the visible pixels: any unit, not negative. A surface that is never visible counts as a millionth
+    /// of everything, so that it has a colour when it does become visible.
     pub area: f32,
-    /// The least intensity at which it is seen, 0 to 1, highlights left out.
+    /// The least visible intensity, 0 to 1, without highlights.
     pub darkest: f32,
-    /// The greatest intensity at which it is seen, 0 to 1, highlights left out.
+    /// The greatest visible intensity, 0 to 1, without highlights.
     pub brightest: f32,
-    /// The colours of its texture in full light, if it has one, each with the number of its texels. Then `color` and
-    /// `highlight` do not count.
+    /// The colours of its texture in full light, if it has one, each with its number of texels. Then `color` and
+    /// `highlight` are ignored.
     pub texels: Option<&'a [(Rgb, u32)]>,
-    /// The colours at equal steps of intensity from 0 to 1, at least two and at most 256, if they do not lie on a
-    /// straight line. Then the ramp runs through them, full light is 1, and `color` does not count.
+    /// The colours at equal steps of intensity from 0 to 1, at least two and at most 256, if they are not on a straight
+    /// line. Then the ramp runs through them, full light is 1, and `color` is ignored.
     pub along: Option<&'a [Rgb]>,
 }
 
@@ -60,18 +59,17 @@ pub struct Use<'a> {
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Entries {
-    /// A ramp, perhaps with others. No two ramps have an entry in common.
+    /// A ramp, perhaps shared with others. No two ramps overlap.
     Ramp {
-        /// The ramp, from black by the surface's colour in full light to that of its highlight.
+        /// The ramp, from black through the surface's colour in full light to that of its highlight.
         ramp: Ramp,
-        /// The intensity, 0 to 1, whose entry is the colour in full light. A material's ambient and
-        /// diffuse light add up to this, and its highlight to the rest; for a matt one it is 1.
+        /// The intensity, 0 to 1, of the entry for the colour in full light. A material's ambient and diffuse light add
+        /// up to this, and its highlight to the rest; for a matt one it is 1.
         full_light: f32,
     },
-    /// The block of entries that all textures share. Shades go through a table, which may find other
-    /// entries that are nearer.
+    /// The block of entries shared by all textures. Shades go through a table, which may use nearer entries elsewhere.
     Textures {
-        /// The block's entries, in no order.
+        /// The block's entries, in no particular order.
         block: Ramp,
     },
 }
@@ -79,33 +77,33 @@ pub enum Entries {
 /// A palette, and the entries of each surface in it.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Automatic {
-    /// The colours, all of which the card shows exactly. The palette is marked as without ramps: they are not equal, so
+    /// The colours, all of which the card shows exactly. The palette declares no ramps: they are not equal, so
     /// materials name their entries.
     pub palette: Palette,
     /// The entries of each use.
     pub entries: Vec<Entries>,
 }
 
-/// The number of entries to be shared out: all but the first and the last.
+/// The number of entries to distribute: all except the first and the last.
 const CAPACITY: usize = 254;
-/// The min length of a ramp, unless there are fewer colours on it.
+/// The min length of a ramp, unless it has fewer colours.
 const MIN_ENTRIES: usize = 4;
-/// The number of entries kept for textures before the ramps have theirs.
+/// The number of entries reserved for textures before the ramps get theirs.
 const MIN_FOR_TEXTURES: usize = 16;
-/// The share of the area that a surface has if it is never in sight.
+/// The share of the area assumed for a surface that is never visible.
 const UNSEEN: f64 = 1e-6;
-/// The narrowest range of intensities that entries are made for: a light may move.
+/// The narrowest range of intensities to make entries for, since a light may move.
 const NARROWEST: f64 = 0.25;
-/// The number of brightnesses of a texture's colours that are tried.
+/// The number of brightness levels tested for a texture's colours.
 const LEVELS: u8 = 16;
-/// The max number of textured uses that are read: those with the largest areas.
+/// The max number of textured uses considered: those with the largest areas.
 const MAX_TEXTURED: usize = 64;
 /// The weight of the whole area in median cut.
 const WHOLE: f64 = 16_777_216.0;
-/// A distance above any squared distance between two colours and two highlights: 2 · 195,075.
+/// More than any sum of the squared distances between two colours and between two highlights: 2 · 195,075.
 const FARTHER_THAN_ANY: u32 = 400_000;
 
-/// Shares the palette out.
+/// Distributes the palette among surfaces.
 ///
 /// ```
 /// use mode13h::palette::Rgb;
@@ -128,7 +126,7 @@ pub fn share(uses: &[Use<'_>]) -> Automatic {
     share_beside(uses, &[])
 }
 
-/// Shares the palette out with room for mixtures: colours that lie on no ramp and stand on the screen as they are, each
+/// Distributes the palette with room for mixtures: colours that are on no ramp and appear on the screen unchanged, each
 /// with the area that it covers there, in the unit of [`Use::area`]. They go into the block of the textures.
 ///
 /// ```
@@ -169,13 +167,13 @@ pub fn share_beside(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> Automatic {
     }
 }
 
-/// The ramp of `count` entries from `first` on, which are at most 256 together.
+/// The ramp of `count` entries starting at `first`; together at most 256.
 fn entries(first: usize, count: usize) -> Ramp {
     let ramp = u8::try_from(first).ok().zip(u16::try_from(count).ok());
     ramp.and_then(|(first, count)| Ramp::new(first, count)).unwrap_or(Ramp::WHOLE)
 }
 
-/// Gives away the room: an entry at a time to the ramp or block that gains most by it.
+/// Hands out the free entries one at a time, each to the ramp or block that gains most.
 fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
     let mut room = CAPACITY.saturating_sub(ramps.iter().map(|ramp| ramp.entries).sum::<usize>() + textures.boxes());
     while room > 0 {
@@ -186,8 +184,8 @@ fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
         } else {
             match best {
                 Some(best) if by_ramp > 0.0 => ramps[best].entries += 1,
-                // Nobody gains by it: every ramp shows all its colours. What is left makes them finer
-                // than the card can show, which costs nothing.
+                // No ramp gains any more: each shows all its colours. The remaining entries make them finer than the
+                // card can show, which costs nothing.
                 Some(_) => break,
                 None => return,
             }
@@ -201,13 +199,13 @@ fn give(ramps: &mut [Wanted], textures: &mut MedianCut) {
     }
 }
 
-/// The ramp that gains most, the first if several do.
+/// The ramp that gains most; the first if several do.
 fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }
 
-/// Finds one colour for each box, as far as there are enough colours. No colour comes twice, and none is one of
-/// `beside`. For each that is left out another box is cut.
+/// Finds one colour for each box, as far as there are enough colours. No colour occurs twice, and none is in `beside`.
+/// For each colour dropped, another box is cut.
 fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     let wanted = textures.boxes();
     let mut found = Vec::new();
@@ -216,7 +214,7 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
         colors.sort_unstable_by_key(|color| (color.brightness(), *color));
         colors.dedup();
         colors.retain(|color| !beside.contains(color));
-        // Both parts of a box that was left out may stay, which is one more than wanted.
+        // Both halves of a dropped box may remain, which is one more than wanted.
         if colors.len() > wanted {
             return found;
         }
@@ -227,18 +225,18 @@ fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     }
 }
 
-/// A ramp that is wanted, and the number of its entries so far.
+/// A ramp being planned, and the number of its entries so far.
 struct Wanted {
     keys: Vec<Stop>,
-    /// The place on the ramp of the colour in full light, in 255ths.
+    /// The position on the ramp of the colour in full light, in 1/255.
     full_light: u8,
-    /// The length from key to key, in 255ths of a channel.
+    /// The length from key to key, in 1/255 of a channel.
     length: f64,
     area: f64,
-    /// The part of the ramp that is seen, 0 to 1.
+    /// The visible range of the ramp, 0 to 1.
     darkest: f64,
     brightest: f64,
-    /// The number of colours on it that the card can show.
+    /// The number of its colours that the card can show.
     colors: usize,
     entries: usize,
 }
@@ -273,7 +271,7 @@ impl Wanted {
             colors: 0,
             entries: 0,
         };
-        // Sixteen places for every step of one channel, so that hardly a colour is missed.
+        // Sixteen positions for every step of one channel, so that hardly any colour is missed.
         let places = (0..=1024).filter_map(|i| color_at(i, 1025, &ramp.keys)).map(Rgb::nearest_on_dac);
         let mut before = None;
         ramp.colors = places.filter(|&color| before.replace(color) != Some(color)).count();
@@ -281,7 +279,7 @@ impl Wanted {
         ramp
     }
 
-    /// Counts a use as part of the ramp.
+    /// Adds a use to the ramp.
     fn add(&mut self, of: &Use<'_>, area: f64) {
         let (darkest, brightest) = of.range();
         let full_light = f64::from(self.full_light) / 255.0;
@@ -298,7 +296,7 @@ impl Wanted {
         }
     }
 
-    /// The gain of one more entry; none if there are as many as colours that the card can show.
+    /// The gain of one more entry; 0 once there are as many entries as colours that the card can show.
     fn gain(&self) -> f64 {
         if self.entries < self.colors { self.gain_unbounded() } else { 0.0 }
     }
@@ -306,7 +304,7 @@ impl Wanted {
     /// The gain without that limit: area·length²/12 · (1/(n − 1)² − 1/n²).
     fn gain_unbounded(&self) -> f64 {
         let length = (self.brightest - self.darkest).max(0.0) * self.length;
-        // A ramp of one entry has one colour, black.
+        // A ramp of one entry has a single colour, black.
         let steps = self.entries.saturating_sub(1).max(1) as f64;
         let next = steps + 1.0;
         self.area * length * length / 12.0 * (1.0 / (steps * steps) - 1.0 / (next * next))
@@ -319,8 +317,8 @@ impl Use<'_> {
         self.along.filter(|along| (2..=256).contains(&along.len()))
     }
 
-    /// The colours in full light and of the highlight as the card can show them.
-    /// In a ramp that is not straight they are those in the middle and at the end.
+    /// The colours in full light and of the highlight as the card can show them. In a ramp that is not straight, those
+    /// in the middle and at the end.
     fn shown(&self) -> (Rgb, Rgb) {
         if let Some(along) = self.bent() {
             return (along[along.len() / 2].nearest_on_dac(), along[along.len() - 1].nearest_on_dac());
@@ -341,7 +339,7 @@ fn not_negative(v: f32) -> f64 {
     f64::from(v.max(0.0))
 }
 
-/// The share of each use in the area of all, at least [`UNSEEN`], and that of each mixture.
+/// The share of each use in the total area, at least [`UNSEEN`], and that of each mixture.
 fn areas(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> (Vec<f64>, Vec<(Rgb, f64)>) {
     // An infinite area counts as a very large one.
     let area = |area: f32| not_negative(area).min(1e30);
@@ -352,11 +350,11 @@ fn areas(uses: &[Use<'_>], mixtures: &[(Rgb, f32)]) -> (Vec<f64>, Vec<(Rgb, f64)
     (uses.iter().map(|of| share(of.area)).collect(), mixed)
 }
 
-/// Chooses at most `most` ramps, and for each use without a texture one of them.
+/// Chooses at most `most` ramps, and one of them for each use without a texture.
 fn choose(uses: &[Use<'_>], areas: &[f64], most: usize) -> (Vec<Wanted>, Vec<Option<usize>>) {
     let plain: Vec<usize> = (0..uses.len()).filter(|&i| uses[i].texels.is_none()).collect();
     let colors: Vec<(Rgb, Rgb)> = uses.iter().map(Use::shown).collect();
-    // The nearest of those chosen, and the square of the distance to it.
+    // The squared distance to the nearest chosen one, and which one that is.
     let mut nearest = vec![(FARTHER_THAN_ANY, 0); uses.len()];
     let mut chosen = Vec::new();
     while chosen.len() < most {
@@ -384,8 +382,8 @@ fn choose(uses: &[Use<'_>], areas: &[f64], most: usize) -> (Vec<Wanted>, Vec<Opt
     (ramps, ramp_of)
 }
 
-/// The colours of the textures at the brightnesses at which they are seen, as the card can show them,
-/// with their shares of the area; and the mixtures.
+/// The colours of the textures at their visible brightnesses, as the card can show them, with their shares of the area;
+/// and the mixtures.
 fn cloud(uses: &[Use<'_>], areas: &[f64], mixed: &[(Rgb, f64)]) -> Vec<(Rgb, u32)> {
     let mut textured: Vec<usize> = (0..uses.len()).filter(|&i| uses[i].texels.is_some()).collect();
     textured.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));

@@ -1,4 +1,4 @@
-//! A model file as a scene: mesh, textures, palette and framing by one call.
+//! Model files as scenes: mesh, textures, palette and framing in one call.
 
 mod studio;
 
@@ -16,10 +16,10 @@ use mode13h::texture::Texture;
 
 pub use studio::studio;
 
-/// An error of a model file that gave no scene.
+/// The reason why a model file gives no scene.
 #[non_exhaustive]
 pub enum ModelError {
-    /// The file cannot be read, or holds no model.
+    /// The file cannot be read, or contains no model.
     File(ModelFileError),
     /// The model cannot be drawn.
     Scene(RenderError),
@@ -45,23 +45,23 @@ impl Error for ModelError {
     }
 }
 
-/// A model as it was read.
+/// A loaded model.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Model {
-    /// The mesh with its materials and textures, under the file's name.
+    /// The mesh with its materials and textures, named after the file.
     pub object: Object,
-    /// The parts that were left out or mended, one line each; a texture that cannot be read is left out.
+    /// The parts that were ignored or repaired, one line each; a texture that cannot be read is ignored.
     pub warnings: Vec<String>,
     /// The axis that points up, if the format says so.
     pub up: Option<UpAxis>,
 }
 
-/// Reads a model's file, those that it names and its textures.
+/// Reads a model file, the files that it names, and its textures.
 ///
 /// # Errors
 ///
-/// [`ModelFileError`] with the file and the place in it.
+/// [`ModelFileError`] with the file and the position in it.
 pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Model, ModelFileError> {
     let path = path.as_ref();
     let loaded = model_file::load_with(path, options, |_, _| {})?;
@@ -73,9 +73,9 @@ pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Model, ModelFil
     Ok(Model { object, warnings, up: loaded.up })
 }
 
-/// The texture of each surface of a mesh: one of those that its file brings, or a file, if the surface names one that
-/// can be read and the mesh has texture coordinates. Returns warnings, one line each: of files that cannot be read, and of what is left out of others. A file
-/// that several surfaces name is read once.
+/// The texture of each surface of a mesh: one that the model file contains, or a file, if the surface names one that
+/// can be read and the mesh has texture coordinates. Returns warnings, one line each: about files that cannot be read,
+/// and about parts of others that are ignored. A file named by several surfaces is read once.
 #[must_use]
 pub fn textures(mesh: &Mesh, embedded: &Embedded) -> (Vec<Option<Shared<Texture>>>, Vec<String>) {
     let mut read: HashMap<&str, Option<Shared<Texture>>> = HashMap::new();
@@ -100,7 +100,7 @@ pub fn textures(mesh: &Mesh, embedded: &Embedded) -> (Vec<Option<Shared<Texture>
     (textures.collect(), warnings)
 }
 
-/// Gives an object's surfaces these textures, one for each surface.
+/// Sets the textures of an object's surfaces, one for each surface.
 #[must_use]
 pub fn with_textures(mut object: Object, textures: &[Option<Shared<Texture>>]) -> Object {
     for (i, texture) in textures.iter().enumerate() {

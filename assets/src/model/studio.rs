@@ -1,18 +1,18 @@
-//! A studio: upright, light and background for a model that brings none.
+//! A studio: orientation, light and background for a model that brings none.
 //!
-//! **Light.** A key light from the upper right and a fill a quarter as strong from the left, at right angles to it. They
-//! and the ambient light add up to 1 at most, so that nothing is overexposed: the face that catches most shows its own
-//! colour, and one that catches nothing two fifths of it.
+//! **Light.** A key light from the upper right and a fill a quarter as strong from the left, at right angles to it.
+//! Together with the ambient light they add up to 1 at most, so that nothing is overexposed: the brightest face shows
+//! its own colour, and one that neither light reaches two fifths of it.
 //!
-//! **Colour.** That of a surface with an image is the image. Exporters write some grey Kd beside it, often 0.8 or 0.64,
-//! which dims nothing in the program that the model was made in. So these surfaces are exposed together, until the one
-//! with the greatest Kd shows its image as it is.
+//! **Colour.** The colour of a surface with an image is the image. Exporters write some grey Kd with it, often 0.8 or
+//! 0.64, which dims nothing in the program that the model was made in. So these surfaces are exposed together, until
+//! the one with the greatest Kd shows its image unchanged.
 //!
-//! **Background.** Black where the model stands out from it, else the darkest grey from which it does, or a blue.
+//! **Background.** Black where the model stands out from it, otherwise the darkest grey from which it does, or a blue.
 //!
-//! **Upright.** A closed mesh looks everywhere, so its faces' area vectors add up to nothing; those of a sheet add up to
-//! what it shows from its front. A sheet that looks along z is terrain or a floor with z up: with y up it would stand on
-//! edge. One that looks along x is turned to show its front at first, where it would be seen edge on.
+//! **Orientation.** A closed mesh faces in all directions, so its faces' area vectors add up to zero; those of a sheet
+//! add up to its area as seen from the front. A sheet that faces along z is terrain or a floor with z up: with y up it
+//! would stand on edge. One that faces along x would be seen edge on, and is turned to show its front at first.
 
 use core::ops::Range;
 
@@ -28,13 +28,13 @@ use crate::wide::{cross, dot, sub, widen};
 
 /// The share of its colour that a surface shows where neither light falls.
 const AMBIENT: f32 = 0.4;
-/// Towards the key light.
+/// The direction towards the key light.
 const KEY: [f32; 3] = [0.4, 0.6, 1.0];
-/// Towards the fill, at right angles to the key.
+/// The direction towards the fill, at right angles to the key.
 const FILL: [f32; 3] = [-1.0, 0.0, 0.4];
-/// The fill's intensity to the key's.
+/// The ratio of the fill's intensity to the key's.
 const FILL_SHARE: f32 = 0.25;
-/// A colour nearer to the background than this, in 255ths in the RGB cube, does not stand out from it.
+/// The least distance, in 1/255 in the RGB cube, at which a colour stands out from the background.
 const CONTRAST: f32 = 80.0;
 /// A blue that stands out from every grey.
 const BLUE: Rgb = Rgb::from_dac([6, 12, 34]);
@@ -43,7 +43,7 @@ const GLARING: u8 = 43;
 
 /// Makes a scene that [shows](Scene::showing) a model in the studio.
 ///
-/// With `None` the model says which of its axes points up: y, unless it is a sheet that looks along z.
+/// With `None` the model decides which of its axes points up: y, unless it is a sheet that faces along z.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`](mode13h::render::Renderer::draw).
@@ -55,7 +55,7 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     let has_colors = object.has_colors();
     let mut scene = Scene::showing_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
     scene.clear_lights();
-    // Two lights at right angles add up to the length of (key, fill) where both fall fullest.
+    // Two lights at right angles add up to the length of (key, fill) on the face that is lit most.
     let key = 1.0 / libm::sqrtf(1.0 + FILL_SHARE * FILL_SHARE);
     scene.add_light(Light::sun(KEY).with_intensity(key));
     scene.add_light(Light::sun(FILL).with_intensity(key * FILL_SHARE));
@@ -65,7 +65,7 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     Ok(scene)
 }
 
-/// Divides what each material gives back between ambient and diffuse light, and exposes those with images.
+/// Splits what each material reflects into ambient and diffuse light, and exposes those with images.
 fn expose(object: &mut Object) {
     let images = object.materials.iter().filter(|material| material.texture.is_some());
     let brightest = images.map(|material| material.ambient + material.diffuse).fold(0.0, f32::max);
@@ -78,8 +78,8 @@ fn expose(object: &mut Object) {
     }
 }
 
-/// The background that the colours in sight come least close to; of equals the first. Greys come from dark to light,
-/// [`BLUE`] before those that glare.
+/// The background that stands out best from the visible colours; the first if several are equal. Greys come from dark
+/// to light, [`BLUE`] before those that glare.
 fn background(seen: &[(Rgb, f32)], has_colors: bool) -> Rgb {
     let closeness = |background: Rgb| -> f32 {
         let missing = |color: Rgb| (CONTRAST - libm::sqrtf(color.distance_squared(background) as f32)).max(0.0);
@@ -91,7 +91,8 @@ fn background(seen: &[(Rgb, f32)], has_colors: bool) -> Rgb {
     tried.map(|color| (color, closeness(color))).fold(best, |best, next| if next.1 < best.1 { next } else { best }).0
 }
 
-/// The direction of the axis that a sheet looks along: 1 or -1 on it, and 0 on the others. 0 on all for what looks everywhere.
+/// The direction of the axis along which a sheet faces: 1 or −1 on it, and 0 on the others. 0 on all axes for a mesh
+/// that faces everywhere.
 fn facing(mesh: &Mesh) -> [f64; 3] {
     let (mut sum, mut all) = ([0.0; 3], 0.0);
     for corners in mesh.triangles() {

@@ -1,8 +1,8 @@
-//! Colours of faces, as scans have them: a texture whose texels are the model's colours.
+//! Face colours, as scans have them, as a texture whose texels are the model's colours.
 //!
 //! Each such face gets one of up to 256 colours, found by median cut, and its corners the texture coordinates of that
-//! colour's texel. So the faces of a scan are one material, lit and shaded as any texture, and no table is made for each
-//! colour. A face has one colour all over.
+//! colour's texel. So the faces of a scan are one material, lit and shaded like any texture, and no table per colour is
+//! needed. A face has a single colour.
 
 use mode13h::glam::Vec2;
 use mode13h::mesh::Surface;
@@ -15,8 +15,8 @@ use super::Draft;
 /// The side of the texture, in texels.
 const SIDE: u8 = 16;
 
-/// Gives faces of the draft their colours, by a texture of that name: `colors` has their indices, in ascending order.
-/// Returns the surface that these faces must have.
+/// Sets the colours of faces in the draft, by a texture with that name: `colors` has the faces' indices, in ascending
+/// order. Returns the surface that these faces must have.
 pub(crate) fn paint(draft: &mut Draft, colors: &[(usize, Rgb)], name: String) -> Surface {
     let mut sorted: Vec<Rgb> = colors.iter().map(|(_, color)| *color).collect();
     sorted.sort_unstable();

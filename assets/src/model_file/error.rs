@@ -1,23 +1,23 @@
-//! The errors of a model that is refused, with their place in the file.
+//! Errors of model files, with their position in the file.
 
 use std::path::{Path, PathBuf};
 use std::{error, fmt, io};
 
 use mode13h::mesh::MeshError;
 
-/// An error of a model that is refused. Displayed on one line, as `path:line: what`, or as `path: byte 84: what` for a
+/// The reason why a model is rejected. Displayed on one line, as `path:line: what`, or as `path: byte 84: what` for a
 /// binary file.
 #[non_exhaustive]
 pub struct ModelFileError {
-    /// The file, as the caller or `mtllib` named it.
+    /// The file, as named by the caller or by `mtllib`.
     pub path: PathBuf,
-    /// The place in the file. `None` if no one place is at fault.
+    /// The position in the file. `None` if no single position is at fault.
     pub place: Option<Place>,
     /// The kind of the error.
     pub kind: ModelFileErrorKind,
 }
 
-/// A place in a model's file.
+/// A position in a model file.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Place {
     /// A line of text, counted from 1.
@@ -34,7 +34,7 @@ pub enum ModelFileErrorKind {
     Read(io::Error),
     /// The path is that of a directory.
     Directory,
-    /// Not a text file.
+    /// The file is not text.
     NotText,
     /// The statement needs more numbers.
     Missing(&'static str),
@@ -42,35 +42,35 @@ pub enum ModelFileErrorKind {
     NotNumber(String),
     /// A NaN, an infinity, or a number beyond the range of f32.
     NotFinite(String),
-    /// The file ends where this should stand.
+    /// The file ends where this was expected.
     Ends(&'static str),
-    /// This should stand here.
+    /// Another word was expected here.
     Expected {
-        /// The word that belongs here.
+        /// The expected word.
         expected: &'static str,
         /// The word in the file.
         found: String,
     },
-    /// The file has a fault that these words name.
+    /// Another fault of the file, described in this text.
     Fault(String),
-    /// This should be `v`, `v/vt`, `v//vn` or `v/vt/vn`, whole numbers.
+    /// This should be `v`, `v/vt`, `v//vn` or `v/vt/vn`, all integers.
     NotCorner(String),
-    /// Index 0: they count from 1.
+    /// An index is 0, but they count from 1.
     IndexZero,
-    /// An index that names nothing.
+    /// An index refers to nothing.
     IndexOutOfRange {
         /// "vertex", "texture coordinate" or "normal".
         what: &'static str,
-        /// The index as it stands in the file.
+        /// The index as written in the file.
         index: i64,
         /// The number of entries: in the file, or for a negative index up to this line.
         count: usize,
     },
-    /// The file holds no face.
+    /// The file contains no face.
     NoFaces,
-    /// All corners of each face are on a line, or in one point.
+    /// All corners of each face are collinear, or at one point.
     NoArea,
-    /// The mesh is refused.
+    /// The mesh is rejected.
     Mesh(MeshError),
     /// More than [`Mesh::MAX_COUNT`](mode13h::mesh::Mesh::MAX_COUNT) of a kind, more than 2³² − 1 corners, more than 65,536
     /// materials, or a concave face of more than 20,000 corners.

@@ -1,4 +1,4 @@
-//! From the lists of a file to a mesh: faces split, triples made vertices, normals filled in.
+//! From the lists of a file to a mesh: splits faces, turns triples into vertices, and fills in normals.
 
 use core::iter;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use super::ModelFileErrorKind;
 use super::lists::{Corner, Lists};
 use super::polygon::Splitter;
 
-/// Makes the mesh, of the lists with their positions in f32. Surfaces that no face uses are dropped.
+/// Makes the mesh from the lists, with their positions in f32. Unused surfaces are dropped.
 ///
 /// # Errors
 /// The error, with the line if one is at fault.
@@ -59,16 +59,16 @@ pub(super) fn mesh(
     Mesh::from_parts(parts).map_err(|error| (None, ModelFileErrorKind::Mesh(error)))
 }
 
-/// The triangles that the faces of a file are split into.
+/// The triangles into which the faces of a file are split.
 struct Split {
-    /// The triangles: three corners each, by their numbers in the file.
+    /// The triangles: the indices of their three corners in the file.
     triangles: Vec<[u32; 3]>,
     triangle_surfaces: Vec<u16>,
     /// The line of each triangle's face.
     lines: Vec<u32>,
     /// The smoothing group of each triangle; empty if the file has none.
     groups: Vec<u32>,
-    /// The surfaces that are used.
+    /// The surfaces in use.
     surfaces: Vec<Surface>,
 }
 
@@ -135,8 +135,7 @@ fn split(
     Ok(Split { triangles, triangle_surfaces, lines, groups, surfaces: used })
 }
 
-/// The different triples, in the order in which the triangles first use them, and the triangles with
-/// their numbers.
+/// The distinct triples, in the order in which the triangles first use them, and the triangles with indices into these.
 fn vertices(
     corners: &[Corner],
     mut triangles: Vec<[u32; 3]>,

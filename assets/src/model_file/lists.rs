@@ -1,12 +1,12 @@
-//! What every format gives: positions, texture coordinates and normals in lists, and faces of any number of corners
-//! that name their entries.
+//! What every format's reader produces: lists of positions, texture coordinates and normals, and faces with any number
+//! of corners that index them.
 
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 
 use super::ModelFileErrorKind;
 
-/// Position, texture coordinates, normal, from 0; [`NONE`](Self::NONE) for one that was left out.
+/// The indices of position, texture coordinates and normal, from 0; [`NONE`](Self::NONE) for a missing one.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Corner {
     pub(crate) position: u32,
@@ -18,29 +18,29 @@ impl Corner {
     pub(crate) const NONE: u32 = u32::MAX;
 }
 
-/// The lists of a model's file.
+/// The lists of a model file.
 #[derive(Default)]
 pub(crate) struct Lists {
     pub(crate) positions: Vec<Wide>,
     pub(crate) texcoords: Vec<Vec2>,
     pub(crate) normals: Vec<Vec3>,
-    /// The corners of all faces in turn.
+    /// The corners of all faces in order.
     pub(crate) corners: Vec<Corner>,
     /// The number of corners of each face, three or more.
     pub(crate) sizes: Vec<u32>,
-    /// The line of each face; of those beyond 2³² the last number that fits. Empty for a file without lines.
+    /// The line of each face, capped at 2³² − 1. Empty for a file without lines.
     pub(crate) lines: Vec<u32>,
-    /// The first face of each run of one surface, and the surface's index. Faces before the first run have surface 0.
+    /// The first face of each run with one surface, and the surface's index. Faces before the first run have surface 0.
     pub(crate) runs: Vec<(usize, usize)>,
-    /// The first face of each run of one smoothing group, and the group's number, or 0 for none. Before the first run
+    /// The first face of each run with one smoothing group, and the group's number, or 0 for none. Before the first run
     /// the group is unknown.
     pub(crate) smoothing: Vec<(usize, u32)>,
-    /// The file's place of the first face of fewer than three corners, and the number of them. They are left out.
+    /// The position of the first face with fewer than three corners, and the number of such faces. They are dropped.
     pub(crate) short: Option<(super::Place, usize)>,
 }
 
 impl Lists {
-    /// Ends a face whose corners begin at `first`. A face of fewer than three corners is left out.
+    /// Ends a face whose corners start at `first`. A face with fewer than three corners is dropped.
     ///
     /// # Errors
     /// Too many corners or triangles.
@@ -57,7 +57,7 @@ impl Lists {
         if self.corners.len() - 2 * self.sizes.len() > Mesh::MAX_COUNT + 2 {
             return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 triangles"));
         }
-        // Fits by the lines above.
+        // Fits, as checked above.
         self.sizes.push(size as u32);
         if let super::Place::Line(line) = place {
             self.lines.push(u32::try_from(line).unwrap_or(u32::MAX));
@@ -75,11 +75,11 @@ pub(crate) fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ModelFileErrorK
     Ok(())
 }
 
-/// Positions are kept about 0 if their middle is farther from it than this many times their half extent. Up to there f32
-/// rounds them by less than 2⁻²⁰ of the extent, which is 1/256 pixel in the largest frame.
+/// Positions are moved to be centred on 0 if their centre is farther from it than this many times their half extent. Up
+/// to there f32 rounds them by less than 2⁻²⁰ of the extent, which is 1/256 pixel in the largest frame.
 const FAR: f64 = 16.0;
 
-/// A position in some 48 bits: the nearest of f32, and what is left of each coordinate.
+/// A position with about 48 bits per coordinate: the nearest f32 values, and the remainders.
 #[derive(Clone, Copy)]
 pub(crate) struct Wide([f32; 3], [f32; 3]);
 
@@ -93,7 +93,7 @@ impl Wide {
         [0, 1, 2].map(|axis| f64::from(self.0[axis]) + f64::from(self.1[axis]))
     }
 
-    /// The position in f32, about another one if there is any.
+    /// The position in f32, relative to `middle` if it is given.
     pub(crate) fn narrow(self, middle: Option<[f64; 3]>) -> Vec3 {
         let Some(middle) = middle else { return Vec3::from_array(self.0) };
         let position = self.get();
@@ -101,7 +101,7 @@ impl Wide {
     }
 }
 
-/// The middle of the positions that faces use, if it is [`FAR`] from 0.
+/// The centre of the positions used by faces, if it is [`FAR`] from 0.
 pub(crate) fn far_middle(positions: &[Wide], corners: &[Corner]) -> Option<[f64; 3]> {
     let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
     for corner in corners {

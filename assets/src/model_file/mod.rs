@@ -1,17 +1,17 @@
-//! Models from files: one road from the lists that a format's reader gives to a mesh.
+//! Models from files: all formats share the code from the lists that a reader produces to a mesh.
 //!
 //! | format | module | read |
 //! |---|---|---|
 //! | Wavefront OBJ with MTL | [`obj`] | positions, texture coordinates, normals, smoothing groups, materials |
-//! | STL, text and binary | `stl` | triangles; corners at the same place are one vertex |
+//! | STL, text and binary | `stl` | triangles; corners at the same position are one vertex |
 //! | PLY, text and both binaries | `ply` | faces of any size, strips, normals, texture coordinates, colours |
 //! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene at rest as one mesh: materials, textures in the file and beside it, colours |
 //!
-//! A file's name says its format, with or without `.gz` behind it. A name without a known extension leaves it to the
-//! contents. Files packed by gzip are unpacked, whatever their name.
+//! The file name's extension determines the format, with or without `.gz` after it. Without a known extension the
+//! contents decide. Gzipped files are unpacked, whatever their name.
 //!
-//! Whatever the format, faces are split, missing normals filled in, a model far from 0 is moved there, scans are mended
-//! and errors placed by the same code; [`obj`] describes it.
+//! Whatever the format, the same code splits faces, fills in missing normals, recentres a model far from 0, repairs
+//! scans and locates errors; [`obj`] describes it.
 
 mod colors;
 mod error;
@@ -45,39 +45,40 @@ use lists::Lists;
 use progress::Counted;
 use warnings::Warnings;
 
-/// A model and the warnings of its reading.
+/// A model and the warnings from reading it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Loaded {
     /// The model.
     pub mesh: Mesh,
-    /// The textures that the file itself brings, by the names that the mesh's surfaces give them.
+    /// The textures that the file itself contains, by the names that the mesh's surfaces use.
     pub textures: Embedded,
     /// The axis that points up, if the format says so: z for STL, y for glTF.
     pub up: Option<UpAxis>,
     /// The warnings, one line each, with the file and the line in it: the first hundred, and the number of further
     /// ones.
     pub warnings: Vec<String>,
-    /// The files that were read or looked for: the model's own if it was loaded from one, those that it names, and
-    /// textures that the materials name. Some may not exist.
+    /// The files that were read or looked for: the model file itself if it was loaded from one, those that it names,
+    /// and textures that the materials name. Some may not exist.
     pub files: Vec<PathBuf>,
-    /// The point of the file that is 0 in the mesh: the middle of a model far from 0, 0 of all others.
+    /// The point in the file that is 0 in the mesh: the centre of a model far from 0, otherwise 0.
     pub origin: [f64; 3],
 }
 
-/// Textures inside a model's file, by the name that [`Surface::texture`] has.
+/// Textures inside a model file, by the name in [`Surface::texture`].
 pub type Embedded = BTreeMap<String, Shared<Texture>>;
 
-/// The options for reading a model.
+/// Options for reading a model.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Options {
-    /// The crease angle for corners without a normal: faces whose normals differ by more have an edge between them.
-    /// 180° is smooth everywhere, 0 flat; values beyond count as these. With `None` the smoothing groups of the file
-    /// hold, and without groups 40°; but a scan, whose sharp edges end anywhere, is smooth everywhere.
+    /// The crease angle for corners without a normal: faces whose normals differ by more have a sharp edge between
+    /// them. 180° is smooth everywhere, 0 flat; values beyond these are clamped. With `None` the smoothing groups of
+    /// the file decide, and without groups 40°, except that a scan, whose sharp edges end anywhere, is smooth
+    /// everywhere.
     pub crease: Option<Angle>,
 }
 
-/// The formats of models.
+/// A model file format.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Format {
@@ -102,7 +103,7 @@ impl Format {
         (Self::Gltf, &["gltf", "glb"]),
     ];
 
-    /// The format that a file's extension says, with or without `.gz` behind it.
+    /// The format for a file's extension, with or without `.gz` after it.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
         let unpacked = path.file_stem().filter(|_| has_extension(path, "gz")).map(Path::new);
@@ -111,7 +112,7 @@ impl Format {
         Self::ALL.iter().find(|(_, extensions)| has(extensions)).map(|&(format, _)| format)
     }
 
-    /// The format that the bytes of a file are in, as far as its beginning and its length say.
+    /// The format of a file's contents, judging by its beginning and its length.
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
         #[cfg(feature = "gltf")]
@@ -129,7 +130,7 @@ impl Format {
         }
     }
 
-    /// The extensions of all formats, as a sentence lists them: `.obj, .stl, .ply, .gltf and .glb`.
+    /// The extensions of all formats, listed for a sentence: `.obj, .stl, .ply, .gltf and .glb`.
     #[must_use]
     pub fn extensions() -> String {
         let all: Vec<String> =
@@ -153,9 +154,9 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, ModelFileError> {
     load_with(path, &Options::default(), |_, _| {})
 }
 
-/// Reads a file with `options`, as [`load`] does. It tells `progress` how many bytes of the model's file have been read,
-/// and how long the file is: after every 64 KiB or so, and at the end. Making a mesh of it then takes about as long
-/// again. A pipe or a device has the length 0; a file that grows meanwhile may be read beyond the length that it had.
+/// Reads a file with `options`, like [`load`]. Calls `progress` with the number of bytes of the model file read so far
+/// and its length: about every 64 KiB, and at the end. Making a mesh from it then takes about as long again. A pipe or
+/// a device has length 0; a file that grows meanwhile may be read beyond its original length.
 ///
 /// # Errors
 /// Returns the errors of [`load`].
@@ -185,9 +186,9 @@ pub fn load_with(
     Ok(Loaded { mesh, textures, up, warnings: warnings.into_lines(), files, origin })
 }
 
-/// Reads a model from `reader`. Errors call it `path`, whose extension says its format, and the files that it names are
-/// looked for beside that: `file` is given their paths and returns their bytes. Textures outside the file are not looked
-/// for. What is in no known format is read as OBJ.
+/// Reads a model from `reader`. `path` is used in errors, its extension determines the format, and the files that the
+/// model names are resolved relative to it: `file` is given their paths and returns their bytes. Textures outside the
+/// file are not looked for. Contents in no known format are read as OBJ.
 ///
 /// ```
 /// use mode13h_assets::model_file;
@@ -216,13 +217,13 @@ impl From<Parsed> for Loaded {
     }
 }
 
-/// The textures that a model's materials name and its file does not bring.
+/// The textures that a model's materials name and its file does not contain.
 fn outside(mesh: &Mesh, textures: &Embedded) -> Vec<PathBuf> {
     let named = mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref());
     named.filter(|name| !textures.contains_key(*name)).map(PathBuf::from).collect()
 }
 
-/// Reads the bytes of a file that a model names. Only ordinary files are accepted: it may name a device that never ends.
+/// Reads a file that a model names. Only regular files are accepted: it might name a device that never ends.
 pub(crate) fn ordinary_file(path: &Path) -> io::Result<Vec<u8>> {
     match fs::metadata(path)?.is_file() {
         true => fs::read(path),
@@ -230,7 +231,7 @@ pub(crate) fn ordinary_file(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// The bytes themselves, or what they hold if they begin as a file packed by gzip does.
+/// Unpacks the bytes if they begin like a gzip file, otherwise passes them through.
 ///
 /// # Errors
 /// The reader's.
@@ -239,7 +240,7 @@ pub fn unpacked<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead
     Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(reader))) } else { Box::new(reader) })
 }
 
-/// A model of which no texture outside its file was looked for.
+/// A model whose outside textures have not been looked for.
 pub(crate) struct Parsed {
     mesh: Mesh,
     textures: Embedded,
@@ -250,11 +251,11 @@ pub(crate) struct Parsed {
     origin: [f64; 3],
 }
 
-/// A model as its format's reader gives it, before faces are split and repaired.
+/// A model as its format's reader produces it, before faces are split and repaired.
 #[derive(Default)]
 pub(crate) struct Draft {
     pub(crate) lists: Lists,
-    /// The surfaces that the lists' runs name. Empty for one without a name.
+    /// The surfaces used by the lists' runs. Empty if there is only an unnamed one.
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) textures: Embedded,
     pub(crate) up: Option<UpAxis>,
@@ -291,7 +292,7 @@ fn read(
     finish(draft, path, named, options)
 }
 
-/// Makes the mesh of what a format's reader gives.
+/// Makes the mesh from what a format's reader produced.
 pub(crate) fn finish(
     draft: Draft,
     path: &Path,
@@ -319,7 +320,7 @@ pub(crate) fn finish(
     if let Some([x, y, z]) = middle {
         warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));
     }
-    // In place, as a file may hold many.
+    // In place, since a file may have many.
     let positions = core::mem::take(&mut lists.positions).into_iter().map(|p| p.narrow(middle)).collect();
     if surfaces.is_empty() {
         surfaces.push(Surface::default());

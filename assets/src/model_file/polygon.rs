@@ -1,5 +1,5 @@
-//! Splits a face of more than three corners into triangles: by a fan if it is convex, otherwise by cutting ears. A
-//! large face that is monotone, such as a convex one whose corners were rounded, is split from side to side.
+//! Splits a face with more than three corners into triangles: by a fan if it is convex, otherwise by ear clipping. A
+//! large monotone face, such as a convex one whose corners were rounded, is split by a sweep.
 
 use core::mem;
 
@@ -9,13 +9,12 @@ use mode13h::glam::Vec3;
 use super::ModelFileErrorKind;
 use crate::wide::{Wide, add, cross, sub, widen};
 
-/// The max number of corners of a concave face, unless it is monotone. The time of cutting ears grows by the square of
-/// their number if corners are spread unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the
-/// shape of many crossing pentagrams, and 64,000 already 10 s and more. So no corner of a file costs more than 20,000
-/// steps.
+/// The max number of corners of a concave face, unless it is monotone. The time of ear clipping grows quadratically if
+/// corners are spread unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the shape of many
+/// crossing pentagrams, and 64,000 already 10 s and more. So no corner of a file costs more than 20,000 steps.
 const MAX_CONCAVE: usize = 20_000;
 
-/// Buffers that one face after the other uses.
+/// Buffers reused for every face.
 pub(super) struct Splitter {
     earcut: Earcut<f64>,
     flat: Vec<[f64; 2]>,
@@ -37,9 +36,9 @@ impl Splitter {
         }
     }
 
-    /// Splits a face of n corners into n − 2 triangles, as numbers of its corners, in the face's winding. Each edge of
+    /// Splits a face of n corners into n − 2 triangles, as indices of its corners, in the face's winding. Each edge of
     /// the face is an edge of one of them, so no gap opens to its neighbours. A corner in the middle of a straight edge
-    /// is therefore kept, if need be by a triangle of no area.
+    /// is therefore preserved, if need be by a triangle without area.
     pub(super) fn split(&mut self, corners: &[Vec3]) -> Result<&[[u32; 3]], ModelFileErrorKind> {
         self.triangles.clear();
         if corners.len() > 3 && self.flatten(corners) && !self.is_convex() {
@@ -51,7 +50,7 @@ impl Splitter {
                 return Err(ModelFileErrorKind::TooLarge("a concave face of more than 20,000 corners"));
             }
         }
-        // Convex; flat on a line; or so tangled that ears could not be cut.
+        // Convex, collinear, or so tangled that ears could not be clipped.
         if self.triangles.len() != corners.len() - 2 {
             self.triangles.clear();
             // Fewer than 2³² corners, see `Lists::end_face`.
@@ -60,25 +59,26 @@ impl Splitter {
         Ok(&self.triangles)
     }
 
-    /// Splits a face that is **monotone**: along one axis (0 or 1) its outline goes forth once and back once, so that a
-    /// line across the axis meets it twice. Returns `false` if it is not. The time grows with the number of corners (M.
-    /// Garey and others, "Triangulating a simple polygon", 1978).
+    /// Splits a face that is **monotone**: along one axis (0 or 1) its outline goes forward once and back once, so that
+    /// a line across the axis meets it twice. Returns `false` if it is not. The time grows linearly with the number of
+    /// corners (M. Garey and others, "Triangulating a simple polygon", 1978).
     ///
-    /// Convex faces are monotone, and stay so when their corners are rounded, which keeps the order of coordinates.
-    /// They do not stay convex: a corner of a ring of 30,000 rises over its neighbours by less than f32 holds.
+    /// Convex faces are monotone, and remain so when their corners are rounded, which preserves the order of
+    /// coordinates. They do not remain convex: a corner of a ring of 30,000 rises above its neighbours by less than f32
+    /// can represent.
     fn sweep(&mut self, axis: usize) -> bool {
         let n = self.flat.len();
         let at = |i: u32| self.flat[i as usize % n][axis];
         // Fewer than 2³² corners, see `Lists::end_face`.
         let count = n as u32;
-        // The corners where the least coordinate is left for good, and where the greatest is reached.
+        // The last corner with the least coordinate, and the one where the greatest is reached.
         let least = (0..count).fold(0, |best, i| if at(i) < at(best) { i } else { best });
         let Some(first) = (least..least + count).find(|&i| at(i + 1) > at(i)) else { return false };
         let turn = (first..first + count).find(|&i| at(i + 1) < at(i)).unwrap_or(first);
         if (turn..first + count).any(|i| at(i + 1) > at(i)) {
             return false;
         }
-        // Both chains by their coordinate; each in its own order where that is equal, and the turn last.
+        // Merges both chains by coordinate; where it is equal, each chain keeps its own order, and the turn comes last.
         let (mut forth, mut back) = (first, first + count - 1);
         let mut was_forth = true;
         self.stack.clear();
@@ -92,14 +92,14 @@ impl Splitter {
             }
             let new = corner % count;
             if i > 1 && (is_forth != was_forth || i == count - 1) {
-                // Sees all that are left: those of the other chain.
+                // It sees all the remaining corners, which are on the other chain.
                 self.triangles.extend(self.stack.windows(2).map(|pair| ascending([pair[0], pair[1], new])));
                 if let Some(&last) = self.stack.last() {
                     self.stack.clear();
                     self.stack.push(last);
                 }
             } else {
-                // Cuts off what its own chain's last corners leave open.
+                // Clips what the last corners of its own chain leave open.
                 while let [.., before, last] = *self.stack.as_slice() {
                     let [a, b, c] = [before, last, new].map(|corner| self.flat[corner as usize]);
                     let turns = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -118,20 +118,20 @@ impl Splitter {
 
     fn cut_ears(&mut self) {
         self.earcut.earcut_slice(&self.flat, &[], &mut self.cut);
-        // The corners of each piece in the order of the face have its winding.
+        // Sorted in the order of the face, the corners of each triangle have the face's winding.
         self.triangles.extend(self.cut.as_chunks::<3>().0.iter().map(|t| ascending(*t)));
-        // Ear cutting may leave out corners in one place and on straight edges.
+        // Ear clipping may drop coincident corners and those on straight edges.
         if self.triangles.len() != self.flat.len() - 2 {
             self.put_back(self.flat.len());
         }
     }
 
-    /// Returns whether the face runs along an edge twice in the same direction, as no outline does, not even one that
-    /// is cut open to a hole. Ear cutting would find that out by the cube of the corners: a triangle gone round 1,300
-    /// times took 15 s.
+    /// Returns whether the face traverses an edge twice in the same direction, as no outline does, not even one that is
+    /// cut open to a hole. Ear clipping would take cubic time to find that out: a triangle traversed 1,300 times took
+    /// 15 s.
     fn repeats_an_edge(&self) -> bool {
         let next = self.flat.iter().cycle().skip(1);
-        // 0 and −0 are the same place.
+        // 0 and −0 are the same position.
         let key = |p: &[f64; 2]| p.map(|x| (x + 0.0).to_bits());
         let mut edges: Vec<_> = self.flat.iter().zip(next).map(|(a, b)| (key(a), key(b))).collect();
         edges.retain(|(a, b)| a != b);
@@ -139,12 +139,12 @@ impl Splitter {
         edges.windows(2).any(|pair| pair[0] == pair[1])
     }
 
-    /// Projects the face onto the plane of two axes that it is most nearly parallel to, so that it is counter-clockwise
+    /// Projects the face onto the coordinate plane that it is most nearly parallel to, so that it is counter-clockwise
     /// there. Returns `false` if it has no area.
     fn flatten(&mut self, corners: &[Vec3]) -> bool {
         let origin = widen(corners[0]);
         let from_first = |p: Vec3| sub(widen(p), origin);
-        // Newell's normal, twice the area long.
+        // Newell's normal, whose length is twice the area.
         let mut normal: Wide = [0.0; 3];
         for pair in corners.windows(2) {
             normal = add(normal, cross(from_first(pair[0]), from_first(pair[1])));
@@ -172,7 +172,7 @@ impl Splitter {
         true
     }
 
-    /// Returns whether the face turns left or not at all at each corner, and goes round once in all.
+    /// Returns whether the face turns left or not at all at each corner, and makes one full turn in all.
     fn is_convex(&self) -> bool {
         let n = self.flat.len();
         let edge = |i: usize| {
@@ -181,7 +181,7 @@ impl Splitter {
         };
         let upward = |e: [f64; 2]| e[1] > 0.0 || (e[1] == 0.0 && e[0] > 0.0);
         let mut rounds = 0;
-        // There is one that is not zero, as the face has an area.
+        // At least one edge is not zero, since the face has an area.
         let Some(mut last) = (0..n).rev().map(edge).find(|e| *e != [0.0; 2]) else { return false };
         for next in (0..n).map(edge).filter(|e| *e != [0.0; 2]) {
             let turn = last[0] * next[1] - last[1] * next[0];
@@ -195,7 +195,7 @@ impl Splitter {
         rounds == 1
     }
 
-    /// Puts the corners back that were left out: each on the edge of a triangle that passes it by.
+    /// Restores the corners that were dropped, each on the edge of the triangle that skipped it.
     fn put_back(&mut self, corners: usize) {
         let cut = mem::take(&mut self.triangles);
         self.edges.clear();
@@ -204,21 +204,21 @@ impl Splitter {
         // At most `MAX_CONCAVE`.
         let n = corners as u32;
         for &[a, b, c] in &cut {
-            // From corner to corner round the triangle, through what its outer edges pass by.
+            // From corner to corner around the triangle, including those that its outer edges skip.
             let mut loop_ = Vec::new();
             let mut apex = 0;
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 let outer = self.edges.binary_search(&(to, from)).is_err();
                 let passed = if outer { (to + n - from) % n } else { 1 };
                 if passed == 1 {
-                    // A fan from a corner between two whole edges has no triangle without need.
+                    // A fan from a corner between two unbroken edges has no needless degenerate triangle.
                     apex = loop_.len();
                 }
                 loop_.extend((0..passed).map(|i| (from + i) % n));
             }
             loop_.rotate_left(apex);
-            // Of a tangled face an edge may seem to pass by corners that others pass by too: `split` will see that
-            // the number is wrong, so nothing is gained by going on, by the square of the corners.
+            // In a tangled face several edges may seem to skip the same corners: `split` will notice the wrong number,
+            // so going on would only cost quadratic time.
             if self.triangles.len() + loop_.len() > corners {
                 return;
             }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Read};
 
-/// A reader that tells how many bytes it has given.
+/// A reader that reports how many bytes it has read.
 pub(super) struct Counted<R, P> {
     reader: R,
     read: u64,
@@ -19,7 +19,7 @@ impl<R: Read, P: FnMut(u64, u64)> Counted<R, P> {
 impl<R: Read, P: FnMut(u64, u64)> Read for Counted<R, P> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let bytes = self.reader.read(buffer)?;
-        // A buffer is hardly longer than 2⁶⁴ bytes.
+        // A length always fits into 64 bits.
         self.read += bytes as u64;
         (self.progress)(self.read, self.total);
         Ok(bytes)

@@ -2,13 +2,13 @@
 //!
 //! | read | as |
 //! |---|---|
-//! | the corners of each facet | a face; a text may give it more than three |
-//! | normals of facets | left alone: the corners say them, and half the programs write zeros |
-//! | corners in the same place, to the bit | one vertex, with −0 as 0 |
-//! | names of solids; the header and the attributes of a binary file | left alone; colours there with a warning |
+//! | the corners of each facet | a face; in a text file it may have more than three |
+//! | normals of facets | ignored: the corners determine them, and half the programs write zeros |
+//! | corners at the same position, to the bit | one vertex, with −0 as 0 |
+//! | names of solids; the header and the attributes of a binary file | ignored; colours there with a warning |
 //!
-//! A file is binary if its length is that of the triangles it announces, whatever it begins with, as some binary files
-//! begin with `solid`, too. z points up, as in what is printed.
+//! A file is binary if its length matches the number of triangles it announces, whatever it begins with, since some
+//! binary files begin with `solid`, too. z points up, as is usual in 3-D printing.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -19,10 +19,10 @@ use crate::model_file::lists::{Corner, Lists, Wide, push};
 use crate::model_file::tokens::{Tokens, expected};
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place};
 
-/// The bytes before the triangles of a binary file: 80 of any meaning, and their number.
+/// The number of bytes before the triangles of a binary file: 80 of any meaning, and the triangle count.
 const HEADER: usize = 84;
 
-/// The bytes of a triangle: a normal and three corners in f32, and two bytes of attributes.
+/// The number of bytes of a triangle: a normal and three corners in f32, and two bytes of attributes.
 const TRIANGLE: usize = 50;
 
 /// Returns whether a file is an STL, by its length or its first words.
@@ -54,7 +54,7 @@ fn has_length_of_binary(bytes: &[u8]) -> bool {
 pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     let begins_as_text = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    // The number of triangles of a binary file has a zero among its bytes, unless there are 2²⁴ of them.
+    // The triangle count of a binary file contains a zero byte, unless it is 2²⁴ or more.
     let is_text = begins_as_text && !bytes[..bytes.len().min(HEADER)].contains(&0);
     let mut draft = Draft { up: Some(UpAxis::Z), ..Draft::default() };
     let mut corners = Merged::default();
@@ -74,7 +74,7 @@ struct Merged {
 
 impl Merged {
     fn add(&mut self, lists: &mut Lists, position: [f64; 3]) -> Result<(), ModelFileErrorKind> {
-        // −0 and 0 are the same place.
+        // −0 and 0 are the same position.
         let key = position.map(|c| (c + 0.0).to_bits());
         // Fewer than 2³², see `push`.
         let next = lists.positions.len() as u32;
@@ -90,13 +90,13 @@ impl Merged {
 fn read_text(bytes: &[u8], path: &Path, lists: &mut Lists, merged: &mut Merged) -> Result<(), ModelFileError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut words = Tokens::new(bytes, 1);
-    // The first corner of the facet that is being read, and its line.
+    // The index of the current facet's first corner, and the facet's line.
     let mut facet: Option<(usize, u64)> = None;
     while let Some(word) = words.next() {
         let keyword = word.to_ascii_lowercase();
         let result = match &keyword[..] {
             b"solid" | b"endsolid" => {
-                // Behind it stands a name of any words.
+                // A name of any number of words follows.
                 words.skip_line();
                 match facet {
                     None => Ok(()),
@@ -113,7 +113,7 @@ fn read_text(bytes: &[u8], path: &Path, lists: &mut Lists, merged: &mut Merged) 
                 Some((first, line)) => lists.end_face(first, Place::Line(line)),
                 None => Err(expected("facet or endsolid", word)),
             },
-            // Behind `normal` stand three numbers, which may be NaN.
+            // Three numbers follow `normal`, which may be NaN.
             b"normal" if facet.is_some() => {
                 words.skip_line();
                 Ok(())
@@ -147,7 +147,7 @@ fn read_binary(bytes: &[u8], path: &Path, draft: &mut Draft, merged: &mut Merged
         let what = format!("the file ends in triangle {} of {count}", triangles.len() + 1);
         return Err(at(bytes.len(), ModelFileErrorKind::Fault(what)));
     }
-    // No more than there are.
+    // No more than are present.
     let count = count as usize;
     let mut colored = bytes[..HEADER].windows(6).any(|word| word == b"COLOR=");
     for (i, triangle) in triangles[..count].iter().enumerate() {

@@ -1,16 +1,16 @@
-//! Words of a text format in which line ends count as blanks, with their lines.
+//! Words of a text format in which line ends count as blanks, with their line numbers.
 
 use super::word::{parsed, shown};
 use super::{ModelFileError, ModelFileErrorKind, Place};
 use std::path::Path;
 
-/// Words, one after the other. LF, CR LF and CR end a line.
+/// A sequence of words. LF, CR LF and CR end a line.
 pub(crate) struct Tokens<'b> {
     bytes: &'b [u8],
     at: usize,
     /// The line at `at`, counted from 1.
     line: u64,
-    /// The line of the word that was read last; before the first, of the line before.
+    /// The line of the last word read; before the first, the line before.
     pub(crate) word_line: u64,
 }
 
@@ -42,7 +42,7 @@ impl<'b> Tokens<'b> {
         Some(&rest[..length])
     }
 
-    /// Leaves out what is left of the line.
+    /// Skips the rest of the line.
     pub(crate) fn skip_line(&mut self) {
         let rest = &self.bytes[self.at..];
         self.at += rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
@@ -54,18 +54,18 @@ impl<'b> Tokens<'b> {
         parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ModelFileErrorKind::Ends(what))
     }
 
-    /// An error at the word that was read last.
+    /// Makes an error at the last word read.
     pub(crate) fn error(&self, path: &Path, kind: ModelFileErrorKind) -> ModelFileError {
         ModelFileError::at(path, Place::Line(self.word_line), kind)
     }
 }
 
-/// Whether a blank ends a line: an LF, or a CR without an LF behind it.
+/// Returns whether a blank ends a line: an LF, or a CR without an LF after it.
 fn ends_line(bytes: &[u8], at: usize, byte: u8) -> bool {
     byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n'))
 }
 
-/// An error that says what should stand here instead of `word`.
+/// Makes an error that says what was expected in place of `word`.
 pub(crate) fn expected(expected: &'static str, word: &[u8]) -> ModelFileErrorKind {
     ModelFileErrorKind::Expected { expected, found: shown(word) }
 }

@@ -1,9 +1,9 @@
-//! Warnings of a model, as many as anyone would read.
+//! Warnings about a model, as many as anyone would read.
 
 use std::path::Path;
 
-/// Warnings, of which the first [`MAX`](Self::MAX) are kept and the others counted: a file may give cause for one in
-/// every line, and each holds a path as long as the file likes.
+/// Warnings, of which the first [`MAX`](Self::MAX) are stored and the others counted: a file may cause one in every
+/// line, and each contains a path as long as the file likes.
 #[derive(Default)]
 pub(crate) struct Warnings {
     kept: Vec<String>,
@@ -21,7 +21,7 @@ impl Warnings {
         }
     }
 
-    /// One line each; the last may say how many more there are.
+    /// One line for each; the last may say how many more there are.
     pub(crate) fn into_lines(mut self) -> Vec<String> {
         match self.more {
             0 => {}
@@ -32,10 +32,10 @@ impl Warnings {
     }
 }
 
-/// Statements that are not read, each of which makes one warning, however often it stands in a file.
+/// Ignored statements, each of which causes one warning, however often it occurs in a file.
 #[derive(Default)]
 pub(crate) struct LeftOut {
-    /// What, the first line of it, and the number of times.
+    /// The name, its first line, and its number of occurrences.
     of: Vec<(&'static str, u64, u64)>,
 }
 

@@ -1,8 +1,8 @@
-//! Adobe `.act`: 256 times red, green, blue in 8 bits. A longer form has 4 bytes behind it: the number of colours that
-//! count, and the transparent one (FFFFh for none), each 16 bits, high byte first.
+//! Adobe `.act`: 256 times red, green, blue in 8 bits. A longer variant has 4 more bytes: the number of colours in use,
+//! and the transparent one (FFFFh for none), each 16 bits, high byte first.
 //!
-//! Source: Adobe Photoshop File Formats Specification, "Color Table". The colours that do not count
-//! are read as black; the transparent one is a colour like any other here.
+//! Source: Adobe Photoshop File Formats Specification, "Color Table". Unused colours are read as black; the transparent
+//! one is treated like any other.
 
 use mode13h::palette::{Palette, Rgb};
 
@@ -36,7 +36,7 @@ fn count_of(count: u16) -> Result<usize, PaletteError> {
     if (1..=256).contains(&count) {
         return Ok(usize::from(count));
     }
-    // In decimal, as it would stand in a text: five digits at most.
+    // In decimal, as it would be in a text file: five digits at most.
     let digits = [10_000, 1_000, 100, 10, 1].map(|unit| b'0' + (count / unit % 10) as u8);
     let first = digits.iter().position(|&digit| digit != b'0').unwrap_or(digits.len() - 1);
     let found = Excerpt::of(&digits[first..]);

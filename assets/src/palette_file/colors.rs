@@ -1,4 +1,4 @@
-//! Colours as they are read, one after the other.
+//! The colours of a palette file, collected in order.
 
 use mode13h::palette::Palette;
 use mode13h::palette::Rgb;

@@ -1,26 +1,25 @@
-//! The errors of a palette file, with their place.
+//! Errors of palette files, with their position.
 
 use core::fmt;
 
-/// An error of a palette file, with its place. Nothing of the file is used.
+/// The error of a palette file, with its position. Nothing of the file is used.
 ///
-/// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to stand behind the file's
-/// name and a colon.
+/// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to be appended to the file's name and a colon.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PaletteError {
     /// The kind of the error.
     pub kind: PaletteErrorKind,
-    /// The place of the error.
+    /// The position of the error.
     pub place: Place,
 }
 
-/// A place in a file.
+/// A position in a file.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Place {
-    /// A line of text, counted from 1. If one is missing, one more than the number of lines.
+    /// A line of text, counted from 1. If a line is missing, one more than the number of lines.
     Line(usize),
-    /// A byte, counted from 0. If one is missing, the number of bytes.
+    /// A byte, counted from 0. If a byte is missing, the number of bytes.
     Offset(usize),
 }
 
@@ -30,45 +29,45 @@ pub enum Place {
 pub enum PaletteErrorKind {
     /// The file has no bytes at all.
     Empty,
-    /// The file is like none of the formats.
+    /// The file matches none of the formats.
     UnknownFormat,
-    /// A line that must read one way reads another.
+    /// A line with a fixed text has another text.
     Expected {
-        /// The text that must stand there.
+        /// The expected text.
         expected: &'static str,
-        /// The text that stands there.
+        /// The text found.
         found: Excerpt,
     },
     /// The number of colours is not from 1 to 256.
     Count {
-        /// The text that stands there.
+        /// The text found.
         found: Excerpt,
     },
     /// A line is not three numbers from 0 to 255.
     NotThreeNumbers {
-        /// The text that stands there.
+        /// The text found.
         found: Excerpt,
     },
     /// A line is not six hexadecimal digits.
     NotSixHexDigits {
-        /// The text that stands there.
+        /// The text found.
         found: Excerpt,
     },
     /// The file has a 257th colour.
     TooManyColors,
-    /// A colour, or something else, behind the last one that the file announces.
+    /// There is a colour, or something else, after the last one that the file announces.
     MoreThanAnnounced {
-        /// The number that it announces.
+        /// The number announced.
         announced: usize,
     },
     /// The file ends too soon.
     TooFewColors {
         /// The number of colours in the file.
         found: usize,
-        /// The number that it announces, or at least 1.
+        /// The number announced, or at least 1.
         expected: usize,
     },
-    /// The file's length is none of the format's.
+    /// The file's length is not one of the format's.
     Length {
         /// The lengths of the format.
         expected: &'static str,
@@ -127,9 +126,9 @@ impl fmt::Display for PaletteErrorKind {
     }
 }
 
-/// The beginning of a text that was found where another was expected, without an allocator.
+/// The beginning of a text that was found where another was expected, stored without an allocator.
 ///
-/// Displays in quotes, with three dots if there was more; other characters than printable ASCII as `?`.
+/// Displays in quotes, with three dots if it was cut; characters other than printable ASCII appear as `?`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Excerpt {
     bytes: [u8; Self::LONGEST],
@@ -155,7 +154,7 @@ impl Excerpt {
     /// The beginning of the text, up to 32 characters of ASCII.
     #[must_use]
     pub(crate) fn as_str(&self) -> &str {
-        // Only ASCII was stored, so the default is never taken.
+        // Only ASCII was stored, so the default is never used.
         core::str::from_utf8(&self.bytes[..usize::from(self.length)]).unwrap_or_default()
     }
 }

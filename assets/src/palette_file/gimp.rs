@@ -1,7 +1,7 @@
-//! GIMP `.gpl`: `GIMP Palette`, headers, comments, and a colour a line, with a name behind it.
+//! GIMP `.gpl`: `GIMP Palette`, headers, comments, and one colour per line, followed by a name.
 //!
-//! Source: `app/core/gimppalette-load.c` of GIMP, by the files that it accepts. Unlike GIMP, which leaves a line it
-//! cannot read out with a warning, a broken line is an error.
+//! Source: `app/core/gimppalette-load.c` of GIMP, for the files that it accepts. Unlike in GIMP, which skips an
+//! unreadable line with a warning, a broken line is an error.
 
 use mode13h::palette::Palette;
 
@@ -11,7 +11,7 @@ use super::text::{Lines, expect, first_line_is, three_numbers};
 
 const MAGIC: &str = "GIMP Palette";
 
-/// The lines that may stand before the first colour; the last is Aseprite's.
+/// The lines that may precede the first colour; the last is Aseprite's.
 const HEADERS: [&[u8]; 3] = [b"Name:", b"Columns:", b"Channels:"];
 
 pub(super) fn recognizes(bytes: &[u8]) -> bool {

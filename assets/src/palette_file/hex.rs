@@ -1,4 +1,4 @@
-//! Lospec `.hex`: a colour a line, `rrggbb`. A `#` before it is accepted.
+//! Lospec `.hex`: one colour per line, `rrggbb`, optionally with a `#` before it.
 
 use mode13h::palette::{Palette, Rgb};
 
@@ -6,8 +6,8 @@ use super::colors::Colors;
 use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 use super::text::Lines;
 
-/// Text whose first line is a colour. A raw palette has control characters as a rule; one without
-/// would have to begin with six digits and an end of line to be mistaken.
+/// Returns whether this is a text whose first line is a colour. A raw palette usually has control characters; one
+/// without would have to begin with six digits and a line ending to be mistaken for it.
 pub(super) fn recognizes(bytes: &[u8]) -> bool {
     let is_text = |byte: &u8| !byte.is_ascii_control() || byte.is_ascii_whitespace();
     bytes.iter().all(is_text)

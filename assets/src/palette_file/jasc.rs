@@ -1,4 +1,4 @@
-//! JASC `.pal`, Paint Shop Pro's: `JASC-PAL`, `0100`, the number of colours, then a colour a line.
+//! JASC `.pal` of Paint Shop Pro: `JASC-PAL`, `0100`, the number of colours, then one colour per line.
 
 use mode13h::palette::Palette;
 
@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
 }
 
 pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {
-    // Its home is Windows: lines end in CR LF.
+    // It comes from Windows: lines end in CR LF.
     out.extend_from_slice(format!("{MAGIC}\r\n{VERSION}\r\n256\r\n").as_bytes());
     for color in palette.colors() {
         out.extend_from_slice(format!("{} {} {}\r\n", color.r, color.g, color.b).as_bytes());

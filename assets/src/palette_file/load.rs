@@ -1,4 +1,4 @@
-//! Palettes by the names of their files.
+//! Palettes by file name.
 
 use std::error::Error;
 use std::fmt;
@@ -11,11 +11,11 @@ use mode13h::palette::Palette;
 use super::error::PaletteError;
 use super::parse_named;
 
-/// The max length that is read of a file, in bytes. No palette file is longer, not even one with a paragraph for each
-/// colour; what is longer is refused as what it is up to here.
+/// The max number of bytes read from a file. No palette file is longer, not even one with a paragraph for each colour;
+/// a longer one fails on the part up to here.
 const LONGEST: u64 = 1 << 20;
 
-/// An error of a file that gave no palette.
+/// The reason why a file gives no palette.
 #[non_exhaustive]
 pub struct LoadError {
     /// The file.
@@ -30,7 +30,7 @@ pub struct LoadError {
 pub enum LoadErrorKind {
     /// The file cannot be read.
     Read(io::Error),
-    /// The file is no palette, or a broken one.
+    /// The file is not a palette, or a broken one.
     Palette(PaletteError),
 }
 
@@ -54,7 +54,7 @@ impl Error for LoadError {
     }
 }
 
-/// Reads a palette file, by the format of its name and its first bytes, as [`parse_named`] does.
+/// Reads a palette file in the format determined by its name and its first bytes, like [`parse_named`].
 ///
 /// ```no_run
 /// use mode13h_assets::palette_file;

@@ -1,20 +1,20 @@
-//! Palette files, read and written. [`FORMATS`] is the one list of them.
+//! Reading and writing of palette files, in the formats listed in [`FORMATS`].
 //!
 //! | format | extension | what |
 //! |---|---|---|
-//! | `jasc` | `.pal` | Paint Shop Pro: text, `JASC-PAL`, `0100`, the number of colours, then one a line |
-//! | `gimp` | `.gpl` | GIMP, Inkscape, Krita, Aseprite: text, `GIMP Palette`, then one a line with a name |
-//! | `hex` | `.hex` | Lospec: text, `rrggbb`, one a line |
+//! | `jasc` | `.pal` | Paint Shop Pro: text, `JASC-PAL`, `0100`, the number of colours, then one per line |
+//! | `gimp` | `.gpl` | GIMP, Inkscape, Krita, Aseprite: text, `GIMP Palette`, then one per line with a name |
+//! | `hex` | `.hex` | Lospec: text, `rrggbb`, one per line |
 //! | `act` | `.act` | Adobe: 768 bytes, red, green, blue, 8 bits |
-//! | `act-772` | `.act` | the same with 4 bytes more: how many colours count, and the transparent one |
+//! | `act-772` | `.act` | the same with 4 more bytes: the number of colours in use, and the transparent one |
 //! | `vga` | `.vga` | 768 bytes, red, green, blue, as the DAC takes them: 6 bits |
 //!
-//! Also read as `vga` are `.raw`, `.col` (Autodesk Animator), `.lmp` (Quake) and a `.pal` of 768
-//! bytes that does not begin as JASC does. A raw file in which some value is over 63 has 8 bits.
+//! Also read as `vga` are `.raw`, `.col` (Autodesk Animator), `.lmp` (Quake) and a `.pal` of 768 bytes that does not
+//! begin like JASC. A raw file with a value over 63 has 8 bits.
 //!
-//! Text may end its lines with LF, CR LF or CR, and may begin with a UTF-8 byte order mark; empty lines among the
-//! colours are skipped. Fewer than 256 colours are fine if the format can say so; the other entries are black. More are
-//! an error. A palette has no ramps in a file: [`Palette::from_colors`] finds them.
+//! Text lines may end in LF, CR LF or CR, and a file may begin with a UTF-8 byte order mark; empty lines among the
+//! colours are skipped. Fewer than 256 colours are allowed if the format can express that; the other entries are black.
+//! More are an error. Palette files do not store ramps: [`Palette::from_colors`] finds them.
 //!
 //! ```
 //! use mode13h_assets::palette_file;
@@ -46,9 +46,9 @@ use mode13h::palette::Palette;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// Its name on the command line.
+    /// The name, as used on the command line.
     pub name: &'static str,
-    /// The programs that use it, for people.
+    /// The programs that use it, for display.
     pub description: &'static str,
     /// The extensions, in lower case without a dot; the first is the usual one.
     pub extensions: &'static [&'static str],
@@ -58,8 +58,8 @@ pub struct Format {
     write: fn(&Palette, &str, &mut Vec<u8>),
 }
 
-/// All formats, the surer ones first. Bytes belong to the first that recognizes them, an extension to the first that
-/// lists it.
+/// All formats, the most reliably recognised first. Bytes belong to the first that recognises them, an extension to the
+/// first that lists it.
 pub static FORMATS: [Format; 6] = [
     Format {
         name: "jasc",
@@ -97,7 +97,7 @@ pub static FORMATS: [Format; 6] = [
         name: "act",
         description: "Adobe color table",
         extensions: &["act"],
-        // Its bytes are those of a raw VGA file: only a name can tell.
+        // Its bytes look like those of a raw VGA file: only the name can distinguish them.
         recognizes: |_| false,
         read: adobe::read,
         write: adobe::write,
@@ -113,19 +113,19 @@ pub static FORMATS: [Format; 6] = [
 ];
 
 impl Format {
-    /// The format of a name, as in [`FORMATS`].
+    /// The format with this name in [`FORMATS`].
     #[must_use]
     pub fn by_name(name: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.name == name)
     }
 
-    /// The format of an extension, without its dot, in either case.
+    /// The format for an extension, given without its dot, in upper or lower case.
     #[must_use]
     pub fn by_extension(extension: &str) -> Option<&'static Self> {
         FORMATS.iter().find(|format| format.extensions.iter().any(|own| own.eq_ignore_ascii_case(extension)))
     }
 
-    /// The format of a file's name, by its extension, for writing such a file.
+    /// The format for a file name, by its extension, for writing such a file.
     #[must_use]
     pub fn of_file_name(name: &str) -> Option<&'static Self> {
         let (_, extension) = name.rsplit_once('.')?;
@@ -134,8 +134,8 @@ impl Format {
 
     /// The format that bytes look like.
     ///
-    /// An 8-bit `.act` of 768 bytes looks like a raw VGA file, and is read alike unless it has no
-    /// value over 63.
+    /// An 8-bit `.act` of 768 bytes looks like a raw VGA file, and gives the same colours when read as one, unless it
+    /// has no value over 63.
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Option<&'static Self> {
         FORMATS.iter().find(|format| (format.recognizes)(bytes))
@@ -152,14 +152,14 @@ impl Format {
         (self.read)(bytes)
     }
 
-    /// Writes a file of this format, all 256 entries of it. Reading it gives the colours back unchanged, except for a
-    /// `vga` file of colours below 64 that the DAC does not have: see there.
+    /// Writes a file of this format with all 256 entries. Reading it returns the same colours, except for a `vga` file
+    /// with colours below 64 that the DAC does not have, as described below.
     ///
-    /// `name` is the palette's name, which `gimp` files keep; control characters become blanks.
+    /// `name` is the palette's name, which `gimp` files contain; control characters become blanks.
     ///
-    /// A `vga` file is written in 6 bits if that keeps every colour. If not, and some value is over
-    /// 63, it is written in 8 bits. If no value is over 63, 8 bits would be taken for 6 when it is
-    /// read; such a palette is rounded down to 6 bits, as the card would.
+    /// A `vga` file is written in 6 bits if that preserves every colour. Otherwise, if some value is over 63, it is
+    /// written in 8 bits. If no value is over 63, 8 bits would be mistaken for 6 on reading; such a palette is rounded
+    /// down to 6 bits, as the card would do.
     #[must_use]
     pub fn write(&self, palette: &Palette, name: &str) -> Vec<u8> {
         let mut out = Vec::new();
@@ -168,7 +168,7 @@ impl Format {
     }
 }
 
-/// Reads a palette file whose name is not known, by its contents ([`Format::of_bytes`]).
+/// Reads a palette file without a name, by its contents ([`Format::of_bytes`]).
 ///
 /// # Errors
 /// [`PaletteErrorKind::UnknownFormat`] if it looks like none of [`FORMATS`], otherwise those of [`Format::read`].
@@ -180,11 +180,11 @@ pub fn parse(bytes: &[u8]) -> Result<Palette, PaletteError> {
     }
 }
 
-/// Reads a palette file by its name's extension. Without a known extension [`parse`] decides. It also decides for
-/// `.pal`, which JASC and the raw files share, if the bytes look like a raw file.
+/// Reads a palette file in the format of its name's extension. Without a known extension [`parse`] decides, and also
+/// for `.pal`, which JASC and raw files share, if the bytes look like a raw file.
 ///
 /// # Errors
-/// Those of [`Format::read`]. The name is not part of the message: the caller has it.
+/// Those of [`Format::read`]. The message does not include the name, which the caller has.
 pub fn parse_named(name: &str, bytes: &[u8]) -> Result<Palette, PaletteError> {
     match Format::of_file_name(name) {
         Some(format) if format.name != "jasc" || !vga::recognizes(bytes) => format.read(bytes),

@@ -1,5 +1,4 @@
-//! Lines and numbers of text files, on bytes: palette files come in any encoding, and only their
-//! ASCII matters.
+//! Lines and numbers of text files, on bytes: palette files come in any encoding, and only their ASCII matters.
 
 use mode13h::palette::Rgb;
 
@@ -7,8 +6,8 @@ use super::error::{Excerpt, PaletteError, PaletteErrorKind};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// The lines of a text with their numbers from 1, without blanks around them. LF, CR LF and CR end
-/// a line; an end of line at the end of the text begins no further line.
+/// The lines of a text with their numbers from 1, trimmed. LF, CR LF and CR end a line; a line ending at the end of the
+/// text does not begin another line.
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
     number: usize,
@@ -61,7 +60,7 @@ pub(super) fn first_line_is(text: &[u8], expected: &str) -> bool {
     Lines::new(text).next().is_some_and(|(_, line)| line == expected.as_bytes())
 }
 
-/// A number in decimal digits, without sign or blank. `None` if it is more than `most`.
+/// Parses decimal digits without sign or blank. `None` if the number is more than `most`.
 pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     if digits.is_empty() {
         return None;
@@ -75,7 +74,7 @@ pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     })
 }
 
-/// The three numbers, 0 to 255, that a line begins with, and the number of words that follow them.
+/// The three numbers, 0 to 255, at the beginning of a line, and the number of words after them.
 pub(super) fn three_numbers(line: &[u8]) -> Option<(Rgb, usize)> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let mut channel = || words.next().and_then(|word| u8::try_from(decimal(word, 255)?).ok());

@@ -1,4 +1,4 @@
-//! Raw VGA: 256 times red, green, blue, as one `rep outsb` to port 3C9h takes them.
+//! Raw VGA: 256 times red, green, blue, ready for a single `rep outsb` to port 3C9h.
 
 use mode13h::palette::{Palette, Rgb};
 

@@ -1,4 +1,4 @@
-//! From the layout of a file to a scene.
+//! From a file's layout to a scene.
 
 use std::path::Path as FilePath;
 
@@ -19,11 +19,11 @@ use super::object::Objects;
 use super::value::{Background, FileName, HalfAngle, List, OneOrThree, Vector};
 use super::{SceneErrorKind, motion};
 
-/// Makes one scene.
+/// Builds one scene.
 pub(super) struct Builder<'a> {
     named: Named<'a>,
     scene: Scene,
-    /// The space that the objects cover as they move, if the camera has no place of its own.
+    /// The space that the objects cover as they move, if the camera has no explicit position.
     swept: Vec<Swept>,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Builder<'a> {
         Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
     }
 
-    /// Makes the scene, with warnings.
+    /// Builds the scene, with warnings.
     pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
@@ -92,8 +92,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour: so
-    /// either is the other's, unless both are given.
+    /// Sets the background and the fog. Fog only hides distant surfaces if it ends in the background's colour, so each
+    /// defaults to the other.
     fn background_and_fog(
         &mut self,
         background: Option<Background>,
@@ -147,7 +147,7 @@ impl<'a> Builder<'a> {
                 let start = object.angles;
                 let id = self.scene.add(object);
                 if turns != [0.0; 3] {
-                    // A round takes the duration.
+                    // One loop takes the duration.
                     let turns = turns.map(|turns| turns / self.scene.duration);
                     self.scene.motions.push(Motion::Spin { object: id, start, turns });
                 }
@@ -242,7 +242,7 @@ fn cone(
     Ok(Some(Cone { direction: direction.get_ref().vec3(), inner, outer }))
 }
 
-/// How a scene is to be drawn. An error counts before a shading.
+/// The render settings of a scene. An error budget takes precedence over a shading.
 fn settings(layout: &RenderLayout) -> Settings {
     let shading = layout.shading.as_ref().map(|name| Accuracy::Shading(name.0));
     Settings {

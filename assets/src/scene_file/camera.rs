@@ -1,4 +1,4 @@
-//! The camera: placed, or so that everything is in the picture.
+//! The camera, with an explicit position or framing everything.
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -9,7 +9,7 @@ use toml::Spanned;
 use super::error::Fault;
 use super::layout::CameraLayout;
 
-/// Makes the camera of a layout; `everything` is the space that the scene's objects cover as they move.
+/// Makes the camera from its layout; `everything` is the space that the scene's objects cover as they move.
 pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept]) -> Result<Camera, Fault> {
     let span = layout.map_or(0..0, Spanned::span);
     let own = layout.map(Spanned::get_ref);

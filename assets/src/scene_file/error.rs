@@ -1,4 +1,4 @@
-//! The errors of a scene file, with their place.
+//! Errors of scene files, with their position.
 
 use core::ops::Range;
 use std::fmt::Write as _;
@@ -10,19 +10,19 @@ use crate::model_file::ModelFileError;
 use crate::palette_file::PaletteError;
 use crate::texture::LoadError;
 
-/// An error of a scene file. Nothing of the file is used.
+/// The error of a scene file. Nothing of the file is used.
 ///
 /// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
 #[non_exhaustive]
 pub struct SceneError {
-    /// The file, as the caller named it.
+    /// The file, as named by the caller.
     pub path: PathBuf,
-    /// The place in the file. `None` if no one place is at fault.
+    /// The position in the file. `None` if no single position is at fault.
     pub place: Option<Place>,
-    /// The key at fault with those it lies in, as `objects[0].material.ramp`: lists count from 0. `None` if no key is
+    /// The key at fault with its parents, such as `objects[0].material.ramp`: lists count from 0. `None` if no key is
     /// at fault.
     pub key: Option<String>,
-    /// The kind of the error. In a box, because a success would carry its size about too.
+    /// The kind of the error. Boxed, to keep the size of a `Result` small.
     pub kind: Box<SceneErrorKind>,
 }
 
@@ -36,25 +36,25 @@ pub enum SceneErrorKind {
     Directory,
     /// The file has more than [`LONGEST`](super::LONGEST) bytes.
     TooLong,
-    /// The file is no text in UTF-8.
+    /// The file is not UTF-8 text.
     NotText,
-    /// The file is text, but not TOML: the words at fault.
+    /// The file is text, but not TOML: the parser's message.
     NotToml(String),
     /// There is no such key here.
     UnknownKey {
-        /// The keys that are known.
+        /// The known keys.
         known: String,
     },
     /// A required key is missing.
     MissingKey,
-    /// The value is of another type than it must be, out of range, the name of nothing, or does not go with another
-    /// key. The text says what it is, and what it must be.
+    /// The value has the wrong type, is out of range, is an unknown name, or conflicts with another key. The text says
+    /// what it is, and what it must be.
     Value(String),
     /// A file that the scene names cannot be read.
     File {
-        /// Its path, from the folder of the scene's file.
+        /// Its path, joined to the folder of the scene file.
         path: PathBuf,
-        /// The error of the system.
+        /// The system's error.
         error: io::Error,
     },
     /// A model that the scene names is broken.
@@ -72,14 +72,14 @@ pub enum SceneErrorKind {
     NoObject,
 }
 
-/// An error, and the bytes of the text at fault, before its place is computed.
+/// An error and the bytes of the text at fault, before its position is computed.
 pub(super) struct Fault {
     pub(super) span: Option<Range<usize>>,
     pub(super) kind: SceneErrorKind,
 }
 
 impl Fault {
-    /// Makes the fault of a value that cannot stand where it does.
+    /// Makes the fault of an invalid value.
     pub(super) fn value(span: Range<usize>, what: impl fmt::Display) -> Self {
         Self { span: Some(span), kind: SceneErrorKind::Value(what.to_string()) }
     }
@@ -88,7 +88,7 @@ impl Fault {
         Self { span: Some(span), kind }
     }
 
-    /// Adds the place and the key that its span means in `text`.
+    /// Adds the position and the key of the fault's span in `text`.
     pub(super) fn locate(self, path: &Path, text: &str) -> SceneError {
         let Self { span, mut kind } = self;
         let place = span.as_ref().map(|span| Place::of(text, span.start));
@@ -104,7 +104,7 @@ impl Fault {
                     *message = turned;
                 }
             }
-            // If two keys are alike the second is the fault, which no table holds.
+            // Of two equal keys the second is at fault, and no table contains it.
             SceneErrorKind::NotToml(message) if message == "duplicate key" => {
                 key = span.and_then(|span| text.get(span)).map(String::from);
             }
@@ -114,18 +114,18 @@ impl Fault {
     }
 }
 
-/// Makes the fault of broken syntax, which has no key.
+/// Makes the fault of a syntax error, which has no key.
 pub(super) fn not_toml(error: &toml::de::Error) -> Fault {
     Fault { span: error.span(), kind: SceneErrorKind::NotToml(error.message().to_string()) }
 }
 
-/// Makes the fault of an error of serde: the words of its own messages are those that [`Fault::locate`] looks for.
+/// Makes the fault of a serde error; [`Fault::locate`] looks for the wording of serde's own messages.
 pub(super) fn not_a_scene(error: &toml::de::Error) -> Fault {
     Fault { span: error.span(), kind: SceneErrorKind::Value(shortened(error.message())) }
 }
 
-/// Shortens a message in its middle, if it is long. It begins with a value out of the file, which may be of any length,
-/// and ends with the value that is expected.
+/// Shortens a long message in its middle. It begins with a value from the file, which may be of any length, and ends
+/// with the expected value.
 fn shortened(message: &str) -> String {
     const HEAD: usize = 100;
     const TAIL: usize = 400;
@@ -138,13 +138,13 @@ fn shortened(message: &str) -> String {
     head.chain(['…']).chain(tail).collect()
 }
 
-/// The text between `before`, with which `text` begins, and `behind`, with which it ends.
+/// The text between the prefix `before` and the suffix `behind`.
 fn between<'t>(text: &'t str, before: &str, behind: &str) -> Option<&'t str> {
     text.strip_prefix(before)?.strip_suffix(behind)
 }
 
-/// Makes "expected a name, found integer `7`" out of serde's "invalid type: integer `7`, expected a name". The value
-/// that was found may hold any words, so "expected" is looked for from the end.
+/// Turns serde's "invalid type: integer `7`, expected a name" into "expected a name, found integer `7`". The value
+/// found may contain any words, so "expected" is searched from the end.
 fn expected_first(message: &str) -> Option<String> {
     let kinds = ["invalid type: ", "invalid value: ", "invalid length "];
     let rest = kinds.iter().find_map(|kind| message.strip_prefix(kind))?;
@@ -152,8 +152,8 @@ fn expected_first(message: &str) -> Option<String> {
     Some(format!("{}, found {}", &rest[at + 2..], &rest[..at]))
 }
 
-/// Reads the keys out of serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown
-/// key may hold any of these words itself, so they are looked for from the end.
+/// Extracts the keys from serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown
+/// key may contain any of these words itself, so they are searched from the end.
 fn known_keys(message: &str) -> String {
     let Some(at) = message.rfind("`, expected ") else { return String::from("none") };
     let list = &message[at + "`, expected ".len()..];
@@ -210,10 +210,10 @@ impl error::Error for SceneError {
     }
 }
 
-/// The max number of characters that are shown of a message, which may quote the file.
+/// The max number of characters shown of a message, which may quote the file.
 const LONGEST_MESSAGE: usize = 2500;
 
-/// A writer that keeps its text on one line, printable, and not too long to be read.
+/// A writer that puts its text on one line, printable, and not too long to read.
 struct Line<'a, 'f> {
     f: &'a mut fmt::Formatter<'f>,
     left: usize,

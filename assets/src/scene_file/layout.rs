@@ -1,5 +1,5 @@
-//! The layout of a scene file: its tables and keys, as serde reads them. `assets/scenes/README.md` says what each means, in
-//! which unit, and which default it has; a test holds the two lists equal.
+//! The layout of a scene file: its tables and keys, as serde reads them. `assets/scenes/README.md` gives the meaning,
+//! unit and default of each; a test ensures that both list the same keys.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -157,7 +157,7 @@ pub(super) struct RenderLayout {
     pub(super) max_error: Option<Positive>,
 }
 
-/// `subdivisions`: a whole number, or several in a list.
+/// `subdivisions`: an integer, or a list of several.
 pub(super) struct Subdivisions(pub(super) Vec<i64>);
 
 impl<'de> Deserialize<'de> for Subdivisions {
@@ -188,7 +188,7 @@ impl<'de> Deserialize<'de> for Subdivisions {
     }
 }
 
-/// `ramp`: a number, or entries of the palette.
+/// `ramp`: a number, or a range of palette entries.
 pub(super) enum RampLayout {
     Number(u8),
     Entries(EntriesLayout),
@@ -225,7 +225,7 @@ impl<'de> Deserialize<'de> for RampLayout {
     }
 }
 
-/// `blend`: the name of a way, or a body's opacity.
+/// `blend`: the name of a mode, or the opacity.
 pub(super) struct BlendLayout(pub(super) Blend);
 
 impl<'de> Deserialize<'de> for BlendLayout {
@@ -256,7 +256,7 @@ impl<'de> Deserialize<'de> for BlendLayout {
 
             fn visit_f64<E: Error>(self, number: f64) -> Result<BlendLayout, E> {
                 match Share::of(number) {
-                    // 0 to 255.5; the cast truncates after the half.
+                    // 0 to 255.5; the cast truncates after 0.5 is added.
                     Some(Share(share)) => Ok(BlendLayout(Blend::Mix((share * 255.0 + 0.5) as u8))),
                     None => Err(not_in_range(number, &self)),
                 }

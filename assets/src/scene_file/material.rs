@@ -1,4 +1,4 @@
-//! Materials: a file's changes to a default material.
+//! Materials: the changes that a file makes to a default material.
 
 use mode13h::light::{Material, RampChoice};
 use mode13h::palette::Ramp;
@@ -7,10 +7,10 @@ use super::error::Fault;
 use super::layout::{MaterialLayout, RampLayout};
 use super::named::Named;
 
-/// The shininess without a word in the file: neither broad nor a point.
+/// The default shininess: neither broad nor a point.
 const SHININESS: f32 = 20.0;
 
-/// Changes `material` by the keys of the layout. `has_texcoords`: whether a texture can lie on the mesh.
+/// Changes `material` by the keys of the layout. `has_texcoords`: whether the mesh can have a texture.
 pub(super) fn apply(
     layout: &MaterialLayout,
     material: &mut Material,
@@ -21,7 +21,7 @@ pub(super) fn apply(
     set(&mut material.ambient, layout.ambient.map(|share| share.0));
     set(&mut material.diffuse, layout.diffuse.map(|share| share.0));
     set(&mut material.specular, layout.specular.map(|share| share.0));
-    // A highlight that is asked for here has an exponent.
+    // A highlight requested here needs an exponent.
     let given = layout.specular.is_some() && material.shininess == 0.0;
     set(&mut material.shininess, layout.shininess.map(|exponent| exponent.0).or(given.then_some(SHININESS)));
     if let Some(color) = layout.color {

@@ -63,20 +63,20 @@ use mode13h::scene::Scene;
 pub use names::{GOURAUD, in_full};
 pub use place::Place;
 
-/// A scene and the warnings of its reading.
+/// A scene and the warnings from reading it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Loaded {
     /// The scene, at time 0.
     pub scene: Scene,
-    /// The warnings, one line each, with a file and the place in it.
+    /// The warnings, one line each, with a file and the position in it.
     pub warnings: Vec<String>,
-    /// The files that were read or looked for: the scene's own if it was loaded from one, and the models, MTL files,
-    /// textures and palettes that it names. Some may not exist.
+    /// The files that were read or looked for: the scene file itself if it was loaded from one, and the models, MTL
+    /// files, textures and palettes that it names. Some may not exist.
     pub files: Vec<PathBuf>,
 }
 
-/// Reads a scene file. The files that it names are looked for from the folder it lies in.
+/// Reads a scene file. The files that it names are resolved relative to its folder.
 ///
 /// # Errors
 /// A file that cannot be read, or that is broken: see [`SceneErrorKind`].
@@ -85,7 +85,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
     let failed = |kind| SceneError { path: path.to_owned(), place: None, key: None, kind: Box::new(kind) };
     let mut file = File::open(path).map_err(|error| failed(SceneErrorKind::Read(error)))?;
     let mut bytes = Vec::new();
-    // One byte more than may be, to see that there are more.
+    // One byte more than allowed, to detect a longer file.
     file.by_ref().take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(|error| {
         failed(if error.kind() == io::ErrorKind::IsADirectory {
             SceneErrorKind::Directory
@@ -98,7 +98,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
     Ok(loaded)
 }
 
-/// Opens a file that a scene names. Only ordinary files are accepted: a scene may name a device that never ends.
+/// Opens a file that a scene names. Only regular files are accepted: a scene might name a device that never ends.
 fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     match fs::metadata(path)?.is_file() {
         true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
@@ -106,7 +106,7 @@ fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
     }
 }
 
-/// Makes a scene of the text of a file.
+/// Makes a scene from the text of a file.
 pub(crate) fn parse(
     text: &str,
     path: &Path,
@@ -115,7 +115,7 @@ pub(crate) fn parse(
     read(text, path, open).map_err(|fault| fault.locate(path, text))
 }
 
-/// Makes a scene of the bytes of a file.
+/// Makes a scene from the bytes of a file.
 pub(crate) fn parse_bytes(
     bytes: &[u8],
     path: &Path,
@@ -124,7 +124,7 @@ pub(crate) fn parse_bytes(
     match str::from_utf8(bytes) {
         Ok(text) => parse(text, path, open),
         Err(error) => {
-            // Whole characters up to there.
+            // The text is valid up to there.
             let text = str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
             let place = Some(Place::of(text, text.len()));
             Err(SceneError { path: path.to_owned(), place, key: None, kind: Box::new(SceneErrorKind::NotText) })
@@ -144,7 +144,7 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
         open(path)
     };
     let (scene, warnings) = Builder::new(path, &mut open).scene(&layout)?;
-    // Also those that are not looked for, as no face has texture coordinates.
+    // Includes those that are not looked for because no face has texture coordinates.
     let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
     files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
     Ok(Loaded { scene, warnings, files })

@@ -10,7 +10,7 @@ use super::error::Fault;
 use super::layout::{Axis, CircleLayout, PathLayout};
 use super::value::{List, Name};
 
-/// Makes a path in a scene of this duration, in seconds.
+/// Makes a path in a scene with this duration, in seconds.
 pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, Fault> {
     let span = layout.span();
     let PathLayout { line, back, circle, rounds } = layout.get_ref();
@@ -36,14 +36,14 @@ pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, 
     }
 }
 
-/// The radii from the middle to the point where a circle begins, and to the point a quarter of the way on.
+/// The radius vectors to the starting point of a circle, and to the point a quarter of the way around.
 fn radii(circle: &CircleLayout, span: Range<usize>) -> Result<(Vec3, Vec3), Fault> {
     match circle {
         CircleLayout { from: Some(from), towards: Some(towards), radius: None, axis: None, start: None, .. } => {
             Ok((from.vec3(), towards.vec3()))
         }
         CircleLayout { from: None, towards: None, radius: Some(radius), axis, start, .. } => {
-            // Counter-clockwise seen from the axis's end.
+            // Counter-clockwise seen from the end of the axis.
             let (first, second) = match axis {
                 Some(Name(Axis::X)) => (Vec3::Y, Vec3::Z),
                 None | Some(Name(Axis::Y)) => (Vec3::Z, Vec3::X),

@@ -18,20 +18,20 @@ use crate::model_file::{self, Format, Options};
 use crate::palette_file;
 use crate::texture::{self, LoadError, LoadErrorKind};
 
-/// The caller's function that opens a file.
+/// The caller's function for opening files.
 pub(super) type Open<'a> = dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>> + 'a;
 
-/// A model as a scene needs it.
+/// A model loaded for a scene.
 #[derive(Clone)]
 pub(super) struct NamedModel {
     pub(super) mesh: Shared<Mesh>,
-    /// The point of its file that lies at 0 in the mesh.
+    /// The point in its file that is 0 in the mesh.
     pub(super) origin: [f64; 3],
     /// The axis that points up, if its format says so.
     pub(super) up: Option<UpAxis>,
 }
 
-/// The files that a scene names, found from its folder.
+/// The files that a scene names, resolved relative to its folder.
 pub(super) struct Named<'a> {
     folder: &'a Path,
     open: &'a mut Open<'a>,
@@ -41,10 +41,10 @@ pub(super) struct Named<'a> {
     pub(super) warnings: Vec<String>,
 }
 
-/// The max length of a palette file. A longer one is read to here, and refused for its contents then.
+/// The max length of a palette file. A longer one is read up to here, and then rejected for its contents.
 const LONGEST_PALETTE: usize = LONGEST;
 
-/// The max length of a texture file: a picture of 4,096 × 4,096 in true colour that cannot be packed.
+/// The max length of a texture file: an incompressible picture of 4,096 × 4,096 in true colour.
 const LONGEST_TEXTURE: u64 = 64 << 20;
 
 impl<'a> Named<'a> {
@@ -80,7 +80,7 @@ impl<'a> Named<'a> {
         Ok(model)
     }
 
-    /// A palette that is built in, a file, or that of a picture of indices.
+    /// Loads a palette: a built-in one, a file, or that of an indexed picture.
     pub(super) fn palette(&mut self, name: &Spanned<FileName>) -> Result<Palette, Fault> {
         if let Some(builtin) = builtin::by_name(&name.get_ref().0) {
             return Ok(builtin.palette.clone());
@@ -99,7 +99,7 @@ impl<'a> Named<'a> {
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Palette { path, error }))
     }
 
-    /// A texture that is built in, or the picture in a file.
+    /// Loads a texture: a built-in one, or the picture in a file.
     pub(super) fn texture(&mut self, name: &Spanned<FileName>) -> Result<Shared<Texture>, Fault> {
         let path = self.folder.join(&name.get_ref().0);
         if let Some(known) = self.textures.get(&path) {
@@ -121,8 +121,8 @@ impl<'a> Named<'a> {
         Ok(texture)
     }
 
-    /// Loads a texture that a model's material names, from where the program runs or from the model's folder, as the
-    /// model has been read, or from the model's own file. A missing or broken one is a warning.
+    /// Loads a texture that a model's material names: from the model's own file, or relative to the working directory
+    /// or the model's folder, depending on how the model was read. A missing or broken one is a warning.
     pub(super) fn texture_of_model(&mut self, path: &str, material: &str) -> Option<Shared<Texture>> {
         let path = PathBuf::from(path);
         if let Some(known) = self.textures.get(&path) {

@@ -1,4 +1,4 @@
-//! Objects: a mesh, its place, its materials.
+//! Objects: meshes with their placement and materials.
 
 use core::ops::Range;
 use std::collections::BTreeMap;
@@ -15,12 +15,12 @@ use super::named::{Named, NamedModel};
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
 
-/// The changes of a mesh before it is used.
+/// The changes to a mesh before it is used.
 #[derive(Clone, Copy, PartialEq)]
 struct Change {
-    /// The factors of its length along x, y and z.
+    /// The scale factors along x, y and z.
     stretch: Vec3,
-    /// The number of times that textures repeat over it, along u and v.
+    /// How often textures repeat over it, along u and v.
     repeat: Vec2,
 }
 
@@ -37,7 +37,7 @@ impl Change {
 /// A shape by its name, its subdivisions and its change.
 type ShapeKey = (&'static str, Vec<u32>, [u32; 5]);
 
-/// The maker of objects. Those of one shape share its mesh.
+/// Makes objects. Objects with the same shape share its mesh.
 #[derive(Default)]
 pub(super) struct Objects {
     shapes: BTreeMap<ShapeKey, Shared<Mesh>>,
@@ -46,7 +46,7 @@ pub(super) struct Objects {
 }
 
 impl Objects {
-    /// Makes the object of a layout, without its motion, as often as the layout has it.
+    /// Makes the objects of a layout, one for each of its positions, without their motion.
     pub(super) fn object(
         &mut self,
         layout: &Spanned<ObjectLayout>,
@@ -109,7 +109,7 @@ impl Objects {
         };
         object.scale = scale;
         if let Some(pivot) = layout.pivot {
-            // A point of the model's file, which may lie far from 0.
+            // A point in the model's file, which may be far from 0.
             let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(pivot.vec3()[axis]) - origin[axis]) as f32);
             object.pivot = Vec3::new(x, y, z) * stretch;
         }
@@ -142,7 +142,7 @@ impl Objects {
             Some(given) => shape.subdivided(&given.get_ref().0).map_err(|what| Fault::value(given.span(), what))?,
             None => shape.usual(),
         };
-        // Neither has more than 2²⁶.
+        // Neither is more than 2²⁶.
         self.triangles = self.triangles.saturating_add(shape.triangles(&subdivisions).saturating_mul(count as u64));
         if self.triangles > MAX_TRIANGLES {
             let span = layout.subdivisions.as_ref().map_or(span.clone(), Spanned::span);

@@ -1,11 +1,11 @@
-//! Lines, columns and keys for bytes of a text.
+//! Conversion from bytes of a text to lines, columns and keys.
 
 use core::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A place in a text.
+/// A position in a text.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Place {
     /// The line, counted from 1.
@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// The place of a byte; the end of the text if there is no such byte.
+    /// The position of a byte; the end of the text if there is no such byte.
     pub(super) fn of(text: &str, byte: usize) -> Self {
         let mut byte = byte.min(text.len());
         while !text.is_char_boundary(byte) {
@@ -27,17 +27,17 @@ impl Place {
     }
 }
 
-/// The key that these bytes are a part of, or its value, with those it lies in: `objects[0].material.ramp`. `None` if
-/// the text is not TOML, or has no key there.
+/// The key whose name or value these bytes are part of, with its parents: `objects[0].material.ramp`. `None` if the
+/// text is not TOML, or has no key there.
 pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
     in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
 }
 
-/// The max number of characters that are shown of a key. Every known key is shorter.
+/// The max number of characters shown of a key. Every known key is shorter.
 const LONGEST_KEY: usize = 60;
 
-// A table and a list have the bytes of the header that opened them, and so may several, one in the other: the
-// innermost is meant. The parser limits how deep they lie.
+// The span of a table or list is that of the header that opened it, so several nested ones may have the same span: the
+// innermost is the right one. The parser limits the nesting.
 
 fn in_table(table: &DeTable<'_>, span: &Range<usize>, path: &str) -> Option<String> {
     table.iter().find_map(|(key, value)| {

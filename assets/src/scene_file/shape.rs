@@ -8,13 +8,13 @@ use mode13h::mesh::{Mesh, shapes};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     pub(super) name: &'static str,
-    /// Its subdivisions: for each the name, the min, the max, and the default.
+    /// Its subdivisions, each with its name, min, max and default.
     subdivisions: &'static [(&'static str, u32, u32, u32)],
     triangles: fn(&[u32]) -> u64,
     make: fn(&[u32]) -> Mesh,
 }
 
-/// The shapes by name. They are given one subdivision for each that they have, within its range.
+/// The shapes by name. Their functions receive a value within range for each of their subdivisions.
 const SHAPES: [Shape; 7] = [
     Shape { name: "cube", subdivisions: &[], triangles: |_| 12, make: |_| shapes::cube() },
     Shape {
@@ -55,7 +55,7 @@ const SHAPES: [Shape; 7] = [
     },
 ];
 
-/// The max number of most kinds of subdivisions.
+/// The max of most subdivisions.
 const MAX_PARTS: u32 = 4096;
 
 fn product(subdivisions: &[u32]) -> u64 {
@@ -63,7 +63,7 @@ fn product(subdivisions: &[u32]) -> u64 {
 }
 
 impl Shape {
-    /// Returns all subdivisions of the shape, from those that a scene gives: none, or as many as it has.
+    /// Returns the subdivisions of the shape, from those that a scene gives, which must be as many as it has.
     pub(super) fn subdivided(self, given: &[i64]) -> Result<Vec<u32>, String> {
         if given.len() != self.subdivisions.len() {
             let names: Vec<&str> = self.subdivisions.iter().map(|row| row.0).collect();
@@ -87,7 +87,7 @@ impl Shape {
         self.subdivisions.iter().map(|row| row.3).collect()
     }
 
-    /// An upper bound of the number of triangles with these subdivisions.
+    /// An upper bound on the number of triangles with these subdivisions.
     pub(super) fn triangles(self, subdivisions: &[u32]) -> u64 {
         (self.triangles)(subdivisions)
     }

@@ -1,4 +1,4 @@
-//! Numbers, vectors, colours and names, each with its range. Values that no scene can have are refused at their place.
+//! Numbers, vectors, colours and names, each with its range. Values out of range are rejected where they occur.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -12,10 +12,10 @@ use super::names::in_full;
 
 /// A kind of number.
 pub(super) trait Number: Sized {
-    /// The expected values, in words that follow "expected".
+    /// The expected values, as text to follow "expected".
     const WHAT: &'static str;
 
-    /// Makes one of a number; `None` if it is out of range.
+    /// Converts a number; `None` if it is out of range.
     fn of(number: f64) -> Option<Self>;
 }
 
@@ -29,7 +29,7 @@ impl<N: Number> Visitor<'_> for NumberVisitor<N> {
     }
 
     fn visit_i64<E: Error>(self, number: i64) -> Result<N, E> {
-        // Beyond 2⁵³ to the nearest.
+        // Rounded to the nearest beyond 2⁵³.
         N::of(number as f64).ok_or_else(|| not_in_range(number, &self))
     }
 
@@ -38,12 +38,12 @@ impl<N: Number> Visitor<'_> for NumberVisitor<N> {
     }
 }
 
-/// Makes the error of a number out of range; great ones are written with an exponent.
+/// Makes the error of a number out of range; large ones are written with an exponent.
 pub(super) fn not_in_range<E: Error>(number: impl fmt::Debug, expected: &dyn Expected) -> E {
     E::invalid_value(Unexpected::Other(&format!("{number:?}")), expected)
 }
 
-/// A type that holds one kind of number, read from what is written `$Type` in a scene.
+/// Defines a type for each kind of number, stored as `$Type`.
 macro_rules! numbers {
     ($( $(#[$doc:meta])* $Name:ident($Type:ty): $what:literal, |$x:ident| $legal:expr; )*) => {$(
         $(#[$doc])*
@@ -54,7 +54,7 @@ macro_rules! numbers {
             const WHAT: &'static str = $what;
 
             fn of(number: f64) -> Option<Self> {
-                // To the nearest; beyond the range of f32 infinite, which no kind of number is.
+                // Rounded to the nearest; infinite beyond the range of f32, which is never valid.
                 let $x = number as $Type;
                 ($x.is_finite() && $legal).then_some(Self($x))
             }
@@ -69,9 +69,9 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// A coordinate, an intensity.
+    /// A coordinate or an intensity.
     Plain(f32): "a finite number", |_x| true;
-    /// An angle in degrees, turns, a moment in seconds.
+    /// An angle in degrees, a number of turns, or a time in seconds.
     Finite(f64): "a finite number", |_x| true;
     /// A share.
     Share(f32): "a number from 0 to 1", |x| (0.0..=1.0).contains(&x);
@@ -81,13 +81,13 @@ numbers! {
     NotNegative(f32): "a number of at least 0", |x| x >= 0.0;
     /// An exponent.
     Shininess(f32): "a number from 0 to 1000", |x| (0.0..=1000.0).contains(&x);
-    /// Rounds in a scene's duration.
+    /// Rounds per scene duration.
     Rounds(f64): "a number other than 0, from -1000 to 1000", |x| x != 0.0 && x.abs() <= 1000.0;
-    /// Rounds in a scene's duration, for a motion without a way back.
+    /// Rounds per scene duration, for a motion that cannot run backwards.
     Times(f64): "a number above 0, at most 1000", |x| x > 0.0 && x <= 1000.0;
     /// A time.
     Seconds(f64): "a number of seconds above 0, at most 3600", |x| x > 0.0 && x <= 3600.0;
-    /// An angle between the picture's upper and lower edge, in degrees.
+    /// The vertical field of view, in degrees.
     FieldOfView(f32): "a number of degrees from 1 to 179", |x| (1.0..=179.0).contains(&x);
     /// The angle between the axis of a cone and its edge, in degrees.
     HalfAngle(f32): "a number of degrees from 0 to 90", |x| (0.0..=90.0).contains(&x);
@@ -101,23 +101,23 @@ numbers! {
 
 impl Entry {
     pub(super) fn index(self) -> u8 {
-        // A whole number from 0 to 255.
+        // An integer from 0 to 255.
         self.0 as u8
     }
 }
 
 impl Entries {
     pub(super) fn count(self) -> u16 {
-        // A whole number from 1 to 256.
+        // An integer from 1 to 256.
         self.0 as u16
     }
 }
 
-/// A list of exactly `N`.
+/// A list of exactly `N` items.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct List<T, const N: usize>(pub(super) [T; N]);
 
-/// The visitor of a list, which refuses anything else.
+/// The visitor of a list, which rejects anything else.
 struct ListVisitor<T, const N: usize>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
@@ -191,9 +191,9 @@ impl<'de, N: Number + Deserialize<'de>> Deserialize<'de> for OneOrThree<N> {
 pub(super) struct Color(pub(super) [f32; 3]);
 
 impl Color {
-    /// The colour to the nearest of 255ths.
+    /// The colour, rounded to the nearest 1/255.
     pub(super) fn rgb(self) -> Rgb {
-        // 0 to 255.5; the cast truncates after the half.
+        // 0 to 255.5; the cast truncates after 0.5 is added.
         let [r, g, b] = self.0.map(|share| (share * 255.0 + 0.5) as u8);
         Rgb::new(r, g, b)
     }
@@ -210,7 +210,7 @@ impl<'de> Visitor<'de> for ColorVisitor {
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
         let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
-        // from_str_radix takes a sign.
+        // `from_str_radix` would accept a sign.
         let digits = digits.filter(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()));
         match digits.map(|digits| u32::from_str_radix(digits, 16)) {
             Some(Ok(number)) => {
@@ -233,7 +233,7 @@ impl<'de> Deserialize<'de> for Color {
     }
 }
 
-/// The value that the frame is cleared to.
+/// The background that the frame is cleared to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Background {
     Entry(u8),
@@ -320,7 +320,7 @@ impl<'de, T: FromStr<Err: fmt::Display> + Default> Deserialize<'de> for OffOr<T>
     }
 }
 
-/// The name of a file, or of something that is built in.
+/// The name of a file, or of something built in.
 pub(super) struct FileName(pub(super) String);
 
 impl<'de> Deserialize<'de> for FileName {

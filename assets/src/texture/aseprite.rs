@@ -1,6 +1,6 @@
-//! Aseprite's own files, of indexed sprites: the visible layers of the first frame.
+//! Aseprite's own files of indexed sprites: the visible layers of the first frame.
 //!
-//! The crate `asefile` reads all of the format, but brings a second version of `image`.
+//! The crate `asefile` reads the whole format, but brings a second version of `image`.
 
 use std::io::Read;
 
@@ -15,7 +15,7 @@ pub(super) fn recognizes(head: &[u8]) -> bool {
     matches!(head, [_, _, _, _, 0xE0, 0xA5, ..])
 }
 
-/// Bytes that are read from the front.
+/// Bytes to be read from the front.
 #[derive(Clone, Copy)]
 struct Bytes<'b>(&'b [u8]);
 
@@ -39,7 +39,7 @@ impl<'b> Bytes<'b> {
     }
 
     fn double(&mut self) -> Result<usize, LoadErrorKind> {
-        // Of 32 bits.
+        // 32 bits wide.
         self.array().map(|bytes| u32::from_le_bytes(bytes) as usize)
     }
 }
@@ -48,15 +48,15 @@ fn broken(what: &str) -> LoadErrorKind {
     LoadErrorKind::Picture(format!("Aseprite: {what}"))
 }
 
-/// A layer, as far as it matters whether its cels are seen.
+/// The parts of a layer that determine whether its cels are visible.
 struct Layer {
     is_visible: bool,
-    /// It lies under all others and has no transparent index.
+    /// Whether it is the background layer, which is below all others and has no transparent index.
     is_background: bool,
     level: u16,
 }
 
-/// The kinds of chunks that are read.
+/// The types of chunks that are read.
 const OLD_PALETTE: u16 = 0x0004;
 const OLDEST_PALETTE: u16 = 0x0011;
 const LAYER: u16 = 0x2004;
@@ -110,7 +110,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
                 has_palette = true;
                 palette(chunk, &mut picture.colors)?;
             }
-            // Programs write both; the new one holds.
+            // Some programs write both; the new one wins.
             OLD_PALETTE | OLDEST_PALETTE if !has_palette => {
                 old_palette(chunk, kind == OLDEST_PALETTE, &mut picture.colors)?;
             }
@@ -157,7 +157,7 @@ fn old_palette(mut chunk: Bytes<'_>, is_of_dac: bool, colors: &mut [Rgb; 256]) -
     Ok(())
 }
 
-/// Draws a cel, if its layer and the groups that it lies in are visible.
+/// Draws a cel if its layer and the groups that contain it are visible.
 fn cel(mut chunk: Bytes<'_>, layers: &[Layer], transparent: u8, picture: &mut Indexed) -> Result<(), LoadErrorKind> {
     let number = usize::from(chunk.word()?);
     let layer = layers.get(number).ok_or_else(|| broken("a cel of a layer that there is not"))?;
@@ -172,7 +172,7 @@ fn cel(mut chunk: Bytes<'_>, layers: &[Layer], transparent: u8, picture: &mut In
             (level, is_visible) = (group.level, is_visible && group.is_visible);
         }
     }
-    // A cel of the first frame is linked to none; tiles are left out.
+    // The first frame has no linked cels; tilemaps are ignored.
     if !is_visible || !matches!(kind, 0 | 2) {
         return Ok(());
     }

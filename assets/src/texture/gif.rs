@@ -28,7 +28,7 @@ pub(super) fn decode(file: impl Read) -> Result<Indexed, LoadErrorKind> {
     let own = frame.palette.as_deref().map(colors).or(of_file);
     let colors = own.ok_or_else(|| LoadErrorKind::Picture("GIF: there are no colours".into()))?;
     let (left, top, columns) = (u32::from(frame.left), u32::from(frame.top), usize::from(frame.width));
-    // At most 2²⁴. What the image does not cover is transparent.
+    // At most 2²⁴. Anything that the image does not cover is transparent.
     let mut indices = vec![frame.transparent.unwrap_or(0); (width * height) as usize];
     for (row, y) in frame.buffer.chunks_exact(columns.max(1)).zip(top..height) {
         for (&index, x) in row.iter().zip(left..width) {

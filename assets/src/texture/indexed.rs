@@ -1,22 +1,23 @@
-//! Pictures of indices into a palette of their own: the indices are kept where a texture may have the picture's size.
+//! Indexed pictures: the indices are preserved if the picture's size is valid for a texture.
 
 use mode13h::palette::Rgb;
 use mode13h::texture::{Texture, TextureError};
 
 use super::{Decoded, LoadErrorKind};
 
-/// A picture of indices.
+/// An indexed picture.
 pub(super) struct Indexed {
     pub(super) width: u32,
     pub(super) height: u32,
-    /// The indices, row after row from the top row down.
+    /// The indices, row by row from the top down.
     pub(super) indices: Vec<u8>,
     pub(super) colors: [Rgb; 256],
     pub(super) was_transparent: bool,
 }
 
 impl Indexed {
-    /// Makes a texture of the indices as they are, if both sides are powers of two up to 256, or else of the colours.
+    /// Makes a texture from the indices unchanged, if both sides are powers of two up to 256, otherwise from the
+    /// colours.
     pub(super) fn into_decoded(self) -> Result<Decoded, LoadErrorKind> {
         let Self { width, height, indices, colors, was_transparent } = self;
         let is_side = |side: u32| side.is_power_of_two() && side <= Texture::MAX_SIDE;
@@ -34,7 +35,7 @@ impl Indexed {
     }
 }
 
-/// 256 colours of three bytes each; those that are missing are black.
+/// Reads 256 colours of three bytes each; missing ones are black.
 pub(super) fn colors(bytes: &[u8]) -> [Rgb; 256] {
     let mut colors = [Rgb::BLACK; 256];
     let entries = bytes.as_chunks::<3>().0;

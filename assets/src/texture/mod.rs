@@ -1,6 +1,6 @@
 //! Textures from picture files.
 //!
-//! Pictures of indices keep them, and their palette, if a texture may have their size.
+//! Indexed pictures keep their indices and palette if their size is valid for a texture.
 
 mod aseprite;
 mod gif;
@@ -22,10 +22,10 @@ use indexed::Indexed;
 /// The first bytes of a PNG.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The max memory of a picture while it is read: 4,096 × 4,096 pixels of four samples of 16 bits.
+/// The max memory for reading a picture: 4,096 × 4,096 pixels of four 16-bit samples.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
-/// An error of a file that gave no texture.
+/// The reason why a file gives no texture.
 #[non_exhaustive]
 pub struct LoadError {
     /// The file.
@@ -40,9 +40,9 @@ pub struct LoadError {
 pub enum LoadErrorKind {
     /// The file cannot be read.
     Read(io::Error),
-    /// The path is that of a directory, a device or the like.
+    /// The path is that of a directory, a device or similar.
     NotAFile,
-    /// The file is no picture of a kind that is read, or a broken one.
+    /// The file is not a picture in a supported format, or a broken one.
     Picture(String),
     /// The picture is too large.
     Texture(TextureError),
@@ -77,36 +77,36 @@ impl core::error::Error for LoadError {
     }
 }
 
-/// A texture as it was read.
+/// A loaded texture.
 pub struct Decoded {
     /// The texture.
     pub texture: Texture,
-    /// Some pixel of the picture is not opaque; the texture is.
+    /// Whether some pixel of the picture was not opaque; the texture is opaque.
     pub was_transparent: bool,
-    /// The palette of a picture of indices, whatever its size.
+    /// The palette of an indexed picture, whatever its size.
     pub palette: Option<[Rgb; 256]>,
 }
 
 impl Decoded {
-    /// A line that says what was left out of this file, if anything was.
+    /// A line that says what was ignored in this file, if anything was.
     #[must_use]
     pub fn warning(&self, path: &Path) -> Option<String> {
         self.was_transparent.then(|| std::format!("{}: transparency left out", path.display()))
     }
 }
 
-/// Reads a PNG, GIF, PCX of 256 colours or an indexed sprite of Aseprite, with the feature `images` also a JPEG, TGA, BMP
-/// or WebP, and makes a texture of it as [`Texture::from_rgb`] does. The kind is told by the contents, not by the name.
-/// Grey becomes RGB, 16 bits become 8, and transparency is left out. Of films and sprites the first frame is read. An
-/// indexed picture whose sides are powers of two up to 256 keeps its indices and colours.
+/// Reads a PNG, GIF, PCX with 256 colours or an indexed Aseprite sprite, with the feature `images` also a JPEG, TGA,
+/// BMP or WebP, and makes a texture from it like [`Texture::from_rgb`]. The format is recognised by the contents, not
+/// the name. Grey becomes RGB, 16 bits become 8, and transparency is ignored. The first frame of animations and sprites
+/// is read. An indexed picture whose sides are powers of two up to 256 keeps its indices and colours.
 ///
 /// # Errors
-/// A file that cannot be read, that is no such picture or a broken one, or with a side above 4,096.
+/// A file that cannot be read, is not such a picture, is broken, or has a side above 4,096.
 pub fn load(path: impl AsRef<Path>) -> Result<Texture, LoadError> {
     load_decoded(path.as_ref()).map(|decoded| decoded.texture)
 }
 
-/// Reads a picture as [`load`] does, and says what was left out.
+/// Reads a picture like [`load`], and reports what was ignored.
 ///
 /// # Errors
 /// Those of [`load`].
@@ -116,14 +116,14 @@ pub fn load_decoded(path: &Path) -> Result<Decoded, LoadError> {
 
 fn read(path: &Path) -> Result<Decoded, LoadErrorKind> {
     let file = File::open(path).map_err(LoadErrorKind::Read)?;
-    // A model may name a device that never ends.
+    // A model might name a device that never ends.
     if !file.metadata().map_err(LoadErrorKind::Read)?.is_file() {
         return Err(LoadErrorKind::NotAFile);
     }
     decode_all(BufReader::new(file))
 }
 
-/// Reads a picture that is in memory or comes from elsewhere, and makes a texture of it like [`load`].
+/// Reads a picture from memory or any other source, and makes a texture from it like [`load`].
 ///
 /// # Errors
 /// Those of [`load`].
@@ -131,7 +131,7 @@ pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
     decode_all(file).map(|decoded| decoded.texture)
 }
 
-/// Reads a picture as [`decode`] does, and says what was left out.
+/// Reads a picture like [`decode`], and reports what was ignored.
 ///
 /// # Errors
 /// Those of [`load`].
@@ -160,12 +160,12 @@ pub fn decode_all(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKin
     Err(LoadErrorKind::Picture("not a PNG; other kinds need the feature `images`".into()))
 }
 
-/// Whether a file begins as a picture of a kind that may have a palette.
+/// Returns whether a file begins like a picture in a format that may have a palette.
 pub(crate) fn may_have_palette(head: &[u8]) -> bool {
     head.starts_with(PNG) || gif::recognizes(head) || aseprite::recognizes(head) || pcx::recognizes(head)
 }
 
-/// Kinds that the crate `image` reads.
+/// Formats read by the crate `image`.
 #[cfg(feature = "images")]
 mod others {
     use std::io::{BufRead, Seek};
@@ -185,7 +185,7 @@ mod others {
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(reason)?;
         let (width, height) = decoder.dimensions();
-        // Before room is made for its pixels.
+        // Before memory for its pixels is allocated.
         check_size(width, height)?;
         let picture = DynamicImage::from_decoder(decoder).map_err(reason)?.into_rgba8();
         let was_transparent = picture.pixels().any(|pixel| pixel[3] < 255);
@@ -200,15 +200,15 @@ mod others {
                 LoadErrorKind::Read(error)
             }
             error => {
-                // What it says in front of its reason is that there is one.
+                // Its message only says that there is an error; the source says which.
                 let reason = core::error::Error::source(&error).map(ToString::to_string);
                 LoadErrorKind::Picture(clause(&reason.unwrap_or_else(|| error.to_string())))
             }
         }
     }
 
-    /// Returns whether these may be the first bytes of a TGA, which has no signature: kind of colour map, kind of picture
-    /// and bits of a pixel are among those that there are.
+    /// Returns whether these may be the first bytes of a TGA, which has no signature: the types of colour map and
+    /// picture and the bits per pixel must be valid.
     fn is_tga(head: &[u8]) -> bool {
         matches!(head, [_, 0 | 1, 1..=3 | 9..=11, ..] if matches!(head.get(16), Some(8 | 15 | 16 | 24 | 32)))
     }
@@ -222,7 +222,7 @@ fn check_size(width: u32, height: u32) -> Result<(), LoadErrorKind> {
 }
 
 fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
-    // A row of the widest picture is 32 KiB; a chunk beside the pixels may hold no more than they do.
+    // A row of the widest picture is 32 KiB; other chunks may be no larger than the pixels.
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });
     let head = decoder.read_header_info().map_err(reason)?;
     let (width, height) = (head.width, head.height);
@@ -239,7 +239,7 @@ fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
     if keeps_indices {
         return indexed(reader.info(), &bytes);
     }
-    // Eight bits of each sample, the nearest to sixteen.
+    // Rounds 16-bit samples to the nearest of 8 bits.
     let sample = |sample: &[u8]| match *sample {
         [high, low] => ((u32::from(high) * 256 + u32::from(low) + 128) / 257) as u8,
         _ => sample[0],
@@ -265,7 +265,7 @@ fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
     Ok(Decoded { texture, was_transparent, palette: None })
 }
 
-/// The texture of a picture's indices, of 1, 2, 4 or 8 bits each, its rows from the top down.
+/// Makes a texture from a picture's indices, of 1, 2, 4 or 8 bits each, with rows from the top down.
 fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
     let (width, bits) = (info.width as usize, usize::from(info.bit_depth as u8));
     let row_bytes = (width * bits).div_ceil(8);

@@ -1,15 +1,15 @@
-//! PCX of 8 bits a pixel, with its palette at the end: what paint programs of the time wrote.
+//! PCX with 8 bits per pixel and the palette at its end, as paint programs of the time wrote it.
 
 use super::indexed::{Indexed, colors};
 use super::{LoadErrorKind, check_size};
 
-/// The bytes of the header.
+/// The number of bytes of the header.
 const HEADER: usize = 128;
 
-/// The bytes of the palette at the end, without the one that announces it.
+/// The number of bytes of the palette at the end, without the marker byte before it.
 const PALETTE: usize = 768;
 
-/// Returns whether these may be the first bytes of a PCX: its number, a version, run lengths, and bits of a pixel.
+/// Returns whether these may be the first bytes of a PCX: its number, version, run-length encoding, and bits per pixel.
 pub(super) fn recognizes(head: &[u8]) -> bool {
     matches!(head, [10, 0 | 2..=5, 0 | 1, 1 | 2 | 4 | 8, ..]) && head.get(64) == Some(&0)
 }
@@ -43,7 +43,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
             rows.push(byte);
         }
     }
-    // A run may go on beyond the last row.
+    // A run may extend beyond the last row.
     let rows = rows.chunks(pitch as usize).take(height as usize);
     let indices = rows.flat_map(|row| &row[..width as usize]).copied().collect();
     Ok(Indexed { width, height, indices, colors: colors(&bytes[end + 1..]), was_transparent: false })

@@ -16,7 +16,7 @@ fn refused(bytes: &[u8]) -> String {
     decode_all(Cursor::new(bytes)).map_or_else(|error| error.to_string(), |_| "read".into())
 }
 
-/// A palette in which each entry is told from all others.
+/// A palette with 256 distinct entries.
 fn color(index: u8) -> Rgb {
     Rgb::new(index, 255 - index, index / 2)
 }
@@ -33,7 +33,7 @@ const PICTURE: [u8; 32] = [
     200, 1, 193, 193, 0, 255, 255, 8,
 ];
 
-/// Texels are from the bottom up.
+/// Checks that the indices are preserved; texels are from the bottom up.
 fn assert_kept(bytes: &[u8]) {
     let texture = decoded(bytes).texture;
     let expected: Vec<u8> = PICTURE.chunks(8).rev().flatten().copied().collect();
@@ -80,7 +80,7 @@ fn a_pcx_keeps_its_indices() {
     let mut planes = whole.clone();
     planes[65] = 3;
     assert_eq!(refused(&planes), "no picture that can be read: PCX: 8 bits in 3 planes; only 8 in one are read");
-    // A size that no texture has: its colours.
+    // If no texture can have the size, the colours are resampled.
     let Decoded { texture, palette, .. } = decoded(&pcx(6, 6, &[&[1; 6], &[2; 6], &[3; 6]]));
     assert_eq!((texture.width(), texture[(0, 0)]), (8, color(3)));
     assert_eq!(palette.map(|colors| colors[200]), Some(color(200)), "the palette is whole all the same");
@@ -176,7 +176,7 @@ fn a_sprite_keeps_its_indices() {
     );
 }
 
-/// Visible layers lie over one another; the transparent index shows what is below; cels may reach beyond the sprite.
+/// Visible layers cover one another; the transparent index shows what is below; cels may reach beyond the sprite.
 #[test]
 fn layers_of_a_sprite() {
     let chunks = [

@@ -7,9 +7,9 @@ use glam::{Vec2, Vec3};
 use super::toward_zero;
 use crate::mesh::Mesh;
 
-/// A cube with its corners on the unit sphere: edges of 2/√3, 24 vertices, 12 triangles, every face
-/// with its own normal and its own square of texture coordinates, 0 to 1: upright on the four sides,
-/// and on top and bottom with its upper edge at the back and at the front.
+/// A cube with its corners on the unit sphere: edges of 2/√3, 24 vertices, 12 triangles. Every face has its own normal
+/// and its own square of texture coordinates, 0 to 1, upright on the four sides; the upper edge is at the back on top
+/// and at the front on the bottom.
 #[must_use]
 pub fn cube() -> Mesh {
     let half = toward_zero(1.0 / libm::sqrt(3.0));
@@ -22,7 +22,7 @@ pub fn cube() -> Mesh {
             // right × up = normal.
             let right = Vec3::new(axis.z, axis.x, axis.y);
             let up = normal.cross(right);
-            // The directions of u and v: also u × v = normal.
+            // The directions of u and v; again u × v = normal.
             let v = if normal.y == 0.0 { Vec3::Y } else { Vec3::new(0.0, 0.0, -normal.y) };
             let u = v.cross(normal);
             let first = positions.len() as u32;

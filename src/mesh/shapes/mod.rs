@@ -1,8 +1,7 @@
-//! Shapes that need no file: each fits into the unit sphere about the origin.
+//! Built-in shapes, each fitting into the unit sphere about the origin.
 //!
-//! All normals are analytic (the Polish lecture) but for the cube's, which are those of its faces. Numbers of slices,
-//! stacks and segments that are too small are raised to the least that makes the shape, and those
-//! over 4,096 lowered to that. Cube and wall have texture coordinates.
+//! Normals are analytic (the Polish lecture), except for the cube, which has face normals. Numbers of slices, stacks
+//! and segments are clamped to the least that makes the shape and to 4,096. Cube and wall have texture coordinates.
 //!
 //! | shape | closed | convex | axis |
 //! |---|---|---|---|
@@ -14,9 +13,9 @@
 //! | [`wall`] | no | no | faces +z |
 //! | [`teapot`] | no | no | y up, spout to +x |
 //!
-//! Coordinates are rounded toward zero, so that nothing reaches out of the unit sphere, and where a
-//! quad's four corners are not in one plane after rounding it is split along the diagonal that makes
-//! the shape convex. So [`Mesh::is_convex`], which is exact, holds.
+//! Coordinates are rounded toward zero, so that nothing reaches out of the unit sphere. A quad whose four corners are
+//! not coplanar after rounding is split along the diagonal that makes the shape convex, so [`Mesh::is_convex`], which
+//! is exact, holds.
 
 mod cube;
 mod revolution;
@@ -76,18 +75,17 @@ pub fn by_name(name: &str) -> Option<Mesh> {
 
 /// Rounds to the f32 next to `value` on the side of zero.
 fn toward_zero(value: f64) -> f32 {
-    // To the nearest.
+    // Rounds to the nearest.
     let nearest = value as f32;
     if libm::fabs(f64::from(nearest)) <= libm::fabs(value) {
         nearest
     } else {
-        // The magnitude is in the lower 31 bits, and not 0.
+        // The magnitude is in the lower 31 bits, and is not 0.
         f32::from_bits(nearest.to_bits() - 1)
     }
 }
 
-/// Splits the quad `a`, `b`, `c`, `d`, counter-clockwise, into two triangles: along a–c, unless b–d makes them convex
-/// and a–c does not.
+/// Splits the counter-clockwise quad `a`, `b`, `c`, `d` into two triangles: along a–c, unless only b–d makes it convex.
 fn quad(positions: &[Vec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let [pa, pb, pc, pd] = [a, b, c, d].map(|i| positions[i as usize]);
     if side(pa, pb, pc, pd) == Ordering::Greater { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }

@@ -19,8 +19,8 @@ fn around_y(radius: f64, y: f64, (cos, sin): (f64, f64)) -> Vec3 {
     Vec3::new(toward_zero(radius * cos), toward_zero(y), toward_zero(-radius * sin))
 }
 
-/// The band of quads between two rings of `slices` vertices each, the lower one first in `rings`;
-/// the last quad joins the first.
+/// Adds the band of quads between two rings of `slices` vertices each, given by their first vertices; the last quad
+/// joins the first.
 fn band(positions: &[Vec3], slices: u32, lower: u32, upper: u32, triangles: &mut Vec<[u32; 3]>) {
     for i in 0..slices {
         let next = (i + 1) % slices;
@@ -28,8 +28,8 @@ fn band(positions: &[Vec3], slices: u32, lower: u32, upper: u32, triangles: &mut
     }
 }
 
-/// A sphere of radius 1, cut like a globe: `slices` around (at least 3), `stacks` from pole to pole
-/// (at least 2). 2 · slices · (stacks − 1) triangles.
+/// A sphere of radius 1, cut like a globe: `slices` around (at least 3), `stacks` from pole to pole (at least 2). It
+/// has 2 · slices · (stacks − 1) triangles.
 #[must_use]
 pub fn sphere(slices: u32, stacks: u32) -> Mesh {
     let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(2, MAX_PARTS));
@@ -64,8 +64,8 @@ pub fn sphere(slices: u32, stacks: u32) -> Mesh {
     Mesh::assemble(positions, normals, triangles)
 }
 
-/// A torus about the z axis: a tube of radius 0.3, its centre line a circle of radius 0.7. `u` quads
-/// around the axis, `v` around the tube (at least 3 each). 2 · u · v triangles.
+/// A torus about the z axis: a tube of radius 0.3 around a circle of radius 0.7, with `u` quads around the axis and `v`
+/// around the tube (at least 3 each). It has 2 · u · v triangles.
 #[must_use]
 pub fn torus(u: u32, v: u32) -> Mesh {
     const RING: f64 = 0.7;
@@ -94,24 +94,24 @@ pub fn torus(u: u32, v: u32) -> Mesh {
     Mesh::assemble(positions, normals, triangles)
 }
 
-/// A cone: apex at (0, 1, 0), base a disc of radius √¾ at y = −½, so that base and apex lie on the
-/// unit sphere. `slices` around (at least 3); `stacks` from base to apex (at least 1, here at most
-/// 256). slices · 2 · stacks triangles.
+/// A cone with its apex at (0, 1, 0) and a base disc of radius √¾ at y = −½, so that base and apex lie on the unit
+/// sphere: `slices` around (at least 3), `stacks` from base to apex (at least 1, at most 256). It has slices · 2 ·
+/// stacks triangles.
 ///
 /// At the apex each slice has a vertex of its own, with the normal of the slice's middle.
 #[must_use]
 pub fn cone(slices: u32, stacks: u32) -> Mesh {
     let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, 256));
     let radius = libm::sqrt(0.75);
-    // A unit of slope: the side falls by 3/2 over √¾ outward.
+    // The unit normal's parts outward and up: the side falls by 3/2 over √¾.
     let (out, up) = (libm::sqrt(0.75), 0.5);
     let side_normal = |(cos, sin): (f64, f64)| narrow([out * cos, up, -out * sin]);
 
     let mut positions = Vec::new();
     let mut normals = Vec::new();
     for stack in 0..stacks {
-        // In 256ths, and the base in 2¹⁵ths, so that their product has 23 bits, which f32 holds:
-        // the vertices of a slice's side lie exactly on one line, the quads exactly in one plane.
+        // In 256ths, and the base in 2¹⁵ths, so that their product has 23 bits, which f32 holds: the vertices along a
+        // slice's side lie exactly on one line, the quads exactly in one plane.
         let part = f64::from((stacks - stack) * 256 / stacks) / 256.0;
         for slice in 0..slices {
             let direction = turn(f64::from(slice), slices);
@@ -137,9 +137,8 @@ pub fn cone(slices: u32, stacks: u32) -> Mesh {
     Mesh::assemble(positions, normals, triangles)
 }
 
-/// A cylinder of radius √½ from y = −√½ to √½, so that its rims lie on the unit sphere. `slices`
-/// around (at least 3), `stacks` from bottom to top (at least 1). slices · 2 · (stacks + 1)
-/// triangles.
+/// A cylinder of radius √½ from y = −√½ to √½, so that its rims lie on the unit sphere: `slices` around (at least 3),
+/// `stacks` from bottom to top (at least 1). It has slices · 2 · (stacks + 1) triangles.
 #[must_use]
 pub fn cylinder(slices: u32, stacks: u32) -> Mesh {
     let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, MAX_PARTS));

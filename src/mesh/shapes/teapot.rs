@@ -1,8 +1,8 @@
 //! The Utah teapot: Martin Newell's 32 Bézier patches of 1975, in Jim Blinn's proportions.
 //!
-//! The control points are the well-known ones (they are in GLUT and in many other programs), with z
-//! up and the spout towards +x. Six of the patches are quarters of surfaces of revolution, written
-//! here as their profiles; the halves of handle and spout are written as they are. 6 · 4 + 4 · 2 = 32.
+//! The control points are the well-known ones (GLUT and many other programs have them), with z up and the spout towards
+//! +x. Six of the patches are quarters of surfaces of revolution, given here as profiles; the halves of handle and
+//! spout are given in full. 6 · 4 + 4 · 2 = 32.
 
 use alloc::vec::Vec;
 
@@ -12,9 +12,9 @@ use super::{MAX_PARTS, toward_zero};
 use crate::mesh::wide::{Wide, add, cross, length, narrow, scale, sub};
 use crate::mesh::{Mesh, topology};
 
-/// Four control points of a profile, each (radius, tangent, height): the quarter turn's control
-/// points are (radius, 0), (radius, −tangent), (tangent, −radius), (0, −radius). From the axis at the
-/// top outward, down and back to the axis, so that all patches have the same orientation.
+/// Four control points of a profile, each (radius, tangent, height): the control points of the quarter turn are
+/// (radius, 0), (radius, −tangent), (tangent, −radius), (0, −radius). Profiles run from the axis at the top outward,
+/// down and back to the axis, so that all patches have the same orientation.
 const REVOLVED: [[[f64; 3]; 4]; 6] = [
     // Rim.
     [[1.4, 0.784, 2.4], [1.3375, 0.749, 2.53125], [1.4375, 0.805, 2.53125], [1.5, 0.84, 2.4]],
@@ -24,11 +24,11 @@ const REVOLVED: [[[f64; 3]; 4]; 6] = [
     // Lid.
     [[0.0, 0.0, 3.15], [0.8, 0.45, 3.15], [0.0, 0.0, 2.85], [0.2, 0.112, 2.7]],
     [[0.2, 0.112, 2.7], [0.4, 0.224, 2.55], [1.3, 0.728, 2.55], [1.3, 0.728, 2.4]],
-    // Bottom, which was not Newell's; Frank Crow added it.
+    // Bottom, not in Newell's data; Frank Crow added it.
     [[1.5, 0.84, 0.15], [1.5, 0.84, 0.075], [1.425, 0.798, 0.0], [0.0, 0.0, 0.0]],
 ];
 
-/// The half y ≤ 0 of handle and spout: 4 × 4 control points, from the body outward.
+/// The half y ≤ 0 of handle and spout: 4 × 4 control points, from the pot outward.
 const HALVES: [[[Wide; 4]; 4]; 4] = [
     // Handle.
     [
@@ -58,19 +58,18 @@ const HALVES: [[[Wide; 4]; 4]; 4] = [
     ],
 ];
 
-/// Middle of the surface's box: x from −3 to the spout's tip at 3.434, z from 0 to 3.15.
+/// The centre of the surface's box: x from −3 to the spout's tip at 3.434, z from 0 to 3.15.
 const CENTRE: Wide = [0.217, 0.0, 1.575];
-/// From there to the farthest point of the surface, rounded up.
+/// The distance from there to the farthest point of the surface, rounded up.
 const RADIUS: f64 = 3.3405;
 
 /// Control points: rows along v, columns along u; ∂u × ∂v points outward.
 type Patch = [[Wide; 4]; 4];
 
-/// The Utah teapot, bottom included, each of its 32 patches cut into `segments` × `segments` quads
-/// (at least 2, at most 512). 64 · segments² − 8 · segments triangles: those with two corners in a
-/// pole are left out.
+/// The Utah teapot, bottom included, with each of its 32 patches cut into `segments` × `segments` quads (at least 2, at
+/// most 512). It has 64 · segments² − 8 · segments triangles: those with two corners at a pole are left out.
 ///
-/// It is not closed: the spout is open, and there is a gap about the lid.
+/// It is not closed: the spout is open, and there is a gap around the lid.
 #[must_use]
 pub fn teapot(segments: u32) -> Mesh {
     let n = segments.clamp(2, MAX_PARTS / 8);
@@ -114,8 +113,8 @@ fn evaluate(patch: &Patch, u: f64, v: f64) -> (Wide, Wide) {
     let point = blend(bv, rows);
     let along_v = blend(dv, rows);
     let slopes = patch.map(|row| blend(du, row));
-    // At a pole the row of control points is one point, so ∂u vanishes. Nearby it is ∂²/∂u∂v times the
-    // way from the pole, which therefore gives its direction.
+    // At a pole the row of control points is a single point, so ∂u vanishes. Near it, ∂u is ∂²/∂u∂v times the distance
+    // from the pole, so ∂²/∂u∂v gives its direction.
     let is_pole = |row: usize| patch[row].iter().all(|p| *p == patch[row][0]);
     let direction = if v == 0.0 && is_pole(0) {
         blend(dv, slopes)
@@ -157,11 +156,11 @@ impl Builder {
         }
     }
 
-    /// Vertices of neighbouring patches become one where the surface is smooth; triangles with two
-    /// corners in one point are dropped.
+    /// Merges the vertices of neighbouring patches where the surface is smooth, and drops triangles with two corners at
+    /// one point.
     fn finish(self) -> Mesh {
         let points = topology::weld(&self.positions);
-        // Neighbours' normals differ by rounding; at the edges of rim and lid by much more.
+        // Neighbours' normals differ by rounding; at the edges of rim and lid they differ by much more.
         let same = |a: Vec3, b: Vec3| a.dot(b) > 0.9999;
         let mut at_point: Vec<Vec<u32>> = alloc::vec![Vec::new(); points.len()];
         let mut positions: Vec<Vec3> = Vec::new();

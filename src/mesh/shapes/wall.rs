@@ -7,9 +7,8 @@ use glam::{Vec2, Vec3};
 use super::{MAX_PARTS, toward_zero};
 use crate::mesh::Mesh;
 
-/// A square in the plane z = 0 with its corners on the unit sphere, facing +z, cut into
-/// `columns` × `rows` rectangles of two triangles each. At least 1 × 1. Texture coordinates run from
-/// (0, 0) in its lower left corner to (1, 1).
+/// A square in the plane z = 0 with its corners on the unit sphere, facing +z, cut into `columns` × `rows` rectangles
+/// of two triangles each, at least 1 × 1. Texture coordinates run from (0, 0) in the lower left corner to (1, 1).
 #[must_use]
 pub fn wall(columns: u32, rows: u32) -> Mesh {
     let (columns, rows) = (columns.clamp(1, MAX_PARTS), rows.clamp(1, MAX_PARTS));

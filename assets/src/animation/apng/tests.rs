@@ -8,7 +8,7 @@ use png::{BlendOp, Decoder, DisposeOp, Transformations};
 
 use super::*;
 
-/// Frames of a small film: palette indices and their colours.
+/// Frames of a small animation: palette indices and their colours.
 type Frames = Vec<(Vec<u8>, [Rgb; 256])>;
 
 const WIDTH: usize = 37;
@@ -18,15 +18,15 @@ fn picture((pixels, palette): &(Vec<u8>, [Rgb; 256])) -> Picture<'_> {
     Picture { pixels, width: WIDTH, height: HEIGHT, pitch: WIDTH, palette, shape: PixelShape::MODE_13H }
 }
 
-/// Numbers that look random (Knuth's).
+/// Pseudo-random numbers (Knuth's generator).
 fn random(seed: &mut u64) -> u64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     *seed >> 33
 }
 
-/// Frames that change nothing, a pixel, a rectangle with much that stays, or all.
+/// Frames that change nothing, a pixel, a rectangle with many unchanged pixels, or everything.
 fn film(palette: [Rgb; 256], frames: usize, seed: &mut u64) -> Frames {
-    // Noise, which cannot be compressed: what stays is shorter left out.
+    // Noise does not compress, so leaving out unchanged pixels is shorter.
     let mut pixels: Vec<u8> = (0..WIDTH * HEIGHT).map(|_| random(seed) as u8).collect();
     let mut all = Vec::new();
     for _ in 0..frames {
@@ -70,7 +70,7 @@ fn written_at<W: Write>(
 /// The red, green and blue of each pixel.
 type Colors = Vec<[u8; 3]>;
 
-/// The pictures that a reader shows, one for each frame; how many frames blend, and how long each stays.
+/// The pictures that a reader shows, one for each frame; the number of frames that blend; and each frame's delay.
 fn shown(file: &[u8]) -> (Vec<Colors>, usize, Vec<(u16, u16)>) {
     let mut decoder = Decoder::new(Cursor::new(file));
     decoder.set_transformations(Transformations::EXPAND);
@@ -103,7 +103,7 @@ fn shown(file: &[u8]) -> (Vec<Colors>, usize, Vec<(u16, u16)>) {
     (all, blending, delays)
 }
 
-/// The colours of a frame as it was given, at a scale of whole numbers.
+/// The colours of a frame as it was given, at an integer scale.
 fn given(frame: &(Vec<u8>, [Rgb; 256]), across: usize, down: usize) -> Vec<[u8; 3]> {
     let mut colors = Vec::new();
     for y in 0..HEIGHT * down {
@@ -120,7 +120,7 @@ fn a_film_shows_what_was_given() {
     let mut seed = 13;
     let distinct: [Rgb; 256] = std::array::from_fn(|i| Rgb::new(i as u8, 255 - i as u8, 7));
     let mut blended = 0;
-    // 64 greys, so that there is room for an entry that is none; and 256 colours.
+    // 64 greys, which leave room for an unused entry; and 256 colours.
     for palette in [*GREY.on_dac().colors(), distinct] {
         let frames = film(palette, 40, &mut seed);
         for (scale, across, down) in [(Scale::One, 1, 1), (Scale::FiveBySix, 5, 6)] {
@@ -159,7 +159,7 @@ fn the_head_says_shape_and_rate() {
     let frames = film(*GREY.colors(), 2, &mut 1);
     let colors = FilmColors::Palette(Box::new(*GREY.colors()));
     for (scale, size, density) in [(Scale::One, (37, 11), (6, 5)), (Scale::FiveBySix, (185, 66), (1, 1))] {
-        // Of a frame: so many seconds, as a fraction.
+        // The duration of a frame in seconds, as a fraction.
         for (rate, delay) in [(0.1, (10, 1)), (12.5, (2, 25)), (35.0, (1, 35)), (50.0, (1, 50))] {
             let rate = FrameRate::try_from(rate).expect("a legal rate");
             let (file, _) = written_at(rate, &frames, scale, &colors, Vec::new()).expect("a film");
@@ -181,7 +181,7 @@ fn the_head_says_shape_and_rate() {
     }
 }
 
-/// Takes a number of bytes, then is full.
+/// Accepts a number of bytes, then is full.
 struct Disk {
     room: Rc<Cell<usize>>,
 }

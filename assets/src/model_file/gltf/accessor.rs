@@ -10,22 +10,22 @@ use base64::Engine;
 use base64::engine::general_purpose::GeneralPurpose;
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
 
-/// An image of the file.
+/// An image used by the file.
 pub(super) enum Image {
-    /// The bytes of a picture's file.
+    /// The bytes of a picture file.
     Bytes(Vec<u8>),
-    /// The path of one.
+    /// The path of a picture file.
     File(String),
 }
 
-/// The bytes of all buffers, and of the images that are no part of them.
+/// The bytes of all buffers, and of the images outside them.
 pub(super) struct Buffers {
     buffers: Vec<Vec<u8>>,
-    /// The bytes of each image, or why there are none.
+    /// Each image: its bytes or its path.
     pub(super) images: Vec<Image>,
 }
 
-/// The max number of rows of a list that no buffer has: all are 0.
+/// The max number of rows of an accessor without a buffer, whose values are all 0.
 const MAX_ZEROS: usize = 1 << 16;
 
 impl Buffers {
@@ -122,7 +122,7 @@ impl Buffers {
         Ok(rows)
     }
 
-    /// The whole numbers of an accessor.
+    /// The integers of an accessor.
     pub(super) fn read_indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, String> {
         if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32) || accessor.normalized() {
             return Err(format!("accessors[{}] has no indices", accessor.index()));
@@ -145,7 +145,7 @@ fn slices(
     Some((0..count).map(move |i| &bytes[i * stride..][..size]))
 }
 
-/// The first `N` numbers of a row, which has as many.
+/// The first `N` numbers of a row, which must have at least that many.
 fn row<const N: usize>(bytes: &[u8], kind: DataType, normalized: bool) -> [f64; N] {
     core::array::from_fn(|i| {
         fn own<const B: usize>(bytes: &[u8], i: usize) -> [u8; B] {
@@ -163,7 +163,7 @@ fn row<const N: usize>(bytes: &[u8], kind: DataType, normalized: bool) -> [f64; 
     })
 }
 
-/// The bytes of a data URI; `None` if it is another one.
+/// The bytes of a data URI; `None` for any other URI.
 fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
     let (head, body) = uri.strip_prefix("data:")?.split_once(',')?;
     if !head.ends_with(";base64") {
@@ -176,7 +176,7 @@ fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
     Some(BASE64.decode(body).map_err(|_| String::from("no base64")))
 }
 
-/// A URI's path with `%20` and the like decoded.
+/// A URI's path with percent escapes such as `%20` decoded.
 fn decoded(uri: &str) -> String {
     String::from_utf8_lossy(&decoded_bytes(uri)).into_owned()
 }

@@ -1,4 +1,4 @@
-//! The two containers: JSON alone, and the binary one with JSON and bytes in chunks.
+//! The two containers: plain JSON, and the binary one with JSON and bytes in chunks.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use ::gltf::{Document, Error, json};
 use crate::errors::clause;
 use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 
-/// The extensions without which a mesh would be read wrong.
+/// The extensions without which a mesh would be misread.
 const NEEDED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Returns whether a file is a binary container, or JSON with an `asset`.
@@ -25,7 +25,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     let mut root: json::Root = json::deserialize::from_slice(text).map_err(|error| {
         let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));
         let place = match start {
-            // A file that ends too early ends on its last line, not on the one that a final line break would begin.
+            // A truncated file ends on its last line, not on one that a final line break would begin.
             None => {
                 Place::Line(error.line().min(text.trim_ascii_end().split(|byte| *byte == b'\n').count()).max(1) as u64)
             }
@@ -40,7 +40,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     if !root.asset.version.starts_with("2.") {
         return Err(fault(String::from("only glTF 2 is read")));
     }
-    // `gltf` looks at these before it has checked them.
+    // `gltf` uses these before it has checked them.
     let positions = json::validation::Checked::Valid(json::mesh::Semantic::Positions);
     for (i, mesh) in root.meshes.iter().enumerate() {
         let mut named = mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&positions));
@@ -48,7 +48,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
             return Err(fault(format!("meshes[{i}]: there are no such positions")));
         }
     }
-    // Of what else is needed the rest can be drawn.
+    // Whatever else is required, the rest can be drawn.
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {
         Error::Validation(faults) => match faults.first() {
@@ -60,7 +60,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     Ok((document, binary))
 }
 
-/// The JSON of a binary file, where it begins, and the binary chunk.
+/// The JSON of a binary file, the offset where it begins, and the binary chunk.
 type Chunks<'b> = (&'b [u8], Option<usize>, Option<&'b [u8]>);
 
 fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError> {
@@ -95,13 +95,14 @@ fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError
     Ok((text, Some(FIRST + 8), binary))
 }
 
-/// The byte of a line and a column, both counted from 1.
+/// The offset of a line and a column, both counted from 1.
 fn offset(text: &[u8], line: usize, column: usize) -> usize {
     let before: usize = text.split(|byte| *byte == b'\n').take(line.saturating_sub(1)).map(|line| line.len() + 1).sum();
     (before + column.saturating_sub(1)).min(text.len())
 }
 
-/// A message of JSON's reader without the place behind it, which an error says itself; on one line, and not too long.
+/// A message of the JSON parser without the position at its end, which our error already gives; on one line, and not
+/// too long.
 fn without_place(message: &str) -> String {
     let end = message.rfind(" at line ").unwrap_or(message.len());
     let line: String = message[..end].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

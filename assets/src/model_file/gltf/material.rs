@@ -1,4 +1,4 @@
-//! Surfaces and textures of materials, by the rule that the module above writes down.
+//! Surfaces and textures of materials, by the rules given in the parent module.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Cursor;
@@ -15,7 +15,7 @@ use super::accessor::{Buffers, Image};
 use crate::model_file::Embedded;
 use crate::texture::{Decoded, decode_all};
 
-/// Where a texture lies: `KHR_texture_transform`.
+/// How a texture is placed: `KHR_texture_transform`.
 #[derive(Clone, Copy)]
 pub(super) struct Mapping {
     /// The set of texture coordinates.
@@ -39,7 +39,7 @@ impl Mapping {
         }
     }
 
-    /// The pair scaled, turned counter-clockwise as it is seen with v down, and moved.
+    /// Scales the pair, rotates it counter-clockwise as seen with v down, and translates it.
     pub(super) fn apply(self, pair: [f64; 2]) -> [f64; 2] {
         let [u, v] = [0, 1].map(|i| pair[i] * self.scale[i]);
         let (sin, cos) = (libm::sin(self.rotation), libm::cos(self.rotation));
@@ -47,7 +47,7 @@ impl Mapping {
     }
 }
 
-/// The surfaces of the materials that are used.
+/// The surfaces of the materials in use.
 pub(super) struct Materials<'a> {
     path: &'a Path,
     buffers: &'a Buffers,
@@ -55,7 +55,7 @@ pub(super) struct Materials<'a> {
     pub(super) textures: Embedded,
     pub(super) left_out: BTreeMap<&'static str, u64>,
     known: HashMap<Option<usize>, (usize, Mapping)>,
-    /// Images that were read: the texture, and whether some of it was not opaque.
+    /// The images read so far: the texture, and whether some of it was not opaque.
     images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Materials<'a> {
         *self.left_out.entry(what).or_default() += 1;
     }
 
-    /// The index of a material's surface, and where its texture lies.
+    /// The index of a material's surface, and how its texture is placed.
     pub(super) fn surface(&mut self, material: &Material<'_>) -> (usize, Mapping) {
         if let Some(known) = self.known.get(&material.index()) {
             return *known;
@@ -146,7 +146,7 @@ impl<'a> Materials<'a> {
         (self.surfaces.len() - 1, mapping)
     }
 
-    /// The name of a texture: a file's, or one that the model brings.
+    /// The name of a texture: that of a file, or of an image inside the model file.
     fn texture(&mut self, info: &Info<'_>, is_opaque: bool) -> Option<String> {
         let Some(source) = info.texture().source() else {
             self.leave_out("textures in formats that are not read");
@@ -179,7 +179,7 @@ impl<'a> Materials<'a> {
         self.images.entry(index).or_insert_with(read).clone()
     }
 
-    /// The means of the channels of a texture in the file.
+    /// The channel means of a texture in the file.
     fn means(&mut self, info: &Info<'_>) -> Option<[f64; 3]> {
         let (texture, _) = self.image(info.texture().source()?.index())?;
         let (mut sums, mut count) = ([0.0; 3], 0.0);
@@ -193,7 +193,7 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// A share of light, 0 to 1, in sRGB.
+/// Encodes a share of light, 0 to 1, as sRGB.
 pub(super) fn encoded(linear: f64) -> f64 {
     let linear = linear.clamp(0.0, 1.0);
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }

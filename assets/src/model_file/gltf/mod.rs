@@ -2,27 +2,27 @@
 //!
 //! | read | as |
 //! |---|---|
-//! | the default scene, or the first, or all nodes | one mesh: each node's mesh where its transforms put it, once for each node |
-//! | triangles, strips and fans, with indices or without | faces; points and lines are left out |
+//! | the default scene, or the first, or all nodes | one mesh: each node's mesh with its transforms, once for each node |
+//! | triangles, strips and fans, with indices or without | faces; points and lines are ignored |
 //! | `POSITION`, `NORMAL`, `TEXCOORD_n`, `COLOR_0` in any type of number, sparse or not | positions, normals, texture coordinates; a colour for each face without a texture, up to 256 in all |
-//! | materials | surfaces, by the rule below |
+//! | materials | surfaces, by the rules below |
 //! | images in the file, as data URIs and beside it | textures, placed by `KHR_texture_transform` |
 //!
-//! Both sides of a face are drawn unless the mesh is closed, so `doubleSided` needs nothing. What is left out makes one
-//! warning, which lists it. A model as it was at rest is read of one with animations, skins or morph targets.
+//! Both sides of a face are drawn unless the mesh is closed, so `doubleSided` needs no handling. A single warning lists
+//! everything ignored. Models with animations, skins or morph targets are read in their rest pose.
 //!
-//! **Materials.** With base colour b (in sRGB, as all factors here), metallic factor m and roughness r:
+//! **Materials.** With base colour b (in sRGB, like all factors here), metallic factor m and roughness r:
 //!
 //! | of the surface | is |
 //! |---|---|
-//! | diffuse | b · (1 − m·(1 − r)/2): what a metal mirrors of its surroundings is missing here, so a rough one stays as it is |
+//! | diffuse | b · (1 − m·(1 − r)/2): a smooth metal is darker, as it does not mirror its surroundings here; a rough one keeps b |
 //! | specular | (1 − r) · ((1 − m)·0.22 + m·b); 0.22 is 4 % in sRGB |
 //! | shininess | 2/r⁴ − 2, at most 1000: Blinn's exponent for that roughness |
-//! | opacity | alpha of the base colour in the mode `BLEND`; textures' alpha is left out, and so is the mode `MASK` |
+//! | opacity | alpha of the base colour in the mode `BLEND`; textures' alpha is ignored, and so is the mode `MASK` |
 //! | texture | that of the base colour |
 //!
-//! A metallic-roughness texture counts by its means. Emission is added to the diffuse colour; a texture of it
-//! is shown where the base colour is black and has none. Unlit materials are matt.
+//! A metallic-roughness texture is replaced by its means. Emission is added to the diffuse colour; an emissive texture
+//! is shown where the base colour is black and has no texture. Unlit materials are matt.
 
 mod accessor;
 mod container;
@@ -48,7 +48,7 @@ pub(crate) use container::recognizes;
 use material::{Materials, encoded};
 use place::Placement;
 
-/// The max number of corners of all faces: a mesh may stand in many nodes, and so a small file for a large model.
+/// The max number of corners of all faces: a mesh may be used by many nodes, so a small file may be a large model.
 const MAX_CORNERS: usize = 3 << 26;
 
 /// Reads a file and the buffers that it names.
@@ -151,7 +151,7 @@ impl Reading<'_> {
         let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
         let count = positions.len();
         let attribute = |semantic: &Semantic| {
-            // A list that is too short for the vertices is left out.
+            // An attribute with too few entries for the vertices is ignored.
             primitive.get(semantic).filter(|accessor| accessor.count() >= count)
         };
         let normals = attribute(&Semantic::Normals).map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
@@ -179,7 +179,7 @@ impl Reading<'_> {
         }
         for &[u, v] in pairs.iter().flatten().take(count) {
             let pair = mapping.apply([u, v]);
-            // v runs down in the file.
+            // v points down in the file.
             let pair = Vec2::new(pair[0] as f32, (1.0 - pair[1]) as f32);
             push(&mut lists.texcoords, if pair.is_finite() { pair } else { Vec2::ZERO })?;
         }
@@ -235,14 +235,14 @@ impl Reading<'_> {
                 });
                 self.colors.push((lists.sizes.len(), Rgb::from_intensities(mean)));
             }
-            // A place is named only for faces that are left out, and none is.
+            // The position only matters for faces that are dropped, and none is.
             lists.end_face(start, Place::Offset(0))?;
         }
         Ok(())
     }
 }
 
-/// The features of a file that a mesh cannot hold, for the warning.
+/// The features of a file that a mesh cannot represent, for the warning.
 #[derive(Default)]
 struct LeftOut {
     counts: BTreeMap<&'static str, u64>,
@@ -262,7 +262,7 @@ impl LeftOut {
         self.add("lights", lights as u64);
     }
 
-    /// Makes one warning of all.
+    /// Makes a single warning of all.
     fn warn(mut self, path: &Path, of_materials: &BTreeMap<&'static str, u64>, warnings: &mut Warnings) {
         of_materials.iter().for_each(|(what, count)| self.add(what, *count));
         if !self.counts.is_empty() {

@@ -1,20 +1,20 @@
-//! Where a node's transforms put its mesh.
+//! Transforms of nodes.
 
 use crate::wide::{Wide, cross, dot};
 
-/// A transform: the images of x, y and z, and that of the origin.
+/// A transform: the images of x, y and z, and of the origin.
 #[derive(Clone, Copy)]
 pub(super) struct Placement([Wide; 4]);
 
 impl Placement {
     pub(super) const NONE: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]]);
 
-    /// That of a matrix by columns, whose last row is 0, 0, 0, 1 by definition.
+    /// Converts a matrix by columns, whose last row is 0, 0, 0, 1 by definition.
     pub(super) fn of_matrix(columns: [[f32; 4]; 4]) -> Self {
         Self(columns.map(|[x, y, z, _]| [x, y, z].map(f64::from)))
     }
 
-    /// This one behind `inner`.
+    /// Composes two transforms: `inner` is applied first.
     pub(super) fn after(self, inner: Self) -> Self {
         let [x, y, z, origin] = inner.0;
         Self([self.direction(x), self.direction(y), self.direction(z), self.point(origin)])
@@ -30,13 +30,13 @@ impl Placement {
         [0, 1, 2].map(|axis| x[axis] * d[0] + y[axis] * d[1] + z[axis] * d[2])
     }
 
-    /// Whether it mirrors, so that faces are wound the other way.
+    /// Returns whether it mirrors, which reverses the winding of faces.
     pub(super) fn mirrors(self) -> bool {
         let [x, y, z, _] = self.0;
         dot(x, cross(y, z)) < 0.0
     }
 
-    /// The normal of a placed surface, of any length: by the inverse's transpose, times the determinant's size.
+    /// The normal of a transformed surface, of any length: by the inverse transpose, times the determinant's magnitude.
     pub(super) fn normal(self, normal: Wide) -> Wide {
         let [x, y, z, _] = self.0;
         let sign = if self.mirrors() { -1.0 } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Lines and words, of OBJ and MTL alike.
+//! Lines and words of OBJ and MTL files.
 
 use core::mem;
 use std::io::{self, BufRead};
@@ -6,15 +6,15 @@ use std::io::{self, BufRead};
 use crate::model_file::ModelFileErrorKind;
 use crate::model_file::word::parsed;
 
-/// Lines, with those joined that end in a backslash. LF, CR LF and CR end a line. One buffer serves them all.
+/// A line reader that joins lines ending in a backslash. LF, CR LF and CR end a line. A single buffer is reused.
 pub(crate) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
-    /// The number of the line that was read last, from 1. Joined lines have the number of the first.
+    /// The number of the last line read, from 1. Joined lines have the number of the first.
     number: u64,
-    /// Lines read so far.
+    /// The number of lines read so far.
     read: u64,
-    /// The last line ended in CR: an LF that follows belongs to it.
+    /// Whether the last line ended in CR: a following LF belongs to it.
     after_cr: bool,
 }
 
@@ -23,16 +23,16 @@ impl<R: BufRead> Lines<R> {
         Self { reader, buffer: Vec::new(), number: 0, read: 0, after_cr: false }
     }
 
-    /// The next line's number and its text without the end-of-line; `None` at the end.
+    /// The next line's number and its text without the line ending; `None` at the end.
     pub(crate) fn next(&mut self) -> io::Result<Option<(u64, &[u8])>> {
         self.buffer.clear();
         self.number = self.read + 1;
-        // Where the first word begins, as far as lines were joined: what stands before it is looked at once, or a
-        // file of nothing but backslashes would take time by the square of its length.
+        // The start of the first word in the joined line: the blanks before it are scanned once, otherwise a file of
+        // nothing but backslashes would take quadratic time.
         let mut first_word = 0;
         loop {
             if !self.append_line()? {
-                // A backslash may stand at the very end.
+                // The file may end in a backslash.
                 return Ok((self.read >= self.number).then_some((self.number, &self.buffer)));
             }
             if self.read == 1 && self.buffer.starts_with(b"\xEF\xBB\xBF") {
@@ -48,7 +48,7 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Appends a line of the file to the buffer, without its end. Returns `false` if there is none.
+    /// Appends a line of the file to the buffer, without its line ending. Returns `false` if there is none.
     fn append_line(&mut self) -> io::Result<bool> {
         let mut begun = false;
         loop {
@@ -81,7 +81,7 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// The first word and the rest.
+/// Splits a line into its first word and the rest.
 pub(crate) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii_start();
     let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
@@ -94,7 +94,7 @@ pub(crate) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<O
     parsed(word, f32::is_finite)
 }
 
-/// Reads the `N` numbers that the statement needs in f64; all are within the range of f32.
+/// Reads the `N` numbers that the statement needs in f64; all must be within the range of f32.
 pub(crate) fn wide_numbers<'a, const N: usize>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &'static str,

@@ -1,4 +1,4 @@
-//! MTL files, and the materials of them that a model uses.
+//! MTL files, and the materials in them that a model uses.
 
 use core::iter;
 use std::collections::HashMap;
@@ -25,7 +25,7 @@ pub(super) fn surfaces(
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Files { folder, library, read: HashMap::new() };
     for (line, text) in &model.libraries {
-        // One name that may hold blanks, or several names; a folder as Windows writes it.
+        // One name that may contain blanks, or several names; or with folders in Windows notation.
         let slashed = text.replace('\\', "/");
         let mut found = files
             .find(iter::once(text.as_str()))
@@ -53,7 +53,7 @@ pub(super) fn surfaces(
     let mut surfaces = Vec::new();
     for (name, line) in model.names.iter().zip(&model.name_lines) {
         surfaces.push(known.get(name).cloned().unwrap_or_else(|| {
-            // If a file is missing, that has been said.
+            // A missing file has already been reported.
             if all_read && !name.is_empty() {
                 let path = path.display();
                 warnings.push(|| format!("{path}:{line}: there is no material {name}; it is white and matt"));
@@ -65,7 +65,7 @@ pub(super) fn surfaces(
     Ok(surfaces)
 }
 
-/// Warns, once for the model, of surfaces that have a `Ks` and no `Ns` above 0: they are drawn without a highlight.
+/// Warns, once for the model, of surfaces with a `Ks` but no `Ns` above 0: they are drawn without a highlight.
 fn warn_of_no_exponent(surfaces: &[Surface], path: &Path, warnings: &mut Warnings) {
     let has_none = |surface: &&Surface| surface.specular != [0.0; 3] && surface.shininess <= 0.0;
     let mut without = surfaces.iter().filter(has_none);
@@ -83,12 +83,12 @@ fn warn_of_no_exponent(surfaces: &[Surface], path: &Path, warnings: &mut Warning
 struct Files<'a, L> {
     folder: &'a Path,
     library: L,
-    /// The bytes of each file; `None` when its materials have been taken.
+    /// The bytes of each file; `None` once its materials have been taken.
     read: HashMap<PathBuf, Option<Vec<u8>>>,
 }
 
 impl<L: FnMut(&Path) -> io::Result<Vec<u8>>> Files<'_, L> {
-    /// The paths of these files, which all can be read.
+    /// The paths of these files, if all can be read.
     fn find<'n>(&mut self, names: impl Iterator<Item = &'n str>) -> io::Result<Vec<PathBuf>> {
         names
             .map(|name| {
@@ -103,7 +103,7 @@ impl<L: FnMut(&Path) -> io::Result<Vec<u8>>> Files<'_, L> {
     }
 }
 
-/// Reads the materials of one file; of two with the same name the later one holds.
+/// Reads the materials of one file; of two with the same name the later one wins.
 fn read(
     bytes: &[u8],
     path: &Path,
@@ -142,7 +142,7 @@ fn read(
                 }
                 Ok(())
             }
-            // Of both, `d` counts: some programs mean the opposite by `Tr`, and write both.
+            // If both are given, `d` wins: some programs mean the opposite by `Tr`, and write both.
             b"Tr" if has_d => Ok(()),
             b"d" | b"Tr" => opacity(rest).map(|share| {
                 has_d |= word == b"d";
@@ -165,14 +165,13 @@ fn read(
     Ok(())
 }
 
-/// `d` or `Tr`, which may stand behind `-halo`.
+/// Parses the value of `d` or `Tr`, which may follow `-halo`.
 fn opacity(rest: &[u8]) -> Result<f32, ModelFileErrorKind> {
     let mut words = words(rest).filter(|word| *word != b"-halo");
     Ok(number(&mut words)?.ok_or(ModelFileErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
 }
 
-/// Red, green and blue; one number stands for all three. `None` for a spectral file or CIE XYZ, which
-/// nothing writes.
+/// Red, green and blue, or one number for all three. `None` for a spectral file or CIE XYZ, which no program writes.
 fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ModelFileErrorKind> {
     const WHAT: &str = "a colour (1 or 3)";
     let mut words = words(rest).peekable();
@@ -244,11 +243,11 @@ fn places_otherwise(rest: &[u8]) -> bool {
     })
 }
 
-/// A path as an MTL file gives it, from its own folder.
+/// Resolves a path in an MTL file relative to the file's folder.
 fn sibling_path(path: &Path, file: &str) -> String {
     let folder = path.parent().unwrap_or(Path::new(""));
     let as_written = folder.join(file);
-    // Windows' separators are a part of a name elsewhere; hardly ever one that was meant.
+    // Elsewhere, Windows' separator is part of a name, but hardly ever intentionally.
     let joined =
         if file.contains('\\') && !as_written.exists() { folder.join(file.replace('\\', "/")) } else { as_written };
     joined.to_string_lossy().into_owned()

@@ -2,35 +2,35 @@
 //!
 //! | statement | read as |
 //! |---|---|
-//! | `v x y z` | a position; a weight behind it is left alone, a colour left out with a warning |
-//! | `vt u v`, `vn x y z` | texture coordinates (`v` is 0 if left out), a normal |
-//! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more, fewer are left out with a warning; negative indices count back from the last; an index may name what comes later in the file |
+//! | `v x y z` | a position; a weight after it is ignored, a colour ignored with a warning |
+//! | `vt u v`, `vn x y z` | texture coordinates (`v` defaults to 0), a normal |
+//! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more, fewer are dropped with a warning; negative indices count back from the last; an index may refer to a later entry of the file |
 //! | `s` | a smoothing group, for faces without normals; `off` and 0: each face is flat |
-//! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `d` or `Tr`, `map_Kd` of the MTL file; `map_d` and the options of `map_Kd` are left out with a warning |
-//! | all others, `l` and `p` among them | left alone |
+//! | `mtllib`, `usemtl` | surfaces: `Kd`, `Ks`, `Ns`, `d` or `Tr`, `map_Kd` of the MTL file; `map_d` and the options of `map_Kd` are ignored with a warning |
+//! | all others, including `l` and `p` | ignored |
 //!
 //! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be UTF-8 and may
-//! be of any length. Each different triple of position, texture coordinates and normal that a face uses becomes a
-//! vertex. A face of n corners becomes n − 2 triangles, those without area among them.
+//! be of any length. Each distinct triple of position, texture coordinates and normal used by a face becomes a vertex.
+//! A face of n corners becomes n − 2 triangles, including those without area.
 //!
-//! A corner without a normal, or with one of length 0, gets the mean by angle over faces at that position: those of the
-//! same smoothing group; or, if the file names no group, those that meet at no more than the crease angle
+//! A corner without a normal, or with one of length 0, gets the mean, weighted by angle, over faces at that position:
+//! those of the same smoothing group; or, if the file has no groups, those that meet at no more than the crease angle
 //! ([`Options::crease`]).
 //!
-//! Positions are read in f64. If their middle is more than 16 half extents from 0, as on maps, it is moved to 0 before they
-//! are rounded to f32, and a warning says by how much ([`Loaded::origin`]).
+//! Positions are read in f64. If their centre is more than 16 half extents from 0, as on maps, it is moved to 0 before
+//! they are rounded to f32, and a warning says by how much ([`Loaded::origin`]).
 //!
-//! Two faults of scans are mended in a model that is closed, each with a warning. Pairs of triangles back to back, of the
-//! same three points, are left out where other faces go on at their edges; sheets with a rim of their own, as leaves, stay.
-//! Bodies that are inside out are turned round, unless they are cavities in others; their normals too, if these look
-//! inward.
+//! Two defects of scans are repaired in a closed model, each with a warning. Pairs of back-to-back triangles, with the
+//! same three points, are removed where other faces continue at their edges; sheets with a rim of their own, such as
+//! leaves, stay. Solids that are inside out are flipped, unless they are cavities in others, and so are their normals
+//! if these point inward.
 //!
-//! A broken file is a [`ModelFileError`] that names file and line. A missing MTL file or texture is a
-//! warning, and white, matt surfaces take its place.
+//! A broken file is a [`ModelFileError`] that names file and line. A missing MTL file or texture is a warning, and
+//! white, matt surfaces replace it.
 //!
-//! The `tobj` crate is not used for this (the tests read with it, and compare): it names no line,
-//! turns `l` into faces, gives up at a comment in Latin-1, panics at `Kd 0.5`, does not say which
-//! corners had no normal nor which material was not found, and keeps 104 bytes for each face.
+//! The `tobj` crate is not used for this (the tests compare with it): it reports no line, turns `l` into faces, gives
+//! up at a comment in Latin-1, panics at `Kd 0.5`, does not say which corners had no normal nor which material was not
+//! found, and takes 104 bytes per face.
 
 pub(crate) mod line;
 mod material;
@@ -45,8 +45,9 @@ use crate::model_file::warnings::Warnings;
 use crate::model_file::{Draft, Loaded, ModelFileError, Options, finish};
 use statement::Statements;
 
-/// Reads a model from `reader`, as [`model_file::parse`](crate::model_file::parse) does whatever the name. Errors call it `path`, and MTL files are looked for beside that: `library` is given
-/// their paths and returns their bytes. Textures are not looked for.
+/// Reads a model from `reader`, like [`model_file::parse`](crate::model_file::parse), but with any extension. `path` is
+/// used in errors, and MTL files are resolved relative to it: `library` is given their paths and returns their bytes.
+/// Textures are not looked for.
 ///
 /// ```
 /// use mode13h_assets::model_file::obj;
@@ -70,7 +71,7 @@ pub fn parse(
     parse_with(reader, path, library, &Options::default())
 }
 
-/// Reads a model with `options`, as [`parse`] does.
+/// Reads a model with `options`, like [`parse`].
 ///
 /// # Errors
 /// Returns the errors of [`parse`].
@@ -106,7 +107,7 @@ pub(crate) fn draft(
     Ok(Draft { lists, surfaces, warnings, ..Draft::default() })
 }
 
-/// Returns whether the first line that is no comment is a statement of an OBJ file.
+/// Returns whether the first line that is not a comment is an OBJ statement.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     const STATEMENTS: [&[u8]; 9] = [b"v", b"vt", b"vn", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl"];
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);

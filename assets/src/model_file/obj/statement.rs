@@ -1,4 +1,4 @@
-//! The statements of an OBJ file, read into lists in their order.
+//! The statements of an OBJ file, read into lists in order.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -14,15 +14,15 @@ use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 /// The statements of an OBJ file.
 #[derive(Default)]
 pub(super) struct Statements {
-    /// Positions, faces and the like. Surface numbers are places in `names`.
+    /// Positions, faces and so on. Surface numbers are indices into `names`.
     pub(super) lists: Lists,
-    /// The names of `usemtl`, each once, in order. The first is empty: that of faces before any `usemtl`.
+    /// The names in `usemtl`, each once, in order. The first is empty, for faces before any `usemtl`.
     pub(super) names: Vec<String>,
-    /// Line and text of each `mtllib`.
+    /// The line and text of each `mtllib`.
     pub(super) libraries: Vec<(u64, String)>,
-    /// Line of the first `usemtl` of each name.
+    /// The line of the first `usemtl` with each name.
     pub(super) name_lines: Vec<u64>,
-    /// The line of the first vertex with a colour; 0 if there is none. Colours are left out.
+    /// The line of the first vertex with a colour; 0 if there is none. Colours are ignored.
     pub(super) colored: u64,
 }
 
@@ -92,17 +92,17 @@ fn normal(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
     push(&mut lists.normals, Vec3::from_array(numbers(&mut words(rest), "a normal (3)")?))
 }
 
-/// The number of a smoothing group: 0 for `off`, 1 for `on`. Anything else is left alone.
+/// The number of a smoothing group: 0 for `off`, 1 for `on`. Anything else is ignored.
 fn group(rest: &[u8]) -> Option<u32> {
     match words(rest).next()? {
         b"off" => Some(0),
         b"on" => Some(1),
-        // The greatest number stands for no group that is known.
+        // The greatest number is reserved for an unknown group.
         word => whole(word).and_then(|number| u32::try_from(number).ok()).filter(|&group| group < u32::MAX),
     }
 }
 
-/// A statement that is not for us, unless the file is no text at all.
+/// Ignores an unknown statement, unless the file is not text at all.
 fn foreign(word: &[u8], text: &[u8]) -> Result<(), ModelFileErrorKind> {
     let binary = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\r' | 0x0B | 0x0C | 0x1A);
     if !word.starts_with(b"#") && text.iter().any(binary) { Err(ModelFileErrorKind::NotText) } else { Ok(()) }
@@ -131,12 +131,12 @@ fn face(lists: &mut Lists, later: &mut Later, line: u64, rest: &[u8]) -> Result<
     lists.end_face(first, Place::Line(line))
 }
 
-/// How many positions, texture coordinates and normals there are.
+/// The number of positions, texture coordinates and normals.
 fn counts(lists: &Lists) -> [usize; 3] {
     [lists.positions.len(), lists.texcoords.len(), lists.normals.len()]
 }
 
-/// A whole number with an optional sign; `None` if it is none or does not fit.
+/// Parses an integer with an optional sign; `None` if it is not one or does not fit.
 fn whole(digits: &[u8]) -> Option<i64> {
     let (sign, digits) = match digits {
         [b'-', rest @ ..] => (-1, rest),
@@ -156,9 +156,9 @@ fn whole(digits: &[u8]) -> Option<i64> {
     Some(sign * value)
 }
 
-/// Indices of what had not come yet: position, texture coordinates, normal. Whether it came is known
-/// at the end. It is enough to keep each index that is greater than all before it: the first that
-/// turns out too great is among them.
+/// Forward references: indices of positions, texture coordinates or normals that have not appeared yet, which are
+/// checked at the end. Only each index greater than all before it need be recorded: the first that turns out too great
+/// is among them.
 #[derive(Default)]
 struct Later {
     records: [Vec<(i64, u64)>; 3],
@@ -167,7 +167,7 @@ struct Later {
 const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
 impl Later {
-    /// Counted from 0. `count`: how many there are so far.
+    /// Converts an index to count from 0. `count`: how many entries there are so far.
     fn resolve(&mut self, kind: usize, index: i64, count: usize, line: u64) -> Result<u32, ModelFileErrorKind> {
         // `count` is at most `Mesh::MAX_COUNT`, see `push`.
         let from_zero = match index {
@@ -181,7 +181,7 @@ impl Later {
         if from_zero >= count as i64 && self.records[kind].last().is_none_or(|&(greatest, _)| index > greatest) {
             self.records[kind].push((index, line));
         }
-        // Below 2³¹ by the line above.
+        // Below 2³¹, as checked above.
         Ok(from_zero as u32)
     }
 

@@ -6,7 +6,7 @@ use crate::model_file::tokens::expected;
 use crate::model_file::word::{name, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
-/// How numbers are written.
+/// How numbers are encoded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Encoding {
     Text,
@@ -42,21 +42,21 @@ impl Number {
         })
     }
 
-    /// The number that means a colour's full intensity.
+    /// The number that represents a colour channel's full intensity.
     pub(super) fn full(self) -> f64 {
         match self {
             Self::I8 => i8::MAX.into(),
             Self::U8 => u8::MAX.into(),
             Self::I16 => i16::MAX.into(),
             Self::U16 => u16::MAX.into(),
-            // Text files of some programs say `int` of colours from 0 to 255.
+            // Some programs' text files declare colours from 0 to 255 as `int`.
             Self::I32 | Self::U32 => 255.0,
             Self::F32 | Self::F64 => 1.0,
         }
     }
 }
 
-/// What a property holds.
+/// The type of a property.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Kind {
     Scalar(Number),
@@ -69,7 +69,7 @@ pub(super) struct Property {
     pub(super) kind: Kind,
 }
 
-/// An element: a table of as many rows as its count, with a column for each property.
+/// An element: a table of `count` rows, with a column for each property.
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
@@ -77,12 +77,12 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// The first property of one of these names, if it is a single number.
+    /// The first property with one of these names, if it is a single number.
     pub(super) fn scalar(&self, names: &[&str]) -> Option<usize> {
         self.find(names).filter(|&property| matches!(self.properties[property].kind, Kind::Scalar(_)))
     }
 
-    /// The first property of one of these names, if it is a list.
+    /// The first property with one of these names, if it is a list.
     pub(super) fn list(&self, names: &[&str]) -> Option<usize> {
         self.find(names).filter(|&property| matches!(self.properties[property].kind, Kind::List { .. }))
     }
@@ -96,19 +96,19 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// Line and name of the texture in a comment, the first if there are several.
+    /// The line and name of the texture in a comment, the first if there are several.
     pub(super) texture: Option<(u64, String)>,
-    /// The bytes up to the first row.
+    /// The number of bytes before the first row.
     pub(super) length: usize,
-    /// The lines up to the first row.
+    /// The number of lines before the first row.
     pub(super) lines: u64,
 }
 
-/// The max number of elements, and of an element's properties. So no list of properties is walked for ever.
+/// The max number of elements, and of an element's properties, so that no property list takes for ever.
 const MAX: usize = 1_000;
 
 impl Header {
-    /// Reads up to and with `end_header`.
+    /// Reads the header, including `end_header`.
     pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Self, ModelFileError> {
         let mut lines = HeaderLines { bytes, at: 0, number: 0 };
         let mut elements: Vec<Element> = Vec::new();
@@ -186,12 +186,12 @@ fn property<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Property, 
     Ok(Property { name: name(words.next().unwrap_or_default()), kind })
 }
 
-/// The lines of a header, which may stand before bytes of any value: a CR ends one with the LF behind it only if the
-/// first line ends so.
+/// The lines of a header, which may be followed by arbitrary bytes: a CR only ends a line together with the LF after it
+/// if the first line ends like that.
 struct HeaderLines<'b> {
     bytes: &'b [u8],
     at: usize,
-    /// The number of the line that was read last, counted from 1.
+    /// The number of the last line read, counted from 1.
     number: u64,
 }
 
@@ -201,7 +201,7 @@ impl<'b> HeaderLines<'b> {
         let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'))?;
         let first = self.bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(0);
         let is_pair = self.bytes[first..].starts_with(b"\r\n") && rest[end..].starts_with(b"\r\n");
-        // Where only some lines end in CR LF, an LF behind a CR is no line of its own for who counts.
+        // Where only some lines end in CR LF, an LF after a CR does not count as a line.
         let is_second = end == 0 && rest[0] == b'\n' && self.bytes[..self.at].ends_with(b"\r");
         self.at += end + 1 + usize::from(is_pair);
         self.number += u64::from(!is_second);

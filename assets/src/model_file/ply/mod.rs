@@ -3,16 +3,16 @@
 //! | read | as |
 //! |---|---|
 //! | `x`, `y`, `z` of `vertex` | positions |
-//! | `nx`, `ny`, `nz` | normals; one of length 0 is as if left out |
+//! | `nx`, `ny`, `nz` | normals; one of length 0 counts as missing |
 //! | `s t`, `u v` or `texture_u texture_v` of `vertex`, or a list `texcoord` of `face` | texture coordinates, if a comment `TextureFile` names the texture |
-//! | a list `vertex_indices` or `vertex_index` of `face` | a face of three corners or more, fewer are left out with a warning |
-//! | a list `vertex_indices` of `tristrips` | strips of triangles; a negative index ends one |
+//! | a list `vertex_indices` or `vertex_index` of `face` | a face of three corners or more, fewer are dropped with a warning |
+//! | a list `vertex_indices` of `tristrips` | triangle strips; a negative index ends one |
 //! | `red`, `green`, `blue` of `vertex` or `face` | a colour for each face, up to 256 in all: the mean over its corners |
-//! | all other elements and properties | left alone |
+//! | all other elements and properties | ignored |
 //!
-//! Colours are numbers up to the greatest of their type, or up to 1 in `float` and `double`. A texture goes before colours,
-//! and colours of faces before those of vertices. A vertex's colour is its corners' share in a mean, as this engine's
-//! triangles have one colour; in a scan they are small.
+//! Colours are numbers up to the greatest of their type, or up to 1 in `float` and `double`. A texture takes precedence
+//! over colours, and face colours over vertex colours. Vertex colours are averaged over each face, since triangles have
+//! a single colour in this engine; in a scan they are small.
 
 mod header;
 mod value;
@@ -28,7 +28,7 @@ use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, paint};
 use header::{Element, Header, Kind};
 use value::Values;
 
-/// Returns whether a file begins as a PLY does.
+/// Returns whether a file begins like a PLY.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }
@@ -40,7 +40,7 @@ pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> 
     let mut values = Values::new(&header, bytes);
     let mut reading = Reading::new(&header, path)?;
     for element in &header.elements {
-        // A row of nothing takes no bytes, and a header may announce 2⁶⁴ of them.
+        // An empty row takes no bytes, and a header may announce 2⁶⁴ of them.
         if element.properties.is_empty() {
             continue;
         }
@@ -56,17 +56,17 @@ pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> 
     Ok(draft)
 }
 
-/// What the elements give beside positions, normals and faces.
+/// What the elements contain in addition to positions, normals and faces.
 struct Reading {
     /// The number of vertices that the header announces.
     vertices: u64,
-    /// The colour of each vertex, or of none.
+    /// The colour of each vertex, or empty.
     of_vertices: Vec<Rgb>,
-    /// The colour of each face, or of none.
+    /// The colour of each face, or empty.
     of_faces: Vec<Rgb>,
-    /// Each vertex has texture coordinates, under its own index.
+    /// Whether each vertex has texture coordinates, with the same index.
     has_texcoords: bool,
-    /// Corners of faces have their own.
+    /// Whether corners of faces have their own texture coordinates.
     has_pairs: bool,
     has_texture: bool,
 }
@@ -129,7 +129,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The vertex of an index.
+    /// Checks and converts a vertex index.
     fn vertex(&self, index: f64) -> Result<u32, ModelFileErrorKind> {
         if index >= 0.0 && index < self.vertices as f64 && index < f64::from(u32::MAX) && index.fract() == 0.0 {
             return Ok(index as u32);
@@ -144,7 +144,7 @@ impl Reading {
         }
     }
 
-    /// The corner at a vertex, with all that the vertex has.
+    /// The corner at a vertex, with all attributes of the vertex.
     fn corner(&self, vertex: u32, has_normals: bool) -> Corner {
         let or_none = |has: bool| if has { vertex } else { Corner::NONE };
         Corner { position: vertex, texcoord: or_none(self.has_texcoords), normal: or_none(has_normals) }
@@ -208,7 +208,7 @@ impl Reading {
         let mut row = Vec::new();
         for _ in 0..element.count {
             let place = values.place_of_next();
-            // The last two corners, and how many the strip has had.
+            // The last two corners, and the number of corners of the strip so far.
             let (mut last, mut length) = ([None; 2], 0_u64);
             values.row(element, &mut row, |property, value| {
                 if property != indices {
@@ -232,7 +232,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The texture, or the colours.
+    /// Adds the texture, or the colours.
     fn finish(self, header: &Header, path: &Path, draft: &mut Draft) {
         if let (Some((_, name)), true) = (&header.texture, self.has_texcoords || self.has_pairs) {
             let folder = path.parent().unwrap_or(Path::new(""));
@@ -261,7 +261,7 @@ impl Reading {
     }
 }
 
-/// Whether each vertex has a normal. The vertices may stand behind the faces, which then have none.
+/// Returns whether each vertex has a normal. If the vertices follow the faces, the faces have none.
 fn has_normals(lists: &Lists, vertices: u64) -> bool {
     !lists.normals.is_empty() && lists.normals.len() as u64 == vertices
 }
@@ -280,7 +280,7 @@ fn mean<'c>(corners: impl Iterator<Item = &'c Corner>, colors: &[Rgb]) -> Rgb {
 }
 
 impl Element {
-    /// Red, green and blue.
+    /// The properties for red, green and blue.
     fn colors(&self) -> Option<[usize; 3]> {
         let [red, green, blue] =
             [["red", "diffuse_red", "r"], ["green", "diffuse_green", "g"], ["blue", "diffuse_blue", "b"]]
@@ -295,7 +295,7 @@ impl Element {
                 Kind::Scalar(number) => number.full(),
                 Kind::List { .. } => 255.0,
             };
-            // 0 to 255.5: the cast truncates after the half, and makes 0 of a NaN.
+            // 0 to 255.5: the cast truncates after 0.5 is added, and turns NaN into 0.
             ((row[property] / full).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
         });
         Rgb::new(r, g, b)

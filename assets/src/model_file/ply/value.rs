@@ -5,7 +5,7 @@ use crate::model_file::tokens::{Tokens, expected};
 use crate::model_file::word::parsed;
 use crate::model_file::{ModelFileErrorKind, Place};
 
-/// The numbers behind a header, one after the other.
+/// The numbers after a header, in order.
 pub(super) struct Values<'b> {
     source: Source<'b>,
 }
@@ -15,7 +15,7 @@ enum Source<'b> {
     Binary {
         bytes: &'b [u8],
         at: usize,
-        /// Where the number that was read last begins.
+        /// The offset of the last number read.
         last: usize,
         is_big_endian: bool,
     },
@@ -31,7 +31,7 @@ impl<'b> Values<'b> {
         Self { source }
     }
 
-    /// The place of the number that was read last.
+    /// The position of the last number read.
     pub(super) fn place(&self) -> Place {
         match &self.source {
             Source::Text(words) => Place::Line(words.word_line),
@@ -39,7 +39,7 @@ impl<'b> Values<'b> {
         }
     }
 
-    /// The place of the number that is read next; of a text the line of the one before it or a later one.
+    /// The position of the next number; in a text file, the line of the one before it or a later one.
     pub(super) fn place_of_next(&mut self) -> Place {
         match &mut self.source {
             Source::Text(words) => Place::Line(words.line_of_next()),
@@ -51,8 +51,8 @@ impl<'b> Values<'b> {
         match &mut self.source {
             Source::Text(words) => {
                 let word = words.next().ok_or(ModelFileErrorKind::Ends("a number"))?;
-                // Of all types, as programs write 255.0 for a colour that they call `uchar`. Infinities and NaN are for
-                // those to judge that use the number.
+                // Any type is accepted, since some programs write 255.0 for a colour declared as `uchar`. Infinities
+                // and NaN are left to the code that uses the number.
                 parsed(word, |_: f64| true)?.ok_or(ModelFileErrorKind::Ends("a number"))
             }
             Source::Binary { bytes, at, last, is_big_endian } => {
@@ -81,8 +81,8 @@ impl<'b> Values<'b> {
         }
     }
 
-    /// Reads a row. `row` gets a number for each property, 0 for a list, whose items go to `item` with the property's
-    /// index.
+    /// Reads a row. `row` gets a number for each property, 0 for a list, whose items are passed to `item` with the
+    /// property's index.
     pub(super) fn row(
         &mut self,
         element: &Element,
@@ -108,7 +108,7 @@ impl<'b> Values<'b> {
         Ok(())
     }
 
-    /// Leaves out a row.
+    /// Skips a row.
     pub(super) fn skip(&mut self, element: &Element) -> Result<(), ModelFileErrorKind> {
         self.row(element, &mut Vec::new(), |_, _| Ok(()))
     }
