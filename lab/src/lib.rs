@@ -12,6 +12,7 @@ extern crate alloc;
 
 pub mod cost;
 pub mod explain;
+mod lines;
 pub mod museum;
 pub mod show;
 pub mod truth;

@@ -17,7 +17,7 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h::window::Area;
-use mode13h_lab::cost::Probe;
+use mode13h_lab::cost::{Probe, error_levels};
 use mode13h_lab::truth::{ErrorMap, Face, Figures, Shown, Tiles, Truth, TruthFrame};
 
 use super::background::{Background, Desk};
@@ -25,37 +25,21 @@ use super::pixel::Pixel;
 use crate::failure::Failure;
 use crate::overlay::{Row, Sheet, Side as Edge};
 
-/// A colour of the map: below which error it stands, in shades, what the legend says, and the colour in full light.
-struct Level {
-    below: f64,
-    label: &'static str,
-    color: Rgb,
-}
+/// The level of pixels that show another face than they should: it is behind those of the report and the page.
+const OTHER_FACE: u8 = error_levels::ALL.len() as u8;
+const LEVELS: u8 = OTHER_FACE + 1;
+/// Greys in which the picture itself is seen where it is right, the first level.
+const GREYS: u8 = 128;
 
-const fn level(below: f64, label: &'static str, color: u32) -> Level {
+/// The colour of a level in the legend, and what stands beside it.
+fn level(index: u8) -> (Rgb, &'static str) {
+    let (color, label) = match error_levels::ALL.get(usize::from(index)) {
+        Some(level) => (level.color, level.label),
+        None => (error_levels::NOT_TAKEN, "another face"),
+    };
     let [_, r, g, b] = color.to_be_bytes();
-    Level { below, label, color: Rgb::new(r, g, b) }
+    (if index == 0 { Rgb::WHITE } else { Rgb::new(r, g, b) }, label)
 }
-
-/// Levels from right to wrong. The last is for pixels that show another face than they should.
-const LEVELS: [Level; 8] = [
-    level(0.5, "0", 0xFFFFFF),
-    level(1.0, "0.5", 0x4C7DFF),
-    level(2.0, "1", 0x20D8F0),
-    level(4.0, "2", 0x30E040),
-    level(8.0, "4", 0xF0F020),
-    level(16.0, "8", 0xFF9018),
-    level(f64::INFINITY, "16", 0xFF2020),
-    level(f64::NAN, "face", 0xFF40F0),
-];
-/// The place of the last in [`LEVELS`].
-const OTHER_FACE: u8 = 7;
-/// Entries of brightness that each colour has.
-const STEPS: u8 = 32;
-/// Least brightness of a colour, of 256: otherwise nobody could tell one from another in the dark.
-const MIN_COLOR: u32 = 112;
-/// Least brightness of a right pixel's colour, of 256: it need not be told from anything.
-const MIN_GREY: u32 = 0;
 
 /// Columns and rows from one pixel to the next that the first map judges.
 const COARSE: u32 = 4;
@@ -103,7 +87,7 @@ struct Found {
 
 /// Errors of a renderer's picture against the truth.
 struct Side {
-    /// The index of each pixel in [`LEVELS`]; `None` where there is no face, nor should be.
+    /// The level of each pixel; `None` where there is no face, nor should be.
     levels: Vec<Option<u8>>,
     errors: ErrorMap,
     figures: Figures,
@@ -224,7 +208,7 @@ impl Map {
             }
         }
         rows.push(Row::text(state));
-        rows.extend(LEVELS.iter().map(|level| Row::color(level.color, level.label)));
+        rows.extend((0..LEVELS).map(level).map(|(color, label)| Row::color(color, label)));
         sheet.panel(Edge::Right, &rows, false, 0, "");
     }
 }
@@ -232,32 +216,33 @@ impl Map {
 impl Found {
     /// The bytes of a picture with the map over it, in the map's palette.
     fn entries(&self, vga: &Vga, divider: usize) -> Vec<u8> {
-        let steps = vga.palette().colors().map(step);
+        let greys = vga.palette().colors().map(grey);
         let entry = |(place, &byte): (usize, &u8)| {
             let side = usize::from(place % Vga::WIDTH >= divider).min(self.sides.len().saturating_sub(1));
-            let level = self.sides.get(side).and_then(|side| side.levels[place]);
-            level.unwrap_or(0) * STEPS + steps[usize::from(byte)]
+            match self.sides.get(side).and_then(|side| side.levels[place]) {
+                None | Some(0) => greys[usize::from(byte)],
+                Some(level) => GREYS + level,
+            }
         };
         vga.pixels().iter().enumerate().map(entry).collect()
     }
 }
 
-/// Brightness of a colour, in the steps that each colour of the map has.
-fn step(color: Rgb) -> u8 {
-    // The brightness is at most 255,000, so the quotient at most 31.
-    (color.brightness() * u32::from(STEPS) / 255_001) as u8
+/// The map's entry with the brightness of a colour.
+fn grey(color: Rgb) -> u8 {
+    // The brightness is at most 255,000, so the quotient at most 127.
+    (color.brightness() * u32::from(GREYS) / 255_001) as u8
 }
 
+/// Greys, and behind them the colours of the levels.
 fn palette() -> Palette {
     let mut colors = [Rgb::BLACK; 256];
-    for (i, level) in LEVELS.iter().enumerate() {
-        let least = if i == 0 { MIN_GREY } else { MIN_COLOR };
-        for (step, color) in (0..).zip(&mut colors[i * usize::from(STEPS)..][..usize::from(STEPS)]) {
-            let light = least + (256 - least) * step / u32::from(STEPS - 1);
-            // At most 255 · 256 / 256.
-            let lit = |channel: u8| (u32::from(channel) * light / 256) as u8;
-            *color = Rgb::new(lit(level.color.r), lit(level.color.g), lit(level.color.b));
-        }
+    for grey in 0..GREYS {
+        let light = 2 * grey + u8::from(grey > 0);
+        colors[usize::from(grey)] = Rgb::new(light, light, light);
+    }
+    for index in 0..LEVELS {
+        colors[usize::from(GREYS + index)] = level(index).0;
     }
     Palette::from_colors(colors)
 }
@@ -389,10 +374,10 @@ impl Judged {
     }
 }
 
-/// The place in [`LEVELS`] of an error.
+/// The level of an error.
 fn level_of(error: f64) -> u8 {
-    // Of eight; an error is no number nowhere, and at most 255.
-    LEVELS.iter().position(|level| error < level.below).unwrap_or(usize::from(OTHER_FACE)) as u8
+    // At most 255.
+    error_levels::index_of(error as f32)
 }
 
 #[cfg(test)]
@@ -403,15 +388,12 @@ mod tests {
     use mode13h_lab::truth::Standard;
 
     #[test]
-    fn the_legend_says_from_which_error_on_a_colour_stands() {
-        for (i, level) in LEVELS[..7].iter().enumerate() {
-            let from: f64 = level.label.parse().expect("a number");
-            assert_eq!(usize::from(level_of(from)), i);
-            assert_eq!(level_of(from.next_down().max(0.0)), (i as u8).saturating_sub(1));
-        }
-        assert_eq!(level_of(255.0), 6);
-        assert_eq!(usize::from(STEPS) * LEVELS.len(), 256);
-        assert_eq!((step(Rgb::BLACK), step(Rgb::WHITE)), (0, STEPS - 1));
+    fn every_level_has_a_colour_of_its_own() {
+        let colors: std::collections::BTreeSet<[u8; 3]> =
+            (0..LEVELS).map(|i| level(i).0).map(|Rgb { r, g, b }| [r, g, b]).collect();
+        assert_eq!(colors.len(), usize::from(LEVELS));
+        assert_eq!((grey(Rgb::BLACK), grey(Rgb::WHITE)), (0, GREYS - 1));
+        assert_eq!((palette().colors()[0], palette().colors()[127]), (Rgb::BLACK, Rgb::WHITE));
     }
 
     fn frame(number: u64, scene: &Scene, shadings: &[Shading]) -> Frame {
@@ -469,11 +451,9 @@ mod tests {
         let found = map.of(3).expect("it came");
         // Of each colour as many pixels as there are errors in its range.
         let errors = errors(&scene, Shading::Flat);
-        let mut from = 0.0;
-        for (i, level) in (0..).zip(&LEVELS[..7]) {
-            let expected = errors.errors().flatten().filter(|error| (from..level.below).contains(error)).count();
-            assert_eq!(found.sides[0].levels.iter().filter(|there| **there == Some(i)).count(), expected);
-            from = level.below;
+        for index in 0..OTHER_FACE {
+            let expected = errors.errors().flatten().filter(|error| level_of(*error) == index).count();
+            assert_eq!(found.sides[0].levels.iter().filter(|there| **there == Some(index)).count(), expected);
         }
         let other = found.sides[0].levels.iter().filter(|level| **level == Some(OTHER_FACE)).count();
         assert_eq!(other, errors.cover_errors());
@@ -486,7 +466,7 @@ mod tests {
         for x in 0..Vga::WIDTH {
             let place = 100 * Vga::WIDTH + x;
             let level = found.sides[usize::from(x >= 150)].levels[place].unwrap_or(0);
-            assert_eq!(vga.pixels()[place] / STEPS, level);
+            assert_eq!(vga.pixels()[place], if level == 0 { GREYS - 1 } else { GREYS + level });
         }
         // Over another picture it is not laid.
         let mut other = plain.clone();

@@ -131,34 +131,9 @@ pub(super) fn laid(rows: &[Row], columns: usize) -> Vec<Laid> {
     lines
 }
 
-/// A text in lines of at most `columns` letters. Words that are longer are cut: behind a hyphen, a slash or the like if
-/// there is one, or else where the line ends.
+/// A text in lines of at most `columns` letters. Words may be cut behind a hyphen; what is longer than a line is cut where
+/// the line ends.
 pub(crate) fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    let columns = columns.max(1);
-    let mut lines: Vec<Vec<char>> = vec![Vec::new()];
-    for word in text.split(' ') {
-        let mut rest: Vec<char> = word.chars().collect();
-        loop {
-            let filled = lines.last().map_or(0, Vec::len);
-            let space = usize::from(filled > 0);
-            if filled + space + rest.len() <= columns {
-                break;
-            }
-            if filled > 0 {
-                lines.push(Vec::new());
-                continue;
-            }
-            let cut = rest[..columns].iter().rposition(|letter| "-/\\_".contains(*letter)).map_or(columns, |at| at + 1);
-            let behind = rest.split_off(cut);
-            lines.pop();
-            lines.extend([std::mem::replace(&mut rest, behind), Vec::new()]);
-        }
-        if let Some(line) = lines.last_mut() {
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.append(&mut rest);
-        }
-    }
-    lines.iter().map(|line| line.iter().collect()).collect()
+    let options = textwrap::Options::new(columns.max(1)).word_separator(textwrap::WordSeparator::AsciiSpace);
+    textwrap::wrap(text, options).into_iter().map(Into::into).collect()
 }

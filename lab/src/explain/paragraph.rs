@@ -3,6 +3,8 @@
 use alloc::format;
 use alloc::string::String;
 
+use crate::lines::lines;
+
 /// Columns of text.
 const WIDTH: usize = 100;
 
@@ -16,21 +18,11 @@ pub(super) struct Text(pub(super) String);
 impl Text {
     /// A paragraph, wrapped.
     pub(super) fn say(&mut self, label: &str, words: &str) {
-        let mut line = format!("  {label:LABEL$}");
-        let mut empty = true;
-        for word in words.split_whitespace() {
-            if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-                self.line(&line);
-                line = " ".repeat(LABEL + 2);
-                empty = true;
-            }
-            if !empty {
-                line.push(' ');
-            }
-            line += word;
-            empty = false;
+        let mut label = label;
+        for line in lines(words, WIDTH - LABEL - 2) {
+            self.row(label, &line);
+            label = "";
         }
-        self.line(&line);
     }
 
     /// One line as it is.

@@ -12,6 +12,7 @@ use super::enlarged::Enlarged;
 use super::face::Segment;
 use super::panel::{Mark, Panel};
 use super::{Case, Comparison};
+use crate::lines::lines;
 use mode13h::export::{Picture, PictureError, PixelShape, Png};
 use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Index};
@@ -115,11 +116,12 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
     let (columns, rows) = (comparison.right.width() as i32, comparison.right.height() as i32);
     let (panel_width, panel_height) = (columns * ZOOM, rows * ZOOM);
     let width = 2 * MARGIN + 2 * panel_width + GAP;
-    let in_all = (width - 2 * MARGIN) / LETTER;
-    let in_panel = panel_width / LETTER;
-    let head = wrap(case.sentence, in_all);
+    // Positive.
+    let in_all = ((width - 2 * MARGIN) / LETTER) as usize;
+    let in_panel = (panel_width / LETTER) as usize;
+    let head = lines(case.sentence, in_all);
     let captions =
-        [wrap(&format!("WRONG: {}", case.wrong), in_panel), wrap(&format!("RIGHT: {}", case.right), in_panel)];
+        [("WRONG", case.wrong), ("RIGHT", case.right)].map(|(side, is)| lines(&format!("{side}: {is}"), in_panel));
     let caption_lines = captions[0].len().max(captions[1].len()) as i32;
     let panels_top = MARGIN + LINE * (1 + head.len() as i32 + caption_lines) + 16;
     let marks: Vec<Mark> = Mark::ALL.into_iter().filter(|mark| comparison.fault.count(*mark) > 0).collect();
@@ -174,21 +176,6 @@ fn about_right(panel: &Panel) -> String {
         (_, Some(1)) => format!("the engine: {}, each drawn once", pixels_in_words(drawn)),
         _ => format!("the engine: {}", pixels_in_words(drawn)),
     }
-}
-
-/// Breaks a text into lines of at most `letters`.
-fn wrap(text: &str, letters: i32) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if (line.len() + 1 + word.len()) as i32 <= letters => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_string()),
-        }
-    }
-    lines
 }
 
 fn words(frame: &mut Frame<'_>, x: i32, y: i32, text: &str, ink: Ink, font: &MonoFont<'_>) {

@@ -3,6 +3,7 @@
 use super::page::NAMES;
 use super::{budgets, choices, shadings, summary, times};
 use crate::cost::{Claim, Study};
+use crate::lines::lines;
 
 /// The study as text: the page without its pictures, and the most important columns of its tables.
 #[must_use]
@@ -33,19 +34,5 @@ pub fn text(study: &Study) -> String {
 
 /// Lines of at most 100 letters.
 fn wrapped(text: &str) -> String {
-    let mut lines = String::new();
-    let mut length = 0;
-    for word in text.split_whitespace() {
-        let (space, letters) = (usize::from(length > 0), word.chars().count());
-        if length + space + letters > 100 {
-            lines.push('\n');
-            length = 0;
-        } else if length > 0 {
-            lines.push(' ');
-            length += 1;
-        }
-        lines += word;
-        length += letters;
-    }
-    lines + "\n"
+    lines(text, 100).join("\n") + "\n"
 }
