@@ -2,25 +2,22 @@
 
 use std::f64::consts::TAU;
 
+use crate::floor::{HEIGHT, WIDTH, counts_by, floor, scene};
 use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
 use crate::support::odd_views::odd_views;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::internals::raster::reference::cover::SortedTriangle;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, Rect, Vertex};
+use mode13h::raster::{Frame, Vertex};
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h::settings::{Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
-
-const WIDTH: usize = 320;
-const HEIGHT: usize = 200;
 
 fn renderer(path: VertexPath) -> Renderer {
     let mut renderer = Renderer::new();
@@ -340,47 +337,7 @@ fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
 
 /// How often each pixel is covered.
 fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
-    let mut counts = vec![0; WIDTH * HEIGHT];
-    let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
-    let stats = renderer(VertexPath::Integer)
-        .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| {
-            SortedTriangle::new(vertices).rows(WIDTH as u32, clip, |row| {
-                for x in row.x0..row.x1 {
-                    counts[row.y as usize * WIDTH + x as usize] += 1;
-                }
-            });
-        })
-        .expect("a legal scene");
-    (counts, stats)
-}
-
-/// An eye at the origin that looks along −z.
-fn scene(mesh: Mesh) -> Scene {
-    let mut scene = Scene::new();
-    scene.camera = Camera {
-        eye: Vec3::ZERO,
-        target: Vec3::NEG_Z,
-        up: Vec3::Y,
-        field_of_view: Angle::from_radians(1.0),
-        near: 0.25,
-    };
-    scene.add(Object::new(mesh));
-    scene
-}
-
-/// A floor one below the eye, `reach` to all sides, of `n × n` squares of two triangles.
-fn floor(reach: f32, n: u32) -> Mesh {
-    let at = |i: u32| reach * (i as f32 / n as f32 * 2.0 - 1.0);
-    let positions = (0..=n).flat_map(|z| (0..=n).map(move |x| Vec3::new(at(x), -1.0, at(z)))).collect();
-    let corner = |x, z| z * (n + 1) + x;
-    let triangles = (0..n * n)
-        .flat_map(|i| {
-            let (x, z) = (i % n, i / n);
-            let (a, b, c, d) = (corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1));
-            if (x + z) % 2 == 0 { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] }
-        })
-        .collect();
-    Mesh::new(positions, triangles).expect("a mesh")
+    counts_by(&mut renderer(VertexPath::Integer), scene)
 }
 
 #[test]

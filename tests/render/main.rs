@@ -7,6 +7,8 @@ mod allocation;
 #[cfg(feature = "alloc")]
 mod clipping;
 #[cfg(feature = "alloc")]
+mod floor;
+#[cfg(feature = "alloc")]
 mod frames;
 #[cfg(feature = "png")]
 mod golden;

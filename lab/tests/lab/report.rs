@@ -27,5 +27,9 @@ fn what_was_measured_is_reported() {
     }
     // Each shading's picture and its error, and the first screen's two pictures.
     assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len() + 2);
-    assert_eq!(page.matches("<svg").count(), 3, "three charts");
+    assert_eq!(
+        (page.matches("<svg").count(), page.matches("data-points").count()),
+        (1, 4),
+        "three charts, and a script"
+    );
 }

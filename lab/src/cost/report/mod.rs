@@ -7,12 +7,11 @@
 //! | `text` | the study in a terminal |
 //! | `table` | a table, for the page and for a terminal |
 //! | `figures` | numbers and ratios as text |
-//! | `chart`, `budget_chart`, `time_chart`, `labels` | error against time, time against budget, error against a time that is given |
+//! | `chart`, `labels` | error against time |
 //! | `pictures` | frames and error maps as PNG inside the file |
 //! | `page` | the file, section by section |
 //! | `shadings`, `budgets`, `times`, `choices`, `method` | the sections |
 
-mod budget_chart;
 mod budgets;
 mod chart;
 mod choices;
@@ -28,12 +27,9 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod text;
-mod time_chart;
 mod times;
 
-pub use budget_chart::budget_svg;
 pub use chart::chart_svg;
 pub use page::html;
 pub use summary::summary;
 pub use text::text;
-pub use time_chart::time_svg;

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::chart::{budget_points_json, points_json, time_points_json};
-use super::{budget_svg, budgets, chart_svg, choices, first, method, shadings, summary, time_svg, times};
+use super::{budgets, chart_svg, choices, first, method, shadings, summary, times};
 use crate::cost::Study;
 
 /// The report's own style, and what it shares with the page in the browser: colours, chart and divider.
@@ -80,7 +80,7 @@ fn error_chart(study: &Study) -> Markup {
                        below has the figures";
     let axes = ["time for a frame", "error in shades, r.m.s."];
     markup! {
-        (chart(description, axes, &points_json(study), &chart_svg(study)))
+        (chart(description, axes, &points_json(study), Some(&chart_svg(study))))
         p.key {
             span { "Filled and joined: efficient shadings, of which none is as near and surely faster." }
             span { "Triangles: budgets, errors up to so many shades accepted." }
@@ -92,7 +92,7 @@ fn budget_chart(study: &Study) -> Markup {
     let description = "Accepted error against the time for a frame, both logarithmic; the table has the figures";
     let axes = ["time for a frame", "accepted error in shades"];
     markup! {
-        (chart(description, axes, &budget_points_json(study), &budget_svg(study)))
+        (chart(description, axes, &budget_points_json(study), None))
         p.key {
             span { "Triangles: the budget, face by face." }
             span { "Circles: the cheapest single shading that keeps the same promise." }
@@ -104,14 +104,14 @@ fn time_chart(study: &Study) -> Markup {
     let description =
         "Largest error against the time that is given for a frame, both logarithmic; the table has the figures";
     let axes = ["time that is given for a frame", "largest error in shades"];
-    chart(description, axes, &time_points_json(study), &time_svg(study))
+    chart(description, axes, &time_points_json(study), None)
 }
 
-/// The chart of the page in the browser or, without scripts, an SVG.
-fn chart(description: &str, [across, down]: [&str; 2], points: &str, svg: &str) -> Markup {
+/// The chart of the page in the browser or, without scripts, an SVG, where there is one.
+fn chart(description: &str, [across, down]: [&str; 2], points: &str, svg: Option<&str>) -> Markup {
     markup! {
         figure.chart role="img" aria-label=(description) data-points=(points) data-across=(across) data-down=(down) {
-            (PreEscaped(svg))
+            (PreEscaped(svg.unwrap_or("<noscript>The table has the figures.</noscript>")))
         }
     }
 }
