@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use mode13h::export;
-use mode13h_lab::show::{self, CASES, Case};
+use mode13h_lab::hard_cases::{self, CASES, Case};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Some(id) = id else {
         return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
     };
-    let Some(case) = show::by_id(id) else {
+    let Some(case) = hard_cases::by_id(id) else {
         let ids: Vec<&str> = CASES.iter().map(|case| case.id).collect();
         return Err(Failure::words(format!("no picture of '{id}': there are {}", ids.join(", "))));
     };

@@ -5,7 +5,7 @@ mod shading;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -307,11 +307,8 @@ impl Drawing {
 
 /// Takes the name of one of these shadings, or `gouraud` for the default one.
 pub(crate) fn shading_of<const N: usize>(all: [Shading; N]) -> impl TypedValueParser<Value = Shading> {
-    let value = |shading: Shading| {
-        let value = PossibleValue::new(shading.name());
-        if shading == Shading::default() { value.alias(GOURAUD) } else { value }
-    };
-    PossibleValuesParser::new(all.map(value))
+    let short = all.contains(&Shading::default()).then_some(GOURAUD);
+    PossibleValuesParser::new(all.map(Shading::name).into_iter().chain(short))
         .try_map(|word| in_full(&word).parse::<Shading>().map_err(|error| error.to_string()))
 }
 

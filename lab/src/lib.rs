@@ -6,13 +6,14 @@
 //! | [`cost`] | accuracy against time: the study, its statistics and its report |
 //! | [`explain`] | why a pixel has its byte; a row's intensity and slope |
 //! | [`museum`] | methods of the sources that the engine has left behind |
-//! | [`show`] | hard cases as pictures: the right way beside the fault |
+//! | [`hard_cases`] | hard cases as pictures: the right way beside the fault |
 
 extern crate alloc;
 
 pub mod cost;
 pub mod explain;
+pub mod hard_cases;
 mod lines;
 pub mod museum;
-pub mod show;
+
 pub mod truth;

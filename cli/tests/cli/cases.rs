@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output};
 
-use mode13h_lab::show::{CASES, by_id};
+use mode13h_lab::hard_cases::{CASES, by_id};
 
 fn run(directory: &tempfile::TempDir, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_mode13h")).current_dir(directory).args(words).output().expect("started")

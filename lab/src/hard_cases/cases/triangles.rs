@@ -1,11 +1,11 @@
 //! Cover: R1, R3 to R6, R8, R11, R13.
 
 use super::{EXACT, against_engine, edges};
-use crate::show::Comparison;
-use crate::show::engine;
-use crate::show::face::{Corner, Face, at, gouraud, without_diagonals};
-use crate::show::fault::{cover, paint};
-use crate::show::panel::{Measure, Panel};
+use crate::hard_cases::Comparison;
+use crate::hard_cases::engine;
+use crate::hard_cases::face::{Corner, Face, at, gouraud, without_diagonals};
+use crate::hard_cases::fault::{cover, paint};
+use crate::hard_cases::panel::{Measure, Panel};
 use mode13h::palette::builtin;
 
 /// Three corners of one shade.

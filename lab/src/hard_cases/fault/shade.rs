@@ -1,8 +1,8 @@
 //! Faults of shade: which byte a pixel gets.
 
 use super::{centre, samples, wrapped};
-use crate::show::face::Corner;
-use crate::show::panel::Panel;
+use crate::hard_cases::face::Corner;
+use crate::hard_cases::panel::Panel;
 
 /// A row of a triangle: where its edges cross the row's centre, and the shades there.
 #[derive(Clone, Copy)]
@@ -32,7 +32,7 @@ fn row(corners: &[Corner], y: i32) -> Option<Row> {
 /// A step for every row, (Bs − As) / (Bx − Ax), which has no bound as the row gets short, and the Russian textbook's
 /// start with its As put back: As + (1 − frac(Ax))·step. That is the next whole pixel, not the next
 /// centre. The sums wrap in 8 bits.
-pub(in crate::show) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut last = None;
     for sample in samples((panel.width(), panel.height()), corners) {
         let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
@@ -49,7 +49,7 @@ pub(in crate::show) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]
 
 /// No sub-pixel correction: a row's first pixel gets the shade of the edge, wherever in the pixel the
 /// edge is.
-pub(in crate::show) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut last = None;
     for sample in samples((panel.width(), panel.height()), corners) {
         let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
@@ -64,7 +64,7 @@ pub(in crate::show) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3
 
 /// Every pixel that a row touches, with the triangle's plane carried on beyond its edges: below 0 and
 /// above 255 the byte wraps.
-pub(in crate::show) fn carried_on_beyond_the_edges(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn carried_on_beyond_the_edges(panel: &mut Panel, corners: &[Corner; 3]) {
     for y in 0..panel.height() as i32 {
         let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, y) else { continue };
         for x in ax.floor() as i32..=bx.floor() as i32 {

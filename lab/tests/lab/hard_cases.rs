@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::support::tried::Tried;
 use mode13h::raster::{Frame, Raster, Vertex};
 use mode13h_conformance::oracle;
-use mode13h_lab::show::{CASES, Case, Comparison, Mark, Panel, by_id};
+use mode13h_lab::hard_cases::{CASES, Case, Comparison, Mark, Panel, by_id};
 
 /// What the raster's own calls draw of the triangles that a case says it was given.
 fn by_the_raster(comparison: &Comparison) -> Vec<u8> {

@@ -1,12 +1,12 @@
 //! Faults of cover: which pixels a triangle has.
 
 use super::{centre, paint, side, wrapped};
-use crate::show::face::{Corner, gouraud};
-use crate::show::panel::Panel;
+use crate::hard_cases::face::{Corner, gouraud};
+use crate::hard_cases::panel::Panel;
 
 /// No fill rule: every pixel whose centre is inside **or on any edge**. A triangle without area has
 /// all of its three edges everywhere on its line.
-pub(in crate::show) fn no_fill_rule(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn no_fill_rule(panel: &mut Panel, corners: &[Corner; 3]) {
     let [a, b, c] = *corners;
     let area = side(a, b, (c.x, c.y));
     let bounds = |of: fn(&Corner) -> f64| {
@@ -31,7 +31,7 @@ pub(in crate::show) fn no_fill_rule(panel: &mut Panel, corners: &[Corner; 3]) {
 
 /// Every pixel that a span touches, from the one its left end lies in to the one its right end lies
 /// in, and every row that the triangle reaches: one pixel at least, however small the triangle is.
-pub(in crate::show) fn every_pixel_touched(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn every_pixel_touched(panel: &mut Panel, corners: &[Corner; 3]) {
     let rows = corners.iter().fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c.y), high.max(c.y)));
     for y in rows.0.floor() as i32..=rows.1.floor() as i32 {
         // The part of the triangle within the row: of each edge the two ends, cut to the row.
@@ -66,7 +66,7 @@ const SLOPE: f64 = 16.0;
 /// The Hungarian tutorial's table with slopes that are cut off: every edge is walked from its first corner to its
 /// second, one addition a row, so the error of the slope is added once a row too. A neighbour walks the same
 /// edge the other way and comes to other places.
-pub(in crate::show) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut table = vec![TableRow::default(); panel.height()];
     let first_centre = |coordinate: f64| (coordinate - 0.5).ceil() as i32;
     for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
@@ -106,7 +106,7 @@ pub(in crate::show) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
 
 /// Each edge as a line x = m·y + b from the frame's own corner, m cut off: the further down the
 /// frame, the further off.
-pub(in crate::show) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corner; 3]) {
+pub(in crate::hard_cases) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corner; 3]) {
     for y in 0..panel.height() as i32 {
         let yc = f64::from(y) + 0.5;
         let mut ends = Vec::new();
@@ -127,7 +127,7 @@ pub(in crate::show) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corne
 }
 
 /// Corners on whole pixels, as all five sources have them.
-pub(in crate::show) fn whole_pixels(corners: &[Corner; 3]) -> [Corner; 3] {
+pub(in crate::hard_cases) fn whole_pixels(corners: &[Corner; 3]) -> [Corner; 3] {
     corners.map(on_whole_pixel)
 }
 
@@ -137,7 +137,7 @@ fn on_whole_pixel(corner: Corner) -> Corner {
 
 /// Drawing in bands by cutting the face itself: where it crosses from one band into the next it gets
 /// new corners, rounded to whole pixels.
-pub(in crate::show) fn cut_at_bands(panel: &mut Panel, corners: &[Corner; 3], rows_each: usize) {
+pub(in crate::hard_cases) fn cut_at_bands(panel: &mut Panel, corners: &[Corner; 3], rows_each: usize) {
     for first in (0..panel.height()).step_by(rows_each) {
         let (top, bottom) = (first as f64, (first + rows_each) as f64);
         let upper = cut(corners, |corner| corner.y - top);
@@ -176,7 +176,7 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f64) -> Vec<Corner> {
 }
 
 /// Coordinates kept as whole pixels in the 16-bit words of the time: beyond ±32,768 they wrap.
-pub(in crate::show) fn words_of_16_bits(corners: &[Corner; 3]) -> [Corner; 3] {
+pub(in crate::hard_cases) fn words_of_16_bits(corners: &[Corner; 3]) -> [Corner; 3] {
     let word = |pixels: f64| f64::from((pixels + 0.5).floor() as i64 as i16);
     corners.map(|corner| Corner { x: word(corner.x), y: word(corner.y), ..corner })
 }

@@ -1,11 +1,11 @@
 //! Shades: R2, R14, C5, N8, N9.
 
 use super::{EXACT, against_engine, edges};
-use crate::show::Comparison;
-use crate::show::engine;
-use crate::show::face::{Corner, Face, at, gouraud};
-use crate::show::fault::{paint, shade};
-use crate::show::panel::{Measure, Panel};
+use crate::hard_cases::Comparison;
+use crate::hard_cases::engine;
+use crate::hard_cases::face::{Corner, Face, at, gouraud};
+use crate::hard_cases::fault::{paint, shade};
+use crate::hard_cases::panel::{Measure, Panel};
 use mode13h::palette::builtin;
 use mode13h::raster::Interpolation;
 

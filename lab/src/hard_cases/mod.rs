@@ -11,7 +11,7 @@
 //! | `sheet` | the two side by side as a picture, with words |
 //!
 //! ```
-//! let case = mode13h_lab::show::by_id("r5").ok_or("no such case")?;
+//! let case = mode13h_lab::hard_cases::by_id("r5").ok_or("no such case")?;
 //! let comparison = case.draw();
 //! assert!(comparison.right.writes().iter().all(|writes| *writes <= 1));
 //! assert_ne!(comparison.fault, comparison.right);

@@ -4,12 +4,12 @@ use mode13h::glam::Vec3;
 
 use super::of_scene;
 use super::{EXACT, light};
-use crate::show::Comparison;
-use crate::show::engine;
-use crate::show::face::gouraud;
-use crate::show::fault::light::{Vector, View};
-use crate::show::fault::{cover, paint};
-use crate::show::panel::{Measure, Panel};
+use crate::hard_cases::Comparison;
+use crate::hard_cases::engine;
+use crate::hard_cases::face::gouraud;
+use crate::hard_cases::fault::light::{Vector, View};
+use crate::hard_cases::fault::{cover, paint};
+use crate::hard_cases::panel::{Measure, Panel};
 use mode13h::mesh::Mesh;
 use mode13h::scene::Scene;
 

@@ -4,11 +4,11 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 
 use super::{EXACT, of_scene};
-use crate::show::Comparison;
-use crate::show::engine;
-use crate::show::face::without_diagonals;
-use crate::show::fault::light::{Vector, View, cross, dot, lit_mesh, subtract, unit};
-use crate::show::panel::Measure;
+use crate::hard_cases::Comparison;
+use crate::hard_cases::engine;
+use crate::hard_cases::face::without_diagonals;
+use crate::hard_cases::fault::light::{Vector, View, cross, dot, lit_mesh, subtract, unit};
+use crate::hard_cases::panel::Measure;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::{Camera, Object, Scene};

@@ -1,10 +1,10 @@
 //! Hidden surfaces: C3, D1 to D3.
 
 use super::against_engine;
-use crate::show::Comparison;
-use crate::show::face::{Corner, Face, at, flat, without_diagonals};
-use crate::show::fault::depth;
-use crate::show::panel::{Mark, Measure};
+use crate::hard_cases::Comparison;
+use crate::hard_cases::face::{Corner, Face, at, flat, without_diagonals};
+use crate::hard_cases::fault::depth;
+use crate::hard_cases::panel::{Mark, Measure};
 
 /// Faces hide each other: which of them has a pixel counts, not how many drew it.
 const BY_DEPTH: Measure = Measure { shades: 0, counts_writes: false, other_byte: Mark::Face };

@@ -1,40 +1,40 @@
 //! Faults of light and of projection, on a view of their own.
 
 use super::paint;
-use crate::show::face::{Corner, gouraud};
-use crate::show::panel::Panel;
+use crate::hard_cases::face::{Corner, gouraud};
+use crate::hard_cases::panel::Panel;
 
-pub(in crate::show) type Vector = [f64; 3];
+pub(in crate::hard_cases) type Vector = [f64; 3];
 
-pub(in crate::show) fn dot(a: Vector, b: Vector) -> f64 {
+pub(in crate::hard_cases) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(in crate::show) fn subtract(a: Vector, b: Vector) -> Vector {
+pub(in crate::hard_cases) fn subtract(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(in crate::show) fn cross(a: Vector, b: Vector) -> Vector {
+pub(in crate::hard_cases) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub(in crate::show) fn unit(v: Vector) -> Vector {
+pub(in crate::hard_cases) fn unit(v: Vector) -> Vector {
     // Of the zero vector NaN: here the faults begin.
     v.map(|c| c / dot(v, v).sqrt())
 }
 
 /// An eye on the z axis, looking along −z, in a frame of square pixels.
 #[derive(Clone, Copy)]
-pub(in crate::show) struct View {
-    pub(in crate::show) size: (usize, usize),
-    pub(in crate::show) eye: Vector,
+pub(in crate::hard_cases) struct View {
+    pub(in crate::hard_cases) size: (usize, usize),
+    pub(in crate::hard_cases) eye: Vector,
     /// Angle from the upper to the lower edge, in radians.
-    pub(in crate::show) field_of_view: f64,
+    pub(in crate::hard_cases) field_of_view: f64,
 }
 
 impl View {
     /// A point on the screen **whatever the sign of w**: behind the eye both coordinates change sides.
-    pub(in crate::show) fn project(&self, point: Vector, shade: f64) -> Corner {
+    pub(in crate::hard_cases) fn project(&self, point: Vector, shade: f64) -> Corner {
         let [x, y, z] = subtract(point, self.eye);
         let (width, height) = (self.size.0 as f64, self.size.1 as f64);
         let scale = height / 2.0 / libm::tan(self.field_of_view / 2.0);
@@ -43,13 +43,13 @@ impl View {
     }
 
     /// Distance of a point in front of the eye.
-    pub(in crate::show) fn w(&self, point: Vector) -> f64 {
+    pub(in crate::hard_cases) fn w(&self, point: Vector) -> f64 {
         self.eye[2] - point[2]
     }
 }
 
 /// Draws the faces of a mesh that are turned towards the eye, or all, with these bytes at the vertices.
-pub(in crate::show) fn lit_mesh(
+pub(in crate::hard_cases) fn lit_mesh(
     panel: &mut Panel,
     view: View,
     positions: &[Vector],
