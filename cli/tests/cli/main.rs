@@ -7,5 +7,6 @@ mod commands;
 mod cost;
 mod files;
 mod record;
+mod terminal;
 mod verify;
 mod words;
