@@ -10,6 +10,7 @@
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
 //! | [`auto_palette`] | a palette for a scene, from what is visible of it over a loop |
 //! | [`animation`] | animated GIF and PNG, and Y4M for other programs |
+//! | [`terminal`] | pictures as sixels, and by kitty's graphics protocol |
 //!
 //! [`SceneExt`] adds methods that read files to [`Scene`](mode13h::scene::Scene).
 //!
@@ -36,6 +37,8 @@ mod scene_ext;
 pub mod scene_file;
 #[cfg(feature = "std")]
 pub mod shipped;
+#[cfg(feature = "std")]
+pub mod terminal;
 #[cfg(feature = "std")]
 pub mod texture;
 #[cfg(feature = "std")]

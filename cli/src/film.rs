@@ -72,7 +72,7 @@ pub(crate) struct Film {
 
 impl Film {
     /// 4:3 in square pixels, as browsers show them.
-    const SCALE: Scale = Scale::To { width: 640, height: 480 };
+    pub(crate) const SCALE: Scale = Scale::To { width: 640, height: 480 };
 
     /// A film of `frames` frames, or of one, in mode 13h or in square pixels of a size.
     pub(crate) fn new(

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::fmt;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -14,6 +15,7 @@ use mode13h::settings::Accuracy;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_assets::animation::FrameRate;
+use mode13h_assets::terminal::Protocol;
 use mode13h_lab::cost::{calibrate, time_frame};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -23,7 +25,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::host::clock;
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite};
+use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite, one_of};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
@@ -38,11 +40,26 @@ pub(crate) struct Options {
     /// file is overwritten.
     ///
     /// With - an animation goes to standard output in Y4M: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
-    /// Y4M rounds colours to YCbCr; those of .apng are exact.
+    /// Y4M rounds colours to YCbCr; those of .apng are exact. If standard output is a terminal, - shows a picture there: see
+    /// --to.
     ///
     /// [default: INPUT.png in the current directory, never overwritten without --force]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Show the picture in the terminal: sixel or kitty
+    ///
+    /// It goes to standard output, by DEC's sixels or by the graphics protocol of kitty. Sixels give colours in whole percents;
+    /// those of kitty are exact.
+    ///
+    /// [default: with -o - on a terminal kitty, if the environment names kitty or Ghostty, or else sixel]
+    #[arg(
+        long,
+        value_name = "PROTOCOL",
+        value_parser = one_of(Protocol::ALL, Protocol::name),
+        hide_possible_values = true,
+        conflicts_with_all = ["rgb", "json"],
+    )]
+    to: Option<Protocol>,
     /// Overwrite INPUT.png
     #[arg(long)]
     force: bool,
@@ -75,7 +92,7 @@ pub(crate) struct Options {
     ///
     /// 5x6 makes mode 13h exactly 4:3.
     ///
-    /// [default: 1; for mode 13h 5x6 with --rgb, and 640x480 in an animation]
+    /// [default: 1; for mode 13h 5x6 with --rgb, and 640x480 in an animation or a terminal]
     #[arg(long, value_name = "SCALE")]
     scale: Option<Scale>,
     /// Write true colour instead of a palette; PNG only
@@ -102,6 +119,9 @@ impl Options {
     /// The name that was given, or one made from the INPUT's.
     fn out(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
+            if self.to.is_some() {
+                return "-".into();
+            }
             let name = input::name_of(&self.input);
             let number = if self.frames.is_some_and(|frames| frames > 1) { "-%04d" } else { "" };
             // A % of its own would be taken for the place of a number.
@@ -132,7 +152,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Err(Failure::words("-: the animation is on standard output, which leaves no room for --json"));
     }
     let input = options.drawing.input(&options.input)?;
-    let is_still = matches!(out, Out::Pictures(_, 1));
+    let is_still = matches!(out, Out::Pictures(_, 1) | Out::Terminal(_));
     let stage = if is_still { options.drawing.still(input) } else { options.drawing.stage(input) }?;
     out.lasts(stage.seconds());
     let frames = out.frames();
@@ -189,6 +209,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             let each = |n| renderer_pool.work(|artist| picture(names, artist, n));
             (0..*frames).into_par_iter().try_for_each(each).map(|()| None)
         }),
+        Out::Terminal(protocol) => renderer_pool.work(|artist| {
+            draw(artist, 0)?;
+            let scale = options.scale.unwrap_or(if options.size.is_some() { Scale::One } else { Film::SCALE });
+            let shown = protocol.picture(&artist.frame().picture(), scale).map_err(Failure::from)?;
+            output::print(&(shown + "\n")).map(|()| None)
+        }),
         Out::Film(film) => {
             let fades = stage.scene.palette_animation.is_some();
             pool()?.install(|| film.write(fades, &progress, &renderer_pool, frame))
@@ -208,7 +234,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     match film {
         Some(film) => output::say(&film.line),
-        None if options.out.is_none() => {
+        None if options.out.is_none() && options.to.is_none() => {
             let names = out.files().into_iter().map(|file| on_one_line(&file.to_string_lossy()) + "\n");
             output::say(&names.collect::<String>())
         }
@@ -262,14 +288,25 @@ enum Out {
     /// This many pictures.
     Pictures(Names, u32),
     Film(Film),
+    /// A picture on standard output.
+    Terminal(Protocol),
 }
 
 impl Out {
     fn new(options: &Options, out: &Path) -> Result<Out, Failure> {
-        let Options { frames, turn, fps, rgb, size, scale, .. } = options;
+        let Options { frames, turn, fps, rgb, size, scale, to, .. } = options;
         let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
         let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
-        if ends_in("png") {
+        let is_stream = film_kind(out) == Some(Kind::Stream);
+        if to.is_some() && !is_stream {
+            return Err(wrong(&"--to shows the picture in the terminal, so -o can only be -"));
+        }
+        if is_stream && (to.is_some() || io::stdout().is_terminal()) {
+            if frames.is_some_and(|frames| frames > 1) {
+                return Err(Failure::words("a terminal is shown one picture; `mode13h demo --terminal` moves"));
+            }
+            Ok(Out::Terminal(to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)))))
+        } else if ends_in("png") {
             if turn.is_some() && fps.is_some() {
                 return Err(wrong(&"both --turn and --fps say how far the model turns between pictures: give one"));
             }
@@ -309,6 +346,7 @@ impl Out {
         match self {
             Out::Pictures(names, frames) => (0..*frames).map(|number| names.of(number)).collect(),
             Out::Film(film) => film.file().map(Path::to_path_buf).into_iter().collect(),
+            Out::Terminal(_) => Vec::new(),
         }
     }
 
@@ -317,6 +355,7 @@ impl Out {
         match self {
             Out::Pictures(names, frames) => names.spare(*frames),
             Out::Film(film) => film.file().map_or(Ok(()), read_files::spare),
+            Out::Terminal(_) => Ok(()),
         }
     }
 
@@ -324,6 +363,7 @@ impl Out {
         match self {
             Out::Pictures(_, frames) => *frames,
             Out::Film(film) => film.frames(),
+            Out::Terminal(_) => 1,
         }
     }
 }

@@ -10,6 +10,7 @@
 //! | `background` | a thread that the picture does not wait for |
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
+//! | `terminal` | all of it in a terminal instead, without the rest |
 
 mod background;
 mod choice;
@@ -20,6 +21,7 @@ mod loader;
 mod motion;
 mod pixel;
 mod shading;
+mod terminal;
 mod timing;
 
 use std::ffi::OsString;
@@ -27,6 +29,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use mode13h::export::Scale;
 use mode13h::palette::{Palette, builtin};
 use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::Scene;
@@ -35,9 +38,10 @@ use mode13h::settings::Settings;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
+use mode13h_assets::terminal::Protocol;
 
 use crate::failure::Failure;
-use crate::options::{Drawing, Moment, ShadingOptions};
+use crate::options::{Drawing, Moment, ShadingOptions, one_of};
 use crate::overlay::{self, Sheet, Side};
 use crate::toggles::Switch;
 use crate::turntable::Colors;
@@ -81,6 +85,40 @@ Keys in the window:
 pub(crate) struct Options {
     #[arg(default_value = "torus", value_name = "INPUT", help = input::HELP, long_help = long_help_on_inputs())]
     inputs: Vec<OsString>,
+    /// Show INPUT in the terminal instead of a window
+    ///
+    /// The terminal must show pictures, as xterm, foot, kitty and others do, also over ssh. Arrows turn, + and - zoom, Space
+    /// stops time; q, Esc or Ctrl-C ends.
+    #[arg(long, conflicts_with = "max_time")]
+    terminal: bool,
+    /// How the terminal takes pictures: sixel or kitty
+    ///
+    /// Sixels give colours in whole percents; those of kitty are exact.
+    ///
+    /// [default: kitty, if the environment names kitty or Ghostty, or else sixel]
+    #[arg(
+        long,
+        value_name = "PROTOCOL",
+        value_parser = one_of(Protocol::ALL, Protocol::name),
+        hide_possible_values = true,
+        hide_short_help = true,
+        requires = "terminal",
+    )]
+    to: Option<Protocol>,
+    /// Enlarge the frame in the terminal: 2, 5x6, or to a size like 640x480
+    ///
+    /// [default: 640x480, or 320x240 if the terminal has no room for that or does not say]
+    #[arg(long, value_name = "SCALE", hide_short_help = true, requires = "terminal")]
+    scale: Option<Scale>,
+    /// End after N frames in the terminal
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..),
+        hide_short_help = true,
+        requires = "terminal",
+    )]
+    frames: Option<u32>,
     #[command(flatten)]
     moment: Moment,
     #[command(flatten)]
@@ -118,7 +156,14 @@ fn long_help_on_inputs() -> String {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { inputs, moment, drawing, shading } = options.clone();
+    let Options { inputs, terminal, to, scale, frames, moment, drawing, shading } = options.clone();
+    if terminal {
+        let sending = terminal::Sending { to, scale, frames };
+        sending.check(&inputs)?;
+        let [.., input] = inputs.as_slice() else { return Ok(()) };
+        let (stage, kernel) = (drawing.stage(drawing.input(input)?)?, drawing.kernel()?);
+        return sending.run(stage, shading.renderer(&drawing, kernel), moment.of_first());
+    }
     let inputs = Arc::new(Inputs { moment, drawing, shading, words: inputs });
     let kernel = inputs.drawing.kernel()?;
     let loader = Loader::start(Arc::clone(&inputs))?;

@@ -12,15 +12,15 @@ pub(super) const STOPPED: &str = "stopped";
 /// Speed of turning by the arrow keys, in radians a second.
 const ARROW_SPEED: f64 = 2.0;
 /// Angle by which one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
-const ARROW_TAP: f64 = 0.05;
+pub(super) const ARROW_TAP: f64 = 0.05;
 /// Angle by which a drag over one pixel of the frame turns, in radians: half a turn over its width.
 const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
 /// A pixel's height in pixel widths.
 const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f64;
 /// Factor by which one notch of the wheel, or one + or -, enlarges.
-const NOTCH: f64 = 1.1;
+pub(super) const NOTCH: f64 = 1.1;
 /// The least and the greatest enlargement.
-const ZOOM: (f64, f64) = (0.25, 8.0);
+pub(super) const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
 const LONGEST_FRAME: f64 = 0.1;
 

@@ -6,5 +6,6 @@ mod cases;
 mod commands;
 mod cost;
 mod files;
+mod terminal;
 mod verify;
 mod words;

@@ -9,6 +9,7 @@ use mode13h::settings::DitherPattern;
 use mode13h::settings::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h_assets::shipped;
+use mode13h_assets::terminal::Protocol;
 
 use crate::support::tried::Tried;
 
@@ -143,6 +144,7 @@ fn documents_give_options_values_that_they_take() {
                     "--dither" => value.parse::<DitherPattern>().is_ok(),
                     "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
+                    "--to" => value.parse::<Protocol>().is_ok(),
                     "--arithmetic" => value.parse::<VertexPath>().is_ok(),
                     "--palette" => value == "auto" || mode13h::palette::builtin::by_name(value).is_some(),
                     _ => continue,
