@@ -124,12 +124,6 @@ pub fn integer_frame<'a>(
     renderer.integer_frame(scene, screen)
 }
 
-/// Rounds projected vertices once more, to so many bits after the point: 8, the default, or fewer; 0 gives whole pixels.
-/// Points that clipping makes stay.
-pub fn set_vertex_bits(renderer: &mut Renderer, bits: u32) {
-    renderer.set_vertex_bits(bits);
-}
-
 /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to an entry of the palette; `None`, the
 /// default, mixes them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {

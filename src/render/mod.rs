@@ -75,9 +75,6 @@ struct Drawing {
     palette: Option<Palette>,
 }
 
-/// Bits after the point of what the raster takes.
-const VERTEX_BITS: u32 = 8;
-
 /// What is kept from frame to frame: the plan, vertices, tables, and what they were made from.
 #[derive(Debug, Default)]
 struct Cache {
@@ -130,8 +127,6 @@ pub struct Renderer {
     pub kernel: Kernel,
     /// Effects that are switched by hand.
     overrides: Overrides,
-    /// Bits after the point of projected vertices; 8 as the raster has them.
-    vertex_bits: u32,
     cache: Cache,
     scratch: Scratch,
     /// The machine's stamp after the last frame, and what it came to.
@@ -146,7 +141,6 @@ impl Renderer {
             settings: Settings::default(),
             kernel: Kernel::default(),
             overrides: Overrides::default(),
-            vertex_bits: VERTEX_BITS,
             cache: Cache::default(),
             scratch: Scratch::default(),
             last: None,
@@ -157,14 +151,6 @@ impl Renderer {
     #[must_use]
     pub fn with_same_settings(&self) -> Self {
         Self { settings: self.settings, kernel: self.kernel, overrides: self.overrides.clone(), ..Self::new() }
-    }
-
-    /// Rounds projected vertices once more, to so many bits after the point: 8, as they are, or fewer, so to whole pixels
-    /// with 0. Points that clipping makes stay as they are. For those who measure what rounding costs.
-    pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
-        self.vertex_bits = bits.min(VERTEX_BITS);
-        // Vertices that are kept are rounded otherwise.
-        self.cache.states.clear();
     }
 
     /// Switches an effect on or off for every object, or leaves it to the plan, as a new renderer does.
@@ -426,8 +412,8 @@ impl Renderer {
             }
             if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
-                if self.vertex_bits < VERTEX_BITS {
-                    state.round_vertices(self.vertex_bits);
+                if let Some(bits) = settings.vertex_bits {
+                    state.round_vertices(bits);
                 }
             } else {
                 stats.kept += 1;

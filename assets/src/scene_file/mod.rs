@@ -54,6 +54,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::de::Deserializer;
 
+use crate::look::Look;
 use build::Builder;
 use error::{Fault, not_a_scene, not_toml};
 pub use error::{SceneError, SceneErrorKind};
@@ -69,6 +70,9 @@ pub use renamed::{GOURAUD, in_full};
 pub struct Loaded {
     /// The scene, at time 0.
     pub scene: Scene,
+    /// The look that it asks for, which the scene has: if that makes it prefer an automatic palette, the colours are still to
+    /// be [rounded](Look::rounded).
+    pub look: Option<Look>,
     /// The warnings, one line each, with a file and the place in it.
     pub warnings: Vec<String>,
     /// The files that were read or looked for: the scene's own if it was loaded from one, and the models, MTL files,
@@ -147,5 +151,5 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
     // Also those that are not looked for, as no face has texture coordinates.
     let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
     files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
-    Ok(Loaded { scene, warnings, files })
+    Ok(Loaded { scene, look: layout.look.map(|look| look.0), warnings, files })
 }
