@@ -124,12 +124,6 @@ pub fn integer_frame<'a>(
     renderer.integer_frame(scene, screen)
 }
 
-/// Rounds projected vertices again, to this many fractional bits: 8, the default, or fewer; 0 gives whole pixels.
-/// Vertices created by clipping are not affected.
-pub fn set_vertex_bits(renderer: &mut Renderer, bits: u32) {
-    renderer.set_vertex_bits(bits);
-}
-
 /// Shows the shades of one channel, 0 red, 1 green, 2 blue, where three would be combined to a palette entry; `None`,
 /// the default, combines them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {

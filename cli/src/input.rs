@@ -16,6 +16,7 @@ use mode13h::mesh::{Mesh, Weight, shapes};
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::{Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
+use mode13h_assets::look::Look;
 use mode13h_assets::model;
 use mode13h_assets::model_file::{self, Embedded, Format, ModelFileError, Options};
 use mode13h_assets::palette_file::{self, LoadErrorKind};
@@ -52,7 +53,7 @@ impl Model {
 /// Scene or model that INPUT names.
 pub(crate) enum Input {
     Model(Box<Model>),
-    Scene { name: String, scene: Box<Scene> },
+    Scene { name: String, scene: Box<Scene>, look: Option<Look> },
 }
 
 impl Input {
@@ -173,12 +174,12 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         return model_or(words, options, &format!("models are {} files, scenes .toml", Format::extensions()), &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene_file::Loaded { scene, warnings, files, .. } = loaded.map_err(Failure::from)?;
+    let scene_file::Loaded { scene, look, warnings, files, .. } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);
     }
-    Ok(Input::Scene { name: name_of(words), scene: Box::new(scene) })
+    Ok(Input::Scene { name: name_of(words), scene: Box::new(scene), look })
 }
 
 /// No scene is longer; what is, is refused as too long.

@@ -15,6 +15,7 @@ use mode13h::scene::{Scene, UpAxis};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::span::Kernel;
+use mode13h_assets::look::{Look, LookColors};
 use mode13h_assets::model_file::Options;
 use mode13h_assets::scene_file::{GOURAUD, in_full};
 
@@ -59,6 +60,15 @@ pub(crate) struct Drawing {
         long_help = long_help_on_palettes(),
     )]
     palette: Option<OsString>,
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = one_of(Look::ALL, Look::name),
+        hide_possible_values = true,
+        help = "Look like ps1, vga, gameboy, cga or pico8",
+        long_help = long_help_on_looks(),
+    )]
+    look: Option<Look>,
     /// Clear the frame to COLOUR
     ///
     /// '#rrggbb' or rrggbb, for the nearest colour in the palette; or the number of an entry, 0 to 255.
@@ -118,6 +128,13 @@ struct Pipeline {
     /// Draw without dither
     #[arg(long, hide_short_help = true)]
     no_dither: bool,
+    /// Round vertices to N bits after the point, 0 to 8
+    ///
+    /// 0 puts them on whole pixels.
+    ///
+    /// [default: the scene's, or else 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(..=8), hide_short_help = true)]
+    vertex_bits: Option<u8>,
     #[arg(
         long,
         value_name = "NAME",
@@ -232,6 +249,7 @@ impl Drawing {
     /// Makes the stage of INPUT, drawn as was asked for.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
+        let look_of_scene = if let Input::Scene { look, .. } = &input { *look } else { None };
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let name = model.name.clone();
@@ -264,7 +282,18 @@ impl Drawing {
         if let Some(shades) = self.pipeline.tessellation {
             stage.scene.settings.tessellation = Some(shades);
         }
-        let colors = asked.or(usual);
+        if let Some(look) = self.look.or(look_of_scene) {
+            stage.set_look(look);
+        }
+        let of_look = self.look.and_then(|look| {
+            stage.take_settings(look);
+            match look.colors() {
+                LookColors::Made => Some(Colors::Auto),
+                LookColors::Palette(palette) => Some(Colors::Palette(palette)),
+                _ => None,
+            }
+        });
+        let colors = asked.or(of_look).or(usual);
         if colors == Some(Colors::Auto) && self.pipeline.arithmetic == Some(VertexPath::Integer) {
             stage.only_what_integers_draw();
         }
@@ -294,12 +323,13 @@ impl Drawing {
 
     /// A renderer with the settings of the command line, except for the shading.
     pub(crate) fn renderer(&self, kernel: Kernel) -> Renderer {
-        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, .. } = self.pipeline;
+        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, vertex_bits, arithmetic, .. } = self.pipeline;
         let mut renderer = Renderer::new();
         renderer.kernel = kernel;
         renderer.settings.hidden_surfaces = hidden_surfaces;
         renderer.settings.mapping = mapping;
         renderer.settings.mipmaps = (mipmaps || no_mipmaps).then_some(mipmaps);
+        renderer.settings.vertex_bits = vertex_bits;
         renderer.settings.vertex_path = arithmetic;
         renderer
     }
@@ -399,6 +429,14 @@ fn long_help_on_dither() -> String {
     format!(
         "Mix shades between two colours as a pattern of both: {}\n\n[default: the scene's, or else none]",
         DitherPattern::ALL.map(DitherPattern::name).join(", ")
+    )
+}
+
+fn long_help_on_looks() -> String {
+    format!(
+        "The look of an old machine: {}. It sets --palette, --dither, --mapping, --no-mipmaps and --vertex-bits, and what these \
+         options say comes first.\n\n[default: the scene's, or else none]",
+        Look::ALL.map(Look::name).join(", ")
     )
 }
 

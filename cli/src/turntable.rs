@@ -10,6 +10,7 @@ use mode13h::scene::{Camera, Motion, Moving, Object, Scene, Shared, UpAxis};
 use mode13h::settings::DitherPattern;
 use mode13h::texture::Texture;
 use mode13h_assets::auto_palette::{self, AutomaticPalette};
+use mode13h_assets::look::Look;
 use mode13h_assets::model::{studio, with_textures};
 
 /// Colours of the frame's bytes.
@@ -73,6 +74,8 @@ pub(crate) struct Turntable {
     own_dither: Option<DitherPattern>,
     /// Dither or none, whatever the scene and the palette, if that was asked for.
     dither: Option<Option<DitherPattern>>,
+    /// The look whose colours an automatic palette gets.
+    look: Option<Look>,
     /// Made when first asked for.
     automatic: Option<AutomaticPalette>,
     /// Colours that were chosen last.
@@ -123,6 +126,7 @@ impl Turntable {
             palette,
             own_dither,
             dither: None,
+            look: None,
             automatic: None,
             colors: None,
         }
@@ -204,6 +208,17 @@ impl Turntable {
         self.dither = Some(dither);
     }
 
+    /// Sets the look that automatic palettes are rounded for.
+    pub(crate) fn set_look(&mut self, look: Look) {
+        (self.look, self.automatic) = (Some(look), None);
+    }
+
+    /// Takes the settings of a look, from the next [`set_colors`](Self::set_colors) on, in place of the scene's own.
+    pub(crate) fn take_settings(&mut self, look: Look) {
+        self.scene.settings = look.settings().or(&self.scene.settings);
+        self.own_dither = self.scene.settings.dither;
+    }
+
     /// Images on or off. Where there are none, each surface gets a chequered one: by the mesh's texture coordinates, or
     /// else as what the surface mirrors. An automatic palette is made again.
     pub(crate) fn set_images(&mut self, on: bool) -> Result<(), RenderError> {
@@ -244,8 +259,8 @@ impl Turntable {
     }
 
     /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
-    /// objects are drawn in the nearest entries to their own colours, with dither, as no palette for everything has many
-    /// shades of one colour.
+    /// objects are drawn in the nearest entries to their own colours, or to those of the ramps that they had, with dither, as
+    /// no palette for everything has many shades of one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dither = self.own_dither;
         let shown = self.materials_shown();
@@ -257,8 +272,7 @@ impl Turntable {
                 if object.materials.iter().any(named) {
                     dither.get_or_insert_default();
                 }
-                let shown = object.materials.iter().zip(object.mesh().surfaces());
-                object.materials = shown.map(|(material, surface)| material.in_own_colors(surface)).collect();
+                object.materials = auto_palette::without_ramps(object, self.palette.as_ref());
             }
         }
         self.scene.settings.dither = self.dither.unwrap_or(dither);
@@ -280,7 +294,13 @@ impl Turntable {
     pub(crate) fn automatic(&mut self) -> Result<&AutomaticPalette, RenderError> {
         let made = match self.automatic.take() {
             Some(made) => made,
-            None => auto_palette::of_scene(&self.round())?,
+            None => {
+                let mut made = auto_palette::of_scene(&self.round())?;
+                if let Some(look) = self.look {
+                    made.palette = look.rounded(&made.palette);
+                }
+                made
+            }
         };
         Ok(self.automatic.insert(made))
     }
@@ -297,7 +317,7 @@ impl Turntable {
 
     /// Leaves out what the 16.16 path does not draw, so that no palette is made for it.
     pub(crate) fn only_what_integers_draw(&mut self) {
-        self.scene.fog = None;
+        (self.scene.fog, self.scene.settings.channels) = (None, None);
         for light in self.scene.lights_mut() {
             *light = light.with_intensity(light.brightness()).with_color([1.0; 3]);
         }

@@ -449,6 +449,9 @@ impl Rules<'_> {
         if let Some(material) = self.object.materials.iter().position(Material::takes_channels) {
             return Decision::on(Reason::ColoredMaterial { material });
         }
+        if self.inputs.settings.channels == Some(true) {
+            return Decision::on(Reason::Asked);
+        }
         if self.misses_ramp() { Decision::on(Reason::NoRamps) } else { Decision::off(Reason::NoColor) }
     }
 

@@ -75,9 +75,6 @@ struct Drawing {
     palette: Option<Palette>,
 }
 
-/// Fraction bits of the raster's input.
-const VERTEX_BITS: u32 = 8;
-
 /// What is cached from frame to frame: the plan, vertices, tables, and their inputs.
 #[derive(Debug, Default)]
 struct Cache {
@@ -130,8 +127,6 @@ pub struct Renderer {
     pub kernel: Kernel,
     /// Effects that are forced on or off.
     overrides: Overrides,
-    /// Fraction bits of projected vertices; the raster uses 8.
-    vertex_bits: u32,
     cache: Cache,
     scratch: Scratch,
     /// The machine's stamp after the last frame, and that frame's counts.
@@ -146,7 +141,6 @@ impl Renderer {
             settings: Settings::default(),
             kernel: Kernel::default(),
             overrides: Overrides::default(),
-            vertex_bits: VERTEX_BITS,
             cache: Cache::default(),
             scratch: Scratch::default(),
             last: None,
@@ -157,14 +151,6 @@ impl Renderer {
     #[must_use]
     pub fn with_same_settings(&self) -> Self {
         Self { settings: self.settings, kernel: self.kernel, overrides: self.overrides.clone(), ..Self::new() }
-    }
-
-    /// Rounds projected vertices once more, to this many fraction bits: 8, the default, or fewer, with 0 for whole
-    /// pixels. Points that clipping adds are not rounded. For measuring what rounding costs.
-    pub(crate) fn set_vertex_bits(&mut self, bits: u32) {
-        self.vertex_bits = bits.min(VERTEX_BITS);
-        // Cached vertices are rounded differently.
-        self.cache.states.clear();
     }
 
     /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
@@ -423,8 +409,8 @@ impl Renderer {
             }
             if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
-                if self.vertex_bits < VERTEX_BITS {
-                    state.round_vertices(self.vertex_bits);
+                if let Some(bits) = settings.vertex_bits {
+                    state.round_vertices(bits);
                 }
             } else {
                 stats.kept += 1;

@@ -43,6 +43,8 @@ struct VertexInputs {
     fog: Option<Fog>,
     accuracy: Accuracy,
     tolerance: f32,
+    /// The bits after the point that they are rounded to once more.
+    bits: Option<u8>,
 }
 
 impl VertexInputs {
@@ -65,6 +67,7 @@ impl VertexInputs {
         changed |= replace(&mut self.ramps, scene.palette.as_ref().map_or(0, Palette::ramps));
         changed |= replace(&mut self.fog, scene.fog);
         changed |= replace(&mut self.accuracy, settings.drawn_accuracy());
+        changed |= replace(&mut self.bits, settings.vertex_bits);
         changed | replace(&mut self.tolerance, settings.tolerance())
     }
 
@@ -180,6 +183,7 @@ impl ObjectState {
                     fog: None,
                     accuracy: settings.drawn_accuracy(),
                     tolerance: settings.tolerance(),
+                    bits: settings.vertex_bits,
                 };
                 source.renew(scene, object, view, settings);
                 self.source = Some(source);
@@ -432,7 +436,7 @@ impl ObjectState {
     }
 
     /// Rounds its vertices once more.
-    pub(super) fn round_vertices(&mut self, bits: u32) {
+    pub(super) fn round_vertices(&mut self, bits: u8) {
         vertex::requantize(bits, &mut self.columns);
     }
 

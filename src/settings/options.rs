@@ -118,6 +118,13 @@ pub struct Settings {
     /// The arithmetic for vertices; f32 unless 16.16 is requested. 16.16 has no error budget and not every shading; it
     /// uses the nearest one that it has.
     pub vertex_path: Option<VertexPath>,
+    /// Bits after the point of projected vertices: 8, which are there, or fewer, to which they are rounded once more, half up.
+    /// 0 puts vertices on whole pixels, so that a model that moves slowly wobbles. Points that clipping makes keep their 8
+    /// bits, and so does the 16.16 path; shadings state their errors, and budgets prove theirs, for 8.
+    pub vertex_bits: Option<u8>,
+    /// True to light every material on three channels and mix their light to the nearest colours, whether it is coloured or not.
+    /// For palettes of few colours: there dither reaches textures, too.
+    pub channels: Option<bool>,
 }
 
 impl Settings {
@@ -135,6 +142,8 @@ impl Settings {
             tessellation: self.tessellation.or(other.tessellation),
             dither: self.dither.or(other.dither),
             vertex_path: self.vertex_path.or(other.vertex_path),
+            vertex_bits: self.vertex_bits.or(other.vertex_bits),
+            channels: self.channels.or(other.channels),
         }
     }
 

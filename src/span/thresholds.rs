@@ -11,6 +11,8 @@ named! {
         Ordered = "ordered",
         /// A 64 × 64 void-and-cluster mask: grain without a visible pattern.
         BlueNoise = "blue-noise",
+        /// The 4 × 4 matrix of the `PlayStation`: eight thresholds, each twice.
+        Ps1 = "ps1",
     }
 }
 
@@ -21,6 +23,7 @@ impl DitherPattern {
         match self {
             Self::Ordered => Thresholds(&BAYER),
             Self::BlueNoise => Thresholds(&BLUE_NOISE),
+            Self::Ps1 => Thresholds(&PS1),
         }
     }
 }
@@ -119,6 +122,32 @@ static BAYER: [ThresholdRow; 8] = {
             }
             // At most 253.
             thresholds[x] = (((2 * rank + 1) * 255 + 64) / 128) as u8;
+            x += 1;
+        }
+        rows[y] = ThresholdRow::new(&thresholds);
+        y += 1;
+    }
+    rows
+};
+
+/// What the `PlayStation` adds to each channel of 8 bits before it cuts off the lower three (Martin Korth, *Nocash PSX
+/// Specifications*, "24bit RGB to 15bit RGB Dithering").
+///
+/// ```text
+/// threshold = nearest((2·(offset + 4) + 1) · 255 / 16)        offset −4 to 3
+/// ```
+///
+/// That is the middle of the offset's eighth of 0 to 255.
+static PS1: [ThresholdRow; 4] = {
+    const OFFSETS: [[i32; 4]; 4] = [[-4, 0, -3, 1], [2, -2, 3, -1], [-3, 1, -4, 0], [3, -1, 2, -2]];
+    let mut rows = [ThresholdRow::new(&[0]); 4];
+    let mut y = 0;
+    while y < 4 {
+        let mut thresholds = [0; 4];
+        let mut x = 0;
+        while x < 4 {
+            // 16 to 239.
+            thresholds[x] = (((2 * (OFFSETS[y][x] + 4) + 1) * 255 + 8) / 16) as u8;
             x += 1;
         }
         rows[y] = ThresholdRow::new(&thresholds);

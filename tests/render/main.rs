@@ -26,3 +26,5 @@ mod on_screen;
 mod plan;
 #[cfg(feature = "alloc")]
 mod tessellation;
+#[cfg(feature = "alloc")]
+mod vertex_bits;

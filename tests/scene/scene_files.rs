@@ -148,11 +148,16 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (cube("render = { shading = 3 }"), "2:22: key `render.shading`: expected a name in quotes, found integer `3`"),
         (
             cube("render.dither = 'yes'"),
-            "2:17: key `render.dither`: \"yes\": unknown dither pattern; there are ordered, blue-noise",
+            "2:17: key `render.dither`: \"yes\": unknown dither pattern; there are ordered, blue-noise, ps1",
         ),
         (
             cube("render.dither = 1"),
             "2:17: key `render.dither`: expected true, false, or a name in quotes, found integer `1`",
+        ),
+        (cube("look = 'nes'"), "2:8: key `look`: \"nes\": unknown look; there are ps1, vga, gameboy, cga, pico8"),
+        (
+            cube("render.vertex-bits = 9"),
+            "2:22: key `render.vertex-bits`: expected a number of bits, a whole number from 0 to 8, found 9",
         ),
         // Spot lights.
         (

@@ -165,6 +165,25 @@ fn the_matrix_is_bayers() {
     }
 }
 
+/// What a PlayStation adds to a channel before it cuts off three bits.
+#[test]
+fn the_matrix_of_the_playstation_cuts_off_three_bits_as_it_does() {
+    const OFFSETS: [[i32; 4]; 4] = [[-4, 0, -3, 1], [2, -2, 3, -1], [-3, 1, -4, 0], [3, -1, 2, -2]];
+    for (y, row) in OFFSETS.iter().enumerate() {
+        for (x, offset) in row.iter().enumerate() {
+            let threshold = DitherPattern::Ps1.thresholds().row(y + 4).at(x + 4);
+            // A shade of 8.8 whose steps are those of 5 bits, so that dither chooses among them; no sum is above 255.
+            for channel in 4..=252 {
+                let mut byte = [0];
+                // Less the half of a step, 4, that the offsets begin at.
+                let shade = ((channel - 4) * 32) as u16;
+                fill_dithered(&mut byte, shade, 0, DitherPattern::Ps1.thresholds().row(y), x);
+                assert_eq!(i32::from(byte[0]), (channel + offset) >> 3, "{channel} at {x}, {y}: {threshold}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_thresholds_are_spread_evenly() {
     let pattern = DitherPattern::Ordered.thresholds();

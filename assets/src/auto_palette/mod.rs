@@ -68,7 +68,8 @@ impl AutomaticPalette {
 /// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
 /// under a coloured light. They are measured in true colour, and share the block of the textures. Under coloured light
 /// there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
-/// measured colours.
+/// measured colours. The same holds if the scene's settings
+/// ask for three channels.
 ///
 /// ```
 /// use mode13h::mesh::shapes;
@@ -89,7 +90,7 @@ impl AutomaticPalette {
 /// # Errors
 /// Those of [`Renderer::draw`].
 pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
-    let in_channels = mixed::has_colored_light(scene);
+    let in_channels = mixed::has_colored_light(scene) || scene.settings.channels == Some(true);
     let mut tints = Tints::default();
     let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
     let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
@@ -255,6 +256,28 @@ fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     let added = |i: usize| (brightest[i] - color[i]).max(0.0) / material.specular;
     let highlight = if material.is_specular() { core::array::from_fn(added) } else { [1.0; 3] };
     (color.map(|channel| channel / full), highlight)
+}
+
+/// An object's materials for a palette without ramps: each that names a ramp by its number in its
+/// [own colours](Material::own_colors), or, if it has none and no image, in the colour that the ramp of `palette`, which it
+/// is made for, has at half light. (At its end a ramp is often white, as there are highlights.)
+#[must_use]
+pub fn without_ramps(object: &Object, palette: Option<&Palette>) -> Vec<Material> {
+    let plain = Surface::default();
+    let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
+    let of = |(material, surface): (&Material, &Surface)| {
+        let has_image = material.texture.is_some() || material.environment.is_some();
+        let is_plain = !has_image && material.own_colors(surface) == ([1.0; 3], [1.0; 3]);
+        let is_numbered = is_plain && matches!(material.ramp, RampChoice::Number(_));
+        match palette.filter(|_| is_numbered).and_then(|palette| colors_of_ramp(material, palette)) {
+            Some(along) => {
+                let color = <[f32; 3]>::from(along[along.len() / 2]).map(|channel| 2.0 * channel);
+                Material { ramp: RampChoice::Nearest, color, ..material.clone() }
+            }
+            None => material.in_own_colors(surface),
+        }
+    };
+    object.materials.iter().zip(surfaces).map(of).collect()
 }
 
 /// Images tinted with the colours of their materials, each once.

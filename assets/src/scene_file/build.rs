@@ -16,7 +16,7 @@ use super::error::Fault;
 use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, SceneLayout};
 use super::named::{Named, Open};
 use super::object::Objects;
-use super::value::{Background, FileName, HalfAngle, List, OneOrThree, Vector};
+use super::value::{Background, FileName, HalfAngle, List, OffOr, OneOrThree, Vector, VertexBits};
 use super::{SceneErrorKind, motion};
 
 /// Builds one scene.
@@ -52,6 +52,13 @@ impl<'a> Builder<'a> {
         }
         if let Some(name) = &layout.palette {
             self.palette(name)?;
+        }
+        if let Some(look) = &layout.look {
+            look.0.lend(&mut self.scene, layout.palette.is_some());
+            // That there is none was chosen, too.
+            if let Some(RenderLayout { dither: Some(OffOr(None)), .. }) = layout.render {
+                self.scene.settings.dither = None;
+            }
         }
         if let Some(animation) = &layout.animation {
             self.scene.palette_animation = Some(self.animation(animation)?);
@@ -253,5 +260,7 @@ fn settings(layout: &RenderLayout) -> Settings {
         tessellation: layout.tessellation.map(|shades| shades.0),
         dither: layout.dither.as_ref().and_then(|dither| dither.0),
         vertex_path: None,
+        vertex_bits: layout.vertex_bits.map(VertexBits::bits),
+        channels: None,
     }
 }

@@ -12,10 +12,13 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use toml::Spanned;
 
+use crate::look::Look;
+
 use super::shape::Shape;
 use super::value::{
     Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, HalfAngle, List, Name, NotNegative,
-    Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, not_in_range,
+    Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, VertexBits,
+    not_in_range,
 };
 
 /// The whole file.
@@ -27,6 +30,7 @@ pub(super) struct SceneLayout {
     pub(super) ambient: Option<NotNegative>,
     pub(super) background: Option<Background>,
     pub(super) palette: Option<Spanned<FileName>>,
+    pub(super) look: Option<Name<Look>>,
     pub(super) animation: Option<Spanned<AnimationLayout>>,
     pub(super) fog: Option<Spanned<FogLayout>>,
     pub(super) camera: Option<Spanned<CameraLayout>>,
@@ -154,6 +158,7 @@ pub(super) struct RenderLayout {
     pub(super) mipmaps: Option<bool>,
     pub(super) tessellation: Option<Positive>,
     pub(super) dither: Option<OffOr<DitherPattern>>,
+    pub(super) vertex_bits: Option<VertexBits>,
     pub(super) max_error: Option<Positive>,
 }
 

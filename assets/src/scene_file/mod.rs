@@ -54,6 +54,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::de::Deserializer;
 
+use crate::look::Look;
 use build::Builder;
 use error::{Fault, not_a_scene, not_toml};
 pub use error::{SceneError, SceneErrorKind};
@@ -69,6 +70,9 @@ pub use place::Place;
 pub struct Loaded {
     /// The scene, at time 0.
     pub scene: Scene,
+    /// The look that the scene asks for, already applied. If that makes the scene prefer an automatic palette, its colours
+    /// are still to be [rounded](Look::rounded).
+    pub look: Option<Look>,
     /// The warnings, one line each, with a file and the position in it.
     pub warnings: Vec<String>,
     /// The files that were read or looked for: the scene file itself if it was loaded from one, and the models, MTL
@@ -147,5 +151,5 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
     // Includes those that are not looked for because no face has texture coordinates.
     let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
     files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
-    Ok(Loaded { scene, warnings, files })
+    Ok(Loaded { scene, look: layout.look.map(|look| look.0), warnings, files })
 }

@@ -95,6 +95,8 @@ numbers! {
     Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
     /// An entry of the palette.
     Entry(f32): "a palette entry, a whole number from 0 to 255", |x| (0.0..=255.0).contains(&x) && x == libm::truncf(x);
+    /// Bits after the point of vertices.
+    VertexBits(f32): "a number of bits, a whole number from 0 to 8", |x| (0.0..=8.0).contains(&x) && x == libm::truncf(x);
     /// A number of palette entries.
     Entries(f32): "a number of palette entries, from 1 to 256", |x| (1.0..=256.0).contains(&x) && x == libm::truncf(x);
 }
@@ -102,6 +104,13 @@ numbers! {
 impl Entry {
     pub(super) fn index(self) -> u8 {
         // An integer from 0 to 255.
+        self.0 as u8
+    }
+}
+
+impl VertexBits {
+    pub(super) fn bits(self) -> u8 {
+        // A whole number from 0 to 8.
         self.0 as u8
     }
 }

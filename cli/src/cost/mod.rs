@@ -104,6 +104,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
+    // A look rounds vertices, and what shadings promise is for those that are not rounded. With rounding, too, it is measured.
+    stage.scene.settings.vertex_bits = None;
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
     let steps = turned(&mut stage, STEPS, 0.25);
     if *counted {

@@ -77,7 +77,7 @@ Keys in the window:
   X               Swap the two shadings
   K, P, M         The next kernel, palette, texture mapping
   L, O, T         Lights, fog, textures off and on
-  D               Dither: ordered, blue noise, off
+  D               Dither: ordered, blue noise, ps1, off
   N, Shift-N      The next INPUT, the one before
   S               Save the picture as a PNG, without the text over it";
 

@@ -6,6 +6,7 @@ mod cases;
 mod commands;
 mod cost;
 mod files;
+mod looks;
 mod terminal;
 mod verify;
 mod words;

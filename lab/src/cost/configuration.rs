@@ -6,7 +6,6 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::Aspect;
-use mode13h::internals;
 use mode13h::render::Renderer;
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
@@ -81,11 +80,11 @@ impl<'a> Configuration<'a> {
     }
 
     /// The configuration with vertices rounded to `bits` bits after the point.
-    pub(super) fn with_vertex_bits(self, bits: u32) -> Self {
+    pub(super) fn with_vertex_bits(self, bits: u8) -> Self {
         let set = self.set;
         let set = Box::new(move |renderer: &mut Renderer| {
             set(renderer);
-            internals::set_vertex_bits(renderer, bits);
+            renderer.settings.vertex_bits = Some(bits);
         });
         Self { set, ..self }
     }
@@ -116,7 +115,7 @@ impl<'a> Configuration<'a> {
             ways.push(with_shading(
                 Aspect::VertexRounding,
                 &name,
-                Box::new(move |r| internals::set_vertex_bits(r, bits)),
+                Box::new(move |r| r.settings.vertex_bits = Some(bits)),
             ));
         }
         let fastest = Kernel::default();

@@ -54,7 +54,7 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
 
 /// Rounds vertices that are already rounded again, to fewer fraction bits, half up.
 #[cold]
-pub(super) fn requantize(bits: u32, vertices: &mut VertexColumns) {
+pub(super) fn requantize(bits: u8, vertices: &mut VertexColumns) {
     let unit = 1 << (8 - bits.min(8));
     // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;

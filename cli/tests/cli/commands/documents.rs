@@ -8,6 +8,7 @@ use mode13h::plan::{Effect, FaceShading};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::span::Kernel;
+use mode13h_assets::look::Look;
 use mode13h_assets::shipped;
 use mode13h_assets::terminal::Protocol;
 
@@ -144,6 +145,7 @@ fn documents_give_options_values_that_they_take() {
                     "--dither" => value.parse::<DitherPattern>().is_ok(),
                     "--hidden-surfaces" => value.parse::<HiddenSurfaces>().is_ok(),
                     "--mapping" => value.parse::<Mapping>().is_ok(),
+                    "--look" => value.parse::<Look>().is_ok(),
                     "--to" => value.parse::<Protocol>().is_ok(),
                     "--arithmetic" => value.parse::<VertexPath>().is_ok(),
                     "--palette" => value == "auto" || mode13h::palette::builtin::by_name(value).is_some(),
@@ -165,15 +167,20 @@ fn values_of(key: &str) -> Vec<&'static str> {
 
 #[test]
 fn documents_list_every_shading_and_every_way() {
-    let mut tried = Tried::new("documents_list_every_shading_and_every_way", 4);
+    let mut tried = Tried::new("documents_list_every_shading_and_every_way", 6);
     assert_eq!(values_of("shading"), Shading::ALL.map(Shading::name));
     assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
+    assert_eq!(values_of("look"), Look::ALL.map(Look::name));
+    let rows =
+        PROGRAM.split("| look | colours |").nth(1).expect("the table of looks").split("\n\n").next().expect("rows");
+    let rows = rows.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    assert_eq!(rows.collect::<Vec<_>>(), Look::ALL.map(Look::name));
     let table =
         PROGRAM.split("| shading | what |").nth(1).expect("the table of shadings").split("\n\n").next().expect("rows");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
     assert_eq!(rows.collect::<Vec<_>>(), Shading::ALL.map(Shading::name));
-    tried.add(4);
+    tried.add(6);
 }
 
 /// Names of several words, such as `depth-buffer` or `max-error`: of shadings, effects, ways, mappings, kernels, palettes,

@@ -201,11 +201,13 @@ pub(super) const CHANGES: &[Change] = &[
         }
     }),
     seen("Scene.settings.dither", |w, r| {
-        w.scene.settings.dither = r.one_of(&[None, Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise)]);
+        w.scene.settings.dither = sometimes(r, |r| r.one_of(&DitherPattern::ALL));
     }),
     seen("Scene.settings.vertex_path", |w, r| {
         w.scene.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL))
     }),
+    seen("Scene.settings.vertex_bits", |w, r| w.scene.settings.vertex_bits = sometimes(r, |r| r.within(0, 8) as u8)),
+    seen("Scene.settings.channels", |w, r| w.scene.settings.channels = sometimes(r, |r| r.within(0, 1) == 1)),
     // The program makes it, no renderer.
     unseen("Scene.auto_palette", |w, r| w.scene.auto_palette = r.within(0, 1) == 1),
     // Motions
@@ -389,6 +391,14 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Settings.vertex_path", |w, r| {
         w.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL));
         w.kept.settings.vertex_path = w.settings.vertex_path;
+    }),
+    seen("Settings.vertex_bits", |w, r| {
+        w.settings.vertex_bits = sometimes(r, |r| r.within(0, 8) as u8);
+        w.kept.settings.vertex_bits = w.settings.vertex_bits;
+    }),
+    seen("Settings.channels", |w, r| {
+        w.settings.channels = sometimes(r, |r| r.within(0, 1) == 1);
+        w.kept.settings.channels = w.settings.channels;
     }),
     unseen("Renderer.kernel", |w, r| {
         w.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
