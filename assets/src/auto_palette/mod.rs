@@ -68,8 +68,7 @@ impl AutomaticPalette {
 /// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
 /// under a coloured light. They are measured in true colour, and share the block of the textures. Under coloured light
 /// there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
-/// measured colours. The same holds if the scene's settings
-/// ask for three channels.
+/// measured colours. The same holds if the scene's settings ask for three channels.
 ///
 /// ```
 /// use mode13h::mesh::shapes;
