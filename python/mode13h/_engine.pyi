@@ -1,0 +1,6 @@
+from typing import Any
+
+def draw(
+    positions: bytes, faces: bytes, normals: bytes | None, view: dict[str, Any], look: dict[str, Any]
+) -> tuple[bytes, bytes]: ...
+def save(path: str, pixels: bytes, width: int, palette: bytes) -> None: ...
