@@ -222,7 +222,7 @@ impl Reason {
             Self::NoMaterialHas => none(),
             Self::ShadesDiffer => "shades differ from vertex to vertex".to_string(),
             Self::Budget { max_error } => format!("within an error budget of {max_error} shades, face by face"),
-            Self::LeftToBudget => "the error budget sees to it, face by face".into(),
+            Self::LeftToBudget => "the error budget decides, face by face".into(),
             Self::Faceted => {
                 "every normal is that of its face, and the light is far away: one shade a face is right".to_string()
             }

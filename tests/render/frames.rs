@@ -1,7 +1,7 @@
 //! Whole frames against the oracle: the triangles as handed to the raster, drawn again in i128,
 //! pixel by pixel, must give the same bytes.
 //!
-//! `MODE13H_MODEL=model.obj cargo test --test frames` tries a model of your own as well.
+//! `MODE13H_MODEL=model.obj cargo test --test render frames` tries a model of your own as well.
 
 use crate::support::tried::Tried;
 use mode13h::Angle;

@@ -266,7 +266,7 @@ fn ways_are_typed_by_name() {
     assert_eq!(error, "unknown way to hidden surfaces; there are back-faces, painter, depth-buffer, scan-line");
 }
 
-/// `MODE13H_MODEL=model.obj cargo test --release --test hidden_scenes a_model`: a full turn at 1°.
+/// `MODE13H_MODEL=model.obj cargo test --release --test render a_model`: a full turn at 1°.
 #[test]
 fn a_model_of_your_own() {
     let Ok(path) = std::env::var("MODE13H_MODEL") else {

@@ -2,7 +2,7 @@
 //!
 //! Integer results are the same bits on every machine, and the floats before them keep to rules that
 //! make them so (ARCHITECTURE.md): a frame that differs is a change of the engine's bytes, which
-//! belongs into CHANGELOG.md. With `MODE13H_WRITE_GOLDEN=1` they are written anew, drawn by the portable
+//! belongs into CHANGELOG.md. With `MODE13H_WRITE_GOLDEN=1` they are regenerated, drawn by the portable
 //! kernel, and the test fails.
 
 use std::fs::{self, File};

@@ -2,7 +2,7 @@
 //
 // figure(name, mount, usesEngine)   registers a figure; mount(stage, engine) builds it
 // mountFigures(engine)              mounts every [data-figure] as it comes near the screen. Called
-//                                   again with an engine, it mounts anew what uses one.
+//                                   again with an engine, it mounts again what uses one.
 
 export const registered = new Map();
 const mounted = new Map();

@@ -105,8 +105,8 @@ impl Figures {
         let [plain_time, wide_time, float_time] = self.of_default;
         let measured = format!(
             "A torus and a floor with rows of 320 pixels; the largest error and the root mean square. 8.8: {:.2} and {:.2} \
-             shades; 8.8 started anew every 64 pixels: {:.2} and {:.2}; 16.16: {:.2} and {:.2}; f32: {:.2} and {:.2}. A byte \
-             alone costs 0.5. Against 8.8 started anew, 8.8 takes {plain_time:.2} times the time, 16.16 {wide_time:.2}, f32 \
+             shades; 8.8 reseeded every 64 pixels: {:.2} and {:.2}; 16.16: {:.2} and {:.2}; f32: {:.2} and {:.2}. A byte \
+             alone costs 0.5. Against 8.8 reseeded, 8.8 takes {plain_time:.2} times the time, 16.16 {wide_time:.2}, f32 \
              {float_time:.2}.",
             plain.max, plain.rms, reseeded.max, reseeded.rms, wide.max, wide.rms, self.float.max, self.float.rms
         );

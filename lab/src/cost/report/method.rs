@@ -22,7 +22,7 @@ pub(super) fn section(study: &Study) -> Markup {
                 dt { "rounds" } dd { (count(study.rounds)) ", after a warm-up" }
             }
             p {
-                "In every round each shading and each budget draws the same frames, in an order shuffled anew for each round, so that none is always first or always after the "
+                "In every round each shading and each budget draws the same frames, in an order that is shuffled again for each round, so that none is always first or always after the "
                 "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, also one that shows nothing new. A time is the median over the rounds; "
                 "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
