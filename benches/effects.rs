@@ -1,4 +1,4 @@
-//! The loops beside the span, portable against twin, at the lengths that spans have.
+//! The pixel loops other than the span's, portable against optimized form, at typical span lengths.
 //!
 //! ```text
 //! cargo bench --bench effects
@@ -23,12 +23,12 @@ use mode13h_conformance::Random;
 use std::hint::black_box;
 
 const LENGTHS: [usize; 13] = [1, 2, 4, 8, 12, 16, 24, 32, 48, 64, 100, 160, 320];
-/// Rows in a batch: one from each place in a cache line, as spans start anywhere.
+/// Rows per batch: one for each offset in a cache line, as spans start anywhere.
 const ROWS: usize = 64;
-/// Bytes of a row, with room for every start.
+/// Bytes per row, with room for every start offset.
 const CAPACITY: usize = 320 + 64;
 
-/// What the loops read and write. The tables are larger than a first-level cache, as they are in use.
+/// What the loops read and write. The tables exceed a first-level cache, as they do in use.
 struct Memory {
     row: Vec<u8>,
     channels: [Vec<u8>; 3],
@@ -54,8 +54,8 @@ type Interpolate = fn(u16, &[f64; 6], &[f64; 6], f64, f64) -> Points;
 type Fixed16 = fn(&mut [u8], u32, u32);
 type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 
-/// A loop under its name; a portable one comes before its twin. Each is called by its address, which the
-/// compiler is not told: so that none is inlined and made for these numbers alone, and `nm -S` shows its size.
+/// Loops by name; a portable one comes before its optimized form. Each is called through its address, which is hidden
+/// from the compiler, so that none is inlined and specialized for these arguments, and `nm -S` shows its size.
 const LOOPS: [(&str, Draw); 16] = [
     ("span", |m, start, n| Kernel::default().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
     ("16.16", |m, start, n| black_box(fill_16_16 as Fixed16)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
@@ -121,7 +121,7 @@ fn texels(texture: &[u8]) -> Texels<'_> {
     Texels::new(texture, 8, 8).expect("256 × 256")
 }
 
-/// A floor under the eye: the divisor half again as large at the end of 320 pixels.
+/// A floor under the eye: the divisor is half again as large after 320 pixels.
 fn perspective(fill: Perspective, memory: &mut Memory, start: usize, n: usize) {
     let (d, dd) = (1_i128 << 70, (1_i128 << 61) + 12_345);
     let (u, v) = (0x12_3456 * d + 77, -0x23_4567 * d + 99);
@@ -130,12 +130,12 @@ fn perspective(fill: Perspective, memory: &mut Memory, start: usize, n: usize) {
 
 fn main() {
     let mut random = Random::again(13);
-    // Its low byte.
+    // The low byte.
     let mut bytes = |count: usize| -> Vec<u8> { (0..count).map(|_| random.next_u64() as u8).collect() };
     let mut memory = Memory {
         row: bytes(CAPACITY),
         channels: [bytes(CAPACITY), bytes(CAPACITY), bytes(CAPACITY)],
-        // Above and below the depths drawn, at random: half of the pixels are nearer, at first.
+        // Randomly above and below the depths drawn, so that at first half of the pixels are nearer.
         depth: bytes(CAPACITY).into_iter().map(|byte| u32::from(byte) << 21).collect(),
         points: [[0.0; LANES]; 6],
         texture: bytes(65_536),

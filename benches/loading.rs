@@ -1,14 +1,14 @@
-//! From a model's file to the first frame, beside `tobj`, which only reads the file.
+//! From a model's file to the first frame, compared with `tobj`, which only reads the file.
 //!
 //! ```text
 //! cargo bench --bench loading
 //! cargo bench --bench loading -- model.obj another.obj
 //! ```
 //!
-//! Without a name two models of 10⁶ faces are made: a sphere with bumps, as a scan, and the same with a normal for each
-//! vertex. Every round loads each by all, in turn; a figure is the median over the rounds of times on the wall, and a ratio
-//! that of ratios within a round. `tobj` reads as it is asked to by those who draw (triangles, one index a vertex), and as it
-//! is fastest.
+//! Without arguments two models of 10⁶ faces are generated: a bumpy sphere, like a scan, and the same with a normal for
+//! each vertex. Every round loads each model with every loader in turn. Figures are medians of wall-clock times over
+//! the rounds, and ratios are medians of the ratios within each round. `tobj` reads in two ways: with the options used
+//! for drawing (triangles, one index per vertex), and with those that are fastest.
 
 mod interleaved;
 
@@ -24,7 +24,7 @@ use mode13h::vga::Vga;
 use mode13h_assets::model_file;
 use mode13h_conformance::Random;
 
-/// What loads.
+/// A loader and its name.
 type Loader = (&'static str, fn(&Path));
 
 const LOADERS: [Loader; 4] = [
@@ -72,7 +72,7 @@ fn main() {
     }
 }
 
-/// A sphere of 4·stacks² faces whose vertices lie a little too high or too low, written as OBJ.
+/// A sphere of 4·stacks² faces whose vertices are slightly displaced in or out, written as OBJ.
 fn made(name: &str, stacks: u32, normals: bool) -> PathBuf {
     let mesh = shapes::sphere(2 * stacks, stacks + 1);
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Every span kernel and `slice::fill` at the lengths that spans have: `cargo bench --bench spans`.
+//! Every span kernel and `slice::fill` at typical span lengths: `cargo bench --bench spans`.
 
 mod interleaved;
 
@@ -8,10 +8,10 @@ use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 
 const LENGTHS: [usize; 15] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 100, 160, 320];
-/// Spans in a batch: one from each place in a cache line, as spans start anywhere.
+/// Spans per batch: one for each offset in a cache line, as spans start anywhere.
 const SPANS: usize = 64;
 
-/// What is timed: a kernel, or the memset that a flat span would be.
+/// What is timed: a kernel, or the memset of a flat span.
 #[derive(Clone, Copy)]
 enum Candidate {
     Fill,
@@ -20,7 +20,7 @@ enum Candidate {
 
 impl Candidate {
     fn all() -> Vec<Self> {
-        // `simd` is one of the levels under another name, but the one that people get.
+        // `simd` is one of the levels under another name, but the one that users get.
         [Self::Fill].into_iter().chain(Kernel::available().map(Self::Kernel)).collect()
     }
 
@@ -31,7 +31,7 @@ impl Candidate {
         }
     }
 
-    /// Draws the spans, one after the other.
+    /// Draws the spans one after another.
     #[inline(never)]
     fn draw(self, pixels: &mut Pixels, spans: &[Span; SPANS]) {
         match self {
@@ -49,7 +49,7 @@ impl Candidate {
     }
 }
 
-/// What a renderer hands to a kernel, and where.
+/// What a renderer passes to a kernel, and where it draws.
 #[derive(Clone, Copy)]
 struct Span {
     start: usize,
@@ -58,12 +58,12 @@ struct Span {
     step: u16,
 }
 
-/// Spans of these lengths, one from each place in a cache line.
+/// Spans of these lengths, one for each offset in a cache line.
 fn spans(mut length: impl FnMut() -> usize) -> [Span; SPANS] {
     black_box(std::array::from_fn(|i| Span { start: i * 13 % 64, length: length(), shade: 0x1234, step: 0x56 }))
 }
 
-/// 320 pixels and room for every start, the first at the head of a cache line.
+/// 320 pixels and room for every start offset, beginning at a cache line.
 #[repr(align(64))]
 struct Pixels([u8; 320 + 64]);
 
@@ -73,7 +73,7 @@ fn main() {
     table(&mut pixels, rounds);
 }
 
-/// Median time of a span, ns, all contenders side by side.
+/// Median time per span in nanoseconds, with all contenders interleaved.
 fn table(pixels: &mut Pixels, rounds: usize) {
     let contenders = Candidate::all();
     println!("\nns per span, median of {rounds} rounds, every round all kernels in turn");
@@ -82,7 +82,8 @@ fn table(pixels: &mut Pixels, rounds: usize) {
         print!("{:>14}", contender.name());
     }
     println!("{:>12}{:>11}", "simd÷fill", "asm÷simd");
-    // Beside the fixed lengths spans of 1 to 16 and of 1 to 64 in a random order, which branches cannot foresee.
+    // Besides the fixed lengths, spans of 1 to 16 and of 1 to 64 in random order, which branch prediction cannot
+    // foresee.
     let mut random = Random::again(13);
     let mut drawn = |most: usize| 1 + random.below(most);
     let mut rows: Vec<(String, Vec<[Span; SPANS]>)> =

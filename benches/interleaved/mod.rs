@@ -1,15 +1,15 @@
-//! Candidates timed side by side: a machine's speed drifts, so each round times all of them, in a new order.
+//! Times candidates side by side: a machine's speed drifts, so each round times all of them, in a new order.
 
 use std::time::Instant;
 
 use mode13h_conformance::Random;
 
-/// Returns whether this is `cargo bench`; otherwise a benchmark only has to run.
+/// Returns whether this runs under `cargo bench`; otherwise a benchmark only has to run.
 pub(crate) fn is_bench() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
-/// The times of `candidates`, each for every round: what `run` takes with the candidate's index, in seconds.
+/// The times of `candidates`, in seconds, one per round each: how long `run` takes with the candidate's index.
 pub(crate) fn times(candidates: usize, rounds: usize, mut run: impl FnMut(usize)) -> Vec<Vec<f64>> {
     let (mut random, mut order) = (Random::again(13), (0..candidates).collect::<Vec<usize>>());
     let mut times = vec![Vec::with_capacity(rounds); candidates];
@@ -24,7 +24,7 @@ pub(crate) fn times(candidates: usize, rounds: usize, mut run: impl FnMut(usize)
     times
 }
 
-/// The median; the upper one of two.
+/// The median; for an even count the upper of the middle two.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

@@ -3,7 +3,7 @@
 /// The hash of no bytes.
 pub const START: u64 = 0xCBF2_9CE4_8422_2325;
 
-/// Continues `hash` by `bytes`. Begin with [`START`].
+/// Continues `hash` with `bytes`. Start with [`START`].
 ///
 /// ```
 /// use mode13h_conformance::hash::{START, fnv_1a};

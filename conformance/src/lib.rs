@@ -3,13 +3,13 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`frames`] | whole frames by name, each with its hash: every shading, effect, mapping, hidden-surface method, error budget and frame shape |
-//! | [`loops`] | every loop over pixels against its definition, at random lengths and alignments |
+//! | [`loops`] | every pixel loop against its definition, at random lengths and alignments |
 //! | [`oracle`] | which pixels a triangle covers and with which bytes, in 128-bit integers |
 //! | [`random`] | the random generator of all tests |
 //! | [`hash`] | FNV-1a |
 //!
-//! Tests, `mode13h verify`, the programs in `machines/`, the page, the fuzz targets and the benchmarks use this crate. It
-//! needs an allocator and no operating system.
+//! Used by the tests, `mode13h verify`, the programs in `machines/`, the web page, the fuzz targets and the benchmarks.
+//! It needs an allocator but no operating system.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! The definitions of the raster, pixel by pixel in 128-bit integers, with no thought for speed. They share nothing with
-//! the raster but the vertices.
+//! The raster's definitions, pixel by pixel in 128-bit integers, without regard to speed. They share nothing with the
+//! raster but the vertices.
 
 use alloc::vec::Vec;
 
@@ -13,8 +13,7 @@ pub fn point(v: &Vertex) -> Point {
     (i128::from(v.x().to_bits()), i128::from(v.y().to_bits()))
 }
 
-/// Twice the signed area of a → b → p; positive when p lies to the right of a → b on a screen
-/// whose y runs down.
+/// Twice the signed area of a → b → p; positive if p lies to the right of a → b on a screen whose y points down.
 pub fn edge(a: Point, b: Point, p: Point) -> i128 {
     (b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0)
 }
@@ -24,7 +23,7 @@ pub fn centre(x: i32, y: i32) -> Point {
     (i128::from(x) * 256 + 128, i128::from(y) * 256 + 128)
 }
 
-/// Whether the pixel is drawn: its centre is inside, or on a top or a left edge.
+/// Returns whether the pixel is drawn: its centre is inside, or on a top or left edge.
 pub fn covers(triangle: [Point; 3], p: Point) -> bool {
     let [a, mut b, mut c] = triangle;
     let area = edge(a, b, c);
@@ -42,14 +41,14 @@ pub fn covers(triangle: [Point; 3], p: Point) -> bool {
     })
 }
 
-/// Whether a centre lies inside a polygon, or on one of its top or left edges: crossings to the
-/// left of it, counted in rows that include their upper end.
+/// Returns whether a centre lies inside a polygon, or on one of its top or left edges. Counts the crossings to the left
+/// of it, in rows that include their upper end.
 pub fn polygon_covers(polygon: &[Point], p: Point) -> bool {
     let mut inside = false;
     for (i, &a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
         let (upper, lower) = if a.1 < b.1 { (a, b) } else { (b, a) };
-        // On the edge or to the right of it on the screen: not to the right of the way down.
+        // On the edge or to the right of it on the screen, which is not to the right when walking down.
         if upper.1 <= p.1 && p.1 < lower.1 && edge(upper, lower, p) <= 0 {
             inside = !inside;
         }
@@ -57,7 +56,7 @@ pub fn polygon_covers(polygon: &[Point], p: Point) -> bool {
     inside
 }
 
-/// An exact value n / d, d positive.
+/// An exact value n / d with positive d.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
     /// The dividend.
@@ -67,28 +66,28 @@ pub struct Ratio {
 }
 
 impl Ratio {
-    /// The nearest whole number not above it.
+    /// The greatest integer not above it.
     pub fn floor(self) -> i128 {
         self.n.div_euclid(self.d)
     }
 
-    /// The nearest whole number not below it.
+    /// The smallest integer not below it.
     pub fn ceil(self) -> i128 {
         -(-self.n).div_euclid(self.d)
     }
 
-    /// The whole number towards zero.
+    /// Its integer part, rounded toward zero.
     pub fn truncate(self) -> i128 {
         self.n / self.d
     }
 
-    /// |self − whole| · d ≤ bound · d, with bound = bound_n / bound_d.
+    /// Returns whether |self − whole| · d ≤ bound · d, with bound = bound_n / bound_d.
     pub fn is_within(self, whole: i128, bound_n: i128, bound_d: i128) -> bool {
         (self.n - whole * self.d).abs() * bound_d <= bound_n * self.d
     }
 }
 
-/// A vertex attribute, exactly, at a point: the weights are the areas opposite to the vertices.
+/// The exact value of a vertex attribute at a point, weighted by the areas opposite the vertices.
 pub fn interpolate(triangle: [Point; 3], values: [i128; 3], p: Point) -> Ratio {
     let [a, b, c] = triangle;
     let area = edge(a, b, c);
@@ -96,7 +95,7 @@ pub fn interpolate(triangle: [Point; 3], values: [i128; 3], p: Point) -> Ratio {
     Ratio { n: n * area.signum(), d: area.abs() }
 }
 
-/// The attribute's change per pixel along the row, exactly.
+/// The attribute's exact change per pixel along the row.
 pub fn per_pixel(triangle: [Point; 3], values: [i128; 3]) -> Ratio {
     let at = |x| interpolate(triangle, values, centre(x, 0));
     Ratio { n: at(1).n - at(0).n, d: at(0).d }
@@ -113,28 +112,28 @@ pub struct Pixel {
     pub byte: u8,
 }
 
-/// `Interpolation::Float`, which is there with `alloc` alone.
+/// Returns whether this is `Interpolation::Float`, which exists only with `alloc`.
 fn is_float(interpolation: Interpolation) -> bool {
     interpolation.name() == "float"
 }
 
-/// How far a byte of a shading may be from its exact shade in a frame of `width` columns, in 1/256 shade, as n / d;
-/// `None` where nothing is promised.
+/// How far a shading's byte may be from the exact shade in a frame of `width` columns, in 1/256 shade, as n / d; `None`
+/// where nothing is promised.
 pub fn bound(interpolation: Interpolation, width: i128) -> Option<(i128, i128)> {
     match interpolation {
-        // A half for the byte, and less than 1/256 for the start and for each step.
+        // A half from rounding to a byte, and less than 1/256 for the start and for each step.
         Interpolation::Gouraud => Some((128 + width, 1)),
         Interpolation::GouraudReseeded => Some((128 + 64, 1)),
-        // The same with 1/65,536.
+        // The same, with 1/65,536.
         Interpolation::Gouraud1616 => Some((128 * 256 + width, 256)),
         Interpolation::GouraudHyperbolic => Some((128, 1)),
-        // Less than 1/8,192 beside the half.
+        // Less than 1/8,192 on top of the half.
         _ if is_float(interpolation) => Some((128 * 32 + 1, 32)),
         _ => None,
     }
 }
 
-/// The exact shade of a covered pixel in 1/256: what `interpolation` interpolates, without its rounding.
+/// The exact shade of a covered pixel in 1/256: the value that `interpolation` interpolates, without its rounding.
 pub fn exact_shade(vertices: &[Vertex; 3], interpolation: Interpolation, p: Point) -> Ratio {
     Shades::of_vertices(vertices, interpolation).exact(p)
 }
@@ -142,15 +141,15 @@ pub fn exact_shade(vertices: &[Vertex; 3], interpolation: Interpolation, p: Poin
 /// A row of a triangle on whole pixels: Ax, Bx, As and Bs.
 type VintageRow = [i64; 4];
 
-/// A value over a triangle, by the letter of each shading's definition.
+/// A value over a triangle, following each shading's definition to the letter.
 pub struct Shades {
     interpolation: Interpolation,
-    /// The vertices from top to bottom, of one height from left to right, and their values.
+    /// The vertices and their values, from top to bottom; those at the same height from left to right.
     triangle: [Point; 3],
     values: [i128; 3],
     /// The value's change per pixel along a row.
     slope: Ratio,
-    /// Of `GouraudVintage` the first row, and the rows.
+    /// For `GouraudVintage`: the first row, and all rows.
     top: i64,
     rows: Vec<VintageRow>,
     depths: [i128; 3],
@@ -162,7 +161,7 @@ impl Shades {
         Self::new(vertices, vertices.each_ref().map(|v| v.shade().to_bits()), interpolation)
     }
 
-    /// Of these values at the vertices.
+    /// These values at the vertices.
     pub fn new(vertices: &[Vertex; 3], values: [u16; 3], interpolation: Interpolation) -> Self {
         let mut order = [0, 1, 2];
         order.sort_by_key(|&i| (vertices[i].y(), vertices[i].x()));
@@ -180,7 +179,7 @@ impl Shades {
     /// The exact value.
     pub fn exact(&self, p: Point) -> Ratio {
         match self.interpolation {
-            // Weighted by the depths, which are 1/w.
+            // Weighted by the depths, which are proportional to 1/w.
             Interpolation::GouraudHyperbolic => self.on_face(p),
             _ if is_float(self.interpolation) => self.on_face(p),
             _ => interpolate(self.triangle, self.values, p),
@@ -192,8 +191,8 @@ impl Shades {
         Ratio { n: interpolate(self.triangle, products, p).n, d: interpolate(self.triangle, self.depths, p).n }
     }
 
-    /// The byte of a covered pixel of a row whose first and last covered pixels in the frame are `first` and
-    /// `last`; with dither, of this threshold.
+    /// The byte of a covered pixel in a row whose first and last covered pixels in the frame are `first` and `last`;
+    /// with dither, at this threshold.
     pub fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, threshold: Option<u8>) -> u8 {
         let half = i128::from(threshold.unwrap_or(128));
         let byte = match self.interpolation {
@@ -206,13 +205,13 @@ impl Shades {
             _ if is_float(self.interpolation) => {
                 let shade = self.float(first, last, x, y);
                 match threshold {
-                    // In f32, and then cut.
+                    // Added in f32, then truncated.
                     None => i128::from((shade + 256.5) as u16) - 256,
                     Some(threshold) => ((shade * 256.0) as i128 + i128::from(threshold)) >> 8,
                 }
             }
             _ => {
-                // In 1/256 shade, or in 1/65,536.
+                // In 1/256 shade or in 1/65,536.
                 let finer = if self.interpolation == Interpolation::Gouraud1616 { 256 } else { 1 };
                 let seed = match self.interpolation {
                     Interpolation::GouraudReseeded => first + (x - first) / 64 * 64,
@@ -227,13 +226,13 @@ impl Shades {
         u8::try_from(byte).expect("a shade in range is a byte")
     }
 
-    /// shade/w and 1/w in f32, from the far end of the row.
+    /// shade/w over 1/w in f32, from the far end of the row.
     fn float(&self, first: i32, last: i32, x: i32, y: i32) -> f32 {
         let one = |i: usize| [0, 1, 2].map(|k| i128::from(k == i));
         let at = |values: [i128; 3], x: i32| interpolate(self.triangle, values, centre(x, y)).n;
         let step = |values: [i128; 3]| at(values, x + 1) - at(values, x);
         let start = if step(self.depths) < 0 { last } else { first };
-        // The sum in f64 over the vertices from top to bottom; areas and products are exact in it.
+        // Summed in f64 over the vertices from top to bottom; areas and products are exact in it.
         let sum = |values: [i128; 3]| {
             let [a, b, c] = [0, 1, 2].map(|i| at(one(i), start) as f64 * values[i] as f64);
             (a + b + c) as f32
@@ -244,7 +243,7 @@ impl Shades {
         let d = sum(self.depths) + k * (step(self.depths) as f32);
         let shades = self.values.map(|value| value as f32 / 256.0);
         let (low, high) = shades.iter().fold((f32::MAX, 0.0_f32), |(low, high), s| (low.min(*s), high.max(*s)));
-        // A power of two changes no rounding.
+        // A power of two does not affect rounding.
         (n / d / 256.0).clamp(low, high)
     }
 
@@ -260,8 +259,7 @@ impl Shades {
     }
 }
 
-/// The rows of a triangle as the sources have them, with the first one's number: edge by edge, a value added to
-/// at every row.
+/// The rows of a triangle per the sources, with the number of the first one: edge by edge, with one addition per row.
 fn vintage_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<VintageRow>) {
     let whole = |c: i128| (c + 128).div_euclid(256) as i64;
     let corners = [0, 1, 2].map(|i| (whole(triangle[i].0), whole(triangle[i].1), values[i] as i64));
@@ -283,13 +281,13 @@ fn vintage_rows(triangle: [Point; 3], values: [i128; 3]) -> (i64, Vec<VintageRow
     let [top, middle, bottom] = corners;
     let long = walk(top, bottom);
     let short: Vec<_> = walk(top, middle).into_iter().chain(walk(middle, bottom)).collect();
-    // To the right of the way down is the left of the screen.
+    // To the right when walking down is on the left of the screen.
     let (left, right) = if side > 0 { (short, long) } else { (long, short) };
     (top.1, left.into_iter().zip(right).map(|((ax, a), (bx, b))| [ax, bx, a, b]).collect())
 }
 
-/// The pixels of a triangle in a frame of `width × height`, by the letter of each shading's definition,
-/// row by row.
+/// The pixels of a triangle in a frame of `width × height`, row by row, following each shading's definition to the
+/// letter.
 pub fn pixels(vertices: &[Vertex; 3], interpolation: Interpolation, width: i32, height: i32) -> Vec<Pixel> {
     let triangle = vertices.each_ref().map(point);
     let shades = Shades::of_vertices(vertices, interpolation);
@@ -303,7 +301,7 @@ pub fn pixels(vertices: &[Vertex; 3], interpolation: Interpolation, width: i32, 
         }
         return drawn;
     }
-    // No pixel further out than the vertices' own.
+    // No pixel lies beyond the vertices.
     let between = |coordinate: fn(&Point) -> i128, size: i32| {
         let (mut low, mut high) = (i128::from(size), -1);
         for p in &triangle {
@@ -320,7 +318,7 @@ pub fn pixels(vertices: &[Vertex; 3], interpolation: Interpolation, width: i32, 
     drawn
 }
 
-/// The depth at a covered pixel, by the letter of the definition in `raster::depth`.
+/// The depth at a covered pixel, following the definition in `raster::depth` to the letter.
 pub fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     Depths::of_vertices(vertices).at(x, y)
 }
@@ -330,7 +328,7 @@ pub fn depth_beyond(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     Depths::of_vertices(vertices).sum(x, y) as u32
 }
 
-/// Depth over a triangle that has an area.
+/// Depth over a triangle with an area.
 pub struct Depths {
     /// The first vertex in (y, x) order, its depth, and the gradients with 24 fraction bits.
     first: Point,
@@ -355,7 +353,7 @@ impl Depths {
         Self { first: p0, depth: d0, gradients: (gx, gy) }
     }
 
-    /// At a covered pixel.
+    /// The depth at a covered pixel.
     pub fn at(&self, x: i32, y: i32) -> u32 {
         u32::try_from(self.sum(x, y)).expect("a depth within its vertices'")
     }
@@ -367,7 +365,7 @@ impl Depths {
     }
 }
 
-/// What a depth buffer of 16 bits holds for a depth: 2¹⁴ make one, rounded up, so that 0 alone is nothing.
+/// A depth in a 16-bit depth buffer: in units of 2¹⁴, rounded up, so that only 0 becomes 0.
 pub fn narrow_depth(depth: u32) -> u16 {
     u64::from(depth).div_ceil(1 << 14).min(0xFFFF) as u16
 }

@@ -4,11 +4,11 @@
 
 use crate::hash::{START, fnv_1a};
 
-/// SplitMix64 (Steele, Lea, Flood 2014): one addition and a mix; any seed is as good as any other.
+/// SplitMix64 (Steele, Lea, Flood 2014): one addition and a mix; every seed is as good as any other.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
-/// The seed, if nobody sets another.
+/// The default seed.
 pub const SEED: u64 = 13;
 
 /// The seed of this run: `MODE13H_SEED`, or [`SEED`].
@@ -25,7 +25,7 @@ pub fn seed() -> u64 {
 }
 
 impl Random {
-    /// A generator from the seed of this run, which is printed. Different streams give independent numbers.
+    /// A generator seeded from this run's seed, which is printed. Different streams give independent numbers.
     #[must_use]
     pub fn new(stream: u64) -> Self {
         let seed = seed();
@@ -34,13 +34,13 @@ impl Random {
         Self::of_stream(seed, stream)
     }
 
-    /// A generator from the seed of this run, for a stream that has a name.
+    /// A generator seeded from this run's seed, for a named stream.
     #[must_use]
     pub fn named(stream: &str) -> Self {
         Self::new(fnv_1a(START, stream.as_bytes()))
     }
 
-    /// A generator from a seed, for a stream that has a name: [`named`](Self::named) for programs, which print no seed.
+    /// A generator for a named stream with the given seed: [`named`](Self::named) for programs, which print no seed.
     #[must_use]
     pub fn seeded(seed: u64, stream: &str) -> Self {
         Self::of_stream(seed, fnv_1a(START, stream.as_bytes()))
@@ -50,7 +50,7 @@ impl Random {
         Self(Self(seed).next_u64() ^ stream.wrapping_mul(0xD134_2543_DE82_EF95))
     }
 
-    /// A generator whose state is `state`, whatever the seed of this run.
+    /// A generator with the given state, independent of this run's seed.
     #[must_use]
     pub fn again(state: u64) -> Self {
         Self(state)
@@ -64,41 +64,42 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number of 1 to 2^`bits` − 1: each power of two is equally likely, and so are the numbers from one to the next.
+    /// A number from 1 to 2^`bits` − 1: each power of two is equally likely, and so are the numbers between two of
+    /// them.
     pub fn log_uniform(&mut self, bits: u32) -> usize {
         let bit = self.next_u64() % u64::from(bits);
         (1 << bit) + (self.next_u64() & ((1 << bit) - 1)) as usize
     }
 
-    /// A number of `low` to `high`, both included, uniformly.
+    /// A uniform number from `low` to `high`, both included.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         let span = (i128::from(high) - i128::from(low) + 1).max(1) as u128;
         low + ((u128::from(self.next_u64()) * span) >> 64) as i64
     }
 
-    /// A number of 0 to `end` − 1, uniformly; 0 if `end` is 0.
+    /// A uniform number from 0 to `end` − 1; 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         self.within(0, end as i64 - 1) as usize
     }
 
-    /// A number of at least 0 and below 1, uniformly.
+    /// A uniform number from 0 up to, but not including, 1.
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number of −`most` to `most`, uniformly.
+    /// A uniform number from −`most` to `most`.
     pub fn around_zero(&mut self, most: f64) -> f64 {
         (self.unit() * 2.0 - 1.0) * most
     }
 
-    /// Puts a list in random order (Fisher and Yates).
+    /// Shuffles a list (Fisher and Yates).
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             list.swap(last, self.below(last + 1));
         }
     }
 
-    /// One of `of`, which must not be empty.
+    /// A random element of `of`, which must not be empty.
     pub fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
         of[self.below(of.len())]
     }

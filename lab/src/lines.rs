@@ -1,11 +1,11 @@
-//! Text in lines.
+//! Text broken into lines.
 
 use alloc::string::String;
 use alloc::vec::Vec;
 
 use textwrap::{Options, WordSeparator, WordSplitter};
 
-/// A text in lines of at most `columns` letters, broken at spaces alone.
+/// Breaks a text into lines of at most `columns` characters, only at spaces.
 pub(crate) fn lines(text: &str, columns: usize) -> Vec<String> {
     let options = Options::new(columns)
         .word_separator(WordSeparator::AsciiSpace)

@@ -1,12 +1,11 @@
-//! Draws frames of a shipped scene, 35 a second, and prints what they come to: a hash of all of them, and the effects
-//! that were on for any object in any of them. `sphere` is a turning one of 79,600 faces. A fourth word is an error budget
-//! in shades, or a shading. A fifth one is another number of frames a second; the camera then goes round a scene that does
-//! not move.
+//! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects that were on for any
+//! object in any frame. `sphere` is a turning sphere of 79,600 faces. A fourth argument is an error budget in shades,
+//! or a shading. A fifth one is another number of frames per second; the camera then orbits a scene that does not move.
 //!
 //!     cargo run --release -p frames -- fog 35 portable
 //!
-//! `.ci/off_is_free` counts the instructions of [`next_frame`] in builds with and without the effects that are off,
-//! and `.ci/instructions` holds them to what they were.
+//! `.ci/off_is_free` counts the instructions of [`next_frame`] in builds with and without the effects that are off, and
+//! `.ci/instructions` compares them with recorded counts.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -24,20 +23,21 @@ use mode13h::vga::Vga;
 use mode13h_assets::shipped;
 use mode13h_conformance::hash::{START, fnv_1a};
 
-/// Kept apart, so that a profiler can tell it from the rest: what is made once is made here.
+/// The first frame, in a function of its own so that a profiler can separate it from the rest: one-off work happens
+/// here.
 #[inline(never)]
 fn first_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
-    // Were it the code of `next_frame`, the compiler would make the two one.
+    // If the code were that of `next_frame`, the compiler would merge the two.
     std::hint::black_box(renderer.draw(scene, vga).map(|_| ()))
 }
 
-/// Each of the others.
+/// Each of the other frames.
 #[inline(never)]
 fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
     renderer.draw(scene, vga).map(|_| ())
 }
 
-/// Half of its faces cover no pixel, as those of a scanned model.
+/// Half of its faces cover no pixel, as in a scanned model.
 fn sphere() -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(shapes::sphere(200, 200)));

@@ -1,4 +1,4 @@
-//! Allegro 4: its two kinds of triangles, on one bitmap that all share.
+//! Allegro 4: its two vertex formats, drawn on one shared bitmap.
 
 use std::ffi::c_int;
 
@@ -32,7 +32,7 @@ unsafe extern "C" {
     fn peers_allegro_fixed(drawing: c_int, vertices: *mut Fixed, triangles: c_int);
 }
 
-/// Makes Allegro's bitmaps. Once.
+/// Creates Allegro's bitmaps. To be called once.
 pub fn start() -> Result<(), &'static str> {
     // SAFETY: called once, before anything else of Allegro's.
     match unsafe { peers_allegro_start(WIDTH as c_int, HEIGHT as c_int, 1 << SIDE_BITS) } {
@@ -41,7 +41,7 @@ pub fn start() -> Result<(), &'static str> {
     }
 }
 
-/// A vertex of Allegro's: shades are whole numbers there, and so are the coordinates of pixel centres.
+/// An Allegro vertex: its shades are whole numbers, and so are the coordinates of pixel centres.
 pub trait AllegroVertex: Sized {
     const NAME: &'static str;
     fn of(corner: &Corner) -> Self;
@@ -61,7 +61,7 @@ impl AllegroVertex for Float {
     }
 
     fn draw(drawing: Drawing, vertices: &mut [Self]) {
-        // SAFETY: three vertices a triangle, in the layout of `V3D_f`; the bitmaps are there.
+        // SAFETY: three vertices per triangle, in the layout of `V3D_f`; the bitmaps exist.
         unsafe { peers_allegro_float(drawing as c_int, vertices.as_mut_ptr(), (vertices.len() / 3) as c_int) }
     }
 }
@@ -77,7 +77,7 @@ impl AllegroVertex for Fixed {
     }
 
     fn draw(drawing: Drawing, vertices: &mut [Self]) {
-        // SAFETY: three vertices a triangle, in the layout of `V3D`; the bitmaps are there.
+        // SAFETY: three vertices per triangle, in the layout of `V3D`; the bitmaps exist.
         unsafe { peers_allegro_fixed(drawing as c_int, vertices.as_mut_ptr(), (vertices.len() / 3) as c_int) }
     }
 }
@@ -104,7 +104,7 @@ impl<V: AllegroVertex> Candidate for Allegro<'_, V> {
     fn clear(&mut self, index: u8) {
         let material = self.material;
         let table = if self.drawing == Drawing::Translucent { &material.mixed } else { &material.lit };
-        // SAFETY: the bitmaps are there; as many texels and a table of 65,536.
+        // SAFETY: the bitmaps exist; as many texels and a table of 65,536.
         unsafe {
             peers_allegro_clear(c_int::from(index));
             peers_allegro_clip(c_int::from(!self.inside));

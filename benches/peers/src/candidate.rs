@@ -1,25 +1,25 @@
-//! Who draws: each with triangles in its own format, made before the clock starts.
+//! The candidates, each with triangles in its own format, converted before the clock starts.
 
 use mode13h::raster::Vertex;
 
 use crate::{HEIGHT, WIDTH};
 
-/// A corner, as the engine rounds it: every peer's numbers hold these exactly.
+/// A corner as the engine rounds it, which every peer's numbers represent exactly.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
     pub vertex: Vertex,
-    /// The distance from the eye, in units of the near plane's.
+    /// Distance from the eye, in units of the near plane's.
     pub w: f32,
-    /// Coordinates in texels, whole 1/65,536ths.
+    /// Coordinates in texels, in whole multiples of 1/65,536.
     pub texel: [f32; 2],
 }
 
 pub type Triangle = [Corner; 3];
 
-/// Draws what it was given into its own frame.
+/// Draws the given triangles into its own frame.
 pub trait Candidate {
     fn name(&self) -> String;
-    /// Whether it is ours.
+    /// Returns whether it is ours.
     fn is_ours(&self) -> bool {
         false
     }
@@ -29,12 +29,12 @@ pub trait Candidate {
     fn read(&mut self, bytes: &mut [u8]);
 }
 
-/// x, y in pixels and the shade, as f32, which holds them exactly.
+/// x and y in pixels and the shade, as f32, which represents them exactly.
 pub fn floats(v: &Vertex) -> [f32; 3] {
     [v.x().to_bits() as f32 / 256.0, v.y().to_bits() as f32 / 256.0, f32::from(v.shade().to_bits()) / 256.0]
 }
 
-/// Whether no triangle reaches beyond the frame.
+/// Returns whether no triangle extends beyond the frame.
 pub fn is_inside(triangles: &[Triangle]) -> bool {
     let within = |u: i32, most: usize| (0..=256 * most as i32).contains(&u);
     let mut corners = triangles.iter().flatten().map(|corner| &corner.vertex);

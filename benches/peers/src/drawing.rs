@@ -1,9 +1,9 @@
-//! Drawings that are compared, with the tables and the image that all candidates share.
+//! The kinds of drawing compared, with the tables and the image that all candidates share.
 
-/// Drawing of a triangle's pixels.
+/// How a triangle's pixels are drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Drawing {
-    /// One shade a triangle: its first vertex's.
+    /// One shade per triangle: its first vertex's.
     Flat,
     /// Shades linear on the screen.
     Gouraud,
@@ -19,7 +19,7 @@ pub enum Drawing {
     PerspectiveLit,
     /// An image, linear on the face, with a depth buffer.
     PerspectiveDepth,
-    /// An image, linear on the screen, mixed with what is there.
+    /// An image, linear on the screen, blended with what is behind it.
     Translucent,
 }
 
@@ -67,19 +67,19 @@ impl Drawing {
     }
 }
 
-/// Texels a side, in bits.
+/// Side of the image in texels, as a power of two.
 pub const SIDE_BITS: u32 = 6;
 const SIDE: usize = 1 << SIDE_BITS;
 
-/// The image and the tables of 256 rows and columns.
+/// The image, and tables of 256 rows and columns.
 pub struct Material {
-    /// Row-major. Squares of 8 texels, so that a coordinate that is a texel off shows seldom.
+    /// Row-major. Squares of 8 texels, so that a coordinate that is off by a texel rarely shows.
     pub texels: Vec<u8>,
     /// The texel, whatever the shade.
     pub plain: Box<[u8; 65_536]>,
     /// The byte for a shade (row) and a texel (column).
     pub lit: Box<[u8; 65_536]>,
-    /// The byte for the triangle's own (row) and the frame's (column): half of each.
+    /// The byte for the triangle's own (row) and the frame's (column), half of each.
     pub mixed: Box<[u8; 65_536]>,
 }
 
@@ -94,7 +94,7 @@ impl Material {
         }
     }
 
-    /// The table that a drawing looks texels up in.
+    /// The table through which a drawing looks up texels.
     pub fn table(&self, drawing: Drawing) -> &[u8; 65_536] {
         if drawing.is_lit() { &self.lit } else { &self.plain }
     }

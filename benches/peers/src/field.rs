@@ -1,4 +1,4 @@
-//! The field: everybody that can draw in a given way.
+//! The field: every candidate that supports a kind of drawing.
 
 use mode13h::span::Kernel;
 
@@ -8,13 +8,13 @@ use crate::drawing::{Drawing, Material};
 use crate::ours::{Batches, Effects, OneByOne};
 use crate::retrofire::Retrofire;
 
-/// Our kernels, of those that the machine has: a column each.
+/// Those of our kernels that the machine supports; one column each.
 pub fn kernels() -> Vec<Kernel> {
     let named = ["portable", "simd-sse2", "simd-avx2", "simd-avx512"].map(str::parse::<Kernel>);
     named.into_iter().flatten().collect()
 }
 
-/// Everybody that can draw so, with these triangles; ours with each of `kernels`.
+/// Every candidate that supports this drawing, with these triangles; ours with each of `kernels`.
 pub fn all<'a>(
     triangles: &'a [Triangle],
     drawing: Drawing,
@@ -39,7 +39,7 @@ pub fn all<'a>(
     if drawing.is_perspective() {
         all.push(Box::new(Effects::new(triangles, drawing, material, fastest).every_16()));
     }
-    // A triangle a call, by the slowest and by the fastest.
+    // One triangle per call, with the slowest and with the fastest kernel.
     for &kernel in kernels.first().into_iter().chain(kernels.last()).filter(|_| !drawing.has_texture()) {
         all.push(Box::new(OneByOne::new(triangles, drawing, kernel)));
     }

@@ -5,15 +5,15 @@
 //!     [--no-frames | --no-triangles] [MODEL.obj | TRIANGLES.tri] ...
 //! ```
 //!
-//! Triangles: a cleared frame of 320 × 200, then all front faces, back to front; nothing but the rasterizer is timed,
-//! with the clearing of its depth buffer, if it has one, and the packing of our batches. Every round each candidate
-//! draws once, or as often as it takes to fill a millisecond, in an order that each round shuffles anew. Figures are the
-//! thread's own time: medians, and in brackets the interval that holds the median in 95 of 100 runs. Ratios are taken
-//! round by round.
+//! Triangles: a cleared frame of 320 × 200, then all front faces, back to front. Only the rasterizer is timed,
+//! including clearing its depth buffer, if it has one, and packing our batches. In every round each candidate draws
+//! once, or as often as it takes to fill a millisecond, in an order reshuffled every round. Times are thread CPU times:
+//! medians, with the interval that contains the median in 95 of 100 runs in brackets. Ratios are taken round by round.
 //!
 //! Whole frames: transform, light, culling, hidden surfaces and drawing.
 //!
-//! Everybody's picture is compared with ours: a candidate that draws fewer or other pixels ends the run with an error.
+//! Every candidate's picture is compared with ours; one that draws too many or too few pixels, or different ones, ends
+//! the run with an error.
 
 mod allegro;
 mod candidate;
@@ -41,14 +41,14 @@ use workload::Workload;
 pub const WIDTH: usize = 320;
 pub const HEIGHT: usize = 200;
 
-/// Triangles of each workload that are compared with the truth.
+/// Triangles per workload that are compared with the truth.
 const COMPARED: usize = 1_000;
 
 struct Options {
     rabbit: Option<PathBuf>,
     json: Option<PathBuf>,
     rounds: usize,
-    /// Finer meshes are left out.
+    /// Meshes with more faces are skipped.
     faces: usize,
     triangles: bool,
     frames: bool,
@@ -152,7 +152,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One workload, drawn by everybody that can draw so.
+/// One workload, drawn by every candidate that supports the drawing.
 fn triangles(
     workload: &Workload,
     drawing: Drawing,
@@ -177,7 +177,7 @@ fn triangles(
             times[which].push((timing::seconds() - started) / f64::from(repeats[which]));
         }
     }
-    // Who is best is decided by medians; the ratio is that of the two.
+    // The best is chosen by medians; the ratio is that of the two.
     let best = |ours: bool| {
         let of = (0..times.len()).filter(|i| candidates[*i].is_ours() == ours);
         of.min_by(|a, b| times[*a].median().median.total_cmp(&times[*b].median().median)).expect("there are some")
@@ -222,12 +222,12 @@ fn triangles(
     }))
 }
 
-/// Prints how many times as long as our batches by this kernel the best peer takes, by medians: a row for each drawing, a
-/// column for each workload.
+/// Prints by how many times the best peer is slower than our batches with this kernel, by medians: one row per drawing,
+/// one column per workload.
 fn print_table(kernel: &str, tables: &[Value]) {
     let named = |workload: &Value| workload["name"].as_str().unwrap_or_default().to_owned();
     let workloads = |table: &Value| table["workloads"].as_array().cloned().unwrap_or_default();
-    // Those of the drawing that most have.
+    // The columns are those of the drawing with the most workloads.
     let Some(most) = tables.iter().map(workloads).max_by_key(Vec::len) else { return };
     let names: Vec<String> = most.iter().map(named).collect();
     println!("\n| best peer ÷ ours, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
@@ -248,8 +248,8 @@ fn print_table(kernel: &str, tables: &[Value]) {
     }
 }
 
-/// Prints how many times as long as ours, with a depth buffer by this kernel, Mesa takes: a row for each drawing of whole
-/// frames, a column for each scene.
+/// Prints by how many times Mesa is slower than ours with a depth buffer and this kernel: one row per drawing of whole
+/// frames, one column per scene.
 fn print_frames(kernel: &str, frames: &[Value]) {
     let mut names: Vec<&str> = Vec::new();
     for name in frames.iter().filter_map(|frame| frame["name"].as_str()) {
@@ -276,8 +276,8 @@ fn shown(median: Median, digits: usize) -> String {
     format!("{median:.digits$} ({low:.digits$} to {high:.digits$})")
 }
 
-/// Of each candidate the pixels that it draws, as a share of those of our first, and how far its bytes are from our
-/// first's, on the mean of the pixels that both draw. An error if that is another picture.
+/// For each candidate, the pixels that it draws as a share of our first's, and the mean difference of its bytes from
+/// our first's over the pixels that both draw. It is an error if the pictures do not match.
 fn pictures(
     workload: &Workload,
     drawing: Drawing,
@@ -300,7 +300,8 @@ fn pictures(
         let difference =
             both.clone().map(|(a, b)| f64::from(a.abs_diff(*b))).fold(0.0, |a, b| a + b) / both.count().max(1) as f64;
         let share = count(bytes) / count(ours);
-        // Nobody's edges are a pixel off on the mean, and a texel off is 24 to 168 shades of a few pixels.
+        // No candidate's edges are off by a pixel on average, and being off by a texel changes few pixels, by 24 to 168
+        // shades.
         if !(0.95..1.05).contains(&share) || difference > 12.0 {
             return Err(format!(
                 "{}, {}: {} draws {:.1} % of our pixels, {difference:.1} shades from ours on the mean",
@@ -315,7 +316,7 @@ fn pictures(
     Ok(pictures)
 }
 
-/// Pixels that a triangle covers inside the frame, by the engine's own count.
+/// Mean number of pixels that a triangle covers inside the frame, as the engine counts them.
 fn mean_pixels(triangles: &[Triangle]) -> f64 {
     use mode13h::raster::{Frame, Interpolation, Raster};
     let mut bytes = vec![0; WIDTH * HEIGHT];
@@ -326,7 +327,7 @@ fn mean_pixels(triangles: &[Triangle]) -> f64 {
     triangles.iter().map(&mut covered).sum::<u64>() as f64 / triangles.len() as f64
 }
 
-/// How often it draws in a millisecond, at least once.
+/// How many times a candidate draws in a millisecond; at least once.
 fn repeats(candidate: &mut dyn Candidate) -> u32 {
     candidate.draw();
     let started = timing::seconds();
@@ -340,7 +341,7 @@ fn frame(name: &str, stages: Stages, faces: usize, whole: &whole::Whole) -> Resu
     let each = |times: &Times| times.median().times(1e9 / faces as f64);
     let [of_ours, of_mesa] = whole.pixels;
     println!("\n{name}: {faces} faces; {of_ours} pixels, Mesa's {of_mesa}, {:.2} apart", whole.difference);
-    // What covers an eighth of a pixel more or less at each edge shows in fine meshes, whose pictures are all edges.
+    // Covering an eighth of a pixel more or less at each edge shows in fine meshes, whose pictures are all edges.
     if !(0.9..1.1).contains(&(of_mesa as f64 / of_ours as f64)) || whole.difference > 12.0 {
         return Err(format!("{name}, {}: Mesa shows another picture", stages.name()).into());
     }

@@ -1,4 +1,4 @@
-//! Our raster: a triangle a call, in batches, and in batches with effects.
+//! Our raster: one triangle per call, in batches, and in batches with effects.
 
 use mode13h::internals::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureStage};
 use mode13h::internals::span::texture::Texels;
@@ -30,7 +30,7 @@ impl Target {
         Self { bytes: vec![0; WIDTH * HEIGHT], depths, kernel }
     }
 
-    /// The raster, its depths cleared.
+    /// The raster, with its depths cleared.
     fn raster(&mut self) -> Raster<'_> {
         let frame = Frame::new(&mut self.bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame");
         let depth = self.depths.as_mut().map(|depths| {
@@ -50,7 +50,7 @@ impl Target {
     }
 }
 
-/// Triangles as `Raster` takes them.
+/// Triangles in the format of `Raster`.
 fn shaded(triangles: &[Triangle], drawing: Drawing) -> Vec<([Vertex; 3], Interpolation)> {
     let of = |triangle: &Triangle| {
         let vertices = triangle.map(|corner| corner.vertex);
@@ -59,7 +59,7 @@ fn shaded(triangles: &[Triangle], drawing: Drawing) -> Vec<([Vertex; 3], Interpo
     triangles.iter().map(of).collect()
 }
 
-/// The raster, a triangle a call.
+/// The raster, one triangle per call.
 pub struct OneByOne {
     triangles: Vec<([Vertex; 3], Interpolation)>,
     target: Target,
@@ -96,7 +96,7 @@ impl Candidate for OneByOne {
     }
 }
 
-/// The raster, a list a call. That batches are packed is part of the time.
+/// The raster, one list per call. Packing the batches is timed, too.
 pub struct Batches {
     triangles: Vec<([Vertex; 3], Interpolation)>,
     target: Target,
@@ -131,7 +131,7 @@ impl Candidate for Batches {
     }
 }
 
-/// The stages for pixels, many faces at a time. That batches are packed is part of the time.
+/// The pixel stages, many faces at a time. Packing the batches is timed, too.
 pub struct Effects<'a> {
     faces: Vec<([Vertex; 3], [Attributes; 3])>,
     drawing: Drawing,
@@ -144,7 +144,7 @@ pub struct Effects<'a> {
 impl<'a> Effects<'a> {
     pub fn new(triangles: &[Triangle], drawing: Drawing, material: &'a Material, kernel: Kernel) -> Self {
         let attributes = |[u, v]: [f32; 2]| Attributes {
-            // Below 2³¹, and whole.
+            // Below 2³¹, and a whole number.
             texture: [u, v].map(|texels| (texels * 65_536.0) as i32),
             ..Attributes::default()
         };
@@ -161,8 +161,8 @@ impl<'a> Effects<'a> {
 }
 
 impl Effects<'_> {
-    /// Texture coordinates exact at every sixteenth pixel, as the renderer's plan has them where that shows nothing.
-    /// Allegro, too, draws affine where distances are alike.
+    /// Uses texture coordinates that are exact at every sixteenth pixel, which the renderer's plan chooses where the
+    /// difference is invisible. Allegro also falls back to affine where distances are similar.
     pub fn every_16(self) -> Self {
         Self { mapping: Mapping::Every16, ..self }
     }

@@ -1,14 +1,14 @@
-//! A mesh made finer: edges split in the middle, new vertices pushed off the surface, as scans are rough.
+//! Refines a mesh: splits edges in the middle and pushes the new vertices off the surface, since scans are rough.
 
 use std::collections::HashMap;
 
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
 
-/// How far a new vertex is pushed off, of its edge's length, at most.
+/// How far at most a new vertex is displaced, as a share of its edge's length.
 const ROUGHNESS: f32 = 0.08;
 
-/// A mesh of about so many faces, made from one that has fewer.
+/// A mesh of about this many faces, made from one that has fewer.
 pub fn refined(mesh: &Mesh, faces: usize) -> Mesh {
     let (mut positions, mut triangles) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
     let mut random = 0x2545_F491_u32;
@@ -18,11 +18,11 @@ pub fn refined(mesh: &Mesh, faces: usize) -> Mesh {
     Mesh::new(positions, triangles).expect("a legal mesh, made finer")
 }
 
-/// Splits every edge, or, if that is too many, the longest.
+/// Splits every edge or, if that is too many, the longest ones.
 fn split(positions: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, faces: usize, random: &mut u32) {
     let edge = |a: u32, b: u32| (a.min(b), a.max(b));
     let length = |(a, b): (u32, u32), positions: &[Vec3]| positions[a as usize].distance(positions[b as usize]);
-    // Of each edge the sum of its faces' normals, for the push.
+    // For each edge, the sum of its faces' normals, along which to displace.
     let mut edges: HashMap<(u32, u32), Vec3> = HashMap::new();
     for &[a, b, c] in triangles.iter() {
         let [p, q, r] = [a, b, c].map(|i| positions[i as usize]);
@@ -31,10 +31,10 @@ fn split(positions: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, faces: usize,
             *edges.entry(edge(from, to)).or_default() += normal;
         }
     }
-    // By length, then by number, so that the order of the map is of no matter.
+    // By length, then by index, so that the map's order does not matter.
     let mut chosen: Vec<(u32, u32)> = edges.keys().copied().collect();
     chosen.sort_by(|&e, &f| length(f, positions).total_cmp(&length(e, positions)).then(e.cmp(&f)));
-    // Every split of an edge between two faces makes two faces more.
+    // Every split of an edge between two faces adds two faces.
     chosen.truncate((faces - triangles.len()).div_ceil(2));
     let mut middle = HashMap::new();
     for e in chosen {
@@ -48,7 +48,7 @@ fn split(positions: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, faces: usize,
     }
     let mut finer = Vec::with_capacity(faces + 2);
     for &[a, b, c] in triangles.iter() {
-        // Turned so that edges that are split come first.
+        // Rotated so that split edges come first.
         let at = |from, to| middle.get(&edge(from, to)).copied();
         let turns = [[a, b, c], [b, c, a], [c, a, b]];
         let [a, b, c] = *turns

@@ -1,4 +1,4 @@
-//! The scan conversion of `retrofire-core`, with a byte written where it writes colours.
+//! The scan conversion of `retrofire-core`, writing a byte where it writes colours.
 
 use retrofire_core::geom::{Vertex, vertex};
 use retrofire_core::math::point::pt3;
@@ -16,7 +16,7 @@ pub struct Retrofire {
     drawing: Drawing,
     texture: Texture<Buf2<u8>>,
     bytes: Vec<u8>,
-    /// Reciprocals of distances: greater is nearer.
+    /// Reciprocals of distances, so greater is nearer.
     depths: Vec<f32>,
 }
 
@@ -31,7 +31,7 @@ impl Retrofire {
             depths: vec![0.0; WIDTH * HEIGHT],
         };
         if drawing.has_texture() {
-            // Over the distance, as its own vertex stage leaves them.
+            // Divided by the distance, as its own vertex stage leaves them.
             new.textured.extend(triangles.iter().map(|triangle| {
                 triangle.map(|corner| {
                     let ([x, y, _], [u, v]) = (floats(&corner.vertex), corner.texel);
@@ -42,7 +42,7 @@ impl Retrofire {
             new.shaded.extend(triangles.iter().map(|triangle| {
                 triangle.map(|corner| {
                     let [x, y, shade] = floats(&corner.vertex);
-                    // Half a shade, so that cutting off gives the nearest.
+                    // Plus half a shade, so that truncating rounds to nearest.
                     vertex(pt3(x, y, 1.0 / corner.w), shade + 0.5)
                 })
             }));
@@ -51,7 +51,7 @@ impl Retrofire {
     }
 }
 
-/// The part of a row that lies in the frame.
+/// The part of a row that lies inside the frame.
 fn part(y: usize, xs: &std::ops::Range<usize>) -> Option<std::ops::Range<usize>> {
     let (from, to) = (xs.start.min(WIDTH), xs.end.min(WIDTH));
     (y < HEIGHT).then_some(y * WIDTH + from..y * WIDTH + to.max(from))
@@ -91,7 +91,7 @@ impl Candidate for Retrofire {
                 let row = &mut bytes[part.clone()];
                 match self.drawing {
                     Drawing::Flat => row.fill(index),
-                    // Without its division by the distance at every pixel: these shades are linear on the screen.
+                    // Without its division by the distance at every pixel, as these shades are linear on the screen.
                     Drawing::GouraudDepth => {
                         for ((pixel, depth), (at, shade)) in row.iter_mut().zip(&mut depths[part]).zip(line.vs) {
                             if at.z() > *depth {

@@ -1,4 +1,4 @@
-//! Times of rounds in which everybody has a turn, in an order that each round shuffles anew.
+//! Times of rounds in which every candidate has a turn, in an order reshuffled every round.
 
 use std::ffi::{c_int, c_long};
 
@@ -18,19 +18,20 @@ unsafe extern "C" {
 /// `CLOCK_THREAD_CPUTIME_ID`.
 const THREAD: c_int = 3;
 
-/// Seconds that this thread has run. All draw in it, and what else the processor did meanwhile does not count.
+/// Seconds of CPU time of this thread. All candidates draw in it, and whatever else the processor does meanwhile does
+/// not count.
 pub fn seconds() -> f64 {
     let mut time = Timespec { seconds: 0, nanoseconds: 0 };
-    // SAFETY: the clock is there since Linux 2.6.12, and writes both numbers.
+    // SAFETY: the clock exists since Linux 2.6.12, and both numbers are written.
     unsafe { clock_gettime(THREAD, &raw mut time) };
     time.seconds as f64 + time.nanoseconds as f64 * 1e-9
 }
 
-/// The times of one candidate, seconds, a round each.
+/// The times of one candidate in seconds, one per round.
 #[derive(Clone, Debug, Default)]
 pub struct Times(Vec<f64>);
 
-/// A median with the interval that holds it in 95 of 100 runs.
+/// A median, with the interval that contains it in 95 of 100 runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Median {
     pub low: f64,
@@ -47,15 +48,16 @@ impl Times {
         Median::of(&self.0)
     }
 
-    /// How many times as long as `other`'s, round by round: what slows down a whole round does not show.
+    /// The ratio to `other`'s times, round by round, so that what slows down a whole round does not show.
     pub fn ratio(&self, other: &Self) -> Median {
         Median::of(&self.0.iter().zip(&other.0).map(|(a, b)| a / b).collect::<Vec<_>>())
     }
 }
 
 impl Median {
-    /// The interval ends at order statistics: a median lies beyond the k-th of n with the chance that fewer than k of n
-    /// coins show heads, for which the normal distribution stands. With few values it is all of them.
+    /// The interval ends at order statistics: a median lies beyond the k-th of n values with the probability that fewer
+    /// than k of n coins show heads, which the normal distribution approximates. With few values the interval is all of
+    /// them.
     pub fn of(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -75,7 +77,7 @@ impl Median {
     }
 }
 
-/// Orders of turns, each shuffled anew.
+/// Orders of turns, reshuffled every time.
 pub struct Turns {
     random: Random,
     order: Vec<usize>,

@@ -8,18 +8,18 @@ use crate::drawing::{Drawing, Material};
 use crate::field;
 use crate::{HEIGHT, WIDTH};
 
-/// How far a candidate is from the truth, over the triangles that were looked at.
+/// How far a candidate is from the truth, over the triangles that were compared.
 #[derive(Clone, Copy, Default, Debug)]
 pub struct Errors {
-    /// Pixels that are covered and were not drawn.
+    /// Covered pixels that were not drawn.
     pub holes: u64,
-    /// Pixels that were drawn and are not covered.
+    /// Drawn pixels that are not covered.
     pub extra: u64,
-    /// The farthest that a byte of a covered pixel lies from the exact shade.
+    /// Largest difference between a covered pixel's byte and the exact shade.
     pub shade: f64,
 }
 
-/// Each triangle by itself, on black and on white: a pixel was drawn if it is the same on both.
+/// Draws each triangle separately, on black and on white: a pixel was drawn if it is the same on both.
 pub fn errors(
     triangles: &[Triangle],
     drawing: Drawing,
@@ -52,7 +52,7 @@ pub fn errors(
     errors
 }
 
-/// A triangle with corners in such an order that its area is positive.
+/// A triangle whose corners are ordered so that its area is positive.
 struct Plane {
     corners: [[i64; 3]; 3],
     area: i64,
@@ -82,7 +82,7 @@ impl Plane {
             let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
             let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
             let edge = dx * (py - a[1]) - dy * (px - a[0]);
-            // With a positive area on a screen whose y runs down: up is left, along the top is to the right.
+            // With positive area on a screen whose y points down, left edges run up and top edges to the right.
             let owns = dy < 0 || (dy == 0 && dx > 0);
             if edge < 0 || (edge == 0 && !owns) {
                 return None;

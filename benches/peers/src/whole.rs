@@ -1,4 +1,4 @@
-//! Whole frames: transform, light, culling, hidden surfaces, drawing; against Mesa's software OpenGL.
+//! Whole frames: transform, light, culling, hidden surfaces and drawing, compared with Mesa's software OpenGL.
 
 use std::error::Error;
 use std::ffi::{CStr, c_char, c_int};
@@ -41,13 +41,13 @@ unsafe extern "C" {
     fn peers_mesa_read(of_pixels: c_int, bytes: *mut u8);
 }
 
-/// The towards-light direction of `Scene::showing`.
+/// Direction toward the light in `Scene::showing`.
 const LIGHT: [f32; 4] = [0.4, 0.6, 1.0, 0.0];
 const ASPECT: f32 = 4.0 / 3.0;
-/// The fog's colour, of 255.
+/// The fog's grey level, of 255.
 const FOG: u8 = 128;
 
-/// Starts Mesa; gives the name of its renderer, which must be llvmpipe.
+/// Starts Mesa and returns the name of its renderer, which must be llvmpipe.
 pub fn start_mesa(material: &Material) -> Result<String, Box<dyn Error>> {
     let scene = Scene::default();
     let (near, far) = (scene.camera.near, 100.0 * scene.camera.near.max(1.0));
@@ -73,7 +73,7 @@ pub fn start_mesa(material: &Material) -> Result<String, Box<dyn Error>> {
     if name.contains("llvmpipe") { Ok(name) } else { Err(format!("Mesa renders by {name}, not by llvmpipe").into()) }
 }
 
-/// Drawing of a lit mesh's pixels.
+/// How a lit mesh's pixels are drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stages {
     pub textured: bool,
@@ -103,15 +103,15 @@ impl Stages {
 pub enum Shown {
     /// One mesh, which fills the frame.
     One,
-    /// 500 of it, side by side, above and behind each other: what an object costs, however small.
+    /// 500 copies of it, side by side, stacked and behind one another, to show the cost per object, however small.
     Crowd,
 }
 
 impl Shown {
-    /// Objects of a crowd to each side, upwards and backwards.
+    /// Number of objects in a crowd across, up and back.
     const CROWD: [usize; 3] = [10, 10, 5];
 
-    /// Where the objects are, in radii of what the frame shows, and how large.
+    /// Positions and sizes of the objects, in radii of what the frame shows.
     fn places(self) -> Vec<(Vec3, f32)> {
         match self {
             Self::One => vec![(Vec3::ZERO, 1.0)],
@@ -125,15 +125,15 @@ impl Shown {
     }
 }
 
-/// Frames of one mesh that turns, or of many.
+/// Frames of one turning mesh, or of many.
 pub struct Whole {
-    /// The names of ours: the depth buffer by each kernel, and as planned by the fastest.
+    /// Names of ours: the depth buffer with each kernel, and as planned with the fastest.
     pub names: Vec<String>,
-    /// Seconds a frame, of ours and then of Mesa.
+    /// Seconds per frame, ours and then Mesa's.
     pub times: Vec<Times>,
-    /// Pixels that are drawn: ours with the depth buffer, and Mesa's.
+    /// Number of pixels drawn: ours with the depth buffer, and Mesa's.
     pub pixels: [usize; 2],
-    /// The mean difference of the pixels that both draw, of 255.
+    /// Mean difference of the pixels that both draw, of 255.
     pub difference: f64,
 }
 
@@ -152,12 +152,12 @@ pub fn measure(
     let mut scene = Scene::showing(mesh.clone());
     let bounds = scene.objects()[0].mesh().bounds();
     scene.camera = Camera::framing(Vec3::ZERO, bounds.radius);
-    // Ours sees the mesh as large as it is from where it fills the frame; Mesa sees it at the unit's size.
+    // Ours sees the mesh at its own size, from where it fills the frame; Mesa sees it scaled to unit size.
     let scale = Scene::default().camera.eye.z / scene.camera.eye.z;
     if stages.textured {
         let grey = |&byte: &u8| Rgb::new(byte, byte, byte);
         let image: Vec<Rgb> = material.texels.iter().map(grey).collect();
-        // Rows of a picture run down, those of the image up, as Mesa has them.
+        // Rows of a picture run down, but those of the image run up, which is Mesa's order.
         let rows: Vec<Rgb> = image.chunks(1 << SIDE_BITS).rev().flatten().copied().collect();
         let texture = Texture::from_rgb(1 << SIDE_BITS, 1 << SIDE_BITS, &rows)?;
         scene.objects_mut()[0].materials[0].texture = Some(texture.into());
@@ -190,10 +190,10 @@ pub fn measure(
         names.push(format!("{}, {kernel}", if has_depth { "depth buffer" } else { "as planned" }));
         ours.push((renderer, Box::new(Vga::new())));
     }
-    // An open mesh shows its other side, too.
+    // An open mesh shows its back faces, too.
     let both = !ours[0].0.make_plan(&scene, Screen::MODE_13H)?.objects()[0].is_on(Effect::BackFaceCulling);
     let (start, end) = if stages.fogged { (start * scale, end * scale) } else { (0.0, 0.0) };
-    // SAFETY: Mesa has been started; the arrays outlive the frames drawn here, and every index is below their number.
+    // SAFETY: Mesa has been started; the arrays outlive the frames drawn here, and every index is in range.
     unsafe {
         peers_mesa_mesh(
             positions.as_ptr().cast(),
@@ -208,7 +208,7 @@ pub fn measure(
     let mut times = vec![Times::default(); ours.len() + 1];
     let mut turns = Turns::of(times.len());
     for round in 0..=rounds {
-        // Each renderer sees each pose once, so nothing is kept. The first round warms up.
+        // Each renderer sees each pose once, so nothing is cached. The first round warms up.
         let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
         for object in scene.objects_mut() {
             object.angles = angles.map(Angle::from_radians);
@@ -235,7 +235,7 @@ pub fn measure(
     Ok(Whole { names, times, pixels, difference })
 }
 
-/// The matrix by which Mesa sees the mesh at a place and in a size from the default camera, column-major.
+/// The column-major matrix that places and scales the mesh as Mesa sees it from the default camera.
 fn model(turn: Mat3, centre: Vec3, (place, size): (Vec3, f32), scale: f32) -> [f32; 16] {
     let mut model = [0.0_f32; 16];
     for (column, axis) in [turn.x_axis, turn.y_axis, turn.z_axis].into_iter().enumerate() {
@@ -247,7 +247,8 @@ fn model(turn: Mat3, centre: Vec3, (place, size): (Vec3, f32), scale: f32) -> [f
     model
 }
 
-/// The pixels that each draws, and the mean difference of those that both draw. Mesa's lowest row is the first.
+/// The number of pixels that each draws, and the mean difference of those that both draw. Mesa's lowest row comes
+/// first.
 fn compared(ours: &[u8], theirs: &[u8]) -> ([usize; 2], f64) {
     let flipped: Vec<u8> = theirs.chunks(WIDTH).rev().flatten().copied().collect();
     let drawn = |bytes: &[u8]| bytes.iter().filter(|byte| **byte != 0).count();

@@ -1,4 +1,4 @@
-//! What is drawn: prepared triangles, back to front, and the meshes that they come from.
+//! The workloads: prepared triangles, back to front, and the meshes that they come from.
 
 use std::error::Error;
 use std::path::Path;
@@ -16,16 +16,16 @@ use crate::candidate::{Corner, Triangle};
 use crate::refine::refined;
 use crate::{HEIGHT, WIDTH};
 
-/// Triangles, back to front, and the mesh that they are of.
+/// Triangles, back to front, and the mesh that they come from.
 pub struct Workload {
     pub name: String,
     pub triangles: Vec<Triangle>,
-    /// With texture coordinates; `None` for triangles of a file, which have neither distances nor an image.
+    /// With texture coordinates; `None` for triangles from a file, which have neither distances nor an image.
     pub mesh: Option<Mesh>,
 }
 
 impl Workload {
-    /// The front faces of a mesh that fills the frame, by the mean depth of their vertices.
+    /// The front faces of a mesh that fills the frame, sorted by the mean depth of their vertices.
     fn of_mesh(name: String, mesh: Mesh) -> Result<Self, Box<dyn Error>> {
         let mut scene = Scene::showing(mesh.clone());
         scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
@@ -38,8 +38,8 @@ impl Workload {
         Ok(Self { name, triangles: with_texels(&triangles), mesh: Some(mesh.with_texcoords(texcoords)?) })
     }
 
-    /// A little-endian u32 count, then for each triangle three times f32 x, y and shade (pixels,
-    /// pixels, 0 to 255), back to front.
+    /// Reads a file: a little-endian u32 count, then for each triangle three times f32 x, y and shade (pixels, pixels,
+    /// 0 to 255), back to front.
     fn of_tri(path: &Path) -> Result<Self, Box<dyn Error>> {
         let bytes = std::fs::read(path)?;
         let (count, rest) = bytes.split_first_chunk::<4>().ok_or("too short for a count")?;
@@ -59,7 +59,7 @@ impl Workload {
         Ok(Self { name: name_of(path), triangles, mesh: None })
     }
 
-    /// The shapes, the rabbit (or, without one, a rough sphere) ever finer up to so many faces, and the files.
+    /// The shapes, the rabbit (or, without one, a rough sphere) refined up to this many faces, and the files.
     pub fn all(rabbit: Option<&Path>, most_faces: usize, files: &[String]) -> Result<Vec<Self>, Box<dyn Error>> {
         let mut all = Vec::new();
         for name in ["cube", "torus", "teapot"] {
@@ -90,10 +90,10 @@ fn name_of(path: &Path) -> String {
     path.file_stem().map_or_else(|| path.display().to_string(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Triangles with the distances that their depths stand for, and an image laid on them: a function that is linear in
-/// space, so that neighbours agree at their corners and between.
+/// Triangles with the distances given by their depths, and an image mapped onto them by a function that is linear in
+/// space, so that neighbours agree at their corners and in between.
 fn with_texels(triangles: &[[Vertex; 3]]) -> Vec<Triangle> {
-    // A depth is 2³⁰ times the near plane's distance over its own.
+    // A depth is 2³⁰ times the near plane's distance divided by its own.
     let distance = |v: &Vertex| (1_u64 << 30) as f32 / v.depth().max(1) as f32;
     let corners = triangles.iter().flatten();
     let mean = corners.clone().map(distance).sum::<f32>() / corners.count().max(1) as f32;
@@ -101,7 +101,7 @@ fn with_texels(triangles: &[[Vertex; 3]]) -> Vec<Triangle> {
         let w = distance(&vertex);
         let across = |bits: i32, side: usize| (bits as f32 / 256.0 - side as f32 / 2.0) * w / mean;
         let (x, y) = (across(vertex.x().to_bits(), WIDTH), across(vertex.y().to_bits(), HEIGHT));
-        // Half a texel a pixel, so 256 texels or fewer, of which f32 holds 1/65,536ths.
+        // Half a texel per pixel, so at most 256 texels, for which f32 resolves 1/65,536.
         let texel =
             [x + 0.3 * (w / mean - 1.0) * WIDTH as f32, y].map(|t| ((t / 2.0 + 128.0) * 65_536.0).round() / 65_536.0);
         Corner { vertex, w, texel }

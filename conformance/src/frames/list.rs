@@ -39,12 +39,12 @@ impl List {
         self.0.push(Frame::new(name, make));
     }
 
-    /// Adds a frame of the machine.
+    /// Adds a frame on the machine.
     fn vga(&mut self, name: String, settings: Settings, scene: impl Fn() -> Scene + 'static) {
         self.add(name, move || Picture { scene: scene(), settings, shape: Shape::Vga });
     }
 
-    /// Every shape with every shading; the sphere, the cube and the torus in 16.16, too.
+    /// Every shape with every shading; the sphere, the cube and the torus in 16.16 as well.
     fn shapes(&mut self) {
         for (i, &name) in shapes::NAMES.iter().enumerate() {
             for (j, shading) in Shading::ALL.into_iter().enumerate() {
@@ -66,8 +66,8 @@ impl List {
         }
     }
 
-    /// Every effect with every shading. The hidden-surface methods take turns, so that each meets each effect and each
-    /// shading.
+    /// Every effect with every shading. Hidden-surface methods alternate, so that each is combined with every effect
+    /// and every shading.
     fn effects(&mut self) {
         for (i, &(name, change)) in EFFECTS.iter().enumerate() {
             for (j, shading) in Shading::ALL.into_iter().enumerate() {
@@ -83,8 +83,8 @@ impl List {
         }
     }
 
-    /// A floor that runs away from the eye, by every mapping, with mipmaps and without, from four heights: so that each of
-    /// the eight levels is drawn somewhere.
+    /// A floor that recedes from the eye, with every mapping, with and without mipmaps, from four heights, so that each
+    /// of the eight levels is drawn somewhere.
     fn mappings(&mut self) {
         for mapping in Mapping::ALL {
             for mipmaps in [false, true] {
@@ -186,7 +186,7 @@ impl List {
                 scene
             });
         }
-        // Sixteen colours and no ramp.
+        // Sixteen colours without ramps.
         for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong] {
             self.vga(format!("palette/sixteen-colours/{shading}"), with(shading), || {
                 let mut scene = pair(0.0);
@@ -206,7 +206,7 @@ impl List {
         }
     }
 
-    /// Two tori, one through the other, that reach through the near plane and beyond the guard band.
+    /// Two interpenetrating tori that extend through the near plane and beyond the guard band.
     fn near(&mut self) {
         for method in HiddenSurfaces::ALL {
             for (i, shading) in Shading::ALL.into_iter().enumerate() {
@@ -240,7 +240,7 @@ impl List {
             let ids = scene.object_ids().to_vec();
             scene.objects_mut()[1].parent = Some(ids[0]);
             scene.objects_mut()[1].visible = false;
-            // Alone by the others' side.
+            // Beside the others, without a parent.
             scene.add(at(Object::new(shapes::cone(7, 2)), vec3(-1.0, -0.8, 0.6)));
         });
         add("z-up", |scene| scene.objects_mut()[0].up_axis = UpAxis::Z);
@@ -286,8 +286,8 @@ impl List {
         self.vga("object/none".into(), Settings::default(), Scene::new);
     }
 
-    /// Frames of other shapes than the machine's. Effects run beyond column 320, over bytes between the rows, and from band
-    /// to band.
+    /// Frames of other shapes than the machine's. Effects extend beyond column 320, next to padding between rows, and
+    /// across bands.
     fn canvases(&mut self) {
         let shapes = [
             ("pitch", Shape::Canvas { width: 1_021, height: 97, pitch: 1_100, band: 97 }),
@@ -300,7 +300,7 @@ impl List {
                 self.add(format!("canvas/{name}/{effects}"), move || {
                     let mut scene = pair(3.0);
                     change(&mut scene);
-                    // Both fill the height, or the width.
+                    // The scene fills the height or the width.
                     scene.camera.eye.z = if name == "tall" { 2.2 } else { 1.6 };
                     Picture { scene, settings: with(shading), shape }
                 });
@@ -308,11 +308,11 @@ impl List {
         }
     }
 
-    /// The scenes of the program at the moment that shows them best, and at another.
+    /// The program's scenes at the moment that shows them best, and at another one.
     fn shipped(&mut self) {
         for (name, make) in shipped::ALL {
             for (moment, part) in [("picture", None), ("later", Some(0.8))] {
-                // An automatic palette takes longer than all other frames.
+                // An automatic palette takes longer than all other frames together.
                 if part.is_some() && ["rgb", "crate", "mirror"].contains(&name) {
                     continue;
                 }
@@ -330,7 +330,7 @@ fn with(shading: Shading) -> Settings {
     Settings { accuracy: Some(shading.into()), ..Settings::default() }
 }
 
-/// One of the scenes of the program, at a part of its time.
+/// One of the program's scenes, at a fraction of its duration.
 fn by_name(name: &str, part: f64) -> Scene {
     let make =
         shipped::ALL.iter().find(|(other, _)| *other == name).map_or(Scene::new as fn() -> Scene, |(_, make)| *make);
@@ -339,7 +339,7 @@ fn by_name(name: &str, part: f64) -> Scene {
     shipped::at(scene, seconds)
 }
 
-/// A mesh in the middle, under one sun.
+/// A mesh in the centre, under one sun.
 fn showing(mesh: impl Into<Shared<Mesh>>) -> Scene {
     let mut scene = Scene::new();
     scene.add(Object::new(mesh));
@@ -357,7 +357,7 @@ fn turned(mut object: Object, radians: f64) -> Object {
     object
 }
 
-/// A torus, and a sphere behind it and beside.
+/// A torus, with a sphere behind it and to the side.
 fn pair(turn: f64) -> Scene {
     let mut scene = Scene::new();
     scene.palette = Some(builtin::MATERIALS_4X64.clone());
@@ -369,10 +369,10 @@ fn pair(turn: f64) -> Scene {
     scene
 }
 
-/// A change of the two bodies of [`pair`].
+/// A change to the two objects of [`pair`].
 type Change = fn(&mut Scene);
 
-/// The effects, each on both bodies.
+/// The effects, each applied to both objects.
 const EFFECTS: [(&str, Change); 18] = [
     ("fog", |scene| scene.fog = Some(Fog { color: Rgb::new(120, 130, 150), start: 1.5, end: 4.0 })),
     ("highlight", |scene| {
@@ -449,7 +449,7 @@ fn each(scene: &mut Scene, change: impl Fn(&mut Material)) {
     scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials).for_each(change);
 }
 
-/// Colours of every kind, without ramps.
+/// A palette of all kinds of colours, without ramps.
 fn colors() -> Option<Palette> {
     builtin::by_name("cube").map(|builtin| builtin.palette.clone())
 }
@@ -470,7 +470,8 @@ fn colored_lamps(scene: &mut Scene) {
     scene.add_light(Light::lamp([1.4, -0.4, 0.8], 3.0).with_color([0.1, 0.3, 1.0]).with_intensity(1.2));
 }
 
-/// A wall of few faces and a torus before it, in the edges of two spot lights: a soft one, and a sharp one that is narrow.
+/// A wall with few faces and a torus in front of it, crossed by the edges of two spot lights: a soft one, and a narrow
+/// sharp one.
 fn spots(color: Option<[f32; 3]>) -> Scene {
     let mut scene = Scene::new();
     scene.palette = if color.is_some() { colors() } else { Some(builtin::GREY.clone()) };
@@ -489,7 +490,7 @@ fn spots(color: Option<[f32; 3]>) -> Scene {
     scene
 }
 
-/// A floor that runs away from the eye, with a texture that repeats.
+/// A floor that recedes from the eye, with a repeating texture.
 fn floor(height: f32, repeat: f32, name: &str, is_lit: bool) -> Scene {
     let mut scene = Scene::new();
     scene.palette = colors();
@@ -510,7 +511,7 @@ fn floor(height: f32, repeat: f32, name: &str, is_lit: bool) -> Scene {
     scene
 }
 
-/// Three bodies, one behind the other: the first two shine through.
+/// Three objects, one behind another; the first two are translucent.
 fn glass(front: Blend, behind: Blend, name: Option<&str>) -> Scene {
     let mut scene = Scene::new();
     scene.palette = colors();
@@ -531,7 +532,7 @@ fn glass(front: Blend, behind: Blend, name: Option<&str>) -> Scene {
     scene
 }
 
-/// Two tori, one through the other, that reach beyond the near plane and the guard band.
+/// Two interpenetrating tori that extend beyond the near plane and the guard band.
 fn close_up(turn: f64) -> Scene {
     let torus = Shared::new(shapes::torus(24, 12));
     let mut scene = showing(torus.clone());
@@ -546,7 +547,7 @@ fn close_up(turn: f64) -> Scene {
     scene
 }
 
-/// The colours of the EGA, as one has them without ramps.
+/// The colours of the EGA, which have no ramps.
 fn sixteen() -> Palette {
     let mut colors = [Rgb::BLACK; 256];
     for (i, color) in (0..16_u8).zip(&mut colors) {

@@ -2,18 +2,18 @@
 //!
 //! | names | what |
 //! |---|---|
-//! | `shape/…` | every shape with every shading, by floating point; some of them in 16.16 |
-//! | `effect/…` | every effect with every shading, by changing hidden-surface methods |
-//! | `mapping/…` | a floor by every mapping, seen from farther and farther: every mipmap level |
+//! | `shape/…` | every shape with every shading, in floating point; some of them in 16.16 |
+//! | `effect/…` | every effect with every shading, with alternating hidden-surface methods |
+//! | `mapping/…` | a floor with every mapping, seen from farther and farther away: every mipmap level |
 //! | `glass/…`, `fog/…`, `light/…`, `palette/…` | glass behind glass, fog of both signs, coloured lamps, dither, palettes without ramps |
 //! | `budget/…` | five error budgets on six scenes |
-//! | `near/…` | two tori through each other, through the near plane and beyond the guard band |
+//! | `near/…` | two interpenetrating tori, through the near plane and beyond the guard band |
 //! | `object/…` | parents, hidden objects, sizes, upward axes, materials that respond in their own way |
 //! | `canvas/…` | a pitch wider than the frame, wide and tall frames, bands |
 //! | `shipped/…` | the scenes that are compiled in, as [values](shipped) |
 //!
-//! The hashes stand in `expected.rs`, which is generated: `MODE13H_UPDATE=1 cargo test -p mode13h-conformance`. A change of a
-//! hash is a change of what the engine draws.
+//! The hashes are in `expected.rs`, which is generated: `MODE13H_UPDATE=1 cargo test -p mode13h-conformance`. If a hash
+//! changes, what the engine draws has changed.
 
 mod expected;
 mod list;
@@ -40,15 +40,15 @@ use crate::hash::{START, fnv_1a};
 pub enum Shape {
     /// The machine: 320 × 200, with its DAC.
     Vga,
-    /// A frame of any size with square pixels, with a pitch, drawn in bands.
+    /// A frame of any size with square pixels and any pitch, drawn in bands.
     Canvas {
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
-        /// Bytes from a row to the next.
+        /// Bytes from one row to the next.
         pitch: usize,
-        /// Rows of a band; `height` for the whole frame at once.
+        /// Rows per band; `height` for the whole frame at once.
         band: u32,
     },
 }
@@ -64,7 +64,7 @@ pub struct Picture {
     pub shape: Shape,
 }
 
-/// One frame of the list. Its scene is made when it is drawn.
+/// One frame of the list. Its scene is built when it is drawn.
 pub struct Frame {
     /// Its name, such as `effect/fog/phong/painter`.
     pub name: String,
@@ -77,23 +77,23 @@ impl fmt::Debug for Frame {
     }
 }
 
-/// A frame as drawn.
+/// A drawn frame.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Drawn {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
     /// The pixels, row after row, `width` bytes each.
     pub pixels: Vec<u8>,
     /// The colours that the machine shows.
     pub palette: Palette,
-    /// The hash of the pixels, the bytes between the rows, and the colours: FNV-1a of 64 bits, its halves combined by
-    /// exclusive or.
+    /// Hash of the pixels, the padding between rows, and the colours: 64-bit FNV-1a, its halves combined by exclusive
+    /// or.
     pub hash: u32,
 }
 
-/// A pixel in which two drawings of a frame differ.
+/// A pixel at which two drawings of a frame differ.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Difference {
     /// Its column.
@@ -104,7 +104,7 @@ pub struct Difference {
     pub is: u8,
     /// The byte that should be there.
     pub should: u8,
-    /// How many pixels differ in all.
+    /// Number of pixels that differ in total.
     pub pixels: u32,
 }
 
@@ -115,7 +115,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The byte that a frame holds before it is drawn. Those between the rows must stay.
+/// What a frame's bytes hold before it is drawn. Padding between rows must keep it.
 const BEFORE: u8 = 0xA5;
 
 impl Frame {
@@ -123,27 +123,27 @@ impl Frame {
         Self { name, make: Box::new(make) }
     }
 
-    /// The scene, and how it is drawn.
+    /// The scene and how it is drawn.
     #[must_use]
     pub fn picture(&self) -> Picture {
         (self.make)()
     }
 
-    /// The [hash](Drawn::hash) on every machine; `None` for a frame that is new and has none yet.
+    /// The [hash](Drawn::hash) on every machine; `None` for a new frame that has none yet.
     #[must_use]
     pub fn expected(&self) -> Option<u32> {
         expected::EXPECTED.iter().find(|(name, _)| *name == self.name).map(|(_, hash)| *hash)
     }
 
-    /// Draws the frame by a new renderer.
+    /// Draws the frame with a new renderer.
     ///
     /// # Errors
-    /// [`Renderer::draw`] lists them; these scenes have none, unless the engine is broken.
+    /// See [`Renderer::draw`]; these scenes cause none, unless the engine is broken.
     pub fn draw(&self, kernel: Kernel) -> Result<Drawn, RenderError> {
         self.draw_by(&mut Renderer::new(), kernel)
     }
 
-    /// Draws the frame by a renderer that may have drawn others, which changes nothing but the time it takes.
+    /// Draws the frame with a renderer that may have drawn others, which affects nothing but the time.
     ///
     /// # Errors
     /// See [`draw`](Self::draw).
@@ -177,7 +177,7 @@ impl Frame {
 }
 
 impl Drawn {
-    /// The first pixel that is not as in `right`, row by row; `None` if all are equal, or the sizes differ.
+    /// The first pixel, row by row, that differs from `right`; `None` if all are equal, or the sizes differ.
     #[must_use]
     pub fn difference(&self, right: &Self) -> Option<Difference> {
         if (self.width, self.height) != (right.width, right.height) {
@@ -197,13 +197,13 @@ pub fn all() -> Vec<Frame> {
     list::all()
 }
 
-/// One hash for some frames in their order, from that of the frames before; begin with [`START`].
+/// Combines the hashes of frames, in order, with the hash of the frames before them; start with [`START`].
 #[must_use]
 pub fn combined(before: u64, drawn: &Drawn) -> u64 {
     combined_hash(before, drawn.hash)
 }
 
-/// [`combined`], of a frame's [hash](Drawn::hash).
+/// Combines a single frame's [hash](Drawn::hash), as [`combined`] does.
 #[must_use]
 pub fn combined_hash(before: u64, hash: u32) -> u64 {
     fnv_1a(before, &hash.to_le_bytes())

@@ -1,6 +1,7 @@
-//! The scenes that are compiled into the engine, as values: chips without files draw them, too.
+//! The scenes that are compiled into the engine, as values, so that chips without files can draw them too.
 //!
-//! A test compares each with its file in `assets/scenes/`. Cameras that a file leaves to be framed stand here as what came of it.
+//! A test compares each with its file in `assets/scenes/`. Cameras that a file leaves to automatic framing are given
+//! here as the result.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -16,7 +17,7 @@ use mode13h::settings::{Mapping, Shading};
 use mode13h::texture::Texture;
 use mode13h_assets::auto_palette;
 
-/// A scene by its name.
+/// A scene and its name.
 type Named = (&'static str, fn() -> Scene);
 
 /// The scenes, in the order of `mode13h list scenes`.
@@ -41,7 +42,7 @@ pub const ALL: [Named; 18] = [
     ("still", still),
 ];
 
-/// A scene as it is drawn: with its automatic palette, if it asks for one, at a time in seconds.
+/// A scene ready to draw at a time in seconds, with its automatic palette if it asks for one.
 #[must_use]
 pub fn at(mut scene: Scene, seconds: f64) -> Scene {
     if scene.auto_palette
@@ -67,7 +68,7 @@ fn camera(eye: Vec3, target: Vec3, near: f32) -> Camera {
     Camera { eye, target, near, ..Camera::default() }
 }
 
-/// A field of view as a file has it: degrees in f32.
+/// A field of view as a file gives it: degrees in f32.
 fn degrees(degrees: f32) -> Angle {
     Angle::from_radians(f64::from(degrees.to_radians()))
 }
@@ -110,7 +111,7 @@ fn texture(name: &str) -> Option<Shared<Texture>> {
     name.parse::<Texture>().ok().map(Shared::new)
 }
 
-/// Adds an object that turns so often about its axes in a round.
+/// Adds an object that turns this many times about each axis in one round.
 fn spin(scene: &mut Scene, object: Object, turns: [f64; 3]) -> ObjectId {
     let start = object.angles;
     let object = scene.add(object);

@@ -1,4 +1,4 @@
-//! Rows in memory: their lengths, their alignments, and the bytes beside them, which have to stay.
+//! Rows in memory: their lengths, their alignments, and the bytes next to them, which must not change.
 
 use alloc::format;
 use alloc::string::String;
@@ -9,27 +9,27 @@ use mode13h::internals::span::dither::{DitherPattern, PERIOD, ThresholdRow};
 use super::{Cases, Checked};
 use crate::Random;
 
-/// Bytes before and behind the row that have to stay as they were.
+/// Bytes before and after the row that must not change.
 const GUARD: usize = 64;
 
-/// The longest row of [`Cases::shapes`] is one shorter.
+/// One more than the longest row of [`Cases::shapes`].
 const LONGEST: usize = 4_096;
 
-/// Where a row lies: `alignment` bytes beyond a multiple of 64.
+/// A row's length, and its alignment: it starts `alignment` bytes after a multiple of 64.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
-    /// Pixels.
+    /// Number of pixels.
     pub length: usize,
-    /// 0 to 63.
+    /// Alignment, 0 to 63.
     pub alignment: usize,
 }
 
 impl Cases {
-    /// Every length to 320, at every alignment or, in the quick form, six of them; and longer ones.
+    /// Every length up to 320, at every alignment or, in the quick form, at six of them; and longer ones.
     pub(super) fn shapes(self) -> impl Iterator<Item = Shape> {
         let mut random = self.random("shapes");
         let alignments = self.of(6, 64);
-        // 11 has no factor in common with 64, so all alignments come in the quick form, too.
+        // 11 and 64 have no common factor, so all alignments occur in the quick form, too.
         let screen = (0..=320_usize)
             .flat_map(move |length| (0..alignments).map(move |i| Shape { length, alignment: (length + i * 11) % 64 }));
         let longer = (0..self.of(200, 2_000)).map(move |i| Shape { length: random.log_uniform(12), alignment: i % 64 });
@@ -43,24 +43,24 @@ pub struct Canvas {
     bytes: Vec<u8>,
 }
 
-/// No constant, so that bytes moved or copied show too.
+/// Not a constant, so that moved or copied bytes show up too.
 fn guard_byte(i: usize) -> u8 {
-    // Its lower half.
+    // The low byte.
     0xA5 ^ (i as u8)
 }
 
 impl Canvas {
-    /// Room for rows of up to `longest` pixels.
+    /// Memory for rows of up to `longest` pixels.
     #[must_use]
     pub fn new(longest: usize) -> Self {
         Self { bytes: (0..longest + 64 + 63 + 2 * GUARD).map(guard_byte).collect() }
     }
 
-    /// Lets `draw` at a row that holds `before`, and compares with `after`: the row's bytes are these, and no other byte
-    /// has changed.
+    /// Runs `draw` on a row that holds `before`, and checks that the row then holds `after` and that no other byte has
+    /// changed.
     ///
     /// # Errors
-    /// A line that names the first byte that differs.
+    /// A line naming the first byte that differs.
     pub fn check(
         &mut self,
         alignment: usize,
@@ -86,7 +86,7 @@ impl Canvas {
     }
 }
 
-/// The cases of one loop: `one` draws a case of each shape, and says what was wrong.
+/// Runs the cases of one loop: `one` draws a case of each shape and reports what was wrong.
 pub(super) fn on_every_shape(
     cases: Cases,
     stream: &str,
@@ -100,12 +100,12 @@ pub(super) fn on_every_shape(
     Ok(count)
 }
 
-/// Any bytes.
+/// Random bytes.
 pub(super) fn bytes(random: &mut Random, count: usize) -> Vec<u8> {
     (0..count).map(|_| random.next_u64() as u8).collect()
 }
 
-/// A row beside another one: as long, or in two of eight cases a bit shorter or longer.
+/// A row to go with another one: of the same length, or in two of eight cases slightly shorter or longer.
 pub(super) fn other_row(random: &mut Random, length: usize) -> Vec<u8> {
     let length = match random.below(8) {
         0 => length.saturating_sub(1 + random.below(20)),
@@ -115,7 +115,7 @@ pub(super) fn other_row(random: &mut Random, length: usize) -> Vec<u8> {
     bytes(random, length)
 }
 
-/// Numbers at which something changes its sign, carries or is as large as can be.
+/// Numbers around which a sign changes or a carry occurs, and the largest ones.
 pub(super) const EDGES: [u16; 16] =
     [0, 1, 2, 0x7F, 0x80, 0xFF, 0x100, 0x101, 0x7FFF, 0x8000, 0x8001, 0xFEFF, 0xFF00, 0xFF01, 0xFFFE, 0xFFFF];
 
@@ -123,7 +123,7 @@ pub(super) fn any_u16(random: &mut Random) -> u16 {
     if random.below(4) == 0 { random.one_of(&EDGES) } else { random.next_u64() as u16 }
 }
 
-/// Thresholds of a row: a pattern's, all the same, or any.
+/// Thresholds of a row: from a pattern, all equal, or random.
 pub(super) fn any_thresholds(random: &mut Random) -> ThresholdRow {
     match random.below(6) {
         0 => ThresholdRow::new(&[random.one_of(&[0, 128, 255])]),
@@ -133,12 +133,12 @@ pub(super) fn any_thresholds(random: &mut Random) -> ThresholdRow {
     }
 }
 
-/// A column of a frame, or one of the last numbers there are.
+/// A column of a frame, or one close to the largest number.
 pub(super) fn any_column(random: &mut Random) -> usize {
     if random.below(8) == 0 { usize::MAX - random.below(21) } else { random.below(4_096) }
 }
 
-/// The threshold of pixel `k` in a row whose first pixel lies in column `x`.
+/// The threshold of pixel `k` in a row whose first pixel is in column `x`.
 pub(super) fn threshold(thresholds: &ThresholdRow, x: usize, k: usize) -> u8 {
     // Below 64.
     thresholds.at(((x as u128 + k as u128) % PERIOD as u128) as usize)
@@ -148,7 +148,7 @@ pub(super) fn threshold(thresholds: &ThresholdRow, x: usize, k: usize) -> u8 {
 mod tests {
     use super::*;
 
-    /// A byte beside the row that is written, and one of the row that is wrong, are found and named.
+    /// A wrong byte next to the row, and one inside it, are found and named.
     #[test]
     fn a_lost_byte_is_told() {
         let mut canvas = Canvas::new(20);
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(canvas.check(3, &[0; 8], &[1; 8], |row| row.fill(1)), Ok(()));
     }
 
-    /// Every alignment comes, and every length of a screen row.
+    /// Every alignment occurs, and every length of a screen row.
     #[test]
     fn all_lengths_and_alignments_come() {
         for (cases, count) in [(Cases::quick(1), 2_126), (Cases::full(1), 22_544)] {

@@ -1,4 +1,4 @@
-//! Red, green and blue to an index.
+//! Mixing red, green and blue into a palette index.
 
 use alloc::format;
 use alloc::string::String;
@@ -13,17 +13,17 @@ use crate::Random;
 /// The levels of a channel in the colour cube.
 const LEVELS: [i64; 6] = [0, 52, 101, 154, 203, 255];
 
-/// The rule of the cube for one channel: the level of a value at a threshold.
+/// The cube's rule for one channel: the level that a value gets at a threshold.
 #[must_use]
 pub fn naive_level(value: u8, threshold: u8) -> u8 {
     let (c, t) = (i64::from(value), i64::from(threshold));
-    // Levels that are not above it, less one: at most 5.
+    // Number of levels at or below it, minus one: at most 5.
     let below = LEVELS.iter().filter(|level| **level <= c).count() - 1;
     let next = LEVELS.get(below + 1).is_some_and(|b| 256 * (c - LEVELS[below]) > t * (b - LEVELS[below]));
     below as u8 + u8::from(next)
 }
 
-/// Draws three rows, and compares with what `naive` makes of a colour at a threshold.
+/// Draws three rows, and compares them with what `naive` makes of each colour and threshold.
 fn check_rows(
     random: &mut Random,
     canvas: &mut Canvas,
@@ -45,10 +45,10 @@ fn check_rows(
         .map_err(|wrong| format!("{:?} values, {thresholds:?} x {x}: {wrong}", rows.map(<[u8]>::len)))
 }
 
-/// Mixtures of the colour cube.
+/// Checks mixing with the colour cube.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_cube(cases: Cases, mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize)) -> Checked {
     on_every_shape(cases, "cube", |random, canvas, shape| {
         let naive = |color: [u8; 3], threshold| {
@@ -59,10 +59,10 @@ pub fn check_cube(cases: Cases, mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u
     })
 }
 
-/// Mixtures by a map of the nearest entries.
+/// Checks mixing with a map of nearest entries.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_nearest(
     cases: Cases,
     mut mix: impl FnMut(&mut [u8], &[u8], &[u8], &[u8], &ThresholdRow, usize, u8, &[u8; 32_768]),

@@ -13,11 +13,11 @@ use super::spans::naive_span;
 use super::{Cases, Checked};
 use crate::Random;
 
-/// A cell of a depth buffer by its definition.
+/// A cell of a depth buffer, by definition.
 pub trait NaiveCell: Cell + Debug {
     /// The cell for a depth.
     fn naive(depth: u32) -> Self;
-    /// Any value.
+    /// A random value.
     fn any(random: &mut Random) -> Self;
 }
 
@@ -39,12 +39,12 @@ impl NaiveCell for u16 {
     }
 }
 
-/// The depth of a pixel, by definition: modulo 2³².
+/// The depth of a pixel by definition, modulo 2³².
 fn depth_at(z: i64, dz: i64, k: usize) -> u32 {
     ((i128::from(z) + k as i128 * i128::from(dz)) >> 24) as u32
 }
 
-/// Depths along a row, and the cells before it is drawn: in one of eight cells the depth that is drawn is there already.
+/// Depths along a row, and the cells' contents before drawing: one cell in eight already holds the depth to be drawn.
 fn any_depths<D: NaiveCell>(random: &mut Random, cells: usize) -> (i64, i64, Vec<D>) {
     let z = random.within(0, 1 << 56);
     let dz = random.within(-(1 << 50), 1 << 50) >> random.below(51);
@@ -52,7 +52,8 @@ fn any_depths<D: NaiveCell>(random: &mut Random, cells: usize) -> (i64, i64, Vec
     (z, dz, (0..cells).map(held).collect())
 }
 
-/// Draws `shown` into `pixels` where the depths are nearer. With `keeps` the cells keep these. Returns the pixels written.
+/// Draws `shown` into `pixels` where it is nearer. With `keeps` those depths are also stored in the cells. Returns the
+/// number of pixels written.
 fn naive_nearer<D: NaiveCell>(
     pixels: &mut [u8],
     cells: &mut [D],
@@ -74,7 +75,7 @@ fn naive_nearer<D: NaiveCell>(
     written
 }
 
-/// Says which of the counts and cells differ.
+/// Says which of the counts or cells differ.
 fn compare<D: NaiveCell>((is, cells): (u32, &[D]), (should, nearest): (u32, &[D])) -> Result<(), String> {
     if is != should {
         return Err(format!("{is} written, not {should}"));
@@ -85,10 +86,10 @@ fn compare<D: NaiveCell>((is, cells): (u32, &[D]), (should, nearest): (u32, &[D]
     }
 }
 
-/// Spans with a depth test.
+/// Checks spans with a depth test.
 ///
 /// # Errors
-/// The first span that was wrong.
+/// The first wrong span.
 pub fn check_fill<D: NaiveCell>(
     cases: Cases,
     mut fill: impl FnMut(&mut [u8], &mut [D], u16, u16, i64, i64) -> u32,
@@ -113,11 +114,11 @@ pub fn check_fill<D: NaiveCell>(
     })
 }
 
-/// Checks copies of a given length with a depth test. `keeps` says whether the cells keep what is nearer. Row, cells and bytes may
-/// be longer, as a vector's last turn needs it, and what lies behind stays.
+/// Checks copies of a given length with a depth test. `keeps` says whether nearer depths are stored in the cells. Row,
+/// cells and bytes may be longer, as a vector loop's last iteration requires, and what follows must not change.
 ///
 /// # Errors
-/// The first copy that was wrong.
+/// The first wrong copy.
 pub fn check_copy<D: NaiveCell>(
     cases: Cases,
     keeps: bool,
@@ -145,11 +146,11 @@ pub fn check_copy<D: NaiveCell>(
     })
 }
 
-/// Rows of pixels and cells, each with its own pitch.
+/// Rows of pixels and cells, each with a pitch of its own.
 struct Frame {
     width: i64,
     height: i64,
-    /// Pixels and cells from one row to the next.
+    /// Distance in pixels, or cells, from one row to the next.
     pitch: i64,
     cells_pitch: i64,
 }
@@ -161,18 +162,19 @@ impl Frame {
             let wider = random.within(0, 70);
             width + random.one_of(&[0, 1, wider])
         });
-        // In half of the frames pixels and their cells have one offset.
+        // In half of the frames a pixel and its cell have the same offset.
         let cells_pitch = random.one_of(&[pitch, cells_pitch]);
         Self { width, height, pitch, cells_pitch }
     }
 
-    /// Up to the last pixel of the last row.
+    /// Length up to and including the last pixel of the last row.
     fn length(&self, pitch: i64) -> usize {
         ((self.height - 1) * pitch + self.width) as usize
     }
 
-    /// A span in one row, or one that reaches the very end of the frame, or a few pixels beyond it; and the offset of its
-    /// first cell: that of the first pixel, if rows have one pitch, and otherwise now and then beyond all.
+    /// A span in one row, or one that extends to the very end of the frame or a few pixels beyond. Returned with the
+    /// offset of its first cell: that of the first pixel if both pitches are equal, otherwise occasionally beyond the
+    /// end.
     fn span(&self, random: &mut Random) -> (Listed, u32) {
         let length = random.within(0, self.width);
         let (x, y) = match random.below(8) {
@@ -191,7 +193,7 @@ impl Frame {
     }
 }
 
-/// Calls `one` with a frame, its pixels and up to twelve spans, of which the offset of the first cell is given.
+/// Calls `one` with a frame, its pixels and up to twelve spans (rarely more), each with the offset of its first cell.
 fn on_every_list(
     cases: Cases,
     mut one: impl FnMut(&mut Random, &Frame, Vec<u8>, &[Listed], &[u32]) -> Result<(), String>,
@@ -200,7 +202,7 @@ fn on_every_list(
     let count = cases.of(2_000, 20_000);
     for list in 0..count {
         let frame = Frame::any(&mut random);
-        // Seldom more than a list has room for.
+        // Rarely more than a list has room for.
         let spans = random.one_of(&[12, 12, 12, 12, 12, 12, 12, 150]);
         let (spans, cells): (Vec<Listed>, Vec<u32>) =
             (0..random.within(0, spans)).map(|_| frame.span(&mut random)).unzip();
@@ -210,7 +212,7 @@ fn on_every_list(
     Ok(count as u64)
 }
 
-/// The first of two rows of bytes that differ.
+/// Reports the first byte at which two rows differ.
 fn same_pixels(is: &[u8], should: &[u8]) -> Result<(), String> {
     match is.iter().zip(should).position(|(is, should)| is != should) {
         Some(k) => Err(format!("pixel {k} is {:#04x}, not {:#04x}", is[k], should[k])),
@@ -218,17 +220,17 @@ fn same_pixels(is: &[u8], should: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The range of a span in `all` pixels; `None` if it reaches beyond.
+/// A span's range within `all` pixels; `None` if it extends beyond them.
 fn place(at: u32, length: u32, all: usize) -> Option<core::ops::Range<usize>> {
     let (at, length) = (at as usize, length as usize);
     (at + length <= all).then(|| at..at + length)
 }
 
-/// Lists of spans, in frames of any pitch: of spans that reach beyond the pixels nothing is drawn, and what lies before,
-/// between and behind the others stays.
+/// Checks lists of spans in frames of any pitch: spans that extend beyond the pixels draw nothing, and what lies
+/// before, between and after the others must not change.
 ///
 /// # Errors
-/// The first list that was wrong.
+/// The first wrong list.
 pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[Listed])) -> Checked {
     on_every_list(cases, |_, _, mut pixels, spans, _| {
         let mut after = pixels.clone();
@@ -242,16 +244,16 @@ pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[Listed])) -> C
     })
 }
 
-/// The same with a depth test. Cells have a pitch of their own.
+/// Checks lists of spans with a depth test, where cells have a pitch of their own.
 ///
 /// # Errors
-/// The first list that was wrong.
+/// The first wrong list.
 pub fn check_list_nearer<D: NaiveCell>(
     cases: Cases,
     mut fill: impl FnMut(&mut [u8], &mut [D], &[Listed], &[ListedDepths]) -> u32,
 ) -> Checked {
     on_every_list(cases, |random, frame, mut pixels, spans, offsets| {
-        // Equal depths, too: then the first that was drawn stays.
+        // Includes equal depths, where the one drawn first stays.
         let level = random.one_of(&[1_i64 << 30, 5, 1 << 32]);
         let any_depths = |&at: &u32| {
             let slope = random.next_u64() as i64 >> random.below(64);
@@ -263,7 +265,7 @@ pub fn check_list_nearer<D: NaiveCell>(
             }
         };
         let depths: Vec<ListedDepths> = offsets.iter().map(any_depths).collect();
-        // Now and then a few are missing.
+        // Occasionally a few are missing.
         let missing = random.within(0, 2 * frame.width) as usize;
         let cells = frame.length(frame.cells_pitch).saturating_sub(random.one_of(&[0, 0, 0, missing]));
         let some = [0, 3, 1 << 29, u32::MAX].map(D::naive);

@@ -1,4 +1,4 @@
-//! Loops that write no pixels: points to be lit, and shades on a parabola.
+//! Loops that write no pixels: interpolated points for lighting, and shades along a parabola.
 
 use alloc::{format, vec};
 
@@ -6,24 +6,24 @@ use mode13h::internals::lanes::{Lanes, Points};
 
 use super::{Cases, Checked};
 
-/// Eight points of a row from one pixel on.
+/// Checks eight points of a row, counted from one pixel on.
 ///
 /// # Errors
-/// The first point that was wrong.
+/// The first wrong point.
 pub fn check_interpolate(
     cases: Cases,
     mut interpolate: impl FnMut(u16, &[f64; 6], &[f64; 6], f64, f64) -> Points,
 ) -> Checked {
     check_points(cases, true, |places, a, da, d, dd| {
-        // It was made of a u16.
+        // It was converted from a u16.
         interpolate(places[0] as u16, a, da, d, dd)
     })
 }
 
-/// Eight points by their own numbers, which follow each other or do not.
+/// Checks eight points given by their own indices, consecutive or not.
 ///
 /// # Errors
-/// The first point that was wrong.
+/// The first wrong point.
 pub fn check_interpolate_at(
     cases: Cases,
     interpolate: impl FnMut(&Lanes<f64>, &[f64; 6], &[f64; 6], f64, f64) -> Points,
@@ -42,7 +42,7 @@ fn check_points(
         for case in 0..cases.of(2, 8) {
             let mut any = |most: f64| random.around_zero(most);
             let a = core::array::from_fn(|_| any(50.0));
-            // Half of them pass through zero among the points, where the least rounding shows.
+            // Half of them pass through zero among the points, where the smallest rounding error shows.
             let zero = f64::from(first) + 3.0;
             let da = if case % 2 == 0 { a.map(|a: f64| -a / zero) } else { core::array::from_fn(|_| any(0.5)) };
             let (d, dd) = (0.001 + any(1.0).abs(), any(1.0).abs() * 0.01);
@@ -76,16 +76,16 @@ fn shade(k: u16, [a, b, c]: [f32; 3], least: u16, most: u16) -> u16 {
     let product = k * sum;
     let value = a + product;
     let held = if value.is_nan() { f32::from(least) } else { value.max(f32::from(least)) };
-    // To the nearest, halves to even; below 2¹⁶.
+    // To nearest, ties to even; below 2¹⁶.
     libm::rint(f64::from(held.min(f32::from(most)))) as u16
 }
 
-/// Shades on a parabola.
+/// Checks shades along a parabola.
 ///
 /// # Errors
-/// The first shade that was wrong.
+/// The first wrong shade.
 pub fn check_curve(cases: Cases, mut curve: impl FnMut(&mut [u16], [f32; 3], u16, u16)) -> Checked {
-    /// Fills the memory behind the shades, which must not change.
+    /// Fills the memory after the shades, which must not change.
     const BEHIND: u16 = 0xABCD;
     let mut random = cases.random("curves");
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -0.0, 1e-40, 0.5, 1.5, 65_280.0];
@@ -93,7 +93,8 @@ pub fn check_curve(cases: Cases, mut curve: impl FnMut(&mut [u16], [f32; 3], u16
     for length in (0..=100_u16).chain([128, 320, 321, 4_096]) {
         for case in 0..cases.of(12, 60) {
             let mut any = |most: f64| random.around_zero(most) as f32;
-            // From a shade in range to another, whole and half ones among them, and now and then what is none.
+            // From one shade in range to another, including whole and half ones, and occasionally from values that are
+            // not shades.
             let span = f64::from(length.max(2));
             let mut parabola = [any(70_000.0), any(200_000.0 / span), any(200_000.0 / span / span)];
             match case % 6 {

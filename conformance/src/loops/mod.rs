@@ -1,8 +1,8 @@
-//! Every loop over pixels against its definition.
+//! Every pixel loop against its definition.
 //!
-//! A check is given a loop as a function, in any of its forms, and draws a row of each length and alignment with it: every
-//! byte is the definition's, and no byte beside the row has changed. Tests give the same checks loops that are wrong on
-//! purpose, and see that they are caught.
+//! A check takes a loop as a function, in any of its forms, and draws a row of each length and alignment with it: every
+//! byte must match the definition, and no byte next to the row may change. Tests also run the checks on deliberately
+//! wrong loops to ensure that they are caught.
 //!
 //! | module | loops |
 //! |---|---|
@@ -45,21 +45,22 @@ use mode13h::span::Kernel;
 
 use crate::Random;
 
-/// Which cases a loop is given: the same seed makes the same cases on every machine.
+/// Which cases a loop is run on; the same seed gives the same cases on every machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Cases {
     seed: u64,
     is_full: bool,
 }
 
-/// What became of a check: how many cases there were, or what was wrong with the first that failed.
+/// Outcome of a check: the number of cases, or what was wrong with the first that failed.
 pub type Checked = Result<u64, String>;
 
 type Check = fn(Cases) -> Checked;
 type CheckKernel = fn(Cases, Kernel) -> Checked;
 
 impl Cases {
-    /// A tenth of all: every length of a screen row, at a few alignments. All loops by all kernels take about a second.
+    /// A tenth of all cases: every length of a screen row, at a few alignments. All loops with all kernels take about a
+    /// second.
     #[must_use]
     pub const fn quick(seed: u64) -> Self {
         Self { seed, is_full: false }
@@ -71,18 +72,18 @@ impl Cases {
         Self { seed, is_full: true }
     }
 
-    /// Returns `quick` or `full`, the number of cases of either amount.
+    /// Picks `quick` or `full`, the number of cases for either amount.
     const fn of(self, quick: usize, full: usize) -> usize {
         if self.is_full { full } else { quick }
     }
 
-    /// The generator of a stream.
+    /// The random generator of a stream.
     fn random(self, stream: &str) -> Random {
         Random::seeded(self.seed, stream)
     }
 }
 
-/// A loop in one of its forms, and what became of its check.
+/// A loop in one of its forms, and the outcome of its check.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Outcome {
     /// The loop, such as `fill_dithered`.
@@ -91,7 +92,7 @@ pub struct Outcome {
     pub kernel: Option<Kernel>,
     /// Number of cases; 0 if one was wrong.
     pub cases: u64,
-    /// The first case that was wrong, and how, in a line.
+    /// The first wrong case and what was wrong, in one line.
     pub wrong: Option<String>,
 }
 
@@ -103,7 +104,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Loops that are the same for every kernel, in each of their forms: the specification, and what this build draws with.
+/// Loops that do not depend on the kernel, in both forms: the specification, and the one this build draws with.
 const LOOPS: [(&str, Check); 17] = [
     ("fill_16_16", |cases| spans::check_16_16(cases, fill_16_16)),
     ("fill_quotients", |cases| spans::check_quotients(cases, fill_quotients)),
@@ -136,7 +137,7 @@ fn check_copies<D: depth::NaiveCell>(cases: Cases) -> Checked {
     Ok(kept + stay)
 }
 
-/// Loops of which each kernel has its own form.
+/// Loops that have a separate form for each kernel.
 const BY_KERNEL: [(&str, CheckKernel); 11] = [
     ("fill", |cases, kernel| spans::check_fill(cases, |row, shade, step| kernel.fill(row, shade, step))),
     ("copy_where_nearer, u32, depths are kept", copy::<u32, true>),
@@ -171,7 +172,7 @@ fn list_nearer<D: depth::NaiveCell>(cases: Cases, kernel: Kernel) -> Checked {
     })
 }
 
-/// Checks every loop, in the form that this machine draws with and by each of its kernels, one with each step of the
+/// Checks every loop, in the form that this machine draws with and with each of its kernels; one loop per step of the
 /// iterator.
 pub fn all(cases: Cases) -> impl Iterator<Item = Outcome> {
     let loops = LOOPS.into_iter().map(move |(name, check)| (name, None, check(cases)));

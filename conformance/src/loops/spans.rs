@@ -18,10 +18,10 @@ pub fn naive_span(length: usize, shade: u16, step: u16) -> Vec<u8> {
     (0..length as u64).map(pixel).collect()
 }
 
-/// One span on a canvas.
+/// Checks one span on a canvas.
 ///
 /// # Errors
-/// A line that says which span, and its first wrong byte.
+/// A line naming the span and its first wrong byte.
 pub fn check_span(
     canvas: &mut Canvas,
     shape: Shape,
@@ -35,11 +35,11 @@ pub fn check_span(
         .map_err(|wrong| format!("shade {shade:#06x} step {step:#06x} length {length} alignment {alignment}: {wrong}"))
 }
 
-/// Spans in 8.8: every shape, extremes and random shades at the length of two of the widest blocks and every tail, and rows of around
-/// 65,536 and 131,072 pixels.
+/// Checks spans in 8.8: every shape; extreme and random shades at the length of two of the widest blocks plus every
+/// tail; and rows of around 65,536 and 131,072 pixels.
 ///
 /// # Errors
-/// The first span that was wrong.
+/// The first wrong span.
 pub fn check_fill(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16)) -> Checked {
     const WIDEST: usize = 191;
     let mut random = cases.random("spans");
@@ -53,7 +53,7 @@ pub fn check_fill(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16)) -> Ch
     }
     for alignment in 0..cases.of(1_000, 20_000) {
         let bits = random.next_u64();
-        // Two of its four words.
+        // Two of its four 16-bit words.
         let shades = (bits as u16, (bits >> 16) as u16);
         check_span(&mut canvas, Shape { length: WIDEST, alignment: alignment % 64 }, shades, &mut fill)?;
         count += 1;
@@ -71,10 +71,10 @@ pub fn check_fill(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16)) -> Ch
     Ok(count + shapes)
 }
 
-/// Spans in 16.16.
+/// Checks spans in 16.16.
 ///
 /// # Errors
-/// The first span that was wrong.
+/// The first wrong span.
 pub fn check_16_16(cases: Cases, mut fill: impl FnMut(&mut [u8], u32, u32)) -> Checked {
     let any_u32 = |random: &mut Random| u32::from(any_u16(random)) << 16 | u32::from(any_u16(random));
     on_every_shape(cases, "wide", |random, canvas, shape| {
@@ -87,7 +87,7 @@ pub fn check_16_16(cases: Cases, mut fill: impl FnMut(&mut [u8], u32, u32)) -> C
     })
 }
 
-/// Quotients: numerator and divisor of the first pixel, and what each pixel adds.
+/// Quotients: numerator and divisor at the first pixel, and the increment of each per pixel.
 #[derive(Debug)]
 struct Quotients {
     n: i128,
@@ -103,7 +103,7 @@ impl Quotients {
         (number >> (128 - bits)) as i128
     }
 
-    /// Beside whole numbers, where f64 cannot tell the quotient from the whole number.
+    /// Next to whole numbers, where f64 cannot distinguish the quotient from the whole number.
     fn beside_whole(random: &mut Random, bits: u32) -> Self {
         let (d, dd) = (Self::wide(random, bits).max(1), Self::wide(random, bits) >> 14);
         let quotient = i128::from(random.within(0, 255));
@@ -111,10 +111,10 @@ impl Quotients {
         Self { n: quotient * d + beside, dn: quotient * dd, d, dd }
     }
 
-    /// From any quotient to any other, the divisor rising or falling.
+    /// From any quotient to any other, with a rising or falling divisor.
     fn anywhere(random: &mut Random, bits: u32, length: usize) -> Self {
         let gaps = length.max(2) as i128 - 1;
-        // The steps, rounded, lose less than one for each pixel: less than the divisor, so less than a quotient.
+        // The rounded steps lose less than one per pixel: less than the divisor in total, so less than a quotient.
         let [d, last_d] = [0; 2].map(|_| Self::wide(random, bits) + gaps + 1);
         let dd = (last_d - d) / gaps;
         let last_d = d + gaps * dd;
@@ -123,10 +123,10 @@ impl Quotients {
     }
 }
 
-/// Quotients in exact arithmetic.
+/// Checks quotients in exact arithmetic.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_quotients(cases: Cases, mut fill: impl FnMut(&mut [u8], i128, i128, i128, i128)) -> Checked {
     on_every_shape(cases, "quotients", |random, canvas, shape| {
         let bits = random.within(1, 110) as u32;
@@ -144,11 +144,11 @@ pub fn check_quotients(cases: Cases, mut fill: impl FnMut(&mut [u8], i128, i128,
     })
 }
 
-/// A row of `fill_float`: its first pixel, dividend and divisor at pixel 0 with their steps, and the range.
+/// A row for `fill_float`: its first pixel; dividend and divisor at pixel 0, each with its step; and the range.
 type FloatRow = (i32, [f32; 2], [f32; 2], [f32; 2]);
 
-/// Numbers as triangles have them: from any pixel on, quotients of 0 to 255 at both ends or near to that; and
-/// what no triangle has.
+/// Values that occur in triangles (starting at any pixel, with quotients of about 0 to 255 at both ends), and values
+/// that never do.
 fn any_float_row(random: &mut Random, length: usize) -> FloatRow {
     let first = random.within(-4_096, 4_096) as i32;
     let gaps = (length.max(2) - 1) as f32;
@@ -177,16 +177,16 @@ fn naive_float(length: usize, (first, n, d, [low, high]): FloatRow) -> Vec<u8> {
         let (above, below) = (n[0] + k * n[1], d[0] + k * d[1]);
         let shade = above / below;
         let shade = if shade.is_nan() { low } else { shade.clamp(low, high) };
-        // To 15 bits behind the point, halves to even, then cut.
+        // Rounded to 15 bits after the point, ties to even, then truncated.
         (libm::floor(f64::from(shade + 256.5)) - 256.0) as u8
     };
     (0..length).map(pixel).collect()
 }
 
-/// Quotients in f32.
+/// Checks quotients in f32.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_float(cases: Cases, mut fill: impl FnMut(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2])) -> Checked {
     on_every_shape(cases, "float", |random, canvas, shape| {
         let row = any_float_row(random, shape.length);
@@ -198,10 +198,10 @@ pub fn check_float(cases: Cases, mut fill: impl FnMut(&mut [u8], i32, [f32; 2], 
     })
 }
 
-/// Spans with dither.
+/// Checks spans with dither.
 ///
 /// # Errors
-/// The first span that was wrong.
+/// The first wrong span.
 pub fn check_dithered(cases: Cases, mut fill: impl FnMut(&mut [u8], u16, u16, &ThresholdRow, usize)) -> Checked {
     on_every_shape(cases, "dithered", |random, canvas, shape| {
         let (shade, step) = (any_u16(random), any_u16(random));

@@ -1,4 +1,4 @@
-//! Rows of texels, and the table of two bytes.
+//! Rows of texels, and lookups in a table of two bytes.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use super::canvas::{bytes, on_every_shape, other_row};
 use super::{Cases, Checked};
 use crate::Random;
 
-/// A texture of any shape, cut from the same bytes, and its width and height as powers of two.
+/// A texture of random shape made from the same bytes, and its definition.
 fn any_texture<'a>(random: &mut Random, bytes: &'a [u8]) -> Result<(Texels<'a>, Naive<'a>), String> {
     let (ubits, vbits) = (random.below(9) as u32, random.below(9) as u32);
     let bytes = &bytes[..1 << (ubits + vbits)];
@@ -26,17 +26,17 @@ struct Naive<'a> {
 }
 
 impl Naive<'_> {
-    /// The texel at whole coordinates, any number of texels away.
+    /// The texel at integer coordinates, any number of texels away.
     fn at(&self, u: i128, v: i128) -> u8 {
         let (width, height) = (2_i128.pow(self.ubits), 2_i128.pow(self.vbits));
         self.bytes[(v.rem_euclid(height) * width + u.rem_euclid(width)) as usize]
     }
 }
 
-/// Texels along a straight line.
+/// Checks texels along a straight line.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_affine(cases: Cases, mut fill: impl FnMut(&mut [u8], Texels<'_>, u32, u32, u32, u32)) -> Checked {
     let texture = bytes(&mut cases.random("texture"), 65_536);
     on_every_shape(cases, "affine", |random, canvas, shape| {
@@ -56,7 +56,7 @@ pub fn check_affine(cases: Cases, mut fill: impl FnMut(&mut [u8], Texels<'_>, u3
     })
 }
 
-/// Numerators and divisor of the first pixel, and what each pixel adds.
+/// Numerators and divisor at the first pixel, and the increment of each per pixel.
 struct Row {
     numerators: [i128; 2],
     steps: [i128; 2],
@@ -64,20 +64,20 @@ struct Row {
     dd: i128,
 }
 
-/// −2^`bits` to 2^`bits`, each power of two equally likely.
+/// A number from −2^`bits` to 2^`bits`, each power of two equally likely.
 fn signed(random: &mut Random, bits: u32) -> i128 {
     let magnitude = random.log_uniform(bits) as i128 - 1;
     if random.below(2) == 0 { magnitude } else { -magnitude }
 }
 
-/// 1 to 2⁹³.
+/// A number from 1 to 2⁹³.
 fn divisor(random: &mut Random) -> i128 {
     let wide = i128::from(random.next_u64()) << 64 | i128::from(random.next_u64());
     (wide & ((1 << random.within(1, 93)) - 1)).max(1)
 }
 
 impl Row {
-    /// Quotients anywhere, divisors too, from one end of the row to the other.
+    /// Arbitrary quotients and divisors at both ends of the row.
     fn anywhere(random: &mut Random, length: usize) -> Self {
         let gaps = length.max(2) as i128 - 1;
         let ends = [divisor(random), divisor(random)];
@@ -86,7 +86,7 @@ impl Row {
         let mut numerators = [0; 2];
         let mut steps = [0; 2];
         for i in 0..2 {
-            // Within ±2³²; the rounded step moves the last by less than 2¹² · 2.
+            // Within ±2³²; rounding the step moves the last by less than 2¹² · 2.
             let [first, last] = [ends[0], last_d].map(|d| signed(random, 31) * d + i128::from(random.next_u64()) % d);
             numerators[i] = first;
             steps[i] = (last - first) / gaps;
@@ -94,7 +94,7 @@ impl Row {
         Self { numerators, steps, d: ends[0], dd }
     }
 
-    /// Quotients that are a whole texel, or one part of the divisor beside it, all along the row.
+    /// Quotients that are whole texels, or one unit of the numerator away from one, all along the row.
     fn between_texels(random: &mut Random, length: usize) -> Self {
         let gaps = length.max(2) as i128 - 1;
         let ends = [divisor(random), divisor(random)];
@@ -104,7 +104,7 @@ impl Row {
         for i in 0..2 {
             let whole = signed(random, 14) * 65_536;
             let beside = i128::from(random.within(-1, 1));
-            // With the same divisor everywhere the texel may change from pixel to pixel.
+            // If the divisor is the same everywhere, the texel may change from pixel to pixel.
             let change = if dd == 0 { signed(random, 3) * 65_536 } else { 0 };
             numerators[i] = whole * ends[0] + beside;
             steps[i] = whole * dd + change * ends[0];
@@ -127,10 +127,10 @@ impl Row {
     }
 }
 
-/// Texels in exact perspective.
+/// Checks texels in exact perspective.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_perspective(
     cases: Cases,
     mut fill: impl FnMut(&mut [u8], Texels<'_>, [i128; 2], [i128; 2], i128, i128),
@@ -156,10 +156,10 @@ pub fn check_perspective(
     Ok(count)
 }
 
-/// A table of two bytes.
+/// Checks lookups in a table of two bytes.
 ///
 /// # Errors
-/// The first row that was wrong.
+/// The first wrong row.
 pub fn check_lookup(cases: Cases, mut lookup: impl FnMut(&mut [u8], &[u8], &[u8; 65_536])) -> Checked {
     let table = bytes(&mut cases.random("table"), 65_536);
     let Some(table) = table.first_chunk() else { return Err("no table".into()) };

@@ -1,6 +1,7 @@
-//! Errors: what each way to draw shows, against each standard of truth.
+//! Errors of every configuration against each standard of truth.
 //!
-//! The truth of a frame is drawn once for all ways. Frames are judged on all processors; what is found does not depend
+//! The truth of a frame is drawn once and shared by all configurations. Frames are compared on all processors; the
+//! results do not depend on which thread compared which frame.
 //! on who found it.
 
 use alloc::collections::BTreeMap;
@@ -44,7 +45,7 @@ impl Against {
         self.pixels.count
     }
 
-    /// The share of the covered pixels that was not compared, 0 to 1.
+    /// Share of the covered pixels that were not compared, 0 to 1.
     fn share_not_compared(&self) -> f64 {
         // Below 2⁵³: pixels.
         self.cover_errors as f64 / (self.cover_errors + self.pixels()).max(1) as f64
@@ -61,11 +62,11 @@ impl Against {
     }
 }
 
-/// Error of light at the pixel itself: a half, 1/512 of the vertices' shades, 1/100 of f32.
+/// Rounding error of light evaluated at the pixel: half a shade, 1/512 from the vertices' shades, 1/100 from f32.
 const LIT: f64 = 0.52;
 
-/// The rounding of shades that are linear on the screen, over a frame of 320 columns: a half, 1/512 of the vertices'
-/// shades, and the drift of the sums. Other shadings are not linear on the screen.
+/// Rounding error of shades that are linear on the screen, over a frame of 320 columns: half a shade, 1/512 from the
+/// vertices' shades, and the drift of the sums. `None` for other shadings, which are not linear on the screen.
 const fn linear_rounding(shading: Shading) -> Option<f64> {
     match shading {
         Shading::Gouraud88 => Some(1.752),
@@ -75,16 +76,16 @@ const fn linear_rounding(shading: Shading) -> Option<f64> {
     }
 }
 
-/// Pixels of one way within a bound.
+/// Pixels of one configuration within an error bound.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Kept {
-    /// Pixels within it.
+    /// Pixels within the bound.
     pub(super) within: u64,
-    /// The pixels of the largest patch beyond it.
+    /// Number of pixels in the largest patch beyond it.
     pub(super) patch: usize,
 }
 
-/// Results of one way over many frames.
+/// Results of one configuration over many frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Results {
     gouraud: Against,
@@ -94,9 +95,9 @@ pub(super) struct Results {
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
-    /// Shades by which the worst pixel is beyond its shading's bound, negative where none is; `None` without a bound.
+    /// By how many shades the worst pixel exceeds its shading's bound, negative if none does; `None` without a bound.
     pub(super) excess: Option<f64>,
-    /// The largest error of each frame against `lit` beside what the rounding of vertices explains.
+    /// Each frame's largest error against `lit`, not counting what vertex rounding explains.
     pub(super) worst: Vec<f64>,
     /// The shades of the first frame; `error_map` holds its errors against `lit`.
     pub(super) picture: Vec<u8>,
@@ -116,23 +117,23 @@ impl Results {
         self.unrounded.errors()
     }
 
-    /// Pixels that show another face than they should, vertices rounded alike.
+    /// Pixels that show the wrong face, with the truth's vertices rounded as ours are.
     pub(super) fn cover_errors(&self) -> u64 {
         self.gouraud.cover_errors
     }
 
-    /// Pixels that show another face than they should, vertices unrounded.
+    /// Pixels that show the wrong face, with the truth's vertices unrounded.
     pub(super) fn cover_errors_unrounded(&self) -> u64 {
         self.unrounded.cover_errors
     }
 
-    /// The share of the covered pixels that was not compared with `lit`, 0 to 1.
+    /// Share of the covered pixels that were not compared with `lit`, 0 to 1.
     pub(super) fn not_compared(&self) -> f64 {
         self.lit.share_not_compared()
     }
 
-    /// The share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte needs if that is more,
-    /// beside what the rounding of vertices explains; 1 if none was compared.
+    /// Share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte takes if that is more,
+    /// not counting what vertex rounding explains; 1 if none were compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
         // Below 2⁵³: pixels.
@@ -165,23 +166,23 @@ impl Results {
     }
 }
 
-/// Results of all ways on one frame.
+/// Results of all configurations on one frame.
 type Judged = Result<Vec<Results>, CostError>;
 
-/// Frames and ways that are judged.
+/// The frames and the configurations to compare.
 pub(super) struct Referee<'a> {
     pub(super) ways: &'a [Configuration<'a>],
     pub(super) base: &'a (dyn Fn() -> Renderer + Sync),
-    /// Frames all over the round.
+    /// Frames spread over the whole turn.
     pub(super) frames: &'a [Scene],
-    /// Frames 0.25° apart, for what swims.
+    /// Frames 0.25° apart, for measuring swim.
     pub(super) steps: &'a [Scene],
 }
 
 impl Referee<'_> {
-    /// Judges all ways; `progress` is told the share that is done.
+    /// Compares all configurations with the truth; `progress` is told the share done.
     pub(super) fn judge(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Results>, CostError> {
-        // A frame each, and each pair of steps.
+        // One item per frame, and one per pair of steps.
         let items = self.frames.len() + self.steps.len().saturating_sub(1);
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let found: Mutex<Vec<(usize, Judged)>> = Mutex::new(Vec::new());
@@ -197,7 +198,7 @@ impl Referee<'_> {
                     Some(step) => self.step(step, &mut probe),
                 };
                 if findings.is_err() {
-                    // Nobody begins another.
+                    // No thread starts another item.
                     next.store(items, Ordering::Relaxed);
                 }
                 found.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((item, findings));
@@ -212,7 +213,7 @@ impl Referee<'_> {
             work();
         });
         let mut found = found.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Sums of floats depend on their order.
+        // Float sums depend on their order.
         found.sort_by_key(|(item, _)| *item);
         let mut all: Vec<Results> = self.ways.iter().map(|_| Results::default()).collect();
         for (_, findings) in found {
@@ -235,7 +236,8 @@ impl Referee<'_> {
         let (gouraud, lit) = (truth.draw(Standard::Gouraud), truth.draw(Standard::Lit));
         let choices = self.ways.iter().any(|way| matches!(way.kind, Kind::Choice(_)));
         let unrounded = choices.then(|| truth.draw(Standard::GouraudUnrounded));
-        // What the rounding of vertices explains is nobody's error. It is looked at where an error is large.
+        // Errors explained by vertex rounding are not held against anyone. The explanation is computed only where an
+        // error is large.
         let mut shifts = Shifts { truth: &truth, lit: &lit, known: BTreeMap::new() };
         let linear_error = self.linear_error(scene)?;
         let mut judged = |way: &Configuration<'_>| {
@@ -247,7 +249,7 @@ impl Referee<'_> {
                 }
                 return Ok(findings);
             }
-            // All are of one size.
+            // All have the same size.
             let (Some(numeric), Some(model)) = (ErrorMap::new(&gouraud, &shown), ErrorMap::new(&lit, &shown)) else {
                 return Ok(findings);
             };
@@ -275,8 +277,8 @@ impl Referee<'_> {
         self.ways.iter().map(&mut judged).collect()
     }
 
-    /// The bound of linear shades in a frame that [`Renderer::linear_error`] states, against light at every pixel. `None`
-    /// where an object has none or is split, and on 16.16 vertices.
+    /// The bound that [`Renderer::linear_error`] states for linear shades in a frame, against light at every pixel.
+    /// `None` if an object has no bound or is split, and for 16.16 vertices.
     fn linear_error(&self, scene: &Scene) -> Result<Option<f64>, CostError> {
         let mut renderer = (self.base)();
         if renderer.settings.vertex_path == Some(VertexPath::Integer) {
@@ -293,7 +295,7 @@ impl Referee<'_> {
             .try_fold(0.0_f64, |most, error| Some(most.max(error?))))
     }
 
-    /// Judges the frames from one step to the next.
+    /// Measures the change from one step to the next.
     fn step(&self, index: usize, probe: &mut Probe) -> Result<Vec<Results>, CostError> {
         let scenes = &self.steps[index..index + 2];
         let mut truths = Vec::new();
@@ -318,7 +320,7 @@ impl Referee<'_> {
     }
 }
 
-/// What the rounding of vertices explains of the errors at the pixels of a frame.
+/// How much of the errors at a frame's pixels vertex rounding explains.
 struct Shifts<'a> {
     truth: &'a Truth<'a>,
     lit: &'a TruthFrame,
@@ -326,7 +328,7 @@ struct Shifts<'a> {
 }
 
 impl Shifts<'_> {
-    /// By how many shades light at a pixel may be off, as vertices are rounded.
+    /// By how many shades vertex rounding may shift the light at a pixel.
     fn of(&mut self, place: usize) -> f64 {
         let (truth, lit) = (self.truth, self.lit);
         *self.known.entry(place).or_insert_with(|| {
@@ -336,7 +338,7 @@ impl Shifts<'_> {
         })
     }
 
-    /// The largest error beside that.
+    /// The largest error beyond that shift.
     fn worst(&mut self, model: &ErrorMap) -> f64 {
         let mut errors: Vec<_> =
             model.errors().enumerate().filter_map(|(place, error)| Some((error?, place))).collect();
@@ -352,7 +354,7 @@ impl Shifts<'_> {
     }
 }
 
-/// Errors of frames drawn by some ways against a standard, way by way.
+/// Errors of frames drawn by some configurations against one standard, configuration by configuration.
 pub(super) fn against(
     standard: Standard,
     frames: &[Scene],
@@ -374,7 +376,7 @@ pub(super) fn against(
     Ok(all)
 }
 
-/// Distance of two standards from each other, over all frames.
+/// Difference between two standards over all frames.
 pub(super) fn between(standards: [Standard; 2], frames: &[Scene]) -> Result<Errors, CostError> {
     let mut all = Against::default();
     for scene in frames {
@@ -390,7 +392,7 @@ pub(super) fn between(standards: [Standard; 2], frames: &[Scene]) -> Result<Erro
     Ok(all.errors())
 }
 
-/// Shades as entries of a ramp of 256; of three channels the brightest; black where there is no face.
+/// Shades as entries of a ramp of 256, black where there is no face; of three channels, the brightest.
 fn picture(shown: &Shown) -> Vec<u8> {
     let brightest = |shades: &[f64; 3]| shades.iter().copied().fold(0.0, f64::max);
     // Bytes.

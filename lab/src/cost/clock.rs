@@ -8,18 +8,18 @@ use super::statistics::median;
 
 /// A clock.
 ///
-/// Best is one that runs only while this thread does: a frame that another program was given the processor in the midst
-/// of is not slower for that. The standard library has none.
+/// Best is one that runs only while this thread does, so that a frame is not charged for time that another program had
+/// the processor. The standard library has none.
 #[derive(Clone, Copy)]
 pub struct Clock {
-    /// Description, in a few words.
+    /// Description in a few words.
     pub name: &'static str,
-    /// Reading; only differences count, of one thread.
+    /// Reads the clock; only differences between readings on one thread mean anything.
     pub now: fn() -> Duration,
 }
 
 impl Clock {
-    /// The one on the wall.
+    /// The wall clock.
     pub const WALL: Self = Self { name: "wall clock", now: on_the_wall };
 
     /// Measures the nanoseconds that `work` takes.
@@ -27,11 +27,11 @@ impl Clock {
         let start = (self.now)();
         let result = work();
         let time = (self.now)().saturating_sub(start);
-        // Below 2⁵³: a hundred days.
+        // Below 2⁵³, which is a hundred days.
         (time.as_nanos() as f64, result)
     }
 
-    /// Measures the length of a step of it, in nanoseconds: the median of a hundred.
+    /// Measures the clock's step in nanoseconds: the median of a hundred.
     pub(super) fn step(self) -> f64 {
         let mut steps = [0.0; 100];
         for step in &mut steps {

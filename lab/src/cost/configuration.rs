@@ -1,4 +1,4 @@
-//! Ways to draw a scene: what is measured against each other.
+//! Configurations of the renderer that are measured against each other.
 
 use alloc::boxed::Box;
 use alloc::string::{String, ToString};
@@ -11,13 +11,13 @@ use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
 use mode13h::span::Kernel;
 
-/// The budgets that are measured, in shades, the greatest error first.
+/// The budgets that are measured, in shades, largest error first.
 pub const BUDGETS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 
 /// The shading whose time is 1.
 pub(super) const REFERENCE: Shading = Shading::Gouraud88;
 
-/// Purpose that a way to draw is measured for.
+/// What a configuration is measured for.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Kind {
     Shading(Shading),
@@ -37,12 +37,12 @@ impl Kind {
     }
 }
 
-/// A way to draw.
+/// A configuration of the renderer.
 pub(super) struct Configuration<'a> {
     pub(super) kind: Kind,
     pub(super) name: String,
     set: Box<dyn Fn(&mut Renderer) + Sync + 'a>,
-    /// Dither or none, whatever the scene asks for.
+    /// Dither or none, overriding what the scene asks for.
     pub(super) dither: Option<Option<DitherPattern>>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Configuration<'a> {
         Self::accurate(Kind::Budget(shades), shades, Accuracy::WithinError(shades as f32))
     }
 
-    /// All shadings of a list, the reference among them, and all budgets.
+    /// All budgets and all shadings of a list, with the reference added.
     pub(super) fn shadings_and_budgets(shadings: &[Shading]) -> Vec<Self> {
         let listed = |shading: &Shading| *shading == REFERENCE || shadings.contains(shading);
         let shadings = Shading::ALL.into_iter().filter(listed).map(Self::shading);
@@ -95,11 +95,11 @@ impl<'a> Configuration<'a> {
         self
     }
 
-    /// Lists the other choices, aspect by aspect, the default first; all with the default shading, and at the end each
-    /// of these shadings, and the reference first, by the portable kernel.
+    /// Lists the other choices aspect by aspect, the default first, all with the default shading; and last each of
+    /// these shadings, the reference first, with the portable kernel.
     ///
-    /// Vertices are rounded to fewer bits after they have been to 8. The time that this takes is no gain that a machine
-    /// with fewer bits would have, and no loss either.
+    /// Vertices are rounded to 8 bits and then again to fewer, so these times say nothing about a machine that has
+    /// fewer bits.
     pub(super) fn choices(shadings: &[Shading]) -> Vec<Self> {
         let with_shading = |aspect, name: &dyn fmt::Display, set: Box<dyn Fn(&mut Renderer) + Sync>| {
             Self::new(Kind::Choice(aspect), name, move |renderer| {
@@ -141,7 +141,7 @@ impl<'a> Configuration<'a> {
         ways
     }
 
-    /// A renderer that draws this way, and as it is set besides.
+    /// Applies this configuration to a renderer, whose other settings stay as they are.
     pub(super) fn apply(&self, mut renderer: Renderer) -> Renderer {
         (self.set)(&mut renderer);
         renderer

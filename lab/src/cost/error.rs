@@ -12,11 +12,11 @@ use mode13h::render::RenderError;
 pub enum CostError {
     /// The scene cannot be drawn.
     Scene(RenderError),
-    /// The pixels that it shows cannot be found out.
+    /// The pixels that the renderer shows cannot be identified.
     Probe(ProbeError),
-    /// There is no truth about it.
+    /// The truth of the scene cannot be computed.
     Truth(TruthError),
-    /// There is no frame.
+    /// There is no frame to study.
     NoFrames,
 }
 

@@ -1,14 +1,14 @@
-//! Levels of an error map: up to how many shades, and the colour. The report and the page show errors in them.
+//! Levels of an error map: a range of shades and its colour. The report and the web page show errors in them.
 
 /// A level.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct ErrorLevel {
-    /// The greatest error that it stands for, in shades.
+    /// Greatest error in this level, in shades.
     pub up_to: f32,
     /// Its name in a legend.
     pub label: &'static str,
-    /// Its colour, as 0xRRGGBB.
+    /// Its colour as 0xRRGGBB.
     pub color: u32,
 }
 
@@ -16,7 +16,8 @@ const fn level(up_to: f32, label: &'static str, color: u32) -> ErrorLevel {
     ErrorLevel { up_to, label, color }
 }
 
-/// All levels. The first is the best that rounding can do; from dark to light, even in lightness.
+/// All levels. The first is the best that rounding can do; the colours run from dark to light in equal steps of
+/// lightness.
 pub const ALL: [ErrorLevel; 7] = [
     level(0.5, "up to ½", 0x18_0f3e),
     level(1.0, "up to 1", 0x45_1077),
@@ -27,10 +28,10 @@ pub const ALL: [ErrorLevel; 7] = [
     level(f32::INFINITY, "more", 0xfc_fdbf),
 ];
 
-/// Colour where no error was taken: the background, and pixels that show another face than they should.
+/// Colour where no error was measured: the background, and pixels that show the wrong face.
 pub const NOT_TAKEN: u32 = 0x8a_9099;
 
-/// The index of an error's level; the number of levels for NaN.
+/// Index of an error's level; the number of levels for NaN.
 #[must_use]
 pub fn index_of(error: f32) -> u8 {
     let indices = ALL.iter().zip(0..).find(|(level, _)| error <= level.up_to);

@@ -1,10 +1,11 @@
-//! Times: all methods side by side, round after round.
+//! Times of all configurations, interleaved round by round.
 //!
-//! A round draws all frames by every method, in an order that each round shuffles again, so that no method always
-//! runs while the processor is warm, or after the same other one. A way that takes more than ten times as long as one
-//! before it sits out rounds, up to three of four: what waits for it would have few rounds. Nothing is subtracted. Every frame is drawn:
-//! that nothing has changed since the last, which would leave it as it is, is looked for by no renderer here
-//! ([`Effect::Transform`] is forced on). So a budget's decisions are in its time, also of an object that stands still.
+//! A round draws all frames with every configuration, in an order reshuffled every round, so that no configuration
+//! always runs on a warm processor, or always after the same other one. A configuration that takes at least twenty
+//! times as long as the fastest one before it sits out up to three rounds of four, or the others would get too few
+//! rounds. Nothing is subtracted. Every frame is drawn: no renderer here skips a frame because nothing has changed
+//! since the last one ([`Effect::Transform`] is forced on). The time of a budget therefore includes its decisions, even
+//! for an object that stands still.
 
 use alloc::borrow::Cow;
 use alloc::format;
@@ -26,27 +27,27 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
-/// The fewest rounds, where time allows that at all, the fewest of all, and the most.
+/// Fewest rounds if time allows, fewest in any case, and most.
 const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
 
-/// Ratios whose intervals are wider than this share of them get twice the time.
+/// Ratios whose intervals are wider than this share of the ratio get twice the time.
 const NARROW: f64 = 0.02;
 
 /// One time.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Sample {
     round: usize,
-    /// Its place in the round, from 0.
+    /// Its position in the round, from 0.
     order: usize,
     way: usize,
     /// For all frames of the round.
     nanoseconds: f64,
 }
 
-/// All times of a study, in the order in which they were taken.
+/// All times of a study, in the order they were taken.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Samples {
-    /// Kind and name of each way.
+    /// Kind and name of each configuration.
     ways: Vec<(&'static str, String)>,
     frames: usize,
     list: Vec<Sample>,
@@ -55,10 +56,10 @@ pub struct Samples {
 const _: () = assert!(size_of::<Sample>() <= 32, "a long study keeps some 100,000");
 
 impl Samples {
-    /// Writes the samples as comma-separated values with a line of headings.
+    /// Writes the samples as comma-separated values under a line of headings.
     ///
-    /// The columns are the number of the round, the place in the round, what was drawn by (kind and name), the number
-    /// of frames, and the time for all of them in nanoseconds.
+    /// The columns are the round, the position in the round, the configuration (kind and name), the number of frames,
+    /// and the time for all of them in nanoseconds.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from("round,order,kind,name,frames,ns\n");
@@ -71,7 +72,7 @@ impl Samples {
         text
     }
 
-    /// The times of one way for a frame, round by round; NaN where it sat out.
+    /// One configuration's time per frame, round by round; NaN where it sat out.
     pub(super) fn of(&self, way: usize) -> Vec<f64> {
         let mut times = vec![f64::NAN; self.rounds()];
         for sample in self.list.iter().filter(|sample| sample.way == way) {
@@ -86,13 +87,13 @@ impl Samples {
     }
 }
 
-/// A cell of comma-separated values: a text that holds a comma stands in quotation marks (RFC 4180). No name holds one of
-/// these.
+/// A cell of comma-separated values: text that contains a comma is quoted (RFC 4180). No name contains a quotation
+/// mark.
 fn cell(text: &str) -> Cow<'_, str> {
     if text.contains(',') { Cow::Owned(format!("\"{text}\"")) } else { Cow::Borrowed(text) }
 }
 
-/// Work of drawing all frames, whatever the time.
+/// The work of drawing all frames, independent of time.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Work {
     pub(super) triangles: u64,
@@ -108,17 +109,17 @@ impl Work {
     }
 }
 
-/// One way, ready to draw.
+/// One configuration, ready to draw.
 struct Candidate<'a> {
     renderer: Renderer,
     scenes: &'a [Scene],
     work: Work,
-    /// It draws in every round whose number this divides.
+    /// It draws in every round whose number is divisible by this.
     every: usize,
 }
 
 impl Candidate<'_> {
-    /// Draws all frames; the time in nanoseconds.
+    /// Draws all frames; returns the time in nanoseconds.
     fn draw(&mut self, vga: &mut Vga, clock: Clock) -> Result<f64, RenderError> {
         let (time, result) = clock.time(|| {
             self.scenes.iter().try_for_each(|scene| {
@@ -153,24 +154,25 @@ pub(super) fn always_drawing(mut renderer: Renderer) -> Renderer {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spent {
     pub(super) clock: Clock,
-    /// About how long.
+    /// Roughly how long to measure.
     pub(super) seconds: f64,
-    /// True if that is the most, and not what ratios that are not known well enough may prolong.
+    /// True if `seconds` is a limit, not to be exceeded for the sake of ratios that are still too uncertain.
     pub(super) at_most: bool,
-    /// The seed of the shuffled order.
+    /// Seed of the shuffled order.
     pub(super) seed: u64,
 }
 
 /// Outcome of an interleaved benchmark.
 pub(super) struct Outcome {
     pub(super) samples: Samples,
-    /// One for each way.
+    /// One per configuration.
     pub(super) work: Vec<Work>,
 }
 
-/// Times all ways on their frames (all of one number), about as long as `spent` says: longer where fewer than 25 rounds would
-/// fit in, up to four times as long, and twice as long as long as a shading's or a budget's ratio to the first way is not
-/// known to 2 %. Where `spent` says at most, as long as it says, or for seven rounds. `progress` is told the share of the time that is over.
+/// Times all configurations on their frames (the same number for each) for about as long as `spent` says. That may grow
+/// to four times as long to reach 25 rounds, and to twice as long while a shading's or a budget's ratio to the first
+/// configuration is not known to 2 %. If `spent` sets a limit, it takes that long, or seven rounds if those take
+/// longer. `progress` is told the share of the time that has passed.
 pub(super) fn run_interleaved(
     ways: &[(&Configuration<'_>, &[Scene])],
     base: &dyn Fn() -> Renderer,
@@ -179,7 +181,7 @@ pub(super) fn run_interleaved(
 ) -> Result<Outcome, RenderError> {
     let mut chance = Random::again(spent.seed);
     let seconds = spent.seconds;
-    // One machine for all, so that none has its memory in a better place.
+    // One machine for all, so that none has better placed memory.
     let mut vga = Vga::new();
     let mut contenders: Vec<Candidate<'_>> = ways
         .iter()
@@ -190,11 +192,11 @@ pub(super) fn run_interleaved(
             every: 1,
         })
         .collect();
-    // Warm: tables are made, memory is there, and the caches have been filled.
+    // Warm up: builds tables, allocates memory, fills the caches.
     let mut least = f64::INFINITY;
     for contender in &mut contenders {
         contender.count(&mut vga)?;
-        // What comes between once does not come three times.
+        // The minimum of three, as a one-off interruption will not hit all three.
         let mut time = f64::INFINITY;
         for _ in 0..3 {
             time = time.min(contender.draw(&mut vga, spent.clock)?);
@@ -235,7 +237,7 @@ pub(super) fn run_interleaved(
     Ok(Outcome { samples, work: contenders.iter().map(|contender| contender.work).collect() })
 }
 
-/// Returns whether all ratios that are asked for are known well enough.
+/// Returns whether all the ratios of interest are known well enough.
 fn is_narrow(ways: &[(&Configuration<'_>, &[Scene])], samples: &Samples, seed: u64) -> bool {
     let mut chance = Random::again(seed);
     let first = samples.of(0);
@@ -261,7 +263,7 @@ mod tests {
         assert_eq!(samples.to_csv().lines().nth(1), Some("3,1,\"shading, portable kernel\",flat,2,70"));
     }
 
-    /// Every frame of a scene in which nothing moves takes the vertices and, by a budget, the decisions.
+    /// Even in a scene where nothing moves, every frame pays for its vertices and, with a budget, for the decisions.
     #[test]
     fn decisions_of_a_budget_are_made_in_every_frame() {
         let mut scene = Scene::showing(shapes::torus(12, 6));
@@ -299,7 +301,7 @@ mod tests {
         assert!(rounds >= 7, "{rounds}");
         for round in samples.list.chunk_by(|a, b| a.round == b.round) {
             let drawn: BTreeSet<usize> = round.iter().map(|sample| sample.way).collect();
-            // A slow one may sit out.
+            // A slow configuration may sit out.
             assert!(drawn.len() == round.len() && drawn.contains(&0), "{round:?}");
             assert!(round.iter().map(|sample| sample.order).eq(0..round.len()));
         }

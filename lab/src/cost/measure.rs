@@ -1,4 +1,4 @@
-//! A study: errors, times and what follows from both.
+//! A study: errors, times and what follows from them.
 
 use alloc::string::ToString;
 use alloc::vec::Vec;
@@ -25,32 +25,32 @@ use mode13h_conformance::Random;
 pub struct Subject<'a> {
     /// Its name.
     pub name: &'a str,
-    /// Frames all over one round of it: at least one.
+    /// Frames spread over one whole turn of the subject; at least one.
     pub frames: &'a [Scene],
-    /// Frames 0.25° of a turn apart, for what swims; there may be none.
+    /// Frames 0.25° of a turn apart, for measuring swim; may be empty.
     pub steps: &'a [Scene],
-    /// Makes renderers with all settings except for the shading: kernel, vertex path and so on.
+    /// Makes renderers with all settings except the shading: kernel, vertex path and so on.
     pub renderer: &'a (dyn Fn() -> Renderer + Sync),
 }
 
 /// Settings of a study.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The shadings that are studied. `gouraud-8.8` is drawn in any case, as ratios are to it.
+    /// The shadings to study. `gouraud-8.8` is always drawn, since ratios are relative to it.
     pub shadings: Vec<Shading>,
-    /// True if vertex path, vertex rounding, kernels, dither and the ways to visible surfaces are compared, too.
+    /// True to compare vertex paths, vertex rounding, kernels, dither and hidden-surface methods too.
     pub choices: bool,
-    /// True if the sources' claims are measured, on scenes of their own.
+    /// True to measure the sources' claims, on scenes of their own.
     pub claims: bool,
     /// Clock that times are read from.
     pub clock: Clock,
-    /// About how long times are taken; up to twice as long where ratios are not known well enough.
+    /// Roughly how long to take times; up to twice as long while ratios are too uncertain.
     pub seconds: f64,
-    /// True if that is the most. Fewer rounds are drawn then, but seven in any case.
+    /// True if `seconds` is a limit: fewer rounds are drawn then, but at least seven.
     pub at_most: bool,
-    /// Seed of the order of drawing, and of resampling.
+    /// Seed of the drawing order and of resampling.
     pub seed: u64,
-    /// The machine and the program, as they are to be named. The clock is named here.
+    /// The machine and the program, as the report should name them. The clock's name and step are filled in here.
     pub host: Host,
 }
 
@@ -77,18 +77,18 @@ pub enum Step {
     Errors,
     /// Timing frames.
     Times,
-    /// Finding out where the time goes.
+    /// Splitting the time of a frame into parts.
     Split,
-    /// Drawing within the least error that fits in a time.
+    /// Drawing with the least error that fits in a given time.
     Goals,
-    /// Measuring what the sources claim.
+    /// Measuring the sources' claims.
     Claims,
 }
 
-/// Measures what accuracy costs. `progress` is told what is being done, and the share of that, 0 to 1; by several
-/// threads at once.
+/// Measures what accuracy costs. `progress` is told the current step and the share of it that is done, 0 to 1, possibly
+/// from several threads at once.
 ///
-/// Errors are found first, on all processors; then times are taken, on one.
+/// Errors are measured first, on all processors; then times are taken, on one.
 ///
 /// ```no_run
 /// use mode13h_lab::cost::{Settings, Subject, measure};
@@ -106,7 +106,7 @@ pub enum Step {
 /// ```
 ///
 /// # Errors
-/// A scene that cannot be drawn or looked at; no frame.
+/// A scene that cannot be drawn or probed; no frames.
 pub fn measure(
     subject: &Subject<'_>,
     settings: &Settings,
@@ -121,7 +121,7 @@ pub fn measure(
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
     let mut ways = Configuration::shadings_and_budgets(shadings);
     if renderer().settings.vertex_path == Some(VertexPath::Integer) {
-        // It has no budget.
+        // It supports no budget.
         ways.retain(|way| !matches!(way.kind, Kind::Budget(_)));
     }
     if *with_choices {
@@ -166,7 +166,7 @@ pub fn measure(
     Ok((study, outcome.samples))
 }
 
-/// The choices that this scene can be drawn by.
+/// The choices that this scene can be drawn with.
 fn choices(
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,
@@ -179,11 +179,11 @@ fn choices(
         for scene in frames {
             match renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {}) {
                 Ok(_) => {}
-                // What 16.16 cannot hold, f32 can.
+                // f32 can represent what 16.16 cannot.
                 Err(_) if way.kind == Kind::Choice(Aspect::VertexPath) => drawable = false,
                 Err(error) => return Err(error.into()),
             }
-            // On three channels dither is not that of a ramp.
+            // With three channels dither works on the mixed colour, not on a ramp.
             drawable &= way.dither.is_none() || !renderer.plan().is_on_anywhere(Effect::RgbChannels);
         }
         if drawable {
@@ -204,10 +204,10 @@ fn times(ways: &[Configuration<'_>], samples: &Samples) -> Vec<Vec<f64>> {
     (0..ways.len()).map(|way| samples.of(way)).collect()
 }
 
-/// Results, way by way.
+/// Results, configuration by configuration.
 struct Rows<'a> {
     ways: &'a [Configuration<'a>],
-    /// Times for a frame, round by round.
+    /// Time per frame, round by round.
     times: Vec<Vec<f64>>,
     findings: Vec<Results>,
     outcome: &'a Outcome,
@@ -219,7 +219,7 @@ impl Rows<'_> {
         Ratio::new(&self.times[way], &self.times[to], &mut Random::again(self.seed))
     }
 
-    /// The shadings' places and names.
+    /// Indices and names of the shadings.
     fn each_shading(&self) -> impl Iterator<Item = (usize, Shading)> {
         self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
             Kind::Shading(shading) => Some((i, shading)),
@@ -227,16 +227,16 @@ impl Rows<'_> {
         })
     }
 
-    /// All shadings that were drawn.
+    /// A row for each shading drawn.
     fn shadings(&self, splits: &[Split], frames: usize) -> Vec<ShadingRow> {
-        // It is always drawn.
+        // The reference is always drawn.
         let reference = self.each_shading().find(|(_, shading)| *shading == REFERENCE).map_or(0, |(place, _)| place);
         let mut rows = Vec::new();
         for ((place, shading), split) in self.each_shading().zip(splits) {
             let findings = &self.findings[place];
             let per_frame = quartiles(&self.times[place]);
             let work = &self.outcome.work[place];
-            // Below 2⁵³: pixels and triangles of some frames.
+            // Pixel and triangle counts of a few frames: below 2⁵³.
             let of_each = |count: u64| per_frame.median * frames as f64 / count.max(1) as f64;
             let ratio = self.ratio(place, reference);
             let as_fast = |(other, name): (usize, Shading)| {
@@ -268,7 +268,7 @@ impl Rows<'_> {
         rows
     }
 
-    /// The budgets' places and errors, in the order of [`BUDGETS`].
+    /// Indices and errors of the budgets, in the order of [`BUDGETS`].
     fn of_budgets(&self) -> impl Iterator<Item = (usize, f64)> {
         self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
             Kind::Budget(shades) => Some((i, shades)),
@@ -332,8 +332,9 @@ impl Rows<'_> {
     }
 }
 
-/// A shading is efficient if none is both faster and as near to `lit` or nearer in the root mean square. One whose time
-/// cannot be told from its own is not faster: what cannot be told from the best is among the best.
+/// Marks the efficient shadings: those for which no other is both faster and at least as near to `lit` in the root mean
+/// square. A shading whose time cannot be distinguished does not count as faster, so any that cannot be distinguished
+/// from the best counts among the best.
 fn mark_efficient(rows: &mut [ShadingRow]) {
     let beats = |a: &ShadingRow, b: &ShadingRow| {
         let tied = b.as_fast_as.contains(&a.shading);
@@ -376,16 +377,17 @@ pub(super) mod tests {
         }
     }
 
-    /// Nanoseconds of six ways that draw the same frame by the same instructions, each row of one round: `mode13h cost torus
-    /// --frames 1 --seconds 50` in release, beside other work on all processors.
+    /// Nanoseconds of six configurations that draw the same frame with the same instructions, one round per row:
+    /// `mode13h cost torus --frames 1 --seconds 50` in release, with other work on all processors.
     const RECORDED: &str = include_str!("../../../tests/data/cost_times.csv");
 
     /// Rounds of a study.
     const ROUNDS: usize = 232;
 
-    /// Compares two shadings, one of which takes `slower` times as long as the other: their ratio, its interval, and
-    /// whether they can be distinguished. Each of its rounds is one of those recorded, and in it the shadings take the
-    /// times of two of the six, chosen by chance: the noise that there is, and no difference but the planted one.
+    /// Compares two shadings, one of which takes `slower` times as long as the other. Returns their ratio, its
+    /// interval, and whether the two can be distinguished. Each round is one of the recorded rounds, picked at random,
+    /// and in it the shadings take the times of two of the six, also picked at random, so the noise is real and the
+    /// only difference is the planted one.
     fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Random) -> (f64, (f64, f64), bool) {
         let mut times = alloc::vec![Vec::new(), Vec::new()];
         for _ in 0..ROUNDS {
@@ -421,8 +423,8 @@ pub(super) mod tests {
         RECORDED.lines().skip(1).map(numbers).collect()
     }
 
-    /// Tests that the slowdown and its size are found: 95 of 100 intervals hold it, with a standard deviation of
-    /// √(100 · 0.95 · 0.05) = 2.2, so at least 88 do, three of them off.
+    /// Tests that the slowdown and its size are found: 95 of 100 intervals contain it, with a standard deviation of
+    /// √(100 · 0.95 · 0.05) = 2.2, so at least 88 do, which is three standard deviations less.
     #[test]
     fn a_slowdown_of_a_twentieth_is_found() {
         let (recorded, mut chance) = (recorded(), Random::again(13));
@@ -435,8 +437,9 @@ pub(super) mod tests {
         assert!(found >= 95 && held >= 88, "found in {found} of 100 studies, and 1.05 in {held} intervals");
     }
 
-    /// Tests that in 95 of 100 studies none is said to be slower: of 1,000 in 950 by chance, with a standard deviation
-    /// of √(1000 · 0.95 · 0.05) = 6.9, so in 929 to 971, three of them off. An interval of 90 % would hold in 900.
+    /// Tests that 95 of 100 studies call neither slower: 950 of 1,000 on average, with a standard deviation of √(1000 ·
+    /// 0.95 · 0.05) = 6.9, so 929 to 971, which is three standard deviations either way. A 90 % interval would give
+    /// 900.
     #[test]
     fn what_takes_the_same_time_is_said_to_be_slower_as_seldom_as_is_promised() {
         let (recorded, mut chance) = (recorded(), Random::again(14));
@@ -450,7 +453,7 @@ pub(super) mod tests {
         let mut rows = [
             row(Flat, 10.0, 9.0, &[]),
             row(Gouraud88, 20.0, 5.0, &[Gouraud1616]),
-            // Nearer, and by chance a little slower: which of the two is better cannot be told.
+            // Nearer, and slower only within the noise: the two cannot be ranked.
             row(Gouraud1616, 21.0, 4.5, &[Gouraud88]),
             row(Phong, 90.0, 0.3, &[]),
             // As near as another, and slower.

@@ -1,18 +1,18 @@
-//! Cost of accuracy: every shading's error against the [`truth`](crate::truth), and its time.
+//! The cost of accuracy: every shading's error against the [`truth`](crate::truth), and its time.
 //!
 //! | file | what |
 //! |---|---|
 //! | `probe` | the pixels that a renderer shows |
 //! | `study` | the results of a study, in numbers |
 //! | `measure` | a study from beginning to end |
-//! | `configuration` | the things that are measured against each other: shadings, budgets, and the other choices |
-//! | `accuracy`, `quantization` | errors against each standard of truth; errors that ramp or palette add |
+//! | `configuration` | what is measured against each other: shadings, budgets and the other choices |
+//! | `accuracy`, `quantization` | errors against each standard of truth; errors added by ramp or palette |
 //! | `error_levels` | the colours of an error map |
-//! | `clock`, `interleaved`, `split` | times, all configurations side by side; the parts of a frame's time |
+//! | `clock`, `interleaved`, `split` | times of all configurations, interleaved; the parts of a frame's time |
 //! | `timed` | frames against the clock: the least error that fits in a time |
 //! | `claims` | the sources' claims, measured |
-//! | `promises` | what the engine is held to, and the verdicts |
-//! | `statistics` | quartiles, ratios, and their ranges by chance |
+//! | `promises` | what the engine guarantees, and the verdicts |
+//! | `statistics` | quartiles, ratios and confidence intervals |
 //! | `report` | a study as an HTML file and charts |
 
 mod accuracy;

@@ -1,4 +1,4 @@
-//! Probe of a renderer, pixel by pixel: the face shown, and its shade before anything is made of it.
+//! Probes a renderer pixel by pixel: which face is shown, and its shade before texture, fog, dither and blending.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,15 +16,15 @@ use mode13h::scene::{Object, Scene, Shared};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, Shading};
 
-/// Finds out what a renderer shows, by nothing but drawing with it.
+/// Finds out what a renderer shows, using nothing but its drawing.
 ///
-/// The **shades** are the bytes of the scene on a ramp of all 256 entries, without texture, mirror, fog and
-/// dither, and with bodies that shine through made opaque: what every shading does is before all of these. Where
-/// light or material is coloured each channel is drawn by itself.
+/// The **shades** are the bytes of the scene on a ramp of all 256 entries, without texture, mirror, fog or dither and
+/// with translucent objects made opaque: the result of shading before any of these apply. If light or material is
+/// coloured, each channel is drawn separately.
 ///
-/// The **faces** are drawn, too: every triangle is numbered, and the scene is drawn once for each digit of the
-/// numbers, every triangle in its digit in place of shades. So cover, clipping, splitting and visibility
-/// are the renderer's own, and nothing of it knows that it is watched.
+/// The **faces** are found by drawing, too: every triangle is numbered, and the scene is drawn once for each digit of
+/// the numbers, with every triangle showing its digit in place of a shade. Cover, clipping, splitting and visibility
+/// are thus the renderer's own, and nothing in it knows that it is being watched.
 ///
 /// ```
 /// use mode13h_lab::cost::Probe;
@@ -44,35 +44,35 @@ use mode13h::settings::{Accuracy, Shading};
 pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
-    /// Dither, on a ramp of few entries then in any case.
+    /// Dither, if it is judged; shades are then shown on a coarse ramp.
     dither: Option<Option<DitherPattern>>,
 }
 
-/// The ramp that dither is judged on.
+/// Entries of the ramp that dither is judged on.
 const COARSE: u16 = 32;
 
 impl Probe {
-    /// Watches this renderer, as it is set: shading, kernel, vertex path and all.
+    /// Probes this renderer with its current settings: shading, kernel, vertex path and all.
     #[must_use]
     pub fn new(renderer: Renderer) -> Self {
         Self { renderer, numbered: Numbered::default(), dither: None }
     }
 
-    /// The renderer, to be set otherwise.
+    /// The renderer, to change its settings.
     pub fn renderer(&mut self) -> &mut Renderer {
         &mut self.renderer
     }
 
-    /// Sets the dither of shades, or none, and shows them on a ramp of 32 entries either way, which stand for shades 8.2 apart; with
-    /// `None` they are not, on one of 256.
+    /// Sets dither or no dither. Either way shades are then shown on a ramp of 32 entries, 8.2 shades apart; with
+    /// `None`, on one of 256.
     pub(super) fn dither(&mut self, dither: Option<Option<DitherPattern>>) {
         self.dither = dither;
     }
 
-    /// Finds out the pixels that the renderer shows of a scene.
+    /// Finds out which pixels the renderer shows of a scene.
     ///
     /// # Errors
-    /// A scene that cannot be drawn; a screen that no [`Frame`] is as large as; an object of more than 32,768
+    /// A scene that cannot be drawn; a screen size that no [`Frame`] can have; an object with more than 32,768
     /// surfaces, whose triangles cannot be numbered.
     pub fn look(&mut self, scene: &Scene, screen: Screen) -> Result<Shown, ProbeError> {
         let mut scene = scene.clone();
@@ -93,7 +93,7 @@ impl Probe {
         Ok(Shown { width: screen.width, height: screen.height, faces, shades })
     }
 
-    /// The shades of each pixel.
+    /// The shades at each pixel.
     fn shades(&mut self, scene: &Scene, screen: Screen) -> Result<Vec<[f64; 3]>, ProbeError> {
         let red = self.channel(0, scene, screen)?;
         if !self.renderer.plan().is_on_anywhere(Effect::RgbChannels) {
@@ -110,16 +110,16 @@ impl Probe {
         bytes
     }
 
-    /// The face of each pixel.
+    /// The face at each pixel.
     fn faces(&mut self, mut scene: Scene, screen: Screen) -> Result<Vec<Option<Face>>, ProbeError> {
         self.numbered.renew(&scene)?;
         scene.background = 0;
-        // Channels are mixed, and their mixture has no ramp. In white light of the same brightness faces are split
-        // as in coloured.
+        // Channels are mixed, and the mixture has no ramp. White light of the same brightness splits faces just as
+        // coloured light does.
         for light in scene.lights_mut() {
             *light = light.with_color([1.0; 3]).with_intensity(light.brightness());
         }
-        // Making a table for every digit would take long.
+        // Making a normal table for every digit would take long.
         let accuracy = self.renderer.settings.or(&scene.settings).accuracy.unwrap_or_default();
         let needs_tables = accuracy == Accuracy::Shading(Shading::PhongTable);
         let replaced = needs_tables.then(|| self.renderer.settings.accuracy.replace(Shading::Phong.into()));
@@ -130,7 +130,7 @@ impl Probe {
         Ok(numbers?.into_iter().map(|number| self.numbered.face(number)).collect())
     }
 
-    /// The number of each pixel's face, drawn digit by digit.
+    /// The number of the face at each pixel, drawn digit by digit.
     fn numbers(&mut self, mut scene: Scene, screen: Screen) -> Result<Vec<usize>, ProbeError> {
         let mut numbers = vec![0; screen.width as usize * screen.height as usize];
         let mut unit = 1;
@@ -166,7 +166,7 @@ impl Probe {
 pub enum ProbeError {
     /// The scene cannot be drawn.
     Scene(RenderError),
-    /// There is no frame of the screen's size.
+    /// No frame has the screen's size.
     Screen(RasterError),
     /// An object has too many surfaces for its triangles to be numbered.
     Surfaces(usize),
@@ -184,20 +184,20 @@ impl fmt::Display for ProbeError {
 
 impl core::error::Error for ProbeError {}
 
-/// A scene's meshes with their triangles numbered, from 1 through all objects; 0 is the background. Kept as
-/// long as the meshes are the same.
+/// A scene's meshes with their triangles numbered from 1 through all objects; 0 is the background. Cached while the
+/// meshes stay the same.
 #[derive(Debug, Default)]
 struct Numbered {
     meshes: Vec<Shared<Mesh>>,
-    /// How many values a digit has.
+    /// Number of values that a digit has.
     base: usize,
-    /// Meshes for each digit, the lowest first: every mesh with a surface for each of its own and each value of the
-    /// digit. Its own count still, because how a face is split depends on its material.
+    /// Meshes for each digit, lowest first. Each mesh has one surface for every pair of its own surfaces and a value of
+    /// the digit: its own still count, because a face's splitting depends on its material.
     digits: Vec<Vec<Shared<Mesh>>>,
 }
 
 impl Numbered {
-    /// Takes on a scene's meshes.
+    /// Renumbers if the scene's meshes have changed.
     fn renew(&mut self, scene: &Scene) -> Result<(), ProbeError> {
         let objects = scene.objects();
         let same = |(mesh, object): (&Shared<Mesh>, &Object)| Shared::ptr_eq(mesh, internals::shared_mesh(object));
@@ -237,8 +237,7 @@ impl Numbered {
         Ok(())
     }
 
-    /// An object with another mesh, each of its materials once for every digit, which it shows whatever the
-    /// light.
+    /// An object with another mesh, each of its materials once for every digit, which it shows whatever the light.
     fn object(&self, like: &Object, mesh: &Shared<Mesh>) -> Object {
         let digits = |material: &Material| {
             let mut digits = vec![material.clone(); self.base];
@@ -255,7 +254,7 @@ impl Numbered {
         internals::with_mesh(like, Shared::clone(mesh), materials)
     }
 
-    /// The triangle of a number.
+    /// The triangle with a number.
     fn face(&self, number: usize) -> Option<Face> {
         let mut triangle = number.checked_sub(1)?;
         for (object, mesh) in self.meshes.iter().enumerate() {

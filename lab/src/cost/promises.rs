@@ -1,4 +1,4 @@
-//! What a study holds the engine to, and what it says where that was not kept.
+//! What a study requires of the engine, and what it reports where a promise was broken.
 
 use alloc::format;
 use alloc::string::String;
@@ -7,20 +7,21 @@ use alloc::vec::Vec;
 use super::{BudgetRow, ShadingRow, Study};
 use mode13h::settings::Shading;
 
-/// The share of pixels that a budget, and a shading that is compared with it, must keep within the bound.
+/// Share of pixels that a budget, and any shading compared with it, must keep within the bound.
 pub(super) const PROMISE: f64 = 1.0;
 
-/// The time that a budget should take at most, as a ratio to the best single shading's: an aim, as the processor decides.
+/// Greatest time a budget should take, as a ratio to the best single shading's. It is an aim, since it depends on the
+/// processor.
 const LIMIT: f64 = 1.05;
 
-/// The share of covered pixels from which on a study warns that they were not compared.
+/// Share of covered pixels not compared from which a study warns about them.
 const BLIND: f64 = 0.005;
 
-/// What became of a promise.
+/// Outcome of a promise.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Promise {
     Kept,
-    /// Kept or not: chance may account for the difference.
+    /// Not distinguishable from kept: the excess may be chance.
     KeptWithinChance,
     Broken,
     /// There is nothing to compare with.
@@ -43,7 +44,7 @@ impl BudgetRow {
         }
     }
 
-    /// The verdict on the promise of accuracy and on the aim of time, in words.
+    /// The verdict on accuracy, which is promised, and on time, which is an aim, in words.
     #[must_use]
     pub fn verdict(&self) -> String {
         let accuracy = if self.accuracy() == Promise::Kept { "accuracy kept" } else { "accuracy not kept" };
@@ -59,20 +60,20 @@ impl BudgetRow {
 }
 
 impl ShadingRow {
-    /// Returns whether a pixel is beyond the bound of the shading.
+    /// Returns whether some pixel exceeds the shading's bound.
     fn is_beyond_its_bound(&self) -> bool {
         self.excess.is_some_and(|excess| excess > 0.0)
     }
 }
 
-/// Returns whether every promise was kept: each budget's error, and each shading's bound, if it has one.
+/// Returns whether every promise was kept: each budget's error, and each shading's bound if it has one.
 #[must_use]
 pub fn promises_are_kept(study: &Study) -> bool {
     let is_kept = |row: &BudgetRow| row.accuracy() != Promise::Broken;
     study.budget.iter().all(is_kept) && !study.shadings.iter().any(ShadingRow::is_beyond_its_bound)
 }
 
-/// Warnings of a study, a line each: promises that were not kept, and pixels that could not be compared.
+/// Warnings of a study, one per line: broken promises, and pixels that could not be compared.
 #[must_use]
 pub fn warnings(study: &Study) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -102,7 +103,8 @@ pub fn warnings(study: &Study) -> Vec<String> {
     warnings
 }
 
-/// Shadings with no measurable difference in time, from fast to slow, each with the slower ones: no pair is listed twice.
+/// Shadings with no measurable difference in time, from fast to slow, each with the slower ones, so that no pair is
+/// listed twice.
 #[must_use]
 pub fn ties(study: &Study) -> Vec<(Shading, Vec<Shading>)> {
     let mut rows: Vec<&ShadingRow> = study.shadings.iter().collect();
@@ -179,12 +181,12 @@ mod tests {
             assert_eq!(warnings(&broken), [says]);
             assert_eq!(promises_are_kept(&broken), says.contains("the aim"), "{says}");
         }
-        // At the bound, at the limit, and beyond it by no more than chance may do.
+        // At the bound, at the limit, and beyond it by no more than chance allows.
         let at_bound = ShadingRow { excess: Some(0.0), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) };
         let times = [(1.05, (1.02, 1.08)), (1.06, (1.04, 1.08))].map(|times| budget(4.0, 1.0, Some(times)));
         let kept = study(alloc::vec![at_bound], times.to_vec());
         assert!(warnings(&kept).is_empty() && promises_are_kept(&kept));
-        // What was not seen is no broken promise, but it is said.
+        // Pixels that were not compared break no promise, but are reported.
         let blind = study(Vec::new(), alloc::vec![BudgetRow { not_compared: 0.68, ..budget(4.0, 1.0, None) }]);
         assert_eq!(warnings(&blind), ["68.00 % of the covered pixels could not be compared with lit"]);
         assert!(promises_are_kept(&blind));

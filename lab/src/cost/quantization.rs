@@ -1,4 +1,4 @@
-//! Quantization error: the distance of the nearest entry of a ramp or a palette from a shade.
+//! Quantization error: the difference between a shade and the nearest entry of a ramp or a palette.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 
@@ -10,25 +10,25 @@ use mode13h::scene::Scene;
 
 /// Collects what was shown, each shade of each ramp and each colour once.
 ///
-/// - On a ramp of n entries a shade s of 0 to 255 is shown by the nearest: s is off by |s − 255·k/(n − 1)|,
-///   k = round(s·(n − 1)/255).
-/// - Where light or material is coloured, the wanted colour is off by its greatest difference, of three channels,
-///   from the palette's nearest entry.
-/// - A surface with an image takes part by every colour of its image in every shade that was seen of it, so as if
-///   both met somewhere: no pixel is off by more.
+/// - On a ramp of n entries a shade s of 0 to 255 is shown by the nearest entry: s is off by |s − 255·k/(n − 1)|, k =
+///   round(s·(n − 1)/255).
+/// - Where light or material is coloured, the error is the difference between the wanted colour and the palette's
+///   nearest entry, on the channel where it is greatest.
+/// - A surface with an image contributes every colour of its image in every shade seen on it, as if each pair met
+///   somewhere: no pixel is off by more.
 ///
-/// Fog, dither and what shines through are left out.
+/// Fog, dither and translucent objects are left out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Entries {
     most: f64,
-    /// The colours that were looked up for objects on channels.
+    /// Colours looked up for objects on three channels.
     colors: BTreeSet<[u8; 3]>,
-    /// The object, surface and shade of what was seen of images.
+    /// Object, surface and shade of the textured pixels seen.
     shades: BTreeSet<(usize, u16, u8)>,
 }
 
 impl Entries {
-    /// Takes in what is shown of a scene.
+    /// Adds what is shown of a scene.
     pub(super) fn count(&mut self, scene: &Scene, shown: &Shown, renderer: &mut Renderer) {
         // A scene that was drawn has a plan.
         let Ok(plan) = renderer.make_plan(scene, Screen::MODE_13H) else { return };
@@ -67,13 +67,13 @@ impl Entries {
         self.most = self.most.max(other.most);
     }
 
-    /// The most that any adds, in shades.
+    /// The largest error among them, in shades.
     pub(super) fn error(&self) -> f64 {
         self.most
     }
 }
 
-/// Distance of the nearest entry of a ramp from a shade.
+/// Difference between a shade and the nearest entry of a ramp.
 fn ramp_error(ramp: Ramp, shade: f64) -> f64 {
     let steps = f64::from(ramp.entries()) - 1.0;
     if steps < 1.0 {
@@ -83,14 +83,14 @@ fn ramp_error(ramp: Ramp, shade: f64) -> f64 {
     (shade - 255.0 * entry / steps).abs()
 }
 
-/// Distance of a palette's nearest entry from a colour, on the channel where it is farthest.
+/// Difference between a colour and a palette's nearest entry, on the channel where it is greatest.
 fn nearest_error(palette: &Palette, [r, g, b]: [u8; 3]) -> f64 {
     let near = palette[palette.nearest(Rgb::new(r, g, b))];
     let off = [r.abs_diff(near.r), g.abs_diff(near.g), b.abs_diff(near.b)];
     f64::from(off.into_iter().max().unwrap_or(0))
 }
 
-/// The max of [`nearest_error`] over all colours of a surface's image in one shade.
+/// The greatest [`nearest_error`] over all colours of a surface's image in one shade.
 fn image_error(scene: &Scene, palette: &Palette, (object, surface): (usize, u16), shade: u8) -> f64 {
     let material = scene.objects()[object].materials.get(usize::from(surface));
     let Some(image) = material.and_then(|m| m.texture.as_ref().or(m.environment.as_ref())) else { return 0.0 };

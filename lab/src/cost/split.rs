@@ -1,18 +1,18 @@
-//! Split of a frame's time into parts.
+//! Splits a frame's time into parts.
 //!
 //! | part | how |
 //! |---|---|
 //! | plan | [`Renderer::make_plan`] alone |
-//! | vertices | plan and vertices without any face, less the plan |
-//! | spans | what grows with the number of pixels: a frame twice as wide, less the frame |
-//! | set-up | the frame, less all of the above |
+//! | vertices | plan and vertices without any face, minus the plan |
+//! | spans | what grows with the number of pixels: a frame twice as wide, minus the frame |
+//! | set-up | the frame, minus all of the above |
 //! | scan-out | [`Vga::scan_out`] alone |
 //!
-//! A frame of 640 × 200 pixels that are half as wide shows the same: as many vertices, triangles and rows of
-//! triangles, each row twice as long. So what it takes longer is the time of 320 × 200 pixels, by whatever
-//! loop: nothing has to be left out of the loops, or played back without what surrounds them. The time of a loop before
-//! its first pixel and after its last counts as set-up. A row that is so short that it
-//! covers no pixel in one of the frames blurs the border between the two, by as much as faces are small.
+//! A frame of 640 × 200 pixels that are half as wide shows the same scene: it has the same vertices, triangles and
+//! triangle rows, each row twice as long. The extra time is therefore what 320 × 200 pixels take in whatever loops draw
+//! them, and no loop has to be changed, or run outside its surroundings. A loop's time before its first pixel and after
+//! its last counts as set-up. Rows so short that they cover no pixel in one of the frames blur the line between the two
+//! parts; the smaller the faces, the more.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -31,13 +31,13 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
-/// [`Screen::MODE_13H`] with each pixel cut in two.
+/// [`Screen::MODE_13H`] with every pixel cut in two.
 const WIDE: Screen = Screen { width: 640, height: 200, pixel_aspect: (5, 12) };
 
-/// The fewest and the most rounds.
+/// Fewest and most rounds.
 const ROUNDS: (usize, usize) = (3, 301);
 
-/// Frames that are drawn of those there are, at most.
+/// The most frames drawn of those given.
 const FRAMES: usize = 4;
 
 /// Measured parts of a frame.
@@ -64,8 +64,8 @@ impl Part {
     }
 }
 
-/// Splits the time of each way's frames, for about as long as `spent` says. Rounds are shuffled, as in a
-/// [interleaved benchmark](super::interleaved); of each part the median counts.
+/// Splits the time of each configuration's frames, for about as long as `spent` says. Rounds are shuffled, as in an
+/// [interleaved benchmark](super::interleaved), and each part's median counts.
 pub(super) fn split(
     ways: &[&Configuration<'_>],
     frames: &[Scene],
@@ -86,7 +86,7 @@ pub(super) fn split(
             spent.clock.time(|| frames.iter().try_for_each(|scene| part.of(renderer, scene, &mut bytes)));
         result.map(|()| time / frames.len().max(1) as f64)
     };
-    // Warm.
+    // Warm up.
     for &(way, part) in &order {
         draw(&mut renderers[way][part], PARTS[part])?;
     }
@@ -121,7 +121,7 @@ pub(super) fn split(
 }
 
 fn draw_into(renderer: &mut Renderer, scene: &Scene, screen: Screen, bytes: &mut [u8]) -> Result<(), RenderError> {
-    // No side is above 4,096, and there are as many bytes as the wider frame has.
+    // No side exceeds 4,096, and there are as many bytes as the wider frame needs.
     if let Ok(frame) = Frame::new(bytes, screen.width, screen.height, screen.width as usize) {
         black_box(renderer.draw_frame(scene, frame, screen.pixel_aspect)?);
     }
@@ -160,7 +160,7 @@ mod tests {
             assert!([plan, vertices, scan_out].iter().all(|time| **time > 0.0), "{split:?}");
             assert!(setup + spans > 0.0, "{split:?}");
         }
-        // Light at every pixel of a sphere as large as the screen: hundreds of times the work of an addition.
+        // Lighting every pixel of a sphere as large as the screen is hundreds of times the work of an addition.
         assert!(split[1].spans > 2.0 * split[0].spans, "{split:?}");
     }
 
@@ -174,7 +174,7 @@ mod tests {
         };
         let (narrow, wide) = (pixels(Screen::MODE_13H), pixels(WIDE));
         let covered = |bytes: &[u8]| bytes.iter().filter(|byte| **byte > 0).count() as f64;
-        // Twice as many, to the pixels at the rim: each row has at most four ends.
+        // Twice as many, except at the silhouette: each row has at most four ends.
         assert!((covered(&wide) - 2.0 * covered(&narrow)).abs() < 4.0 * 200.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Statistics of many samples of a time: quartiles, and ratios with their ranges by chance alone.
+//! Statistics of many time samples: quartiles, and ratios with their confidence intervals.
 
 use alloc::vec::Vec;
 
@@ -6,13 +6,13 @@ use mode13h_conformance::Random;
 
 use super::Nanoseconds;
 
-/// Resamples that an interval is made from.
+/// Number of resamples that an interval is computed from.
 const RESAMPLES: usize = 1000;
 
-/// The share of resamples beyond each end of an interval: it holds 95 %.
+/// Share of resamples beyond each end of an interval: it is a 95 % interval.
 const TAIL: f64 = 0.025;
 
-/// The value that a share of sorted numbers lies below, linear between two of them; 0 of none.
+/// The quantile of sorted numbers at `share`, interpolated linearly; 0 for an empty list.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return 0.0 };
     let place = share * last as f64;
@@ -28,7 +28,7 @@ fn sorted(numbers: &[f64]) -> Vec<f64> {
     numbers
 }
 
-/// The median; 0 of none. Those that are not a number were not measured, and do not count.
+/// The median; 0 for an empty list. NaN means not measured and is ignored.
 pub(super) fn median(numbers: &[f64]) -> f64 {
     quantile(&sorted(numbers), 0.5)
 }
@@ -46,17 +46,17 @@ pub(super) fn quartiles(samples: &[f64]) -> Nanoseconds {
 /// A ratio of two times.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Ratio {
-    /// The median of the ratios of all rounds.
+    /// Median of the ratios of all rounds.
     pub(super) median: f64,
-    /// Interval in which the median lies in 95 of 100 resamples of the rounds.
+    /// Interval that contains the median of 95 of 100 resamples of the rounds.
     pub(super) interval: (f64, f64),
 }
 
 impl Ratio {
-    /// The ratio of `times` to `others`, sample i of both being of one round: what slows a whole round down slows
-    /// both. Rounds in which one of them is NaN do not count.
+    /// The ratio of `times` to `others`. Sample i of both comes from the same round, since whatever slows down a whole
+    /// round slows both. Rounds in which either is NaN are ignored.
     ///
-    /// The interval is the percentile bootstrap's (Efron 1979): as many rounds as there are, drawn from them with
+    /// The interval is that of the percentile bootstrap (Efron 1979): as many rounds as there are, drawn from them with
     /// replacement, a thousand times.
     pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Random) -> Self {
         let ratios: Vec<f64> = times.iter().zip(others).map(|(time, other)| time / other).collect();
@@ -65,7 +65,7 @@ impl Ratio {
         if count == 0 {
             return Self { median: 1.0, interval: (1.0, 1.0) };
         }
-        // Of a sorted list the places alone are drawn, and their order statistics looked up.
+        // The list is sorted, so only indices are drawn, and their order statistics looked up.
         let mut medians = Vec::with_capacity(RESAMPLES);
         let mut places = alloc::vec![0; count];
         for _ in 0..RESAMPLES {
@@ -78,12 +78,12 @@ impl Ratio {
         Self { median: quantile(&ratios, 0.5), interval: (quantile(&medians, TAIL), quantile(&medians, 1.0 - TAIL)) }
     }
 
-    /// Returns whether the interval holds 1, so that neither can be said to be faster.
+    /// Returns whether the interval contains 1, so that neither can be called faster.
     pub(super) fn cannot_be_told(&self) -> bool {
         self.interval.0 <= 1.0 && 1.0 <= self.interval.1
     }
 
-    /// Width of the interval, as a share of the ratio.
+    /// Width of the interval as a share of the ratio.
     pub(super) fn spread(&self) -> f64 {
         (self.interval.1 - self.interval.0) / self.median
     }
@@ -117,14 +117,14 @@ mod tests {
             chance.shuffle(&mut list);
             *seen.entry(list).or_default() += 1;
         }
-        // Six orders, 1000 times each by chance, with a standard deviation of √(6000 · 1/6 · 5/6) = 29.
+        // Six orders, each 1000 times on average, with a standard deviation of √(6000 · 1/6 · 5/6) = 29.
         assert!(seen.len() == 6 && seen.values().all(|&times| (855..1145).contains(&times)), "{seen:?}");
     }
 
-    /// The median of 401 rounds is at index 200. The resampled median's index follows from the binomial law: it is k or
-    /// less where 201 or more of 401 draws are among the first k + 1. That has a share of 0.012 at index 177, of 0.020
-    /// at 179, of 0.025 at 180, of 0.032 at 181, and of 0.049 at 183. An end that a thousand resamples give is off by
-    /// one index by chance; the mean of 40 ends is off by a sixth of one.
+    /// The median of 401 rounds is at index 200. The index of the resampled median follows the binomial distribution:
+    /// it is at most k if 201 or more of 401 draws are among the first k + 1. The probability of that is 0.012 at index
+    /// 177, 0.020 at 179, 0.025 at 180, 0.032 at 181, and 0.049 at 183. An end computed from a thousand resamples is
+    /// off by one index by chance; the mean of 40 ends by a sixth of one.
     #[test]
     fn the_interval_is_that_of_the_binomial_law() {
         let times: Vec<f64> = (0..401).map(|i| 1000.0 + f64::from(i)).collect();
@@ -132,7 +132,7 @@ mod tests {
         for seed in 0..40 {
             let ratio = Ratio::new(&times, &[1000.0; 401], &mut Random::again(seed));
             assert!(close(ratio.median, 1.2));
-            // As places.
+            // As indices.
             low += (ratio.interval.0 - 1.0) * 1000.0 / 40.0;
             high += (ratio.interval.1 - 1.0) * 1000.0 / 40.0;
         }
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_ratio_is_taken_round_by_round() {
-        // Rounds that are ten times as slow as others, the second always half of the first.
+        // Some rounds are ten times as slow as others; the second is always half of the first.
         let times = [10.0, 100.0, 12.0, 90.0, 11.0];
         let halves = times.map(|time| time / 2.0);
         let ratio = Ratio::new(&times, &halves, &mut Random::again(3));
@@ -163,8 +163,8 @@ mod tests {
         assert!(Ratio::new(&[], &[], &mut Random::again(5)).cannot_be_told());
     }
 
-    /// The interval holds 1 in about 95 of a hundred pairs that are alike: at least 88, three standard deviations
-    /// below.
+    /// The interval contains 1 for about 95 of a hundred pairs with equal times: for at least 88, three standard
+    /// deviations less.
     #[test]
     fn the_interval_holds_the_truth_as_often_as_it_says() {
         let mut chance = Random::again(6);

@@ -1,7 +1,7 @@
 //! Results of a study, in numbers. Times are in nanoseconds, errors in shades of 1/255 of full intensity.
 //!
-//! With the feature `serde` all of it can be serialized: a time with its quartiles is an object, a ratio with its interval a
-//! list `[ratio, [low, high]]`, and what has a name is that name.
+//! With the feature `serde` everything can be serialized: a time with its quartiles is an object, a ratio with its
+//! interval a list `[ratio, [low, high]]`, and anything that has a name is written as that name.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -20,28 +20,28 @@ pub struct Study {
     pub host: Host,
     /// The name of the span kernel that drew.
     pub kernel: String,
-    /// Frames in a round.
+    /// Frames per round.
     pub frames: usize,
     /// Rounds that were measured, each of all shadings in shuffled order.
     pub rounds: usize,
-    /// A shading each, in the order of [`Shading::ALL`].
+    /// One row per shading, in the order of [`Shading::ALL`].
     pub shadings: Vec<ShadingRow>,
-    /// A budget each, the greatest error first.
+    /// One row per budget, largest error first.
     pub budget: Vec<BudgetRow>,
-    /// A time each, the shortest first.
+    /// One row per time, shortest first.
     pub times: Vec<TimeRow>,
     /// Other choices, grouped by aspect.
     pub options: Vec<OptionRow>,
-    /// Claims of the sources.
+    /// The sources' claims.
     pub claims: Vec<Claim>,
 }
 
-/// Machine and programs of a study.
+/// The machine and the program of a study.
 #[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Host {
-    /// The processor's name, as it says itself.
+    /// The processor's name, as it reports itself.
     pub processor: String,
     /// The compiler and its version.
     pub compiler: String,
@@ -49,7 +49,7 @@ pub struct Host {
     pub flags: String,
     /// The clock that times were read from.
     pub clock: String,
-    /// Length of a step of it, as measured.
+    /// The clock's step, as measured.
     #[cfg_attr(feature = "serde", serde(rename = "clock_step_ns"))]
     pub clock_step: f64,
 }
@@ -66,7 +66,7 @@ pub struct Nanoseconds {
     pub upper_quartile: f64,
 }
 
-/// Split of a frame's time into parts; medians.
+/// A frame's time split into parts; medians.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Split {
@@ -94,7 +94,7 @@ pub struct Errors {
     pub rms: f64,
     /// The share of pixels off by one shade or more, 0 to 1.
     pub off_by_one: f64,
-    /// The root mean square of the means over blocks of 4 × 4 pixels.
+    /// The root mean square of the means of blocks of 4 × 4 pixels.
     pub rms_of_blocks: f64,
 }
 
@@ -105,50 +105,50 @@ pub struct ShadingRow {
     /// The shading.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]
     pub shading: Shading,
-    /// Time for a frame, scan-out left out.
+    /// Time per frame, without scan-out.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
-    /// Time for a pixel written.
+    /// Time per pixel written.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_pixel"))]
     pub per_pixel: f64,
-    /// Time for a triangle drawn.
+    /// Time per triangle drawn.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_triangle"))]
     pub per_triangle: f64,
     /// The time as a ratio to that of `gouraud-8.8`.
     pub ratio: f64,
-    /// Its 95 % interval, by bootstrap.
+    /// The ratio's 95 % bootstrap interval.
     pub ratio_interval: (f64, f64),
-    /// Split of the time.
+    /// The time, split into parts.
     #[cfg_attr(feature = "serde", serde(rename = "split_ns"))]
     pub split: Split,
-    /// Instructions for a frame, where they were counted.
+    /// Instructions per frame, if they were counted.
     #[cfg_attr(feature = "serde", serde(rename = "instructions_per_frame"))]
     pub instructions: Option<u64>,
-    /// Against `gouraud`.
+    /// Error against `gouraud`.
     pub error_gouraud: Errors,
-    /// Against `lit`.
+    /// Error against `lit`.
     pub error_lit: Errors,
-    /// Error that the nearest entry of the scene's own ramp or palette adds, at most.
+    /// Largest error that the nearest entry of the scene's own ramp or palette adds.
     pub error_palette: f64,
-    /// Pixels that show another face than they should, over all frames, vertices rounded alike.
+    /// Pixels that show the wrong face, over all frames, with the truth's vertices rounded as ours are.
     pub cover_errors: u64,
-    /// The share of the covered pixels that was not compared with `lit`, 0 to 1, as another face was seen there.
+    /// Share of the covered pixels that were not compared with `lit` because they show another face, 0 to 1.
     pub not_compared: f64,
-    /// Shades by which the worst pixel is beyond the shading's bound, negative if none is. Shadings that are linear on the
-    /// screen have one, where the plan states how far linear shades are off.
+    /// By how many shades the worst pixel exceeds the shading's bound, negative if none does. Only shadings that are
+    /// linear on the screen have one, and only if the plan states how far linear shades are off.
     #[cfg_attr(feature = "serde", serde(rename = "beyond_bound"))]
     pub excess: Option<f64>,
-    /// Change of errors from a frame to the next, root mean square.
+    /// Change of the errors from one frame to the next, root mean square.
     pub swim: f64,
     /// True if no other shading is as near to `lit` and measurably faster.
     pub efficient: bool,
-    /// Shadings whose time cannot be told from this one's.
+    /// Shadings whose time cannot be distinguished from this one's.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::shadings"))]
     pub as_fast_as: Vec<Shading>,
     /// The first frame: indices of a ramp of 256 greys, row-major.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub picture: Vec<u8>,
-    /// Its error against `lit` at each pixel; NaN where none was taken.
+    /// The first frame's error against `lit` at each pixel; NaN where none was measured.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub error_map: Vec<f32>,
 }
@@ -157,64 +157,65 @@ pub struct ShadingRow {
 #[derive(Clone, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BudgetRow {
-    /// Shades of error that are accepted.
+    /// Error that is accepted, in shades.
     pub max_error: f64,
-    /// The share of covered pixels within it, against `lit`, 0 to 1.
+    /// Share of covered pixels within it of `lit`, 0 to 1.
     pub within: f64,
-    /// The share of the covered pixels that was not compared with `lit`, 0 to 1, as another face was seen there.
+    /// Share of the covered pixels that were not compared with `lit` because they show another face, 0 to 1.
     pub not_compared: f64,
     /// The largest error.
     pub largest: f64,
     /// The root mean square of the errors.
     pub rms: f64,
-    /// The pixels of the largest connected patch beyond it.
+    /// Number of pixels in the largest connected patch beyond the budget.
     #[cfg_attr(feature = "serde", serde(rename = "largest_patch"))]
     pub patch: usize,
-    /// Change of errors from a frame to the next, root mean square: what choices that change with the frame add is seen here.
+    /// Change of the errors from one frame to the next, root mean square; it includes what choices that change from
+    /// frame to frame add.
     pub swim: f64,
-    /// Time for a frame.
+    /// Time per frame.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
-    /// The cheapest shading with exact cover that keeps every pixel within; none may.
+    /// The cheapest shading with exact cover that keeps every pixel within the budget, if there is one.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::maybe"))]
     pub best_single_shading: Option<Shading>,
-    /// Its time for a frame, measured beside the budget's.
+    /// That shading's time per frame, measured alongside the budget's.
     #[cfg_attr(feature = "serde", serde(rename = "best_single_ns"))]
     pub best_single: Option<Nanoseconds>,
-    /// The budget's time as a ratio to that, and the ratio's 95 % interval.
+    /// The ratio of the budget's time to that, with its 95 % interval.
     pub ratio: Option<(f64, (f64, f64))>,
-    /// Triangles of all frames that each shading drew, those of none left out.
+    /// Triangles of all frames that each shading drew; shadings that drew none are left out.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::triangles"))]
     pub triangles: Vec<(FaceShading, u64)>,
 }
 
-/// One time for a frame, by which the renderer chose the errors.
+/// One time per frame, for which the renderer chose the errors.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct TimeRow {
-    /// The time for a frame.
+    /// The time allowed per frame.
     #[cfg_attr(feature = "serde", serde(rename = "max_time_ns"))]
     pub max_time: f64,
-    /// Frames that were drawn, those left out in which the errors were tried.
+    /// Frames drawn, not counting those used to try out the errors.
     pub frames: usize,
-    /// The mean time of these.
+    /// The mean time of these frames.
     #[cfg_attr(feature = "serde", serde(rename = "mean_time_ns"))]
     pub mean_time: f64,
-    /// The share of these within 1.05 times `max_time`, 0 to 1.
+    /// The share of these frames within 1.05 times `max_time`, 0 to 1.
     pub within: f64,
-    /// The mean of the errors that were accepted.
+    /// The mean of the errors accepted.
     pub mean_error: f64,
-    /// The greatest of them.
+    /// The largest error accepted.
     pub max_error: f64,
-    /// The least of [`BUDGETS`](super::BUDGETS) whose time for a frame, measured beside the shadings', is within
-    /// `max_time`; none may be.
+    /// The smallest of [`BUDGETS`](super::BUDGETS) whose time per frame, measured alongside the shadings', is within
+    /// `max_time`, if there is one.
     pub least_that_fits: Option<f64>,
     /// The largest error of these frames against `lit`, except at pixels where rounded vertices shift the light itself.
     pub largest: f64,
 }
 
-/// Aspects that may be chosen beside the shading.
+/// Aspects of drawing other than the shading.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum Aspect {
@@ -224,12 +225,12 @@ pub enum Aspect {
     VertexRounding,
     /// The span kernel.
     Kernel,
-    /// Dither or none. Errors are those on a ramp of 32 entries, which stand for shades 8.2 apart; times those in the
-    /// scene's own palette.
+    /// Dither or none. Errors are on a ramp of 32 entries, which are 8.2 shades apart; times are with the scene's own
+    /// palette.
     Dither,
-    /// The way to visible surfaces.
+    /// The hidden-surface method.
     HiddenSurfaces,
-    /// Each shading by the portable kernel.
+    /// Each shading with the portable kernel.
     PortableShading,
 }
 
@@ -254,7 +255,7 @@ impl core::fmt::Display for Aspect {
     }
 }
 
-/// One choice of an aspect, all else as by default.
+/// One choice of an aspect, with defaults for everything else.
 #[derive(Clone, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OptionRow {
@@ -263,24 +264,24 @@ pub struct OptionRow {
     pub aspect: Aspect,
     /// Its name.
     pub name: String,
-    /// Time for a frame.
+    /// Time per frame.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
-    /// The time as a ratio to that of the aspect's first row, and its 95 % interval.
+    /// The ratio of the time to that of the aspect's first row, with its 95 % interval.
     pub ratio: (f64, (f64, f64)),
-    /// Against `gouraud-unrounded`.
+    /// Error against `gouraud-unrounded`.
     #[cfg_attr(feature = "serde", serde(rename = "error_gouraud_unrounded"))]
     pub error: Errors,
-    /// Pixels that show another face than they should, vertices unrounded.
+    /// Pixels that show the wrong face, with the truth's vertices unrounded.
     pub cover_errors: u64,
 }
 
-/// Verdict of measuring on a claim.
+/// What measuring says about a claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Verdict {
     /// The claim holds.
     Holds,
-    /// The claim holds within limits, which the text names.
+    /// The claim holds within limits that the text names.
     HoldsInPart,
     /// The claim does not hold.
     DoesNotHold,
@@ -304,20 +305,20 @@ impl core::fmt::Display for Verdict {
     }
 }
 
-/// A claim that an old text makes, and what was measured.
+/// A claim made by an old text, and what was measured.
 #[derive(Clone, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Claim {
     /// The claim.
     pub claim: String,
-    /// Result of measuring, with figures.
+    /// What was measured, with figures.
     pub measured: String,
     /// The verdict.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]
     pub verdict: Verdict,
 }
 
-/// Fields that are written by name.
+/// Serializers for fields that are written by name.
 #[cfg(feature = "serde")]
 mod json {
     use core::fmt::Display;

@@ -1,4 +1,5 @@
-//! Frames against the clock: a pace that chooses the least error that fits in a time is told the times of its frames.
+//! Frames against the clock: a pace that chooses the least error that fits in a time learns from the times of its
+//! frames.
 
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -16,19 +17,19 @@ use mode13h::vga::Vga;
 /// Frames after which every error has been tried.
 const CALIBRATION: usize = 48;
 
-/// Frames that are timed of one time, at least and at most.
+/// Fewest and most frames timed for one time.
 const FRAMES: (usize, usize) = (200, 20_000);
 
-/// Times that a study chooses errors by.
+/// Number of times that a study chooses errors for.
 const TIMES: i32 = 5;
 
-/// Share of its time that a frame may take beyond it.
+/// How far a frame may exceed its time, as a ratio.
 const TOLERANCE: f64 = 1.05;
 
-/// Draws a frame within the error that the pace chooses, tells it how long that took, and returns the milliseconds.
+/// Draws a frame within the error that the pace chooses, reports the time to the pace, and returns it in milliseconds.
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 pub fn time_frame(
     (renderer, pace): (&mut Renderer, &mut Pace),
     scene: &Scene,
@@ -43,17 +44,17 @@ pub fn time_frame(
     Ok((stats, time.as_secs_f64() * 1000.0))
 }
 
-/// Draws a frame as often as it takes to try every error: the pace then has that of the next frame.
+/// Draws a frame as often as it takes to try every error, so that the pace is ready for the next frame.
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Those of [`Renderer::draw`].
 pub fn calibrate(
     (renderer, pace): (&mut Renderer, &mut Pace),
     scene: &Scene,
     vga: &mut Vga,
     clock: Clock,
 ) -> Result<(), RenderError> {
-    // Every frame is drawn, though nothing moves.
+    // Forces every frame to be drawn, though nothing moves.
     renderer.force(Effect::Transform, Some(true));
     let mut frames = (0..=CALIBRATION).map(|_| time_frame((renderer, pace), scene, vga, clock));
     let tried = frames.try_for_each(|frame| frame.map(|_| ()));
@@ -61,8 +62,8 @@ pub fn calibrate(
     tried
 }
 
-/// Frames drawn by several times, from that of the cheapest budget to that of the dearest. None on vertices that know
-/// no budget.
+/// Frames drawn for several times, from that of the cheapest budget to that of the dearest. Empty on vertices that
+/// support no budget.
 pub(super) fn timed_rows(
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,

@@ -1,4 +1,4 @@
-//! A triangle at a pixel: its corners, its edges, who owns a tie, and what became of it.
+//! A triangle at a pixel: its corners, its edges, who owns a tie, and its fate.
 
 use alloc::string::String;
 use core::fmt;
@@ -7,31 +7,31 @@ use mode13h::raster::{Interpolation, Vertex};
 
 use super::trace::Fate;
 
-/// A triangle that covers the pixel, or whose edge runs through its centre.
+/// A triangle that covers the pixel, or has an edge through its centre.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct FaceHere {
-    /// The object's place in the scene.
+    /// Index of the object in the scene.
     pub object: usize,
-    /// The triangle's place in the object's mesh; `None` where it could not be told.
+    /// Index of the triangle in the object's mesh; `None` if it cannot be determined.
     pub triangle: Option<usize>,
-    /// The line of that triangle in the model's file, if it comes from one.
+    /// Line of that triangle in the model's file, if it comes from one.
     pub line: Option<u32>,
-    /// The name of that triangle's material, if it has one.
+    /// Name of that triangle's material, if it has one.
     pub material: Option<String>,
-    /// True if it is only a part of that triangle, which was split.
+    /// True if it is only part of that triangle, which was split.
     pub is_part: bool,
-    /// Interpolation of its shades, where they come from its corners.
+    /// Interpolation of its shades, if they come from its corners.
     pub interpolation: Interpolation,
-    /// Its corners: the upper one first (of equal heights the left one), then clockwise as one sees them.
+    /// Its corners: the upper one first (of two at the same height, the left one), then clockwise on the screen.
     pub corners: [Vertex; 3],
     /// Its depth at the pixel; greater is nearer.
     pub depth: u32,
-    /// Its fate.
+    /// What became of it.
     pub fate: Fate,
 }
 
-/// Kind of an edge, the triangle seen clockwise.
+/// Kind of an edge, for a triangle seen clockwise.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum EdgeKind {
     /// Level, the triangle below it.
@@ -45,8 +45,8 @@ pub enum EdgeKind {
 }
 
 impl EdgeKind {
-    /// Returns whether a pixel whose centre lies on it belongs to the triangle: a top or a left edge. The neighbour on
-    /// its other side has it as a bottom or a right one.
+    /// Returns whether a pixel whose centre lies on it belongs to the triangle: true for top and left edges. To the
+    /// neighbour the edge is a bottom or a right one.
     #[must_use]
     pub const fn owns_ties(self) -> bool {
         matches!(self, Self::Top | Self::Left)
@@ -69,13 +69,13 @@ impl fmt::Display for EdgeKind {
 pub struct Edge {
     /// The kind of edge.
     pub kind: EdgeKind,
-    /// The edge function at the pixel's centre, exact, in (1/256 pixel)²: twice the area of the edge and the centre,
-    /// above 0 inside.
+    /// Edge function at the pixel's centre, exact, in (1/256 pixel)²: twice the area of the triangle that the edge and
+    /// the centre form, positive inside.
     pub value: i64,
 }
 
 impl FaceHere {
-    /// The edges from corner 0 to 1, from 1 to 2 and from 2 to 0, at the centre of the pixel (`x`, `y`).
+    /// The edges from corner 0 to 1, 1 to 2 and 2 to 0, evaluated at the centre of the pixel (`x`, `y`).
     ///
     /// ```text
     /// e = (bx − ax)·(cy − ay) − (by − ay)·(cx − ax)       a, b: the edge's ends; c: the centre; y runs down
@@ -92,13 +92,13 @@ impl FaceHere {
                 [across, _] if across > 0 => EdgeKind::Top,
                 _ => EdgeKind::Bottom,
             };
-            // Within 2²¹ · 2²¹ twice.
+            // Two products, each within 2²¹ · 2²¹.
             Edge { kind, value: along[0] * (centre[1] - a[1]) - along[1] * (centre[0] - a[0]) }
         })
     }
 }
 
-/// Clockwise as one sees them, the upper one first.
+/// Clockwise on the screen, the upper one first.
 pub(super) fn clockwise(mut vertices: [Vertex; 3]) -> [Vertex; 3] {
     let [a, b, c] = vertices.each_ref().map(at);
     if (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0 {

@@ -1,18 +1,18 @@
-//! Explanation of a pixel's byte: the whole way from three corners to an entry of the palette, in numbers.
+//! Explains a pixel's byte: all the way from three corners to a palette entry, in numbers.
 //!
 //! | file | what |
 //! |---|---|
-//! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, what became of it |
+//! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, its fate |
 //! | `pixel` | [`pixel()`]: everything about one |
-//! | `trace`, `one_pixel` | the pixel's triangles, and which is seen; its byte, stage by stage |
-//! | `text`, `span_text`, `paragraph` | the account in words |
-//! | `walk` | [`Walk`]: a triangle pixel by pixel, and the registers of the loop of 1994 at each |
-//! | `row` | [`row()`]: a row's intensity and its slope, drawn and true |
+//! | `trace`, `one_pixel` | the triangles at the pixel, and which is seen; its byte, stage by stage |
+//! | `text`, `span_text`, `paragraph` | the explanation in words |
+//! | `walk` | [`Walk`]: a triangle pixel by pixel, with the registers of the 1994 loop at each |
+//! | `row` | [`row()`]: a row's intensity and its slope, as drawn and true |
 //!
-//! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and every stage's byte is what
-//! is drawn with the stages after it left out. Starts, steps and sums come from the planes that the loops start from
-//! ([`internals::ShadeTrace`](mode13h::internals::ShadeTrace)). So an account agrees with the frame for every shading, kernel, way to hidden surfaces and
-//! effect.
+//! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and the byte of a stage is what
+//! is drawn when the later stages are left out. Starts, steps and sums come from the planes that the loops start from
+//! ([`internals::ShadeTrace`](mode13h::internals::ShadeTrace)). So the explanation agrees with the frame for every
+//! shading, kernel, hidden-surface method and effect.
 //!
 //! ```
 //! use mode13h_lab::explain;
@@ -56,31 +56,31 @@ pub use walk::{Registers, Step, Walk};
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ExplainError {
-    /// The pixel lies outside of the frame.
+    /// The pixel lies outside the frame.
     OutsidePixel {
         /// Its column.
         x: u32,
         /// Its row.
         y: u32,
-        /// Columns of the frame.
+        /// Number of columns in the frame.
         width: u32,
-        /// Rows of the frame.
+        /// Number of rows in the frame.
         height: u32,
     },
-    /// The row lies outside of the frame.
+    /// The row lies outside the frame.
     OutsideRow {
         /// The row.
         y: u32,
-        /// Rows of the frame.
+        /// Number of rows in the frame.
         height: u32,
     },
-    /// There is no frame of that size.
+    /// There is no frame of this size.
     Screen,
     /// The scene cannot be drawn.
     Scene(RenderError),
     /// The truth cannot be drawn.
     Truth(TruthError),
-    /// The pixels that are shown cannot be found out.
+    /// The pixels shown cannot be identified.
     Probe(ProbeError),
 }
 
@@ -103,7 +103,7 @@ impl fmt::Display for ExplainError {
 
 impl core::error::Error for ExplainError {}
 
-/// Checks that there is a frame of that size.
+/// Checks that there is a frame of this size.
 fn check(screen: Screen) -> Result<(), ExplainError> {
     let side = 1..=Frame::MAX_SIDE;
     if side.contains(&screen.width) && side.contains(&screen.height) { Ok(()) } else { Err(ExplainError::Screen) }

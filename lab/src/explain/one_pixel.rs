@@ -1,7 +1,7 @@
 //! One pixel drawn by itself, stage by stage.
 //!
-//! Nothing is worked out here that drawing works out: a face is drawn by the raster, clipped to the pixel, and a stage's
-//! byte is what is drawn with the stages after it taken away.
+//! Nothing is computed here that drawing computes: the raster draws a face clipped to the pixel, and the byte of a
+//! stage is what it draws with the later stages removed.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -19,33 +19,33 @@ use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
 
-/// Source of a face's shades.
+/// Where a face's shades come from.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum ShadedBy {
-    /// The corners.
+    /// The vertices' shades.
     Corners,
     /// A table of 256 × 256 normals.
     NormalTable,
     /// The light at the pixel.
     Light {
-        /// The normal there, not made unit yet, in the object's own space.
+        /// The interpolated normal, not normalized, in object space.
         normal: [f32; 3],
-        /// The point there.
+        /// The point, in object space.
         position: [f32; 3],
-        /// The shades in 8.8, of three channels or three times the same.
+        /// The shades in 8.8: one per channel, or the same three times.
         shades: [u16; 3],
     },
-    /// Between two pixels of its row that are lit.
+    /// Interpolated between two lit pixels of its row.
     BetweenLit {
-        /// Distance between the two, at most.
+        /// Greatest distance between the two.
         spacing: SampleSpacing,
-        /// The shades in 8.8 of the one before it, or of itself, of three channels or three times the same.
+        /// The shades in 8.8 at the one before it, or at the pixel itself: one per channel, or the same three times.
         before: [u16; 3],
-        /// Shades of the next.
+        /// The shades at the next one.
         after: [u16; 3],
     },
-    /// Quadratic on the screen between six points that are lit. For each corner the shades in 8.8 there, of three
-    /// channels or the first, and then those at the middle of the edge opposite to it; beyond what can be shown, too.
+    /// Quadratic on the screen through six lit points. Holds, for each corner, the shades in 8.8 there and then those
+    /// at the midpoint of the opposite edge, for three channels or the first; they may be out of range.
     BetweenSix([[f32; 6]; 3]),
 }
 
@@ -58,32 +58,32 @@ pub(super) struct Bytes {
     pub(super) shades: [u8; 3],
     pub(super) channels: bool,
     pub(super) texel: Option<u8>,
-    /// The level of its image that the texel is of; `None` of an image without levels.
+    /// Level of the image that the texel comes from; `None` for an image without levels.
     pub(super) level: Option<u8>,
-    /// The threshold, and the byte.
+    /// Threshold, then byte.
     pub(super) dithered: Option<(u8, u8)>,
-    /// The three channels, each combined with the texel's.
+    /// The three channels, each combined with that of the texel.
     pub(super) textured: Option<[u8; 3]>,
     pub(super) mixed: Option<u8>,
-    /// The level, and the byte.
+    /// Fog level, then byte.
     pub(super) fogged: Option<(u8, u8)>,
-    /// Byte behind, and the byte.
+    /// Byte behind, then byte.
     pub(super) blended: Option<(u8, u8)>,
     pub(super) byte: u8,
 }
 
-/// A frame of which one pixel is drawn.
+/// A frame of which a single pixel is drawn.
 pub(super) struct OnePixel {
     pub(super) screen: Screen,
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) kernel: Kernel,
-    /// The frame's row that it is in.
+    /// The frame's row that the pixel is in.
     pub(super) row: Vec<u8>,
 }
 
 impl OnePixel {
-    /// The byte that `draw` leaves where `behind` was before; `None` if it does not draw the pixel.
+    /// The byte that `draw` leaves where `behind` was; `None` if it does not draw the pixel.
     pub(super) fn draw(&mut self, behind: u8, draw: impl FnOnce(&mut Raster<'_>) -> DrawStats) -> Option<u8> {
         let Screen { width, height, .. } = self.screen;
         let (x, y) = (self.x, self.y);
@@ -95,14 +95,14 @@ impl OnePixel {
         if drawn.pixels == 0 { None } else { self.row.get(x as usize).copied() }
     }
 
-    /// The byte of a face by a pixel pipeline with some stages taken away.
+    /// The byte of a face drawn with some stages of its pixel pipeline removed.
     fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &PixelPipeline<'_>) -> u8 {
         self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
     }
 
-    /// Returns whether an edge of a triangle that does not cover the pixel runs through its centre.
+    /// Returns whether a triangle that does not cover the pixel has an edge through its centre.
     pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
-        // Within a frame of at most 4,096 pixels a side.
+        // In a frame of at most 4,096 pixels a side.
         let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
         let area = mode13h::internals::raster::clip::doubled_area(vertices).signum();
         let at = |i: usize| [i64::from(vertices[i].x().to_bits()), i64::from(vertices[i].y().to_bits())];
@@ -114,7 +114,7 @@ impl OnePixel {
     }
 }
 
-/// Notes what is asked of a light last: eight points, and the shades of each on three channels.
+/// Records the last light query: eight points, and the shades of each on three channels.
 #[derive(Debug)]
 struct Noted<'a> {
     light: &'a dyn Lighting,
@@ -135,7 +135,7 @@ impl Lighting for Noted<'_> {
     }
 }
 
-/// Lists what is asked of a light: the shades of all points, on three channels.
+/// Records every light query: the shades of all points, on three channels.
 #[derive(Debug)]
 struct Listed<'a> {
     light: &'a dyn Lighting,
@@ -162,7 +162,7 @@ impl Lighting for Listed<'_> {
     }
 }
 
-/// Numbers the points that are asked for, in whole shades.
+/// Returns the number of each point that is lit as its shade, counted in whole shades.
 #[derive(Debug, Default)]
 struct Counted {
     count: Cell<u16>,
@@ -181,7 +181,7 @@ impl Lighting for Counted {
     }
 }
 
-/// Shows which of eight points a pixel is.
+/// Shows which of eight points is the pixel's.
 #[derive(Debug)]
 struct Numbers;
 
@@ -196,7 +196,7 @@ impl Lighting for Numbers {
 }
 
 impl OnePixel {
-    /// Applies a face's stages to the pixel, where `behind` is.
+    /// Applies a face's stages to the pixel, over the byte `behind`.
     pub(super) fn bytes(&mut self, triangle: &DrawnTriangle<'_>, behind: u8, scan_line: bool) -> Bytes {
         let plain = |shade: u8, exact_cover: bool| Bytes {
             shaded_by: ShadedBy::Corners,
@@ -216,7 +216,7 @@ impl OnePixel {
         if let Some(effects) = effects {
             return stages(effects.pipeline, (vertices, effects.attributes), self, behind, plain(behind, true));
         }
-        // The scan-line method finds the pixels itself, and takes a shading's shades alone.
+        // The scan-line method finds the pixels itself, and uses only a shading's shades.
         let byte = if scan_line {
             let pipeline = PixelPipeline { source: ShadeSource::Shaded(interpolation), ..PixelPipeline::PLAIN };
             self.look((vertices, &Default::default()), behind, &pipeline)
@@ -265,7 +265,7 @@ fn stages(
         ShadeSource::LitEvery(apart, light) => {
             let listed = Listed { light, all: RefCell::default() };
             pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &listed), ..bare });
-            // Numbered, and rounded down, it is the number of the pixel before.
+            // Numbered and rounded down, its shade is the number of the lit pixel before it.
             let numbers = Counted::default();
             let numbered = PixelPipeline {
                 source: ShadeSource::LitEvery(apart, &numbers),
@@ -277,10 +277,10 @@ fn stages(
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
             made.shaded_by = ShadedBy::BetweenLit { spacing: apart, before: of(place), after: of(place + 1) };
         }
-        // Its corners' shades.
+        // Shades from the corners.
         _ => {}
     }
-    // A row of a table is a shade, a level or the new byte; a column a texel or the byte that was there.
+    // A table's row is a shade, a level or the new byte; its column is a texel or the byte behind.
     let columns = Lut64K::from_fn(|_, column| column);
     let rows = Lut64K::from_fn(|row, _| row);
     made.texel = look.texture.map(|texture| {
@@ -309,7 +309,7 @@ fn stages(
     let mut so_far = bare;
     if let Some(thresholds) = look.dither {
         so_far.dither = look.dither;
-        // A pixel of the frame.
+        // The pixel is in the frame.
         let threshold = thresholds.row(pixel.y as usize).at(pixel.x as usize);
         let byte = if made.channels { 0 } else { pixel.look(met, behind, &so_far) };
         made.dithered = Some((threshold, byte));

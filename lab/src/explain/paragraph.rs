@@ -1,22 +1,22 @@
-//! Text in lines that begin with a label.
+//! Labelled lines of text.
 
 use alloc::format;
 use alloc::string::String;
 
 use crate::lines::lines;
 
-/// Columns of text.
+/// Columns per line.
 const WIDTH: usize = 100;
 
-/// Columns of what stands before it.
+/// Columns taken by the label.
 const LABEL: usize = 10;
 
-/// Lines that begin with a label and go on below it.
+/// Paragraphs with a label in front, indented below it.
 #[derive(Default)]
 pub(super) struct Text(pub(super) String);
 
 impl Text {
-    /// A paragraph, wrapped.
+    /// Adds a wrapped paragraph.
     pub(super) fn say(&mut self, label: &str, words: &str) {
         let mut label = label;
         for line in lines(words, WIDTH - LABEL - 2) {
@@ -25,13 +25,13 @@ impl Text {
         }
     }
 
-    /// One line as it is.
+    /// Adds one line as it is.
     pub(super) fn line(&mut self, line: &str) {
         self.0 += line.trim_end();
         self.0.push('\n');
     }
 
-    /// A line behind a label, as it is.
+    /// Adds a labelled line as it is.
     pub(super) fn row(&mut self, label: &str, row: &str) {
         self.line(&format!("  {label:LABEL$}{row}"));
     }

@@ -21,7 +21,7 @@ use mode13h::scene::Scene;
 use mode13h::settings::{Accuracy, HiddenSurfaces, Settings, Shading, VertexPath};
 use mode13h::vga::Vga;
 
-/// One pixel's account of itself. Shown as text it fits a screen of 100 columns.
+/// The full explanation of one pixel. Displayed as text it fits 100 columns.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Pixel {
@@ -29,55 +29,53 @@ pub struct Pixel {
     pub x: u32,
     /// Its row.
     pub y: u32,
-    /// The frame's byte: an entry of the palette.
+    /// Its byte in the frame: a palette entry.
     pub byte: u8,
-    /// Colour of that entry, at the scene's time.
+    /// Colour of that entry at the scene's time.
     pub color: Rgb,
     /// Byte that the frame was cleared to.
     pub background: u8,
     /// Method for hidden surfaces.
     pub hidden_surfaces: HiddenSurfaces,
-    /// Reason for it, in words; empty where there is no object.
+    /// Reason for that method, in words; empty if there is no object.
     pub hidden_surfaces_why: String,
-    /// The technique of shading.
+    /// The shading technique.
     pub shading: Shading,
-    /// Reason for it, in words.
+    /// Reason for that technique, in words.
     pub shading_why: String,
-    /// The budget that chooses a technique for each face in place of `shading`, in shades, if there is one.
+    /// The budget, in shades, that chooses a technique for each face in place of `shading`, if there is one.
     pub max_error: Option<f32>,
-    /// The numbers that the vertices were made in.
+    /// The arithmetic that computed the vertices.
     pub vertex_path: VertexPath,
     /// The names of the scene's objects.
     pub objects: Vec<String>,
-    /// Every triangle that covers the pixel, or whose edge runs through its centre, in the order of drawing; those that
-    /// shine through last.
+    /// Every triangle that covers the pixel or has an edge through its centre, in drawing order; translucent ones last.
     pub faces: Vec<FaceHere>,
-    /// Faces that are seen: one that hides what is behind it, if there is one, then those that shine through, far to
-    /// near. None where the background shows.
+    /// The visible faces: the opaque one if there is one, then translucent ones, far to near. Empty where the
+    /// background shows.
     pub seen: Vec<Seen>,
 }
 
-/// A triangle that is seen, and how it came to its byte.
+/// A visible triangle, and how it got its byte.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Seen {
-    /// Its place in [`Pixel::faces`].
+    /// Its index in [`Pixel::faces`].
     pub face: usize,
     /// The palette entries that its shades lie in.
     pub ramp: Ramp,
-    /// Source of its shades.
+    /// Where its shades come from.
     pub shaded_by: ShadedBy,
-    /// True if it covers the pixels whose centres are in it, and no others.
+    /// True if it covers exactly the pixels whose centres are in it.
     pub exact_cover: bool,
-    /// Traces of its values to the pixel: one for shades from corners, or three for red, green and blue; two for a
-    /// table of normals, the normal's column and row in it; none for light at the pixel.
+    /// How its values reach the pixel: one trace for shades from corners, or three for red, green and blue; two for a
+    /// table of normals (the normal's column and row in it); none for light at the pixel.
     pub accounts: Vec<ShadeTrace>,
-    /// Stages with their results at the pixel, in their order. The last one's byte is what the face leaves in the
-    /// frame.
+    /// Its stages in order, with their results at the pixel. The last one's byte is what the face leaves in the frame.
     pub stages: Vec<PixelStage>,
-    /// Errors of the shade against several standards of truth; fewer where truth has no such face here.
+    /// Errors of the shade against the standards of truth, without those where the truth has no such face here.
     pub against: Vec<Against>,
-    /// The effects that are on for its object, with their reasons.
+    /// Effects that are on for its object, with reasons.
     pub effects: Vec<plan::Row>,
 }
 
@@ -89,7 +87,7 @@ pub enum PixelStage {
     Shade(u8),
     /// The shades of red, green and blue.
     Channels([u8; 3]),
-    /// A threshold took the place of the half that is else added to a shade.
+    /// A threshold replaced the half that otherwise rounds a shade.
     Dither {
         /// The threshold.
         threshold: u8,
@@ -100,35 +98,35 @@ pub enum PixelStage {
     Texture {
         /// The texel.
         texel: u8,
-        /// The level of the image that it is of; `None` of an image without smaller copies.
+        /// The image level that it comes from; `None` for an image without smaller copies.
         level: Option<u8>,
         /// Resulting byte.
         byte: u8,
     },
-    /// Each channel was multiplied with the texel's.
+    /// Each channel was multiplied by the texel's.
     TextureChannels {
         /// The texel.
         texel: u8,
-        /// The level of the image that it is of; `None` of an image without smaller copies.
+        /// The image level that it comes from; `None` for an image without smaller copies.
         level: Option<u8>,
         /// Resulting channels.
         channels: [u8; 3],
     },
-    /// The channels were mixed to an entry of the palette.
+    /// The channels were mixed into a palette entry.
     Mix {
-        /// The threshold of dither, if it is on.
+        /// The dither threshold, if dither is on.
         threshold: Option<u8>,
         /// Resulting byte.
         byte: u8,
     },
-    /// A level of fog was looked up with the byte.
+    /// The byte was looked up in the fog table at a fog level.
     Fog {
         /// Density, 0 to 255.
         level: u8,
         /// Resulting byte.
         byte: u8,
     },
-    /// The byte was looked up with the one behind it.
+    /// The byte was looked up in the blend table with the one behind it.
     Blend {
         /// Byte that the frame held.
         behind: u8,
@@ -138,7 +136,7 @@ pub enum PixelStage {
 }
 
 impl PixelStage {
-    /// The byte that came of it; `None` of three channels.
+    /// The resulting byte; `None` for three channels.
     #[must_use]
     pub const fn byte(self) -> Option<u8> {
         match self {
@@ -153,25 +151,26 @@ impl PixelStage {
     }
 }
 
-/// The shade against a standard of truth.
+/// The error of the shade against one standard of truth.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Against {
     /// The standard.
     pub standard: Standard,
-    /// Right shades, of 1/255 of full intensity: of three channels, or three times the same.
+    /// True shades, in 1/255 of full intensity: one per channel, or the same three times.
     pub shades: [f64; 3],
-    /// Shown shade less the right one, before texture, fog and dither, in the same unit; for three channels that of the
-    /// one that is farthest off.
+    /// The shade shown minus the true one, before texture, fog and dither, in the same unit; for three channels, that
+    /// of the channel that is farthest off.
     pub error: f64,
 }
 
-/// The account of the pixel in column `x` of row `y` of the frame that `renderer`, as it is set, draws of `scene`.
+/// Explains the pixel in column `x` of row `y` of the frame that `renderer`, with its current settings, draws of
+/// `scene`.
 ///
-/// The renderer draws nothing, but makes its vertices as for a frame; the frames that it draws after it are those that
-/// it would have drawn anyway.
+/// The renderer draws nothing, but computes its vertices as for a frame; the frames that it draws later are not
+/// affected.
 ///
 /// # Errors
-/// A pixel outside of the screen; a scene or a screen that cannot be drawn.
+/// A pixel outside the screen; a scene or a screen that cannot be drawn.
 pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: u32) -> Result<Pixel, ExplainError> {
     check(screen)?;
     let Screen { width, height, .. } = screen;
@@ -203,7 +202,7 @@ pub fn pixel(renderer: &mut Renderer, scene: &Scene, screen: Screen, x: u32, y: 
     })
 }
 
-/// The colour of an entry as the DAC has it.
+/// The colour of an entry on the DAC.
 fn color(renderer: &Renderer, scene: &Scene, entry: u8) -> Rgb {
     let mut vga = Vga::new();
     if renderer.plan().is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
@@ -232,7 +231,7 @@ fn shading_why(of_renderer: &Settings, of_scene: &Settings) -> String {
     }
 }
 
-/// A triangle, with its place in the mesh.
+/// A triangle at the pixel, and which one it is in the mesh.
 fn here(renderer: &Renderer, scene: &Scene, truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> FaceHere {
     let is_part = renderer.plan().objects()[met.object].is_on(Effect::Tessellation);
     let triangle = if is_part || met.face.is_none() { nearest(truth, met, x, y) } else { met.face };
@@ -252,8 +251,8 @@ fn here(renderer: &Renderer, scene: &Scene, truth: &Truth<'_>, met: &Met, x: u32
     }
 }
 
-/// The object's triangle that truth finds at the pixel nearest to a depth. It serves where the renderer's own triangles
-/// are not the mesh's.
+/// The triangle of the object whose true depth at the pixel is nearest to the drawn one. Used where the renderer's
+/// triangles are not the mesh's own.
 fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
     let apart = |triangle: usize| {
         let face = Face { object: met.object, triangle };
@@ -266,7 +265,7 @@ fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
     all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(triangle, _)| triangle)
 }
 
-/// Input of explaining a seen face.
+/// What is needed to explain a visible face.
 struct Inputs<'a> {
     scene: &'a Scene,
     screen: Screen,
@@ -304,7 +303,7 @@ impl Inputs<'_> {
         let triangle = SortedTriangle::new(&met.vertices);
         let covers = (!bytes.exact_cover).then_some(met.interpolation);
         let row = row_of(&triangle, covers, self.screen.width, self.x, self.y)?;
-        // A column.
+        // A column of the frame.
         let x = self.x as i32;
         let values = |value: &dyn Fn(&Attributes) -> u16| {
             let attributes = met.attributes.as_ref()?;
@@ -367,7 +366,7 @@ fn stages(bytes: &Bytes) -> Vec<PixelStage> {
 }
 
 impl Pixel {
-    /// The face that is in front, and its account.
+    /// The face in front, and its explanation.
     #[must_use]
     pub fn front(&self) -> Option<(&FaceHere, &Seen)> {
         let seen = self.seen.last()?;

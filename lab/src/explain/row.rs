@@ -1,7 +1,7 @@
-//! A row of the frame: its intensity and the slope of that, as it is drawn and as it should be.
+//! A row of the frame: its intensity and the slope of that, as drawn and as it should be.
 //!
-//! Where the slope changes at once, as on every edge between two faces of a body that is shaded linearly, the eye sees a line:
-//! a Mach band, though the intensity itself has no step there.
+//! Where the slope changes abruptly, as on every edge between two linearly shaded faces, the eye sees a line: a Mach
+//! band, though the intensity itself has no step there.
 
 use alloc::vec::Vec;
 
@@ -14,30 +14,31 @@ use mode13h::scene::Scene;
 /// A row of the frame.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Row {
-    /// Number of the row.
+    /// Index of the row.
     pub y: u32,
-    /// Its pixels, from the left.
+    /// Its pixels, from left to right.
     pub columns: Vec<Column>,
 }
 
-/// A pixel of a row. Intensities are in shades of 1/255 of full intensity, before texture, fog, dither and blending; of
-/// three channels they are the mean.
+/// A pixel of a row. Intensities are in shades of 1/255 of full intensity, before texture, fog, dither and blending;
+/// for three channels they are the mean.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Column {
-    /// The face that is drawn.
+    /// The face drawn.
     pub face: Option<Face>,
-    /// Drawn value; `None` where there is no face.
+    /// Value drawn; `None` where there is no face.
     pub drawn: Option<f64>,
-    /// Right value by [`Standard::Gouraud`].
+    /// True value by [`Standard::Gouraud`].
     pub gouraud: Option<f64>,
-    /// Right value by [`Standard::Lit`].
+    /// True value by [`Standard::Lit`].
     pub lit: Option<f64>,
 }
 
-/// Row `y` of the frame that `renderer`, as it is set, draws of `scene`. The whole frame and two of the truth are drawn for it.
+/// Row `y` of the frame that `renderer`, with its current settings, draws of `scene`. Draws the whole frame and two of
+/// the truth.
 ///
 /// # Errors
-/// A row outside of the screen; a scene or a screen that cannot be drawn.
+/// A row outside the screen; a scene or a screen that cannot be drawn.
 pub fn row(renderer: Renderer, scene: &Scene, screen: Screen, y: u32) -> Result<Row, ExplainError> {
     check(screen)?;
     if y >= screen.height {
@@ -58,8 +59,8 @@ pub fn row(renderer: Renderer, scene: &Scene, screen: Screen, y: u32) -> Result<
 }
 
 impl Row {
-    /// The slope of an intensity at each pixel, in shades a pixel: half the difference between the neighbours on its two
-    /// sides, which both must show something.
+    /// The slope of an intensity at each pixel, in shades per pixel: half the difference between its left and right
+    /// neighbours, both of which must show something.
     pub fn slope(&self, of: impl Fn(&Column) -> Option<f64>) -> Vec<Option<f64>> {
         let values: Vec<Option<f64>> = self.columns.iter().map(of).collect();
         let at = |x: usize| {

@@ -1,4 +1,4 @@
-//! The account of a span in words: start, step, sums, and how far the byte is from exact.
+//! A span explained in words: start, step, sums, and how far the byte is from exact.
 
 use alloc::format;
 use alloc::string::String;
@@ -7,10 +7,10 @@ use alloc::vec::Vec;
 use super::paragraph::Text;
 use mode13h::internals::{Accumulator, Progression, Ratio, ShadeTrace};
 
-/// Sums that are shown of either end of a span.
+/// Sums listed at either end of a span.
 const ENDS: i32 = 5;
 
-/// A sum as its register shows it, in hexadecimal.
+/// A sum as it is in its register, in hexadecimal.
 fn hex(sums: &Accumulator, sum: u32) -> String {
     if sums.fraction_bits == 16 { format!("{sum:06x}") } else { format!("{sum:04x}") }
 }
@@ -21,7 +21,7 @@ fn in_units(sums: &Accumulator, value: f64) -> f64 {
 
 /// A step as the loop adds it: modulo the size of its register.
 fn step_in_hex(sums: &Accumulator) -> String {
-    // Of the register's bits.
+    // In the register's width.
     if sums.fraction_bits == 16 { format!("{:#010x}", sums.step as u32) } else { format!("{:#06x}", sums.step as u16) }
 }
 
@@ -104,7 +104,7 @@ fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
     }
     let step = in_units(sums, sums.step as f64);
     text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
-    // Of many the first and the last few.
+    // Of many, the first and the last few.
     let ends = |k: &i32| steps < 2 * ENDS || *k < ENDS || *k > steps - ENDS;
     let mut shown: Vec<String> = (0..=steps).filter(ends).map(|k| hex(sums, sums.after(k))).collect();
     if steps >= 2 * ENDS {

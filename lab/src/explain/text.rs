@@ -1,4 +1,4 @@
-//! The account of a pixel in words.
+//! A pixel explained in words.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -16,7 +16,7 @@ use mode13h::plan::FaceShading;
 use mode13h::raster::Interpolation;
 use mode13h::settings::Shading;
 
-/// Triangles that are printed, at most.
+/// The most triangles listed.
 const LISTED: usize = 6;
 
 impl fmt::Display for Pixel {
@@ -44,8 +44,7 @@ impl fmt::Display for Pixel {
 }
 
 impl Pixel {
-    /// Writes the account in at most six short lines, for where there is little room. Each line is cut to `width`
-    /// characters.
+    /// Writes the explanation in at most six short lines, for tight spaces. Each line is cut to `width` characters.
     #[must_use]
     pub fn lines(&self, width: usize) -> Vec<String> {
         let Self { x, y, byte, color, .. } = self;
@@ -72,7 +71,7 @@ impl Pixel {
         lines.iter().map(|line| line.chars().take(width).collect()).collect()
     }
 
-    /// An object and a triangle of it, with its material and the line of the model's file.
+    /// Names an object and one of its triangles, with its material and its line in the model's file.
     fn name(&self, face: &FaceHere) -> String {
         let mut name = self.objects.get(face.object).cloned().unwrap_or_default();
         if let Some(triangle) = face.triangle {
@@ -88,7 +87,7 @@ impl Pixel {
         name
     }
 
-    /// The technique that a face is shaded by, whatever was asked for.
+    /// The technique that shades a face, whatever was asked for.
     fn shading_of(&self, face: &FaceHere, seen: &Seen) -> FaceShading {
         let by_shading = match face.interpolation {
             Interpolation::Flat(_) => Shading::Flat,
@@ -113,7 +112,7 @@ impl Pixel {
         }
     }
 
-    /// A face that is seen through another, in short.
+    /// Says briefly which face is seen through another.
     fn say_behind(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
         let shade_trace = seen
             .accounts
@@ -191,7 +190,7 @@ impl Pixel {
         if !errors.is_empty() {
             let shown = match (seen.stages.first(), seen.ramp.entries()) {
                 (Some(PixelStage::Shade(shade)), entries @ 2..256) => {
-                    // A shade lies in its ramp.
+                    // A shade lies within its ramp.
                     let (step, steps) = (f64::from(*shade) - f64::from(seen.ramp.first()), f64::from(entries - 1));
                     format!("; the byte is step {step} of the ramp's {steps}: {:.3}", 255.0 * step / steps)
                 }
@@ -252,7 +251,7 @@ impl Pixel {
         text.say("shading", &words);
     }
 
-    /// Says what else meets the pixel.
+    /// Says what else covers the pixel.
     fn say_others(&self, text: &mut Text) {
         let others: Vec<&FaceHere> =
             self.faces.iter().filter(|face| !matches!(face.fate, Fate::Seen | Fate::SeenThrough)).collect();
@@ -297,7 +296,7 @@ fn short_edges(face: &FaceHere, x: u32, y: u32) -> String {
     }
 }
 
-/// A shade in light, of one channel or of three.
+/// A shade as light, of one channel or three.
 fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
     let [r, g, b] = shades.map(|shade| f64::from(shade) / 256.0);
     if matches!(seen.stages.first(), Some(PixelStage::Channels(_))) {
@@ -307,12 +306,12 @@ fn in_shades(seen: &Seen, shades: &[u16; 3]) -> String {
     }
 }
 
-/// The level that a texel is of, behind its number.
+/// The level that a texel comes from, to append to its value.
 fn of_level(level: Option<u8>) -> String {
     level.map_or(String::new(), |level| format!(" of level {level}"))
 }
 
-/// The way of the byte through the stages.
+/// How the byte passes through the stages.
 fn stages(seen: &Seen, whole: bool) -> String {
     if whole && let [PixelStage::Shade(byte)] = seen.stages.as_slice() {
         let (first, last) = (seen.ramp.first(), seen.ramp.last());

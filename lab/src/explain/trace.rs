@@ -1,4 +1,4 @@
-//! One pixel of a frame: which triangles cover it, which of them is seen, and what each stage makes of its byte.
+//! One pixel of a frame: which triangles cover it, which of them is visible, and what each stage makes of its byte.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,39 +16,39 @@ use mode13h::settings::HiddenSurfaces;
 
 use super::one_pixel::{Bytes, OnePixel};
 
-/// A triangle that covers the pixel, or whose edge runs through its centre.
+/// A triangle that covers the pixel, or has an edge through its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// Number of triangles of the frame that come before it.
+    /// Number of the frame's triangles before it.
     number: usize,
     pub(super) object: usize,
-    /// Its index in the mesh, or in what splitting made of it; `None` where that is not known.
+    /// Its index in the mesh, or in the mesh that splitting made; `None` if unknown.
     pub(super) face: Option<usize>,
     pub(super) vertices: [Vertex; 3],
     pub(super) interpolation: Interpolation,
-    /// The palette entries of its surface's shades, where they are known.
+    /// Palette entries of its surface's shades, if known.
     pub(super) ramp: Option<Ramp>,
-    /// The attributes at the vertices; `None` of a face without effects.
+    /// Attributes at the vertices; `None` for a face without effects.
     pub(super) attributes: Option<[Attributes; 3]>,
     pub(super) depth: u32,
     pub(super) fate: Fate,
-    /// Output of the face's stages at the pixel; `None` if the face is not seen.
+    /// Output of the face's stages at the pixel; `None` if the face is not visible.
     pub(super) bytes: Option<Bytes>,
 }
 
 /// Fate of a triangle at a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Fate {
-    /// The triangle is seen.
+    /// The triangle is visible.
     Seen,
-    /// The triangle shines through, and is seen before what is behind it.
+    /// The triangle is translucent and visible, in front of others.
     SeenThrough,
-    /// The triangle is farther away than what is seen, or as far and drawn later.
+    /// The triangle is farther away than the visible one, or equally far and drawn later.
     Behind,
-    /// The triangle was painted over by what is seen.
+    /// The visible triangle was painted over it.
     PaintedOver,
-    /// Its edge runs through the pixel's centre, and the pixel is its neighbour's: the edge is neither a top nor a left
-    /// one.
+    /// An edge runs through the pixel's centre, but it is neither a top nor a left edge, so the pixel belongs to the
+    /// neighbour.
     NotItsEdge,
 }
 
@@ -56,15 +56,15 @@ pub enum Fate {
 #[derive(Debug)]
 pub(super) struct Trace {
     pub(super) stats: Stats,
-    /// Triangles in the order of drawing; those that shine through last.
+    /// Triangles in drawing order; translucent ones last.
     pub(super) met: Vec<Met>,
     pub(super) byte: u8,
     /// The plan in words.
     pub(super) rows: Vec<plan::Row>,
 }
 
-/// Everything about the pixel (`x`, `y`), which lies inside the screen: its triangles in the order of drawing, what became
-/// of each, and the stages of those that are seen.
+/// Everything about the pixel (`x`, `y`), which lies inside the screen: its triangles in drawing order, the fate of
+/// each, and the stages of the visible ones.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -77,7 +77,7 @@ pub(super) fn trace(
 ) -> Result<Trace, RenderError> {
     let plan = renderer.make_plan(scene, screen)?;
     let (hidden_surfaces, chosen) = (plan.hidden_surfaces(), plan.is_chosen());
-    // With the scan-line method every shading covers exactly.
+    // With the scan-line method every shading has exact cover.
     let exact = hidden_surfaces == HiddenSurfaces::ScanLine;
     let mut pixel = OnePixel { screen, x, y, kernel: renderer.kernel, row: vec![0; screen.width as usize] };
     let (mut met, mut number) = (Vec::new(), 0);
@@ -88,7 +88,7 @@ pub(super) fn trace(
     let rows = renderer.plan().rows(scene);
     decide_fates(&mut met, hidden_surfaces, chosen);
     let mut byte = scene.background;
-    // The one that hides what is behind it comes first, and those that shine through follow far to near.
+    // The opaque one comes first; translucent ones follow, far to near.
     debug_assert!(met.iter().filter(|met| met.fate == Fate::Seen).count() <= 1);
     for fate in [Fate::Seen, Fate::SeenThrough] {
         for met in met.iter_mut().filter(|met| met.fate == fate) {
@@ -106,7 +106,7 @@ pub(super) fn trace(
     Ok(Trace { stats, met, byte, rows })
 }
 
-/// A triangle, if it meets the pixel.
+/// The triangle's record if it covers or touches the pixel.
 fn meet(triangle: &DrawnTriangle<'_>, number: usize, pixel: &mut OnePixel, exact: bool) -> Option<Met> {
     let DrawnTriangle { object, face, vertices, interpolation, ramp, effects } = *triangle;
     let by = if exact || effects.is_some() { Interpolation::Flat(0) } else { interpolation };
@@ -114,7 +114,7 @@ fn meet(triangle: &DrawnTriangle<'_>, number: usize, pixel: &mut OnePixel, exact
     if !covers && (!by.has_exact_cover() || !pixel.is_on_edge(vertices)) {
         return None;
     }
-    // Columns and rows of a frame.
+    // Column and row of a frame.
     let depth = DepthPlane::new(&SortedTriangle::new(vertices)).at(pixel.x as i32, pixel.y as i32);
     let fate = match effects {
         _ if !covers => Fate::NotItsEdge,
@@ -125,20 +125,20 @@ fn meet(triangle: &DrawnTriangle<'_>, number: usize, pixel: &mut OnePixel, exact
     Some(Met { number, object, face, vertices: *vertices, interpolation, ramp, attributes, depth, fate, bytes: None })
 }
 
-/// The sum of a face's depths.
+/// Sum of the depths of a face's corners.
 fn depth_of(vertices: &[Vertex; 3]) -> u64 {
     vertices.iter().map(|v| u64::from(v.depth())).sum()
 }
 
-/// Says of each face that covers the pixel whether it is seen, as the way to hidden surfaces has it, and puts those
-/// that shine through last, far to near.
+/// Decides for each face that covers the pixel whether it is visible under the given hidden-surface method, and moves
+/// translucent ones to the end, far to near.
 fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
     let tests_depth = matches!(way, HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine);
     let opaque = || (0..met.len()).filter(|&i| met[i].fate == Fate::Seen);
     let seen = match way {
-        // Of equal depths the first.
+        // The first of those with equal depths.
         _ if tests_depth => opaque().filter(|&i| met[i].depth > 0).rev().max_by_key(|&i| met[i].depth),
-        // Painted last: of equal ones the last.
+        // The last one painted: of equal ones, the last.
         HiddenSurfaces::PainterOrder if !chosen => opaque().max_by_key(|&i| depth_of(&met[i].vertices)),
         _ => opaque().next_back(),
     };
@@ -153,7 +153,7 @@ fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
         };
     }
     let (mut opaque, mut through): (Vec<Met>, Vec<Met>) = met.drain(..).partition(|met| met.fate != Fate::SeenThrough);
-    // Far to near, as the renderer draws them.
+    // Far to near, which is the renderer's drawing order.
     through.sort_by_key(|met| depth_of(&met.vertices));
     opaque.append(&mut through);
     *met = opaque;

@@ -1,4 +1,4 @@
-//! A triangle pixel by pixel: what the loop of 1994 holds in its registers as it comes to each.
+//! A triangle pixel by pixel: what the 1994 loop holds in its registers at each.
 
 use alloc::vec::Vec;
 
@@ -8,19 +8,19 @@ use mode13h::internals::{Progression, ShadeTrace, rows_of};
 use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::Screen;
 
-/// Registers when the loop comes to `mov [edi], ah`.
+/// Registers when the loop reaches `mov [edi], ah`.
 ///
 /// In 16.16 the shade and its step are 32 bits wide, and the byte is the third of EAX.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub struct Registers {
-    /// Place of the byte, in bytes from the frame's first: in mode 13h an offset in video memory.
+    /// Offset of the byte from the frame's first: in mode 13h, from the start of video memory.
     pub edi: u32,
-    /// The running shade, what is added for rounding included: AX, or in 16.16 EAX.
+    /// The running shade, including what is added for rounding: AX, or in 16.16 EAX.
     pub eax: u32,
-    /// The step, which the loop adds to it: BX, or in 16.16 EBX.
+    /// The step added to it every pixel: BX, or in 16.16 EBX.
     pub ebx: u32,
-    /// Pixels left, this one included. It is 1 at the last one before the loop ends or is restarted.
+    /// Pixels left, including this one. It is 1 at the last pixel before the loop ends or is restarted.
     pub cx: u32,
 }
 
@@ -38,17 +38,17 @@ pub struct Step {
     pub column: usize,
     /// Number of pixels in the row.
     pub columns: usize,
-    /// Column where the loop was last started in this row: its first pixel, or a multiple of 64 after it.
+    /// Column where the loop last started in this row: the first pixel, or a multiple of 64 pixels after it.
     pub start: u32,
-    /// Its value, the byte among others.
+    /// Its value, including the byte.
     pub shade_trace: ShadeTrace,
-    /// The registers; `None` where no sum is kept, of one shade a face or a quotient a pixel.
+    /// The registers; `None` for shadings without a running sum: one shade per face, or a quotient per pixel.
     pub registers: Option<Registers>,
 }
 
 /// The pixels of a triangle in a frame, in the order in which the loop writes them: row by row, from left to right.
 ///
-/// Those that another triangle hides are among them.
+/// Pixels hidden by another triangle are included.
 ///
 /// ```
 /// use mode13h_lab::explain::Walk;
@@ -72,7 +72,7 @@ pub struct Walk {
     interpolation: Interpolation,
     width: u32,
     rows: Vec<Row>,
-    /// Pixels before each row.
+    /// Number of pixels before each row.
     before: Vec<usize>,
     pixels: usize,
 }
@@ -105,7 +105,7 @@ impl Walk {
         self.rows.len()
     }
 
-    /// The number of the pixel in column `x` of row `y`.
+    /// Index of the pixel in column `x` of row `y`.
     #[must_use]
     pub fn number(&self, x: u32, y: u32) -> Option<usize> {
         let row = self.rows.iter().position(|row| u32::try_from(row.y) == Ok(y))?;
@@ -113,13 +113,13 @@ impl Walk {
         range.contains(&(x as usize)).then(|| self.before[row] + x as usize - range.start)
     }
 
-    /// The number of the first pixel in the triangle's row `row`, from 0.
+    /// Index of the first pixel in the triangle's row `row`, from 0.
     #[must_use]
     pub fn first_in(&self, row: usize) -> Option<usize> {
         self.before.get(row).copied()
     }
 
-    /// The pixel of a number, from 0.
+    /// The pixel at an index, from 0.
     #[must_use]
     pub fn step(&self, number: usize) -> Option<Step> {
         if number >= self.pixels {
@@ -138,7 +138,7 @@ impl Walk {
             // The step is added modulo the register's size.
             let ebx = if sums.fraction_bits == 8 { (sums.step as u16).into() } else { sums.step as u32 };
             registers = Some(Registers {
-                // Not negative: within the frame.
+                // Not negative, as it is within the frame.
                 edi: row.y as u32 * self.width + x as u32,
                 eax: sums.sum(),
                 ebx,

@@ -7,14 +7,14 @@ use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 
-/// A triangle as the raster is given it.
+/// A triangle as the raster takes it.
 pub type Triangle = ([Vertex; 3], Interpolation);
 
-/// Bytes that drawing begins on. Twice, so that what was drawn can be told from what was there.
+/// Bytes that drawing starts from. Two of them, so that what was drawn can be distinguished from what was there before.
 const EMPTY: [u8; 2] = [0x00, 0xFF];
 
-/// Draws these triangles with [`Raster::triangle`], one after the other, each counted for itself;
-/// with a depth buffer, all into one frame.
+/// Draws these triangles with [`Raster::triangle`], one after another, each counted separately; with a depth buffer,
+/// all into one frame.
 pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
     let mut panel = Panel::new(size);
     if depth_tested {
@@ -29,7 +29,7 @@ pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: b
     panel
 }
 
-/// Draws triangles without a depth buffer, in bands of `rows` rows. Each band is a frame of its own.
+/// Draws triangles without a depth buffer, in bands of `rows` rows, each band a frame of its own.
 pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
     let [a, b] = EMPTY.map(|empty| {
         let mut bytes = vec![empty; width * height];
@@ -48,14 +48,14 @@ pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triang
     panel
 }
 
-/// Draws convex polygons by the Hungarian tutorial's table of rows, which is in the museum.
+/// Draws convex polygons with the Hungarian tutorial's table of rows, from the museum.
 pub(super) fn draw_by_table((width, height): (usize, usize), polygons: &[&[Vertex]]) -> Panel {
     let [a, b] = EMPTY.map(|empty| {
         let mut bytes = vec![empty; width * height];
         if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
             let mut table = vec![TableRow::default(); height];
             for vertices in polygons {
-                // Convex, all of them, and the table has a row for each of the frame's.
+                // All polygons are convex, and the table has a row for each of the frame's.
                 let clip = frame.bounds();
                 let _ = polygon::draw(&mut frame, clip, vertices, Interpolation::default(), &mut table);
             }
@@ -72,7 +72,7 @@ pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: boo
     draw(size, &triangles(faces), depth_tested)
 }
 
-/// Makes of faces the triangles that the raster is given.
+/// Turns faces into triangles for the raster.
 pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
     faces.iter().map(Face::for_raster).collect()
 }
@@ -80,7 +80,7 @@ pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
 fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: bool, empty: u8) -> Vec<u8> {
     let mut bytes = vec![empty; width * height];
     let mut depths: Vec<u32> = Vec::new();
-    // Some dozen pixels a side: no frame is refused.
+    // A few dozen pixels a side, so no frame is refused.
     if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
         let raster = Raster::new(frame);
         if depth_tested {
@@ -98,8 +98,8 @@ fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: 
     bytes
 }
 
-/// Draws a scene with [`Renderer::draw_frame`] on square pixels; returns the triangles that it hands to
-/// the raster, too. Empty if the scene is refused; no case has such a scene.
+/// Draws a scene with [`Renderer::draw_frame`] on square pixels; also returns the triangles that it passes to the
+/// raster. Empty if the scene is refused; no case has such a scene.
 pub(super) fn draw_scene(size: (usize, usize), scene: &Scene) -> (Panel, Vec<Triangle>) {
     let (width, height) = (size.0 as u32, size.1 as u32);
     let mut renderer = Renderer::new();
@@ -128,7 +128,7 @@ pub(super) fn outline(triangles: &[Triangle]) -> Vec<Segment> {
     triangles.iter().flat_map(|(vertices, _)| edges(vertices.each_ref().map(point))).collect()
 }
 
-/// The edges that belong to one triangle alone: the silhouette of a ball.
+/// The edges that belong to only one triangle: the silhouette of a ball.
 pub(super) fn silhouette(edges: &[Segment]) -> Vec<Segment> {
     let shared = |[a, b]: &Segment| edges.contains(&[*b, *a]);
     edges.iter().filter(|edge| !shared(edge)).copied().collect()

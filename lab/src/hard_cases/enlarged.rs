@@ -9,19 +9,19 @@ use embedded_graphics::primitives::{Line, PrimitiveStyle, Rectangle};
 use super::face::Segment;
 use mode13h::raster::{Frame, Index};
 
-/// A part of a frame, shown enlarged on another frame. Nothing is drawn beyond either.
+/// Part of a frame, drawn enlarged on another frame. Nothing is drawn outside either.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Enlarged {
-    /// Place of its upper left corner, in pixels of the frame that is drawn on.
+    /// Its upper left corner, in pixels of the frame drawn on.
     pub at: (i32, i32),
-    /// Columns that are enlarged.
+    /// Number of columns enlarged.
     pub columns: u16,
-    /// Rows that are enlarged.
+    /// Number of rows enlarged.
     pub rows: u16,
 }
 
 impl Enlarged {
-    /// Times that a pixel is enlarged.
+    /// Magnification: pixels per enlarged pixel.
     pub const ZOOM: i32 = 16;
 
     /// The upper left corner of a pixel's cell.
@@ -39,7 +39,7 @@ impl Enlarged {
         fill(&mut frame.clipped(&self.area()), self.corner(x, y), Self::ZOOM, index);
     }
 
-    /// Fills the cell of an empty pixel, with lines of another colour along its left and upper sides.
+    /// Fills the cell of an empty pixel, with lines in another colour along its left and upper sides.
     pub fn empty_cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index, line: Index) {
         self.cell(frame, x, y, line);
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + Point::new(1, 1), Self::ZOOM - 1, index);
@@ -51,22 +51,22 @@ impl Enlarged {
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + middle, 2, index);
     }
 
-    /// Draws a rim round a pixel's cell, inside of it.
+    /// Draws a rim just inside a pixel's cell.
     pub fn rim(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
         let side = Self::ZOOM.unsigned_abs();
         let cell = Rectangle::new(self.corner(x, y), Size::new(side, side));
         let Ok(()) = cell.into_styled(PrimitiveStyle::with_stroke(index, 1)).draw(&mut frame.clipped(&self.area()));
     }
 
-    /// Draws the parts of true edges that lie within, one pixel thick. Their ends are in pixels of the frame that is
-    /// enlarged, from the upper left corner of this part of it.
+    /// Draws the parts of true edges that lie within, one pixel thick. Their ends are in pixels of the enlarged frame,
+    /// relative to the upper left corner of this part.
     pub fn edges(&self, frame: &mut Frame<'_>, outline: &[Segment], index: Index) {
         let style = PrimitiveStyle::with_stroke(index, 1);
         let size = (f64::from(self.columns), f64::from(self.rows));
         for segment in outline {
             if let Some(ends) = cut(*segment, size) {
                 let [a, b] = ends.map(|(x, y)| {
-                    // Within the part, by the cut.
+                    // Within the part, as the segment was clipped.
                     let zoomed = |c: f64| (c * f64::from(Self::ZOOM)) as i32;
                     self.corner(0, 0) + Point::new(zoomed(x), zoomed(y))
                 });
@@ -82,7 +82,7 @@ fn fill<D: DrawTarget<Color = Index>>(target: &mut D, at: Point, side: i32, inde
     let _ = target.fill_solid(&area, index);
 }
 
-/// The part of a segment inside (Liang and Barsky 1984).
+/// The part of a segment inside the rectangle (Liang and Barsky 1984).
 fn cut([(x0, y0), (x1, y1)]: Segment, (width, height): (f64, f64)) -> Option<Segment> {
     let (dx, dy) = (x1 - x0, y1 - y0);
     let (mut from, mut to) = (0.0_f64, 1.0_f64);

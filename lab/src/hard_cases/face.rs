@@ -1,4 +1,4 @@
-//! A face as both sides of a picture get it: three corners on the screen.
+//! A face as both sides of a picture take it: three corners on the screen.
 
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::{Interpolation, Vertex};
@@ -6,13 +6,13 @@ use mode13h::raster::{Interpolation, Vertex};
 /// A corner on the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corner {
-    /// Distance to the right, in pixels.
+    /// To the right, in pixels.
     pub(super) x: f64,
     /// Down, in pixels.
     pub(super) y: f64,
-    /// 0 to 255.
+    /// From 0 to 255.
     pub(super) shade: f64,
-    /// near / w: 1 at the near plane, towards 0 far away.
+    /// near / w: 1 at the near plane, falling to 0 far away.
     pub(super) depth: f64,
 }
 
@@ -30,13 +30,13 @@ impl Corner {
         Self { x: self.x + x, y: self.y + y, ..self }
     }
 
-    /// The engine's rounding, undone again: what a fault starts from that is none of rounding.
+    /// Rounds the corner as the engine does: the input of faults that have nothing to do with rounding.
     pub(super) fn rounded(self) -> Self {
         let round = |pixels: f64| (pixels * 256.0 + 0.5).floor() / 256.0;
         Self { x: round(self.x), y: round(self.y), ..self }
     }
 
-    /// The vertex that the raster takes. A corner that the raster would refuse becomes the origin; no case has one.
+    /// The raster's vertex. A corner that the raster would refuse becomes the origin; no case has one.
     pub(super) fn vertex(self) -> Vertex {
         let place = I24F8::round_from_f64(self.x).zip(I24F8::round_from_f64(self.y));
         let shade = U8F8::from_bits((self.shade * 256.0 + 0.5) as u16);
@@ -57,13 +57,13 @@ pub(super) const fn gouraud(corners: [Corner; 3]) -> Face {
     Face { corners, interpolation: Interpolation::GouraudReseeded }
 }
 
-/// A face of one byte.
+/// A face with one byte.
 pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
     Face { corners, interpolation: Interpolation::Flat(byte) }
 }
 
 impl Face {
-    /// Input of the raster.
+    /// The raster's input.
     pub(super) fn for_raster(&self) -> ([Vertex; 3], Interpolation) {
         (self.corners.map(Corner::vertex), self.interpolation)
     }
@@ -75,7 +75,7 @@ impl Face {
     }
 }
 
-/// The edges of quads without the diagonals. Each quad is two faces, (a, b, c) and (a, c, d).
+/// The edges of quads without the diagonals. Each quad consists of two faces, (a, b, c) and (a, c, d).
 pub(super) fn without_diagonals(edges: &[Segment]) -> Vec<Segment> {
     edges.iter().enumerate().filter(|(i, _)| ![2, 3].contains(&(i % 6))).map(|(_, edge)| *edge).collect()
 }

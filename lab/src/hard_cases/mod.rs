@@ -1,14 +1,14 @@
-//! Hard cases as pictures: the right way beside the fault that it guards against, enlarged 16 times, with
-//! pixel centres and true edges.
+//! Hard cases as pictures: the right way beside the fault that it guards against, enlarged 16 times, with pixel centres
+//! and true edges.
 //!
 //! | file | what |
 //! |---|---|
 //! | [`CASES`], `cases/` | the table of cases: a row for each, and what it draws |
 //! | `engine` | the right side: the engine's own calls |
-//! | `fault/` | the wrong side: small implementations of the faults, used here alone |
-//! | `face`, [`Panel`] | what both get, and what comes out: bytes, counts of writes, marks |
+//! | `fault/` | the wrong side: small implementations of the faults, used only here |
+//! | `face`, [`Panel`] | their common input and output: faces; bytes, write counts and marks |
 //! | [`Enlarged`] | pixels enlarged, with centres and edges |
-//! | `sheet` | the two side by side as a picture, with words |
+//! | `sheet` | the two side by side as a picture, with captions |
 //!
 //! ```
 //! let case = mode13h_lab::hard_cases::by_id("r5").ok_or("no such case")?;
@@ -43,13 +43,13 @@ use mode13h::palette::Palette;
 pub struct Case {
     /// The id in the list of hard cases, such as `R5`.
     pub id: &'static str,
-    /// Title: the difficulty, in a few words.
+    /// Title: the difficulty in a few words.
     pub title: &'static str,
-    /// One sentence on what one sees.
+    /// One sentence on what the picture shows.
     pub sentence: &'static str,
-    /// Fault of the left side.
+    /// The fault on the left side.
     pub wrong: &'static str,
-    /// The engine's way instead.
+    /// What the engine does instead.
     pub right: &'static str,
     build: fn() -> Comparison,
 }
@@ -58,17 +58,17 @@ pub struct Case {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// Drawn wrong, and marked where.
+    /// Drawn with the fault, with wrong pixels marked.
     pub fault: Panel,
     /// Drawn by the engine.
     pub right: Panel,
-    /// Triangles that the engine's raster was given, in this order.
+    /// Triangles passed to the engine's raster, in order.
     pub triangles: Vec<Triangle>,
-    /// True if depth decides which face has a pixel, so that faces may hide each other.
+    /// True if depth decides which face a pixel shows, so that faces may hide each other.
     pub depth_tested: bool,
     /// The true edges.
     pub outline: Vec<Segment>,
-    /// The colours of the bytes.
+    /// Colours of the bytes.
     pub palette: &'static Palette,
 }
 
@@ -79,16 +79,16 @@ impl Case {
         (self.build)()
     }
 
-    /// The picture, as the bytes of an indexed PNG.
+    /// The picture as the bytes of an indexed PNG.
     ///
     /// # Errors
-    /// There is no memory for it.
+    /// There is not enough memory.
     pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         sheet::png(self, &self.draw())
     }
 }
 
-/// The case of this id, in capital or small letters.
+/// The case with an id, in upper or lower case.
 #[must_use]
 pub fn by_id(id: &str) -> Option<&'static Case> {
     CASES.iter().find(|case| case.id.eq_ignore_ascii_case(id))

@@ -1,18 +1,18 @@
 //! One half of a picture: a small frame, what was drawn into it, and which of its pixels are wrong.
 
-/// Fault of a pixel.
+/// What is wrong with a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Mark {
-    /// The pixel belongs to a face and was not drawn.
+    /// The pixel belongs to a face but was not drawn.
     LeftOut,
-    /// The pixel was drawn by more faces than own it.
+    /// More faces drew the pixel than own it.
     Twice,
-    /// The pixel belongs to no face and was drawn.
+    /// The pixel belongs to no face but was drawn.
     Outside,
-    /// The pixel has another byte than it should.
+    /// The pixel has the wrong byte.
     Shade,
-    /// The pixel shows another face than the one in front.
+    /// The pixel shows a face other than the one in front.
     Face,
 }
 
@@ -33,7 +33,7 @@ impl Mark {
     }
 }
 
-/// A frame of at most a few dozen pixels a side, row-major, with a count of the writes to each.
+/// A frame of at most a few dozen pixels a side, row-major, with the number of writes to each pixel.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Panel {
     width: usize,
@@ -43,14 +43,14 @@ pub struct Panel {
     marks: Vec<Option<Mark>>,
 }
 
-/// Comparison of a panel with what it should be.
+/// How to compare a panel with what it should be.
 #[derive(Clone, Copy)]
 pub(super) struct Measure {
-    /// A byte may be this far off, in shades, and is not marked yet.
+    /// Bytes may be this many shades off before they are marked.
     pub(super) shades: u8,
-    /// True if it counts how many faces drew a pixel. Where faces hide each other it means nothing.
+    /// True to count how many faces drew a pixel, which means nothing where faces hide each other.
     pub(super) counts_writes: bool,
-    /// Meaning of a byte that is further off.
+    /// Mark for a byte that is further off.
     pub(super) other_byte: Mark,
 }
 
@@ -60,13 +60,13 @@ impl Panel {
         Self { width, height, pixels: vec![0; all], writes: vec![0; all], marks: vec![None; all] }
     }
 
-    /// Columns.
+    /// Number of columns.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
@@ -84,7 +84,7 @@ impl Panel {
         &self.writes
     }
 
-    /// Fault of each pixel.
+    /// The fault of each pixel, if any.
     #[must_use]
     pub fn marks(&self) -> &[Option<Mark>] {
         &self.marks
@@ -102,7 +102,7 @@ impl Panel {
         self.writes.get(at).filter(|writes| x < self.width && **writes > 0).map(|_| self.pixels[at])
     }
 
-    /// Draws a pixel; what lies outside the frame is left out.
+    /// Draws a pixel; does nothing outside the frame.
     pub(super) fn write(&mut self, x: i32, y: i32, byte: u8) {
         let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
         if x < self.width && y < self.height {
@@ -112,8 +112,8 @@ impl Panel {
         }
     }
 
-    /// Takes over the pixels of a frame of the same size that began as `empty` on one side and as
-    /// anything else on the other: drawn is what is the same on both.
+    /// Takes the pixels of a frame of the same size, drawn once over `empty` and once over anything else: a pixel was
+    /// drawn if it is the same in both.
     pub(super) fn write_where_equal(&mut self, a: &[u8], b: &[u8]) {
         for (at, (byte, other)) in a.iter().zip(b).enumerate() {
             if byte == other {

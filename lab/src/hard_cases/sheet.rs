@@ -1,4 +1,4 @@
-//! Two panels side by side as a picture: pixels enlarged, their centres, the true edges, marks, words.
+//! Two panels side by side as a picture: enlarged pixels, their centres, the true edges, marks and captions.
 
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::{Point, Size};
@@ -17,17 +17,17 @@ use mode13h::export::{Picture, PictureError, PixelShape, Png};
 use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Index};
 
-/// Times that a pixel is enlarged.
+/// Pixels per enlarged pixel.
 const ZOOM: i32 = Enlarged::ZOOM;
 const MARGIN: i32 = 16;
-/// Between the panels.
+/// Space between the panels.
 const GAP: i32 = 24;
-/// Height of a line of words.
+/// Height of a line of text.
 const LINE: i32 = 20;
-/// The width of a letter.
+/// Width of a letter.
 const LETTER: i32 = 9;
 
-/// The colours that are not of the frame. They take the end of the picture's palette.
+/// Colours other than the frame's, at the end of the picture's palette.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 enum Ink {
@@ -72,7 +72,7 @@ impl Ink {
     }
 }
 
-/// The indices that the bytes of both panels get in the picture, and its palette.
+/// The picture's palette, and the indices in it of both panels' bytes.
 struct Inks {
     of_byte: [u8; 256],
     light: [bool; 256],
@@ -87,14 +87,14 @@ impl Inks {
                 used[usize::from(*byte)] |= *writes > 0;
             }
         }
-        // As the DAC shows them: of 256 greys 64. Bytes of one colour share an index.
+        // As the DAC shows them, which has only 64 greys for 256. Bytes with the same colour share an index.
         let palette = comparison.palette.on_dac();
         let mut inks = Self { of_byte: [0; 256], light: [false; 256], colors: [Rgb::BLACK; 256] };
         let mut known: Vec<Rgb> = Vec::new();
         for byte in (0..=255_u8).filter(|byte| used[usize::from(*byte)]) {
             let color = palette[byte];
             let place = known.iter().position(|there| *there == color).unwrap_or(known.len());
-            // There is room for 242; should a case ever have more, the rest share the last.
+            // There is room for 242; if a case ever has more, the rest share the last.
             let index = place.min(usize::from(Ink::FIRST) - 1);
             if place == known.len() {
                 known.push(color);
@@ -130,7 +130,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
 
     let (w, h) = (width as usize, height as usize);
     let mut pixels = vec![Ink::Paper.index().0; w * h];
-    // A picture of 1,100 × 700 or so; should a case ever exceed a frame, it is an empty sheet.
+    // A picture of about 1,100 × 700; if a case ever exceeds a frame, the sheet stays empty.
     if let Ok(mut frame) = Frame::new(&mut pixels, width as u32, height as u32, w) {
         let title = format!("{}  {}", case.id, case.title);
         words(&mut frame, MARGIN, MARGIN, &title, Ink::Words, &FONT_9X15_BOLD);
@@ -168,7 +168,7 @@ fn pixels_in_words(count: usize) -> String {
     if count == 1 { "1 pixel".to_string() } else { format!("{count} pixels") }
 }
 
-/// Words about the engine's own side.
+/// Caption for the engine's own side.
 fn about_right(panel: &Panel) -> String {
     let drawn = panel.writes().iter().filter(|writes| **writes > 0).count();
     match (drawn, panel.writes().iter().max()) {
@@ -218,8 +218,8 @@ fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment],
     }
 }
 
-/// A mark in a pixel's cell. Each has a shape of its own, so that colour is not all. A rim stands only on
-/// the sides where the next pixel has another mark: neighbours have one rim round all of them.
+/// A mark in a pixel's cell. Each has its own shape, so that colour is not the only cue. The rim is drawn only on sides
+/// where the next pixel has another mark, so neighbours with the same mark share one rim.
 fn draw_mark(frame: &mut Frame<'_>, cell: Point, mark: Mark, open: Sides) {
     let index = Ink::of(mark).index();
     match mark {
@@ -245,14 +245,14 @@ struct Sides {
     right: bool,
     top: bool,
     bottom: bool,
-    /// Its length.
+    /// Its side.
     side: i32,
 }
 
 impl Sides {
     const ALL: Self = Self { left: true, right: true, top: true, bottom: true, side: ZOOM };
 
-    /// Sides where the neighbour of pixel (`x`, `y`) has another mark.
+    /// The sides on which pixel (`x`, `y`) has a neighbour with another mark.
     fn of(panel: &Panel, x: usize, y: usize) -> Self {
         let mark = |x: usize, y: usize| {
             let inside = x < panel.width() && y < panel.height();

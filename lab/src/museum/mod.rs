@@ -1,7 +1,7 @@
-//! How it was done: methods of the sources that the engine has left behind, as they are in the books.
+//! How it was done: methods of the sources that the engine has replaced, as the books give them.
 //!
 //! | module | draws |
 //! |---|---|
-//! | [`polygon`] | convex polygons by the Hungarian tutorial's table of rows |
+//! | [`polygon`] | convex polygons with the Hungarian tutorial's table of rows |
 
 pub mod polygon;

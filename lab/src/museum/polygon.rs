@@ -1,29 +1,29 @@
-//! Convex polygons of any number of vertices, by the Hungarian tutorial's table of rows.
+//! Convex polygons with any number of vertices, drawn with the Hungarian tutorial's table of rows.
 //!
 //! ```text
 //! for every edge:  for every row that it crosses:   table[row].left or .right = (x, shade)
 //! for every row:   from left to right:              shade by shade, linear between the two
 //! ```
 //!
-//! The table is the caller's: one [`TableRow`] for every row that the frame holds, 200 in mode 13h.
+//! The caller provides the table: one [`TableRow`] for every row of the frame, 200 in mode 13h.
 //!
-//! Cover is exact, by the same rule as a triangle's: a crossing's x is rounded up to 1/256 pixel,
-//! which hides no pixel centre, for these lie on whole units; the row runs from the first centre at or
-//! right of the left crossing to the last before the right one. So polygons and triangles that share
-//! edges draw each pixel once.
+//! Cover is exact, by the same rule as a triangle's. A crossing's x is rounded up to 1/256 pixel, which never loses a
+//! pixel centre, because centres lie on whole units. The row runs from the first centre at or right of the left
+//! crossing to the last one left of the right crossing. Polygons and triangles that share edges therefore draw each
+//! pixel once.
 //!
 //! Shades are the Hungarian tutorial's: linear along the edges, then linear between the two crossings of a row. In a
-//! triangle that is the plane through its vertices. With more vertices it is not: turned on the screen,
-//! the same quad pairs other edges in a row and gets other shades. That is why faces are split into
-//! triangles elsewhere; this is the way to scan them as it was done.
+//! triangle that is the plane through its vertices. With more vertices it is not: when the same quad is rotated on the
+//! screen, rows cross other pairs of edges and get other shades. That is why the engine splits faces into triangles;
+//! this module scans them as it used to be done.
 //!
 //! # Why no byte leaves the range of the vertices, and nothing divides by zero
 //!
-//! The Hungarian tutorial divides by the row's width in whole pixels, the Russian textbook by its exact width; both may
-//! be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only where a centre c has
-//! x0 ≤ c and c < the right crossing ≤ x1: so x1 − x0 is 1 at least. A crossing's shade lies between
-//! the shades of its edge's ends; start and step along the row are rounded back toward where shades
-//! come from, as in [`shade`](mode13h::internals::raster::reference::shade), so every sum lies between the two crossings' shades.
+//! The Hungarian tutorial divides by the row's width in whole pixels, the Russian textbook by its exact width; either
+//! may be 0. Here x0 and x1 are the crossings in 1/256 pixel, both rounded up, and a row is drawn only if there is a
+//! centre c with x0 ≤ c and c < the right crossing ≤ x1, so x1 − x0 is at least 1. A crossing's shade lies between the
+//! shades of its edge's ends. Start and step along the row are rounded back toward where the shades come from, as in
+//! [`shade`](mode13h::internals::raster::reference::shade), so every sum lies between the two crossings' shades.
 
 use std::error::Error;
 use std::fmt;
@@ -35,7 +35,7 @@ use mode13h::internals::raster::reference::shade::RESEED;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Rect, Vertex};
 use mode13h::span::Kernel;
 
-/// Crossings of a convex polygon's two edges with a row's centre.
+/// Where a convex polygon's two edges cross a row's centre.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct TableRow {
     /// Left crossing, rounded up to 1/256 pixel.
@@ -48,21 +48,21 @@ pub struct TableRow {
     pub right_shade: U8F8,
 }
 
-/// Error of a polygon that was not drawn.
+/// Reason why a polygon was not drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PolygonError {
-    /// It turns both ways, or more than once around: a row might cross it four times.
+    /// It turns both ways, or goes around more than once, so a row might cross it four times.
     NotConvex,
     /// The table has too few rows.
     Table {
         /// Rows given.
         given: usize,
-        /// Rows needed: those that the frame holds.
+        /// Rows needed: those of the frame.
         needed: usize,
     },
-    /// The table interpolates shades in 8.8, linearly along edges and rows; it has no other shading than
-    /// flat, [`Gouraud`](Interpolation::Gouraud) and [`GouraudReseeded`](Interpolation::GouraudReseeded).
+    /// The table interpolates shades in 8.8, linearly along edges and rows; it supports only flat,
+    /// [`Gouraud`](Interpolation::Gouraud) and [`GouraudReseeded`](Interpolation::GouraudReseeded).
     Interpolation(Interpolation),
 }
 
@@ -91,15 +91,15 @@ fn point(vertex: &Vertex) -> (i32, i32) {
 
 /// Winding of a convex polygon on the screen; `None` if it has no area.
 ///
-/// The answer is exact. All its turns must go the same way, and its direction must change from down to up
-/// (in the order of (y, x)) once and from up to down once: otherwise it would go round more than once.
-/// Vertices that repeat, or lie on the line between their neighbours, make no difference.
+/// The answer is exact. All turns must go the same way, and the direction must change exactly once from down to up (in
+/// the order of (y, x)) and once from up to down; otherwise the polygon goes around more than once. Repeated vertices,
+/// and vertices on the line between their neighbours, make no difference.
 fn winding(vertices: &[Vertex]) -> Result<Option<Winding>, PolygonError> {
     let Some(last) = vertices.last() else { return Ok(None) };
     let mut turns = [false; 2];
     let (mut changes, mut before): (u32, Option<(i64, i64)>) = (0, None);
     let mut from = point(last);
-    // Once round, and once more to the first edges, which have no edge before them until then.
+    // Once around, then again for the first edges, which have no edge before them the first time.
     for (i, vertex) in vertices.iter().chain(vertices).enumerate() {
         let to = point(vertex);
         let edge = (i64::from(to.0 - from.0), i64::from(to.1 - from.1));
@@ -131,12 +131,12 @@ fn is_down(edge: (i64, i64)) -> bool {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Winding {
-    /// Clockwise on a screen whose y runs down: left edges run up.
+    /// Clockwise on a screen whose y points down: left edges run up.
     Clockwise,
     CounterClockwise,
 }
 
-/// A value that changes by the same fraction from row to row, walked with quotient and remainder.
+/// A value that changes by the same fraction every row, stepped with quotient and remainder.
 struct Walk {
     value: i64,
     rest: i64,
@@ -146,9 +146,9 @@ struct Walk {
 }
 
 impl Walk {
-    /// A walk along a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end.
-    /// It starts `below` units under the upper end. Each step gives the floor of the value with `bias / height` added.
-    /// All are within 2²²; `below` and `bias` are less than `height`.
+    /// Walks a value that is `a` at the upper end of an edge `height` units high and `b` at its lower end, starting
+    /// `below` units under the upper end. Each step gives the floor of the value with `bias / height` added. All are
+    /// within 2²²; `below` and `bias` are less than `height`.
     fn new(a: i32, b: i32, below: i64, height: &Divisor, bias: i64) -> Self {
         let change = i64::from(b) - i64::from(a);
         let (value, rest) = height.div_rem_floor(i64::from(a) * height.get() + change * below + bias);
@@ -164,8 +164,8 @@ impl Walk {
     }
 }
 
-/// Fills in the rows of `clip` that the polygon crosses, edge by edge, and returns them. `table[0]` is
-/// the row `first_row`.
+/// Fills in the rows of `clip` that the polygon crosses, edge by edge, and returns them. `table[0]` is the row
+/// `first_row`.
 fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [TableRow], first_row: u32) -> Range<u32> {
     // Rows of a frame are below 4,096.
     let (clip_first, clip_end) = (clip.y0 as i32, clip.y1 as i32);
@@ -201,16 +201,15 @@ fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [Ta
             shade.down();
         }
     }
-    // Not negative: `clip_first` is not. Empty if no edge crosses a row.
+    // Not negative, as `clip_first` is not. Empty if no edge crosses a row.
     first as u32..end as u32
 }
 
-/// Draws a convex polygon by the table of rows, inside a rectangle of the frame. Which vertex is the first and the winding make
-/// no difference; one without area, or with fewer than three vertices, draws nothing.
+/// Draws a convex polygon with the table of rows, inside a rectangle of the frame. Neither the first vertex nor the
+/// winding matters; a polygon without area, or with fewer than three vertices, draws nothing.
 ///
-/// `table` has a row for each that the frame holds (200 in mode 13h), and keeps those of this
-/// polygon, from its first row inside the clip rectangle to its last; what it held makes no
-/// difference. There is no depth in it.
+/// `table` needs one row for each of the frame's (200 in mode 13h). Afterwards it holds the polygon's rows, from the
+/// first inside the clip rectangle to the last; what it held before does not matter. It has no depth.
 ///
 /// ```
 /// use mode13h::fixed::{I24F8, U8F8};
@@ -228,8 +227,8 @@ fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [Ta
 /// ```
 ///
 /// # Errors
-/// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (after rounding to 1/256 pixel one may no
-/// longer be), or a table with too few rows. Nothing is drawn then.
+/// A shading that is neither flat nor linear in 8.8, a polygon that is not convex (rounding to 1/256 pixel may have
+/// dented it), or a table with too few rows. Nothing is drawn then.
 pub fn draw(
     frame: &mut Frame<'_>,
     clip: Rect,
@@ -270,12 +269,12 @@ pub fn draw(
             continue;
         }
         let shade = RowShade::new(edges);
-        // The start at or left of the first pixel, as a triangle has them.
+        // Where the loop starts, at or left of the first pixel, as in a triangle.
         let mut seed = origin + (x0 - origin) / reseed * reseed;
         let mut x = x0;
         while x < x1 {
             let end = x1.min(seed.saturating_add(reseed));
-            // Fewer than 4,096 pixels; the product wraps as the sum does.
+            // Fewer than 4,096 pixels; the product wraps just as the sum does.
             let start = shade.start(seed).wrapping_add(shade.step.wrapping_mul((x - seed) as u16));
             if let Some(pixels) = pixels.get_mut(x as usize..end as usize) {
                 kernel.fill(pixels, start, shade.step);
@@ -302,19 +301,19 @@ impl RowShade {
         let left_shade = i64::from(edges.left_shade.to_bits());
         let change = i64::from(edges.right_shade.to_bits()) - left_shade;
         let left_x = i64::from(edges.left_x.to_bits());
-        // 1 at least, and below 2²²: see the module's head.
+        // At least 1, and below 2²²: see the module's head.
         let width = Divisor::new(i64::from(edges.right_x.to_bits()) - left_x);
-        // The step of a row of one pixel may be any size, and is not used.
+        // In a row of one pixel the step may have any size, and is not used.
         let step = width.truncate(change * 256) as u16;
         Self { left_x, left_shade, change, width, step }
     }
 
-    /// AX at pixel `x` of the row: the Russian textbook's Cs = As + (xc − Ax)·gradient with the As that it leaves out,
-    /// and half a shade.
+    /// AX at pixel `x` of the row: the Russian textbook's Cs = As + (xc − Ax)·gradient with its missing As restored,
+    /// plus half a shade.
     fn start(&self, x: i32) -> u16 {
         let along = self.change * (i64::from(x) * 256 + 128 - self.left_x);
         let rounded = if self.change < 0 { self.width.ceil(along) } else { self.width.floor(along) };
-        // 0 to 0xFF00, by cover.
+        // From 0 to 0xFF00, by cover.
         (self.left_shade + rounded + 128) as u16
     }
 }

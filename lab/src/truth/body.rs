@@ -1,4 +1,4 @@
-//! An object of the scene, in its place.
+//! An object of the scene in world space.
 
 use alloc::vec::Vec;
 
@@ -11,9 +11,9 @@ use mode13h::scene::{Object, Scene, UpAxis};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) world: Vector,
-    /// Unit.
+    /// Unit length.
     pub(super) normal: Vector,
-    /// Before the division: [`Eye::see`].
+    /// Before the perspective division: see [`Eye::see`].
     pub(super) seen: Vector,
 }
 
@@ -23,17 +23,17 @@ pub(super) struct Body<'a> {
     pub(super) object: &'a Object,
     /// One for each vertex of its mesh.
     pub(super) corners: Vec<Corner>,
-    /// True if back faces are seen too, other than those back to back with a front face.
+    /// True if back faces are visible too, except those back to back with a front face.
     pub(super) two_sided: bool,
-    /// True if red, green and blue are lit each for itself.
+    /// True if red, green and blue are lit separately.
     pub(super) in_color: bool,
 }
 
 impl<'a> Body<'a> {
-    /// An object by its index. One that is not visible has no corners.
+    /// The object with an index. It has no corners if it is not visible.
     pub(super) fn new(scene: &'a Scene, index: usize, eye: &Eye) -> Self {
         let object = &scene.objects()[index];
-        // The object, and what it hangs from, the nearest first.
+        // The object, then its ancestors, nearest first.
         let above = |below: &&'a Object| below.parent.and_then(|id| scene.get(id));
         let chain: Vec<(&Object, Turn)> =
             core::iter::successors(Some(object), above).map(|object| (object, Turn::new(object))).collect();
@@ -57,7 +57,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Returns whether a triangle is seen that is `turned` away, or is not.
+    /// Returns whether a triangle is shown, given whether it is `turned` away.
     pub(super) fn shows(&self, triangle: usize, turned: bool) -> bool {
         !turned || (self.two_sided && !self.object.mesh().has_twin(triangle))
     }

@@ -1,37 +1,38 @@
-//! Bounds of a shading's error.
+//! Bounds on a shading's error.
 
 use super::Standard;
 use mode13h::settings::Shading;
 
-/// Bound of a shading's error against a standard.
+/// Bound on a shading's error against a standard.
 ///
-/// | shading | standard | off by at most, in shades | of which beyond the byte's ½ and the vertices' 1/512 |
+/// | shading | standard | largest error, in shades | sources beyond the byte's ½ and the vertices' 1/512 |
 /// |---|---|---|---|
-/// | `flat` | – | – | one shade of its own: see below |
+/// | `flat` | – | – | has one shade of its own: see below |
 /// | `gouraud-vintage` | – | – | other vertices, other cover |
-/// | `gouraud-8.8` | `gouraud` | ½ + 1/512 + w/256 in a frame of w columns: 1.75 of 320 | start and steps, each less than 1/256 |
+/// | `gouraud-8.8` | `gouraud` | ½ + 1/512 + w/256 in a frame of w columns: 1.75 for 320 | start and steps, each less than 1/256 |
 /// | `gouraud-8.8-reseeded` | `gouraud` | ½ + 1/512 + ¼ | the same over 64 pixels |
 /// | `gouraud-16.16` | `gouraud` | ½ + 1/512 + w/65,536 | start and steps, each less than 1/65,536 |
 /// | `gouraud-hyperbolic` | `gouraud-perspective` | ½ + 1/512 + 1/256 | depths rounded to 2⁻³⁰ of the nearest |
 /// | `gouraud-tessellated` | – | – | edges are split by an estimate, six times at most; faces inside by none |
 /// | `phong-table` | – | – | normals linear on the screen and in 256 steps, lamps as suns, the eye far away |
-/// | `phong` | `lit` | ½ + 1/512 + 1/100 | f32 of normals and positions |
-/// | `gouraud-float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | and f32 |
+/// | `phong` | `lit` | ½ + 1/512 + 1/100 | normals and positions in f32 |
+/// | `gouraud-float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | the same, and f32 |
 ///
-/// A vertex's shade is rounded to 1/256, so by 1/512; what is made from it is a mean of three, and no farther off. The
-/// rest is what the raster adds ([`Interpolation`](mode13h::raster::Interpolation)). A depth is rounded to half of 2⁻³⁰·near/w's unit: of
-/// w up to 4,096 times the near distance that is 2⁻¹⁹ of it, either way, and a quotient of sums that are off by so
-/// much is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to 10,000 times.
+/// A vertex's shade is rounded to 1/256, so it is off by 1/512; a shade interpolated from vertices is a weighted mean
+/// of three, and no farther off. The rest is what the raster adds ([`Interpolation`](mode13h::raster::Interpolation)).
+/// A depth is rounded to half a unit of 2⁻³⁰·near/w: for w up to 4,096 times the near distance that is a share of 2⁻¹⁹,
+/// either way, and a quotient of sums with that error is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to
+/// 10,000 times the near distance.
 ///
-/// This holds for the vertices as the truth has them. The engine's vertices come from f32, so that one coordinate of a
-/// hundred is rounded to the unit of 1/256 pixel beside the right one, and where a face is clipped new corners are
-/// rounded: a pixel of such a face may be off by the change of the face's shades over 1/256 pixel more.
+/// This holds for the truth's vertices. The engine's vertices come from f32, so one coordinate in a hundred is rounded
+/// to the 1/256 pixel next to the right one, and where a face is clipped the new corners are rounded. A pixel of such a
+/// face may be off by as much more as the face's shades change over 1/256 pixel.
 ///
-/// A flat face has the model's shade at its middle, by its own normal, to ½ + 1/512 + 1/100. It may be any shade away
-/// from its corners' shades. Other shadings without a bound are measured.
+/// A flat face has the model's shade at its middle, with its own normal, to ½ + 1/512 + 1/100. It may differ from its
+/// corners' shades by any amount. Other shadings without a bound are measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Bound {
-    /// Standard that it should meet.
+    /// Standard that the shading should meet.
     pub standard: Standard,
     /// Greatest error of a shade.
     pub shades: f64,

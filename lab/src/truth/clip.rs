@@ -1,8 +1,8 @@
-//! Clipping: what is left of a face that reaches beyond the near plane or the guard band.
+//! Clipping: what remains of a face that extends beyond the near plane or the guard band.
 //!
-//! The planes come in one order: near, then 4,095.75 pixels from the frame's upper left corner to the left, to
-//! the right, up and down. A polygon is left, drawn as the fan of triangles from its first corner;
-//! if rounding has dented it, from the first from which no triangle of the fan turns the other way.
+//! The planes come in a fixed order: near, then 4,095.75 pixels from the frame's upper left corner to the left, to the
+//! right, up and down. The remaining polygon is drawn as the fan of triangles from its first corner or, if rounding has
+//! dented it, from the first corner whose fan has no triangle that turns the other way.
 
 use alloc::vec::Vec;
 
@@ -10,22 +10,22 @@ use super::body::Corner;
 use super::eye::Eye;
 use super::vector::{Vector, between};
 
-/// Distance from the frame's upper left corner to which faces are drawn, in pixels, along x and along y.
+/// Distance from the frame's upper left corner up to which faces are drawn, in pixels, along x and along y.
 pub(super) const LIMIT: f64 = 4095.75;
 
-/// A corner of what is left of a face.
+/// A corner of what remains of a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kept {
-    /// Before the division: [`Eye::see`].
+    /// Before the perspective division: see [`Eye::see`].
     pub(super) seen: Vector,
-    /// Weights of the face's three vertices here for values that are linear on the face in space.
+    /// Weights of the face's three vertices here, for values that are linear on the face in space.
     pub(super) on_face: [f64; 3],
-    /// Weights of the face's three vertices here for values that are linear on the screen. At the near plane,
-    /// where the other end of the edge has no place on the screen, it is linear along the edge in space.
+    /// Weights of the face's three vertices here, for values that are linear on the screen. On the near plane, where
+    /// the edge's other end has no position on the screen, they are linear along the edge in space.
     pub(super) on_screen: [f64; 3],
 }
 
-/// The corners that are left, in order round the face; none if nothing is.
+/// The remaining corners, in order around the face; empty if nothing remains.
 pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
     let one = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut polygon: Vec<Kept> = triangle
@@ -51,12 +51,12 @@ pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
     polygon
 }
 
-/// Returns whether clipping leaves a triangle as it is.
+/// Returns whether clipping leaves a triangle unchanged.
 pub(super) fn is_whole(eye: &Eye, triangle: &[Corner; 3]) -> bool {
     triangle.iter().all(|corner| (0..5).all(|plane| inside(eye, plane, corner.seen) >= 0.0))
 }
 
-/// Distance of a point inside a plane, in whatever unit; below 0 it is outside.
+/// Distance of a point inside a plane, in arbitrary units; negative outside.
 fn inside(eye: &Eye, plane: usize, [x, y, w]: Vector) -> f64 {
     let [cx, cy] = eye.centre;
     match plane {
@@ -79,8 +79,8 @@ fn cut(plane: usize, inside: &Kept, outside: &Kept, part: f64) -> Kept {
     }
 }
 
-/// A polygon cut into triangles that wind as it does, given by the indices of their corners, and twice its area.
-/// `area` returns twice the signed area of the triangle of three corners.
+/// Splits a polygon into triangles with its winding. Returns the indices of their corners, and twice the polygon's
+/// area. `area` returns twice the signed area of a triangle of three corners.
 pub(super) fn fan(corners: usize, area: impl Fn([usize; 3]) -> f64) -> (Vec<[usize; 3]>, f64) {
     let from = |apex: usize| {
         let place = move |i: usize| (apex + i) % corners;

@@ -1,4 +1,4 @@
-//! Cover of a face, once its corners are rounded to 1/256 pixel: exact, in whole numbers.
+//! Cover of a face whose corners are rounded to 1/256 pixel, computed exactly in integers.
 
 use alloc::vec::Vec;
 
@@ -6,11 +6,10 @@ use super::body::Corner;
 use super::clip::{Kept, clip, fan};
 use super::eye::Eye;
 
-/// A corner in units of 1/256 pixel, x and y. Within 2²⁰ either way, as faces are clipped; so twice an area
-/// is below 2⁴³.
+/// A corner's x and y in 1/256 pixel. Clipping keeps both within ±2²⁰, so twice an area is below 2⁴³.
 type Point = [i64; 2];
 
-/// floor(256·x + ½), exactly: a sum with the half would be rounded itself.
+/// floor(256·x + ½), exactly; adding the half first would round the sum itself.
 fn round(pixels: f64) -> i64 {
     let scaled = pixels * 256.0;
     let below = libm::floor(scaled);
@@ -18,7 +17,7 @@ fn round(pixels: f64) -> i64 {
     below as i64 + i64::from(scaled - below >= 0.5)
 }
 
-/// Twice the area of a → b → c; above 0 if it is clockwise on the screen, whose y runs down.
+/// Twice the area of a → b → c; positive if it is clockwise on the screen, whose y points down.
 fn area(a: Point, b: Point, c: Point) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -30,11 +29,11 @@ pub(super) struct Part {
     pub(super) corners: [Kept; 3],
 }
 
-/// Face as it is drawn.
+/// A face as it is drawn.
 #[derive(Clone, Debug)]
 pub(super) struct Rounded {
     pub(super) parts: Vec<Part>,
-    /// True if it shows its back.
+    /// True if its back is toward the eye.
     pub(super) turned: bool,
 }
 
@@ -56,8 +55,8 @@ impl Part {
         self.points
     }
 
-    /// The weights of its corners at the centre of a pixel, which add up to 1; `None` if the pixel is not
-    /// covered: if the centre is neither inside nor on a top or left edge.
+    /// The weights of its corners at the centre of a pixel, which add up to 1; `None` if the pixel is not covered, that
+    /// is, if the centre is neither inside nor on a top or left edge.
     pub(super) fn weights(&self, x: i64, y: i64) -> Option<[f64; 3]> {
         let [a, b, c] = self.points;
         let centre = [256 * x + 128, 256 * y + 128];
@@ -65,9 +64,9 @@ impl Part {
         let opposite = |from: Point, to: Point| {
             let side = area(from, to, centre) * whole.signum();
             let [along_x, along_y] = [(to[0] - from[0]) * whole.signum(), (to[1] - from[1]) * whole.signum()];
-            // Clockwise: a left edge runs up, a top edge to the right.
+            // Clockwise, so a left edge runs up and a top edge to the right.
             let owns = along_y < 0 || (along_y == 0 && along_x > 0);
-            // Below 2⁵³: exact.
+            // Below 2⁵³, so exact.
             (side > 0 || (side == 0 && owns)).then(|| side as f64 / whole.abs() as f64)
         };
         Some([opposite(b, c)?, opposite(c, a)?, opposite(a, b)?])

@@ -1,24 +1,24 @@
 //! Errors of a frame against the truth.
 //!
-//! The unit is the shade, 1/255 of full intensity, whatever ramp a picture is shown in. Errors are taken where
-//! truth and frame show the same face; everything else counts as an error of cover or of visible surface,
-//! apart. With three channels the one that is farthest off counts.
+//! The unit is the shade, 1/255 of full intensity, whatever ramp a picture is shown in. Shades are compared where truth
+//! and frame show the same face; every other pixel is counted separately, as an error of cover or of visible surface.
+//! With three channels the one that is farthest off counts.
 
 use alloc::vec::Vec;
 
 use super::{Face, TruePixel, TruthFrame};
 
-/// Pixels of a frame that is to be judged.
+/// Pixels of a frame that is to be compared with the truth.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Shown {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// width × height, row-major: the face that is seen; `None` where there is none.
+    /// The visible face at each pixel, width × height, row-major; `None` where there is none.
     pub faces: Vec<Option<Face>>,
-    /// width × height, row-major: the shade of each channel, 0 to 255. On one channel all three are equal. Where there
-    /// is no face they may be anything.
+    /// The shade of each channel at each pixel, 0 to 255, width × height, row-major. On one channel all three are
+    /// equal. Where there is no face they may be anything.
     pub shades: Vec<[f64; 3]>,
 }
 
@@ -26,22 +26,22 @@ pub struct Shown {
 #[derive(Clone, PartialEq, Debug)]
 pub struct ErrorMap {
     width: usize,
-    /// The shade shown less the true one, on each channel; `None` where the two show different faces, or no face.
+    /// The shade shown minus the true one, on each channel; `None` where the two show different faces, or no face.
     off: Vec<Option<[f64; 3]>>,
     cover_errors: usize,
 }
 
-/// The side of a block, in pixels.
+/// Side of a block, in pixels.
 const BLOCK: usize = 4;
 
-/// The maximum of the absolute errors of three channels.
+/// Largest absolute error of three channels.
 fn greatest(off: [f64; 3]) -> f64 {
     off.into_iter().fold(0.0, |most: f64, off| most.max(off.abs()))
 }
 
 impl ErrorMap {
-    /// Compares a frame with the truth. Returns `None` if they differ in size, or a list has another length
-    /// than the size asks for.
+    /// Compares a frame with the truth. Returns `None` if their sizes differ, or if a list's length does not match the
+    /// size.
     #[must_use]
     pub fn new(truth: &TruthFrame, shown: &Shown) -> Option<Self> {
         let pixels = truth.width as usize * truth.height as usize;
@@ -61,18 +61,18 @@ impl ErrorMap {
         Some(Self { width: truth.width as usize, off, cover_errors })
     }
 
-    /// Pixels that show another face than they should, or one where there is none, or none where there is one.
+    /// Number of pixels that show the wrong face, or a face where there is none, or none where there is one.
     #[must_use]
     pub fn cover_errors(&self) -> usize {
         self.cover_errors
     }
 
-    /// The share of the covered pixels that was not compared, 0 to 1: [`cover_errors`](Self::cover_errors) among all that
-    /// show a face, or should.
+    /// Share of the covered pixels that were not compared, 0 to 1: [`cover_errors`](Self::cover_errors) among all
+    /// pixels that show a face, or should.
     #[must_use]
     pub fn share_not_compared(&self) -> f64 {
         let compared = self.errors().flatten().count();
-        // Below 2⁵³: pixels.
+        // Pixels: below 2⁵³.
         self.cover_errors as f64 / (self.cover_errors + compared).max(1) as f64
     }
 
@@ -81,7 +81,7 @@ impl ErrorMap {
         self.off.iter().map(|off| off.map(greatest))
     }
 
-    /// The figures over all pixels that were compared.
+    /// Figures of all pixels that were compared.
     #[must_use]
     pub fn figures(&self) -> Figures {
         let mut figures = Figures::default();
@@ -89,8 +89,8 @@ impl ErrorMap {
         figures
     }
 
-    /// The figures over means of blocks of 4 × 4 pixels, counted from the frame's upper left corner. Only blocks whose
-    /// 16 pixels were all compared count.
+    /// Figures of the means of blocks of 4 × 4 pixels, counted from the frame's upper left corner. Only blocks whose 16
+    /// pixels were all compared count.
     #[must_use]
     pub fn block_figures(&self) -> Figures {
         let mut figures = Figures::default();
@@ -112,7 +112,7 @@ impl ErrorMap {
         figures
     }
 
-    /// The share of the compared pixels whose error is at most `shades`, 0 to 1; 1 if there are none.
+    /// Share of the compared pixels whose error is at most `shades`, 0 to 1; 1 if none were compared.
     #[must_use]
     pub fn share_within(&self, shades: f64) -> f64 {
         let (mut within, mut all) = (0_u32, 0_u32);
@@ -123,8 +123,8 @@ impl ErrorMap {
         if all == 0 { 1.0 } else { f64::from(within) / f64::from(all) }
     }
 
-    /// Number of pixels of the largest patch whose errors are all greater than `shades`, pixels being
-    /// neighbours to the left, the right, above and below.
+    /// Number of pixels in the largest patch whose errors all exceed `shades`. Pixels are connected to their neighbours
+    /// on the left, right, above and below.
     #[must_use]
     pub fn largest_patch(&self, shades: f64) -> usize {
         let mut beyond: Vec<bool> = self.errors().map(|error| error.is_some_and(|error| error > shades)).collect();
@@ -153,12 +153,12 @@ impl ErrorMap {
     }
 }
 
-/// Figures of many errors, in shades.
+/// Figures of a set of errors, in shades.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Figures {
-    /// Number of errors: one for each pixel, or block, that was compared.
+    /// Number of errors: one for each pixel or block compared.
     pub count: u64,
-    /// The largest.
+    /// The largest error.
     pub max: f64,
     /// Number of errors of 1 or more.
     pub by_one: u64,
@@ -175,7 +175,7 @@ impl Figures {
         self.squares += error * error;
     }
 
-    /// Takes those of another frame in as well.
+    /// Adds those of another frame.
     pub fn add(&mut self, other: &Self) {
         self.count += other.count;
         self.max = self.max.max(other.max);
@@ -184,26 +184,26 @@ impl Figures {
         self.squares += other.squares;
     }
 
-    /// The mean error; 0 if there is none.
+    /// The mean error; 0 if there are none.
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.of_each(self.sum)
     }
 
-    /// The root mean square; 0 if nothing was compared.
+    /// The root mean square; 0 if there are none.
     #[must_use]
     pub fn rms(&self) -> f64 {
         libm::sqrt(self.of_each(self.squares))
     }
 
-    /// The share of errors of 1 or more, 0 to 1.
+    /// Share of errors of 1 or more, 0 to 1.
     #[must_use]
     pub fn share_by_one(&self) -> f64 {
         self.of_each(self.by_one as f64)
     }
 
     fn of_each(&self, sum: f64) -> f64 {
-        // Below 2⁵³: of pixels.
+        // Pixels: below 2⁵³.
         if self.count == 0 { 0.0 } else { sum / self.count as f64 }
     }
 }
@@ -216,8 +216,8 @@ pub struct Swim {
 }
 
 impl Swim {
-    /// Takes in the change from one frame to the next, at every pixel that was compared in both. Frames of
-    /// different sizes have no pixel in common.
+    /// Adds the change from one frame to the next at every pixel that was compared in both. Frames of different sizes
+    /// have no pixel in common.
     pub fn add(&mut self, before: &ErrorMap, now: &ErrorMap) {
         if (before.width, before.off.len()) != (now.width, now.off.len()) {
             return;
@@ -231,16 +231,16 @@ impl Swim {
         }
     }
 
-    /// Takes those of other frames in as well.
+    /// Adds those of other frames.
     pub fn join(&mut self, other: &Self) {
         self.changes += other.changes;
         self.squares += other.squares;
     }
 
-    /// The root mean square of the changes, in shades; 0 if there is none.
+    /// The root mean square of the changes, in shades; 0 if there are none.
     #[must_use]
     pub fn rms(&self) -> f64 {
-        // Below 2⁵³: of pixels.
+        // Pixels: below 2⁵³.
         if self.changes == 0 { 0.0 } else { libm::sqrt(self.squares / self.changes as f64) }
     }
 }
@@ -253,7 +253,7 @@ mod tests {
 
     const FACE: Face = Face { object: 0, triangle: 0 };
 
-    /// A frame 8 wide with these errors, `None` where the wrong face is seen.
+    /// A frame 8 pixels wide with these errors, `None` where the wrong face is seen.
     fn map(errors: &[Option<f64>]) -> ErrorMap {
         let height = (errors.len() / 8) as u32;
         let right = TruePixel { face: FACE, intensity: [100.0 / 255.0; 3], w: 1.0 };
@@ -280,7 +280,7 @@ mod tests {
         assert!(close(figures.max, 2.0) && close(figures.mean(), 3.0 / 31.0));
         assert!(close(figures.rms(), libm::sqrt(5.0 / 31.0)) && close(figures.share_by_one(), 2.0 / 31.0));
         assert!(close(map.share_within(1.5), 30.0 / 31.0));
-        // The block on the right is not whole; that on the left has 2 − 1 in 16 pixels.
+        // The right-hand block is incomplete; the left-hand one has 2 − 1 in 16 pixels.
         let blocks = map.block_figures();
         assert!(blocks.count == 1 && close(blocks.max, 1.0 / 16.0) && blocks.by_one == 0);
         let mut twice = figures;
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn patches_are_connected_by_sides_and_not_round_the_edge() {
         let mut errors = vec![Some(0.0); 32];
-        // Three in an L; one that touches it by a corner; the end of row 0 and the beginning of row 1.
+        // Three in an L; one that touches them at a corner; the end of row 0 and the start of row 1.
         for place in [1, 9, 10, 19, 7, 8] {
             errors[place] = Some(-3.0);
         }

@@ -7,7 +7,7 @@ use super::vector::{Vector, cross, dot, sub, unit, wide};
 use mode13h::render::Screen;
 use mode13h::scene::Camera;
 
-/// The eye, its three axes, and how large what it sees is on the screen.
+/// The eye, its three axes, and the scale of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
     pub(super) at: Vector,
@@ -16,13 +16,13 @@ pub(super) struct Eye {
     forward: Vector,
     /// fx and fy, in pixels.
     focal: [f64; 2],
-    /// The middle of the picture, in pixels from its upper left corner.
+    /// Centre of the picture, in pixels from its upper left corner.
     pub(super) centre: [f64; 2],
     pub(super) near: f64,
 }
 
 impl Eye {
-    /// Says what is wrong with the camera, if anything is.
+    /// Builds the eye, or says what is wrong with the camera.
     pub(super) fn new(camera: &Camera, screen: Screen) -> Result<Self, &'static str> {
         let Camera { eye, target, up, field_of_view, near } = *camera;
         if ![eye, target, up].iter().all(|v: &Vec3| v.is_finite()) {
@@ -37,7 +37,7 @@ impl Eye {
         }
         let (at, up) = (wide(eye), wide(up));
         let forward = unit(sub(wide(target), at)).ok_or("it looks at the point where it is")?;
-        // Where up points along the view, to 10⁻⁶, the axis that is farthest from the view is taken.
+        // If up points along the view, to 10⁻⁶, the axis farthest from the view is used instead.
         let right = match unit(up).map(|up| cross(forward, up)) {
             Some(right) if dot(right, right) > 1e-12 => right,
             _ => cross(forward, farthest_axis(forward)),
@@ -58,8 +58,8 @@ impl Eye {
         })
     }
 
-    /// A point of the world before its division by w, the distance along the view: x·w and y·w, in pixels
-    /// from the middle of the picture to the right and downward, and w.
+    /// A world point before its division by w, the distance along the view: x·w and y·w, in pixels to the right of and
+    /// below the centre of the picture, and w.
     pub(super) fn see(&self, point: Vector) -> Vector {
         let d = sub(point, self.at);
         [self.focal[0] * dot(self.right, d), -self.focal[1] * dot(self.up, d), dot(self.forward, d)]
@@ -71,7 +71,7 @@ impl Eye {
     }
 }
 
-/// The axis on which a direction has its least part.
+/// The axis along which a direction has its smallest component.
 fn farthest_axis(direction: Vector) -> Vector {
     let [x, y, z] = direction.map(f64::abs);
     if x <= y && x <= z {

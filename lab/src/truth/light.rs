@@ -4,17 +4,16 @@
 //! I = ka·Ia + Σ over lights of (kd·max(0, n·l) + ks·max(0, r·v)^s) · Id · fall-off
 //! ```
 //!
-//! With three channels the first two terms take on the body's colour, the last one the highlight's. r = 2·(n·l)·n − l.
-//! A light that n points away from adds nothing. A lamp at the distance d falls off as (1 − d²/R²)² within its range R, a spot
-//! light also from its inner to its outer angle (see [`Cone`]).
+//! With three channels the first two terms are multiplied by the material's colour, the last one by the highlight's. r
+//! = 2·(n·l)·n − l. A light that n faces away from adds nothing. A lamp at distance d falls off as (1 − d²/R²)² within
+//! its range R, and a spot light also from its inner to its outer angle (see [`Cone`]).
 
 use super::vector::{Vector, dot, sub, times, unit, wide};
 use mode13h::light::{Cone, Light, Material};
 use mode13h::scene::Scene;
 
-/// Red, green and blue of what a point shows, clamped once, after the sum: 0 to 1. `normal` is unit, or
-/// zero where there is none: there only ambient light counts. Unless `in_color`, all three are the one
-/// channel.
+/// Red, green and blue of a point, clamped once, after summing, to 0 to 1. `normal` is unit length, or zero where there
+/// is none, and then only ambient light counts. Unless `in_color`, all three are the single channel.
 pub(super) fn intensity(
     scene: &Scene,
     material: &Material,
@@ -44,7 +43,7 @@ pub(super) fn intensity(
             mirrored[channel] += highlight * id * fall_off;
         }
     }
-    // Each has its own colour.
+    // The two have separate colours.
     let (own, of_highlight) = if in_color { (material.color, material.highlight) } else { ([1.0; 3], [1.0; 3]) };
     [0, 1, 2].map(|i| {
         let intensity = (body[i] * f64::from(own[i]) + mirrored[i] * f64::from(of_highlight[i])).clamp(0.0, 1.0);
@@ -52,8 +51,8 @@ pub(super) fn intensity(
     })
 }
 
-/// The direction to a light, and how much of it is left at a point; `None` if nothing is. A lamp at the
-/// point itself lights no side of it.
+/// The direction to a light, and how much of it reaches a point; `None` if nothing does. A lamp exactly at the point
+/// lights no side of it.
 fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
     match *light {
         Light::Sun { direction, .. } => Some((unit(wide(direction))?, 1.0)),
@@ -64,23 +63,23 @@ fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
             let towards = unit(to_lamp).filter(|_| left > 0.0)?;
             Some((towards, left * left * cone.map_or(Some(1.0), |cone| in_cone(&cone, towards))?))
         }
-        // A kind of light that came after this laboratory.
+        // A kind of light newer than this laboratory.
         _ => None,
     }
 }
 
-/// The share of a spot light that is left where the light lies in the unit direction `towards`; `None` if the cone has no
-/// direction.
+/// The share of a spot light that remains when the light lies in the unit direction `towards`; `None` if the cone has
+/// no direction.
 fn in_cone(cone: &Cone, towards: Vector) -> Option<f64> {
     let cosine = -dot(unit(wide(cone.direction))?, towards);
     let inner = libm::cos(cone.inner.to_radians());
-    // An edge is no sharper than that.
+    // No edge is sharper than that.
     let outer = libm::cos(cone.outer.to_radians()).min(inner - 1.0 / 65_536.0);
     let x = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0);
     Some(3.0 * x * x - 2.0 * x * x * x)
 }
 
-/// Id of each channel; on one channel, of a coloured light the luminance after ITU-R BT.601.
+/// Id of each channel; on one channel, a coloured light's luminance after ITU-R BT.601.
 fn strength(light: &Light, in_color: bool) -> [f64; 3] {
     let color = light.color().map(f64::from);
     let [red, green, blue] = color;

@@ -1,39 +1,39 @@
-//! Truth: the right picture of any scene in f64, slow and plain, to measure the engine by.
+//! The truth: the right picture of any scene in f64, slow and plain, to measure the engine by.
 //!
 //! It shares nothing with the engine but the scene and its meshes; camera, rotation, clipping, coverage and light are
-//! written here a second time, from their formulas. What "should be" means depends on what one wants to know, so
-//! there is a [`Standard`] for each:
+//! implemented here a second time, from their formulas. What "right" means depends on the question, so there are
+//! several [`Standard`]s:
 //!
 //! | standard | vertices on the screen | intensity at a pixel | shows the error |
 //! |---|---|---|---|
-//! | [`Gouraud`](Standard::Gouraud) | rounded to 1/256 pixel | those of the vertices, linear on the screen | of the numbers |
-//! | [`GouraudPerspective`](Standard::GouraudPerspective) | rounded | the same, linear on the face in space | of the numbers |
-//! | [`GouraudUnrounded`](Standard::GouraudUnrounded) | as they are | linear on the screen | of vertex rounding too |
-//! | [`Lit`](Standard::Lit) | as they are | the whole lighting model at the pixel | of the model too |
+//! | [`Gouraud`](Standard::Gouraud) | rounded to 1/256 pixel | those of the vertices, linear on the screen | of the arithmetic |
+//! | [`GouraudPerspective`](Standard::GouraudPerspective) | rounded | the same, linear on the face in space | of the arithmetic |
+//! | [`GouraudUnrounded`](Standard::GouraudUnrounded) | unrounded | linear on the screen | of vertex rounding too |
+//! | [`Lit`](Standard::Lit) | unrounded | the whole lighting model at the pixel | of the model too |
 //!
 //! **Cover.** A pixel shows a face if its centre lies inside, or on a top or left edge. With rounded vertices
-//! (floor(256·x + ½), as the engine rounds) that is decided in whole numbers, exactly; with vertices as
-//! they are, by the ray from the eye through the centre, to the rounding of f64, some 10⁻¹² pixel.
+//! (floor(256·x + ½), as in the engine) that is decided exactly, in integers; with unrounded vertices, by the ray from
+//! the eye through the centre, to the precision of f64, some 10⁻¹² pixel.
 //!
-//! **Visible surface.** The face with the greatest 1/w at the pixel; of equal ones the first in the order of
-//! the scene. w, the distance along the view, is that of the unrounded vertices, and 1/w linear on the
-//! screen. A closed mesh that looks outward has no backs; in others a face whose back is seen has its normals turned
-//! round. With two faces back to back the one that looks toward the eye is seen.
-//! Nothing is nearer than the near plane. A body that shines through counts as an opaque one.
+//! **Visible surface.** The face with the greatest 1/w at the pixel; of equal ones, the first in scene order. w, the
+//! distance along the view, is that of the unrounded vertices, and 1/w is linear on the screen. A closed mesh that
+//! faces outward shows no back faces; in other meshes a face seen from behind has its normals flipped. Of two faces
+//! back to back, the one that faces the eye is seen. Nothing is nearer than the near plane. Translucent objects count
+//! as opaque.
 //!
-//! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and rounded nowhere. The sum of
-//! light is clamped once, at a vertex or, `Lit`, at the pixel: there position and vertex normals are
-//! interpolated on the face's own plane, and the normal is made unit again. Where light or one of an object's
-//! materials is coloured there are three channels, each times the material's own colour; otherwise one,
-//! which stands in all three places.
+//! **Intensity.** 0 to 1, before ramp, texture, fog, dither and blending, and never rounded. The sum of light is
+//! clamped once, at the vertex or, for `Lit`, at the pixel: there position and vertex normals are interpolated on the
+//! face's own plane, and the normal is normalized again. If light or one of an object's materials is coloured there are
+//! three channels, each multiplied by the material's own colour; otherwise there is one, which fills all three entries.
 //!
-//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) a cut changes nothing. A value linear on
-//! the screen cannot be continued to a vertex behind the eye, so there the engine's rule is the definition:
-//! the intensity where an edge meets the near plane is linear along the edge in space; what is left of the
-//! face is drawn as the fan from its first corner. The guard band, which lies 4,095.75 pixels from the frame's corner, cuts
-//! after the near plane, and changes no intensity that is linear on the screen.
+//! **Clipped faces.** On the face in space (`Lit`, `GouraudPerspective`) clipping changes nothing. A value that is
+//! linear on the screen cannot be extended to a vertex behind the eye, so there the engine's rule is the definition:
+//! the intensity where an edge meets the near plane is linear along the edge in space, and what remains of the face is
+//! drawn as the fan from its first corner. The guard band, 4,095.75 pixels from the frame's corner, clips after the
+//! near plane, and changes no intensity that is linear on the screen.
 //!
-//! [`ErrorMap`] compares the engine's picture of the scene, as [`Shown`]. [`Tiles`] gives `Lit` part by part.
+//! [`ErrorMap`] compares the engine's picture of the scene, given as [`Shown`], with the truth. [`Tiles`] draws `Lit`
+//! in parts.
 
 mod body;
 mod bound;
@@ -61,7 +61,7 @@ use mode13h::internals;
 pub use mode13h::render::Screen;
 use mode13h::scene::Scene;
 
-/// Standard of truth.
+/// A standard of truth.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum Standard {
@@ -71,7 +71,7 @@ pub enum Standard {
     GouraudPerspective,
     /// Vertex intensities, linear on the screen between unrounded vertices.
     GouraudUnrounded,
-    /// The lighting model at every pixel, unrounded vertices.
+    /// The lighting model at every pixel, with unrounded vertices.
     Lit,
 }
 
@@ -103,29 +103,29 @@ impl Standard {
     }
 }
 
-/// Errors of a scene.
+/// Error in a scene.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum TruthError {
-    /// The camera.
+    /// The camera, with what is wrong.
     Camera(&'static str),
-    /// An object, by its place in the scene.
+    /// An object, by its index in the scene.
     Object {
-        /// Its place, from 0.
+        /// Its index.
         index: usize,
-        /// The fault.
+        /// What is wrong.
         what: &'static str,
     },
-    /// A light, by its place in the scene.
+    /// A light, by its index in the scene.
     Light {
-        /// Its place, from 0.
+        /// Its index.
         index: usize,
-        /// The fault.
+        /// What is wrong.
         what: &'static str,
     },
     /// The scene's ambient light is not finite.
     Ambient,
-    /// The screen.
+    /// The screen, with what is wrong.
     Screen(&'static str),
 }
 
@@ -146,36 +146,36 @@ impl core::error::Error for TruthError {}
 /// A triangle of a scene.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Face {
-    /// The object's place in [`Scene::objects`].
+    /// Index of the object in [`Scene::objects`].
     pub object: usize,
-    /// The triangle's place in [`Mesh::triangles`](mode13h::mesh::Mesh::triangles).
+    /// Index of the triangle in [`Mesh::triangles`](mode13h::mesh::Mesh::triangles).
     pub triangle: usize,
 }
 
-/// Truth at a point of the picture.
+/// The truth at a point of the picture.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TruePixel {
-    /// The face that is seen.
+    /// The visible face.
     pub face: Face,
-    /// Red, green and blue, 0 to 1 each, without texture, fog and dither; on one channel three times the same.
+    /// Red, green and blue, 0 to 1 each, without texture, fog and dither; on one channel the same value three times.
     pub intensity: [f64; 3],
     /// The distance along the view.
     pub w: f64,
 }
 
-/// Truth at every pixel.
+/// The truth at every pixel.
 #[derive(Clone, PartialEq, Debug)]
 pub struct TruthFrame {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// width × height, row-major; `None` where there is no face.
+    /// Pixels, width × height, row-major; `None` where there is no face.
     pub pixels: Vec<Option<TruePixel>>,
 }
 
 impl TruthFrame {
-    /// The pixel in column `x` of row `y`; `None` where there is no face, and outside of the frame.
+    /// The pixel in column `x` of row `y`; `None` where there is no face, and outside the frame.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> Option<&TruePixel> {
         if x >= self.width {
@@ -185,7 +185,7 @@ impl TruthFrame {
     }
 }
 
-/// A scene in its place before the eye, in f64.
+/// A scene as the camera sees it, in f64.
 ///
 /// ```
 /// use mode13h::light::Light;
@@ -216,17 +216,17 @@ pub struct Truth<'a> {
 struct Hit {
     face: Face,
     turned: bool,
-    /// Weights of its three vertices there.
+    /// Weights of its three vertices at the point.
     weights: [f64; 3],
     inverse_w: f64,
 }
 
 impl<'a> Truth<'a> {
-    /// Puts the scene in its place before the eye.
+    /// Places the scene before the camera.
     ///
     /// # Errors
-    /// A number in camera, objects, lights or ambient light that is not finite or not in its range; a screen
-    /// with a side above 4,096, or whose pixels have one of 0.
+    /// A number in camera, objects, lights or ambient light that is not finite or out of range; a screen with a side
+    /// above 4,096, or with a pixel side of 0.
     pub fn new(scene: &'a Scene, screen: Screen) -> Result<Self, TruthError> {
         let (pixel_width, pixel_height) = screen.pixel_aspect;
         if screen.width.max(screen.height) > 4096 {
@@ -255,7 +255,7 @@ impl<'a> Truth<'a> {
         let Screen { width, height, .. } = self.screen;
         let mut hits: Vec<Option<Hit>> = vec![None; width as usize * height as usize];
         let mut seen = |hit: Hit, x: i64, y: i64| {
-            // Inside of the frame.
+            // Inside the frame.
             if let Some(place) = hits.get_mut(y as usize * width as usize + x as usize)
                 && place.is_none_or(|nearest| hit.inverse_w > nearest.inverse_w)
             {
@@ -276,18 +276,18 @@ impl<'a> Truth<'a> {
         TruthFrame { width, height, pixels }
     }
 
-    /// Truth at a point of the picture if `face` is seen there, by [`Standard::Lit`]; x and y in pixels from the
-    /// frame's upper left corner. `None` if the face cannot be seen there, whatever may hide it.
+    /// The truth by [`Standard::Lit`] at a point of the picture, if `face` is seen there; x and y are in pixels from
+    /// the frame's upper left corner. `None` if the face cannot be seen there; faces in front of it are ignored.
     #[must_use]
     pub fn sampling(&self, face: Face, x: f64, y: f64) -> Option<TruePixel> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
     }
 
-    /// How many shades light on `face` changes by about the centre of a pixel, as far as a vertex may be from its place: half
-    /// of 1/256 pixel by rounding, a thousandth of a pixel by f32, and half a step of its depth. On a face whose corners are
-    /// moved by no more than that across the screen, the point seen at a pixel is moved by no more, and what depths move
-    /// it by comes on top. A fifth is added for what light does between the places looked at. `None` if the face is not
-    /// seen at the centre itself.
+    /// By how many shades the light on `face` changes around the centre of a pixel within the distance that a vertex
+    /// may be misplaced: half of 1/256 pixel by rounding, a thousandth of a pixel by f32, and half a step of its depth.
+    /// If a face's corners move by no more than that across the screen, neither does the point seen at a pixel; what
+    /// the depths move it by is added. A fifth is added for what light does between the sampled positions. `None` if
+    /// the face is not seen at the centre itself.
     #[must_use]
     pub fn rounding_shift(&self, face: Face, x: u32, y: u32) -> Option<f64> {
         let reach = 0.5 / 256.0 + 0.001 + self.depth_shift(&self.triangle(face)?.1);
@@ -299,15 +299,15 @@ impl<'a> Truth<'a> {
         Some(1.2 * 255.0 * change.fold(0.0, f64::max))
     }
 
-    /// How many pixels the rounding of depths to 2⁻³⁰ moves the point of a face that is seen at a pixel by.
+    /// By how many pixels rounding depths to 2⁻³⁰ moves the point of a face that is seen at a pixel.
     ///
-    /// A pixel has weights aᵢ on the screen, and on the face weights in proportion to aᵢ·near/wᵢ. Depths that are off by a
-    /// share of up to ε give it the weights on the face of the point that has aᵢ(1 ± ε) on the screen. These weights
-    /// change as in Lemma 9 of `docs/budget.md`, with ρ = (1 + ε)/(1 − ε), so the point moves by that share of the
-    /// longest edge. What is clipped is no farther away, and its edges lie in the guard band.
+    /// A pixel has weights aᵢ on the screen, and on the face weights in proportion to aᵢ·near/wᵢ. Depths that are off
+    /// by a share of up to ε give it the weights on the face of the point that has aᵢ(1 ± ε) on the screen. These
+    /// weights change as in Lemma 9 of `docs/budget.md`, with ρ = (1 + ε)/(1 − ε), so the point moves by that share of
+    /// the longest edge. Clipped faces are no farther away, and their edges lie in the guard band.
     fn depth_shift(&self, corners: &[Corner; 3]) -> f64 {
         let farthest = corners.iter().fold(0.0_f64, |most, corner| most.max(corner.seen[2]));
-        // Beyond 1 a depth may be anything.
+        // Beyond 1 the depth may be anything.
         let off = (farthest / self.eye.near * f64::powi(2.0, -31)).min(1.0);
         let (more, less) = (libm::sqrt(1.0 + off), libm::sqrt(1.0 - off));
         let diagonal = 2.0 * core::f64::consts::SQRT_2 * clip::LIMIT;
@@ -321,8 +321,8 @@ impl<'a> Truth<'a> {
         (more - less) / (more + less) * longest.min(diagonal)
     }
 
-    /// Truth at the centre of a pixel if `face` is seen there, by any standard. `None` if the face does not cover the
-    /// pixel, whatever may hide it.
+    /// The truth by any standard at the centre of a pixel, if `face` is seen there. `None` if the face does not cover
+    /// the pixel; faces in front of it are ignored.
     #[must_use]
     pub fn of_face_at(&self, standard: Standard, face: Face, x: u32, y: u32) -> Option<TruePixel> {
         let (x, y) = (i64::from(x), i64::from(y));
@@ -336,8 +336,8 @@ impl<'a> Truth<'a> {
         self.pixel(standard, hit?)
     }
 
-    /// The triangles that the face is drawn in, each three corners (x and y) in 1/256 pixel from the frame's
-    /// upper left corner: one, or if it is clipped none to six. None, too, if it is a back face or has no area.
+    /// The triangles that the face is drawn as, each three corners (x and y) in 1/256 pixel from the frame's upper left
+    /// corner: one, or none to six if it is clipped. Also none if it is a back face or has no area.
     #[must_use]
     pub fn rounded_triangles(&self, face: Face) -> Vec<[[i64; 2]; 3]> {
         match self.drawn(face) {
@@ -346,7 +346,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Number of an object's triangles; none if there is no such object.
+    /// Number of triangles of an object; 0 if there is no such object.
     pub(crate) fn triangles(&self, object: usize) -> usize {
         self.bodies.get(object).map_or(0, |body| body.object.mesh().triangles().len())
     }
@@ -361,14 +361,14 @@ impl<'a> Truth<'a> {
         Some((body, body.triangle(face.triangle)?))
     }
 
-    /// A face clipped and rounded, if it is no back face.
+    /// A face clipped and rounded; `None` for a back face.
     fn drawn(&self, face: Face) -> Option<Rounded> {
         let (body, corners) = self.triangle(face)?;
         let rounded = Rounded::new(&self.eye, &corners);
         body.shows(face.triangle, rounded.turned).then_some(rounded)
     }
 
-    /// Every pixel that the face covers with rounded vertices.
+    /// Visits every pixel that the face covers with rounded vertices.
     fn rounded(&self, standard: Standard, face: Face, seen: &mut impl FnMut(Hit, i64, i64)) {
         let Some(Rounded { parts, turned }) = self.drawn(face) else { return };
         for part in parts {
@@ -381,7 +381,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Every pixel that the face covers with vertices as they are.
+    /// Visits every pixel that the face covers with unrounded vertices.
     fn unrounded(&self, standard: Standard, face: Face, seen: &mut impl FnMut(Hit, i64, i64)) {
         let Some((_, corners)) = self.triangle(face) else { return };
         let polygon: Vec<[f64; 2]> =
@@ -393,7 +393,7 @@ impl<'a> Truth<'a> {
         });
     }
 
-    /// A face with vertices as they are at the centre of a pixel, if it covers it.
+    /// The hit on a face with unrounded vertices at the centre of a pixel, if it covers it.
     fn unrounded_hit(&self, standard: Standard, face: Face, corners: &[Corner; 3], x: i64, y: i64) -> Option<Hit> {
         let centre = [x as f64 + 0.5, y as f64 + 0.5];
         let mut hit = self.met(face, centre)?;
@@ -403,25 +403,25 @@ impl<'a> Truth<'a> {
         Some(hit)
     }
 
-    /// Hit of the ray through a point of the picture on a face, if that does not turn its back on the eye.
+    /// The hit on a face of the ray through a point of the picture, unless the face is turned away.
     fn met(&self, face: Face, at: [f64; 2]) -> Option<Hit> {
         let (body, corners) = self.triangle(face)?;
         Self::hit(&self.eye, face, (body, &corners), at)
     }
 
-    /// Finds the hit on a face whose corners are at hand.
+    /// The hit on a face whose corners are already computed.
     fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
         let met = ray::meet(eye, corners, at)?;
         let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };
         body.shows(face.triangle, met.turned).then_some(hit)
     }
 
-    /// Calls `pixel` for all pixels of the frame that points round it may enclose, and some more.
+    /// Calls `pixel` for all pixels of the frame within the bounding box of the points, and a few more.
     fn pixels_about(&self, points: &[[f64; 2]], mut pixel: impl FnMut(i64, i64)) {
         let [columns, rows] = [(0, self.screen.width), (1, self.screen.height)].map(|(axis, size)| {
             let low = points.iter().map(|point| point[axis]).fold(f64::INFINITY, f64::min);
             let high = points.iter().map(|point| point[axis]).fold(f64::NEG_INFINITY, f64::max);
-            // Below 2³²; of no points at all the range is empty.
+            // Below 2³²; without points the range is empty.
             (low - 1.0).max(0.0) as i64..(high + 1.0).min(f64::from(size)).max(0.0) as i64
         });
         for y in rows {
@@ -431,7 +431,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// The intensity of what is seen.
+    /// The truth at a hit.
     fn pixel(&self, standard: Standard, hit: Hit) -> Option<TruePixel> {
         let (body, corners) = self.triangle(hit.face)?;
         let material = body.material(hit.face.triangle)?;
@@ -454,7 +454,7 @@ impl<'a> Truth<'a> {
 /// A triangle of a face with rounded vertices at the centre of a pixel, if it covers it.
 fn part_hit(standard: Standard, (face, turned): (Face, bool), part: &cover::Part, x: i64, y: i64) -> Option<Hit> {
     let on_part = part.weights(x, y)?;
-    // What is linear on the face is linear on the screen once divided by w.
+    // A value linear on the face becomes linear on the screen when divided by w.
     let over_w = [0, 1, 2].map(|i| on_part[i] / part.corners[i].seen[2]);
     let inverse_w = over_w[0] + over_w[1] + over_w[2];
     let weights = match standard {

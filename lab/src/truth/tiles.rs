@@ -1,7 +1,7 @@
-//! The truth of [`Standard::Lit`] for parts of a picture, for those who cannot wait for the whole.
+//! The truth by [`Standard::Lit`] for parts of a picture, for callers who cannot wait for the whole.
 //!
-//! Every face is projected once and entered into the tiles that it may cover; a face that is a back face or out of the
-//! frame is entered nowhere. After that a tile costs no more than its own faces.
+//! Every face is projected once and entered into the tiles that it may cover, unless it is a back face or outside the
+//! frame. After that a tile costs no more than its own faces.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,8 +10,8 @@ use core::ops::Range;
 use super::clip::{self, is_whole};
 use super::{Face, Hit, Standard, Truth, TruthFrame, ray};
 
-/// Margin of its corners' box in which a face is looked for, in pixels. The ray test is exact to 10⁻¹⁰ pixel, so this
-/// is more than it takes.
+/// Margin in pixels around a face's bounding box in which it is looked for. The ray test is exact to 10⁻¹⁰ pixel, so
+/// this is more than enough.
 const PAD: f64 = 1.0 / 64.0;
 
 /// The faces of a scene, sorted into square tiles of the picture.
@@ -40,7 +40,7 @@ pub struct Tiles<'t, 'a> {
     hits: Vec<Option<Hit>>,
 }
 
-/// A face that may be seen, and the pixels whose centres it may cover.
+/// A face that may be visible, and the pixels whose centres it may cover.
 #[derive(Clone, Debug)]
 struct Listed {
     face: Face,
@@ -71,7 +71,7 @@ impl<'a> Truth<'a> {
         tiles
     }
 
-    /// The columns and rows whose pixels a face may cover; `None` if there is none.
+    /// The columns and rows of the pixels that a face may cover; `None` if there are none.
     fn pixels_of(&self, face: Face) -> Option<[Range<u16>; 2]> {
         let (body, corners) = self.triangle(face)?;
         if !body.shows(face.triangle, ray::is_turned(&corners)) {
@@ -81,7 +81,7 @@ impl<'a> Truth<'a> {
             let ranges = [(0, self.screen.width), (1, self.screen.height)].map(|(axis, size)| {
                 let low = points.iter().map(|point| point[axis]).fold(f64::INFINITY, f64::min);
                 let high = points.iter().map(|point| point[axis]).fold(f64::NEG_INFINITY, f64::max);
-                // Centres lie at x + ½. 0 to 4,096, which the casts keep.
+                // Centres lie at x + ½. Values from 0 to 4,096 survive the casts.
                 let first = libm::ceil(low - PAD - 0.5).clamp(0.0, f64::from(size)) as u16;
                 let end = (libm::floor(high + PAD - 0.5) + 1.0).clamp(0.0, f64::from(size)) as u16;
                 first..end
@@ -99,7 +99,7 @@ impl<'a> Truth<'a> {
 }
 
 impl Tiles<'_, '_> {
-    /// The side of a tile, in pixels. Those at the right and at the lower edge of the frame may be smaller.
+    /// Side of a tile, in pixels. Tiles at the right and lower edges of the frame may be smaller.
     pub const SIDE: u32 = 16;
 
     /// Number of tiles, row by row.
@@ -108,7 +108,7 @@ impl Tiles<'_, '_> {
         self.tiles.len()
     }
 
-    /// Returns whether no face may be seen in a tile: nothing is to be drawn there.
+    /// Returns whether no face can be visible in a tile, so that there is nothing to draw.
     #[must_use]
     pub fn is_empty(&self, tile: usize) -> bool {
         self.tiles.get(tile).is_none_or(Vec::is_empty)
@@ -117,24 +117,24 @@ impl Tiles<'_, '_> {
     /// The columns and the rows of a tile.
     #[must_use]
     pub fn area(&self, tile: usize) -> [Range<u32>; 2] {
-        // As many as the frame has room for.
+        // No more than there are tiles in the frame.
         let tile = tile as u32;
         let [column, row] = [tile % self.columns.max(1), tile / self.columns.max(1)];
         let side = |place: u32, size: u32| (place * Self::SIDE).min(size)..((place + 1) * Self::SIDE).min(size);
         [side(column, self.truth.screen.width), side(row, self.truth.screen.height)]
     }
 
-    /// A frame of the picture's size with nothing in it, to be drawn in.
+    /// An empty frame of the picture's size to draw into.
     #[must_use]
     pub fn empty_frame(&self) -> TruthFrame {
         let (width, height) = (self.truth.screen.width, self.truth.screen.height);
         TruthFrame { width, height, pixels: vec![None; width as usize * height as usize] }
     }
 
-    /// Draws the pixels of a tile whose column and row both leave `step / 2` when divided by `step`: all of them by steps
-    /// of 1. Each is what [`Truth::draw`] makes of it by [`Standard::Lit`].
+    /// Draws the pixels of a tile whose column and row both leave the remainder `step / 2` when divided by `step`; with
+    /// a step of 1, all of them. Each is what [`Truth::draw`] makes of it with [`Standard::Lit`].
     ///
-    /// Nothing is drawn outside of `frame`, nor by steps of 0.
+    /// Draws nothing outside `frame`, and nothing for a step of 0.
     pub fn draw(&mut self, tile: usize, step: u32, frame: &mut TruthFrame) {
         let [columns, rows] = self.area(tile);
         let Some(faces) = self.tiles.get(tile).filter(|_| step > 0) else { return };
@@ -179,7 +179,7 @@ impl Tiles<'_, '_> {
         let [columns, rows] = tiles;
         for row in rows {
             for column in columns.clone() {
-                // Below 2³²: a mesh's triangles are numbered by 32 bits.
+                // Below 2³², as a mesh's triangles have 32-bit indices.
                 self.tiles[(row * self.columns + column) as usize].push(self.faces.len() as u32);
             }
         }
@@ -187,7 +187,7 @@ impl Tiles<'_, '_> {
     }
 }
 
-/// The places in both ranges that leave `step / 2` when divided by `step`.
+/// The values in both ranges that leave the remainder `step / 2` when divided by `step`.
 fn sampled(of_face: &Range<u16>, of_tile: &Range<u32>, step: u32) -> impl Iterator<Item = u32> + Clone + use<> {
     let first = of_tile.start.max(of_face.start.into());
     let end = of_tile.end.min(of_face.end.into());

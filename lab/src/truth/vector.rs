@@ -25,24 +25,24 @@ pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Cross product. With the operands exchanged it is the negative, to the bit.
+/// Cross product. Swapping the operands negates it exactly.
 pub(super) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// `None` for the zero vector.
+/// The unit vector in this direction; `None` for the zero vector.
 pub(super) fn unit(v: Vector) -> Option<Vector> {
     let length = libm::sqrt(dot(v, v));
     (length > 0.0).then(|| times(v, 1.0 / length))
 }
 
-/// The sum of three vectors, each with its weight.
+/// Weighted sum of three vectors.
 pub(super) fn weighted(vectors: [Vector; 3], weights: [f64; 3]) -> Vector {
     let [a, b, c] = [0, 1, 2].map(|i| times(vectors[i], weights[i]));
     add(add(a, b), c)
 }
 
-/// Point from one vector to another, `part` of the way.
+/// The point `part` of the way from one vector to another.
 pub(super) fn between(from: Vector, to: Vector, part: f64) -> Vector {
     add(from, times(sub(to, from), part))
 }

@@ -1,4 +1,4 @@
-//! Figures for the claims, and the words for them.
+//! Figures for the claims, and the text that reports them.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -7,48 +7,48 @@ use alloc::vec::Vec;
 use super::verdict::{ACCURATE, AS_FAST, FEW, INSIGNIFICANT, LITTLE_MORE, MET, THREE, both, falls};
 use crate::cost::{Claim, Errors, Verdict};
 
-/// About a sphere.
+/// Figures of one sphere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sphere {
     pub(super) triangles: usize,
-    /// Pixels of a face, in the mean.
+    /// Mean number of pixels per face.
     pub(super) pixels_of_each: f64,
-    /// Against `gouraud-unrounded`: with vertices rounded to 1/256, and to whole pixels.
+    /// Against `gouraud-unrounded`: with vertices rounded to 1/256 pixel (`fine`) and to whole pixels (`whole`).
     pub(super) fine: Errors,
     pub(super) whole: Errors,
-    /// The share of pixels that show the wrong face, for `fine` and for `whole`.
+    /// Share of pixels that show the wrong face, for `fine` and for `whole`.
     pub(super) wrong_faces: [f64; 2],
-    /// Errors with a highlight, against `lit`: the default shading, and Phong.
+    /// Errors against `lit`, with a highlight: the default shading, and Phong.
     pub(super) linear: Errors,
     pub(super) phong: Errors,
-    /// Nanoseconds for a frame.
+    /// Nanoseconds per frame.
     pub(super) linear_time: f64,
     pub(super) phong_time: f64,
-    /// Ratios of times: of `gouraud-8.8` to flat, of Phong and Phong's table to `gouraud-8.8`.
+    /// Ratios of times: `gouraud-8.8` to flat, then Phong and Phong's table to `gouraud-8.8`.
     pub(super) to_flat: f64,
     pub(super) phong_to_linear: f64,
     pub(super) table_to_linear: f64,
 }
 
-/// About everything.
+/// Figures of everything measured.
 #[derive(Clone, Debug)]
 pub(super) struct Figures {
-    /// Spheres from coarse to fine.
+    /// Spheres, from coarse to fine.
     pub(super) spheres: Vec<Sphere>,
-    /// The errors of 8.8, 8.8 reseeded and 16.16 against `gouraud`.
+    /// Errors of 8.8, reseeded 8.8 and 16.16 against `gouraud`.
     pub(super) fixed: [Errors; 3],
-    /// Against `gouraud-perspective`.
+    /// Error of float against `gouraud-perspective`.
     pub(super) float: Errors,
-    /// Ratios of times to the default shading's: 8.8, 16.16 and float.
+    /// Times of 8.8, 16.16 and float, as ratios to the default shading's.
     pub(super) of_default: [f64; 3],
-    /// Distance of linear and perspective-correct shades from each other, both exact.
+    /// Difference between linear and perspective-correct shades, both exact.
     pub(super) linear_on_torus: Errors,
     pub(super) linear_on_floor: Errors,
     pub(super) hyperbolic_to_linear: f64,
 }
 
 impl Figures {
-    /// The claims, each with what the figures say to it.
+    /// The claims, each with what the figures say about it.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let claims = [
             (
@@ -110,7 +110,8 @@ impl Figures {
              {float_time:.2}.",
             plain.max, plain.rms, reseeded.max, reseeded.rms, wide.max, wide.rms, self.float.max, self.float.rms
         );
-        // Of the two steps the better must hold the claim, and the plain one as the sources have it.
+        // The claim holds in part if the better of the two accurate steps keeps it, and in full if plain 8.8, the step
+        // the sources use, does too.
         (measured, both(reseeded.max < ACCURATE || wide.max < ACCURATE, plain.max < ACCURATE))
     }
 
@@ -170,7 +171,7 @@ impl Figures {
         let time = as_fast.map_or("In time they do not meet.".to_string(), |sphere| {
             format!("In time they meet at {} faces.", sphere.triangles)
         });
-        // Phong on a mesh that is coarse, yet drawn as well as Gouraud's where they meet.
+        // Phong on the coarsest mesh that comes as close as Gouraud does where the two meet.
         let coarse = met.and_then(|(met, _)| {
             let good = |sphere: &&Sphere| sphere.phong.rms <= met.linear.rms + MET;
             self.spheres.iter().find(good).map(|sphere| {

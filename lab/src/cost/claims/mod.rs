@@ -1,12 +1,12 @@
-//! Claims of the old texts, each measured on scenes made for it, so whatever the input is.
+//! The old texts' claims, measured on scenes made for them, whatever the input is.
 //!
-//! A claim is a sentence. To measure it one has to say what its words mean. `verdict` says that in numbers, and
-//! nothing else decides: the verdicts are worked out from the figures.
+//! A claim is a sentence, and to measure it one has to define what its words mean. `verdict` defines them in numbers,
+//! and nothing else decides: every verdict is computed from the figures.
 //!
 //! | file | what |
 //! |---|---|
-//! | `scenes` | spheres of few and of many faces, a torus, a floor that runs away from the eye |
-//! | `figures` | everything that is measured, and the words for it |
+//! | `scenes` | spheres with few and with many faces, a torus, a floor that recedes from the eye |
+//! | `figures` | everything that is measured, and the text that reports it |
 //! | `verdict` | the words of a claim in numbers |
 
 mod figures;
@@ -28,15 +28,15 @@ use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h_conformance::Random;
 
-/// Scenes, and the shadings that draw them.
+/// The scenes, and the shadings that draw them.
 struct Entrants {
     scenes: Vec<Vec<Scene>>,
-    /// A way, and the number of a scene.
+    /// A shading, and the index of a scene.
     list: Vec<(Shading, usize)>,
 }
 
 impl Entrants {
-    /// Every scene by the shadings that a claim about it needs.
+    /// Every scene, with the shadings that the claims about it need.
     fn new() -> Self {
         use Shading::{Flat, Float, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Phong, PhongTable};
         let mut entrants = Self { scenes: Vec::new(), list: Vec::new() };
@@ -54,20 +54,20 @@ impl Entrants {
     }
 }
 
-/// The number of the torus among the scenes; the spheres follow it.
+/// Index of the torus among the scenes; the spheres follow it.
 const TORUS: usize = 0;
 
 /// Times of all entrants.
 struct Times {
     list: Vec<(Shading, usize)>,
-    /// For a frame, round by round.
+    /// Time per frame, round by round.
     times: Vec<Vec<f64>>,
     seed: u64,
 }
 
 impl Times {
     fn place(&self, shading: Shading, scene: usize) -> usize {
-        // Whoever asks has had it drawn.
+        // Every pair that is asked for was drawn.
         self.list.iter().position(|entrant| *entrant == (shading, scene)).unwrap_or(0)
     }
 
@@ -81,7 +81,8 @@ impl Times {
     }
 }
 
-/// Measures all claims, for about as long as `spent` says, errors aside. `progress` is told the share that is done.
+/// Measures all claims, timing for about as long as `spent` says; errors take extra time. `progress` is told the share
+/// done.
 pub(super) fn claims(
     base: &(dyn Fn() -> Renderer + Sync),
     spent: &Spent,
@@ -123,7 +124,7 @@ pub(super) fn claims(
     Ok(figures.claims())
 }
 
-/// All about one sphere.
+/// All figures of one sphere.
 fn sphere(
     slices: u32,
     scene: usize,
@@ -141,7 +142,7 @@ fn sphere(
     let share = |of: usize| off[of].cover_errors as f64 / (off[of].pixels() + off[of].cover_errors).max(1) as f64;
     Ok(Sphere {
         triangles,
-        // Half of a closed body's faces look at the eye.
+        // Half of a closed mesh's faces are turned toward the eye.
         pixels_of_each: seen / (triangles as f64 / 2.0),
         fine: off[0].errors(),
         whole: off[1].errors(),

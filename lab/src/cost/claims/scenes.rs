@@ -1,4 +1,4 @@
-//! Scenes that claims are measured on.
+//! The scenes that claims are measured on.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -10,16 +10,16 @@ use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::{Camera, Object, Scene};
 
-/// The slices of spheres, from coarse to fine. Each has half as many stacks.
+/// Slices of the spheres, from coarse to fine. Each has half as many stacks.
 pub(super) const SLICES: [u32; 6] = [8, 16, 32, 64, 128, 256];
 
-/// Frames of each.
+/// Frames per scene.
 const FRAMES: u32 = 2;
 
-/// A mesh, turned from frame to frame so that no edge keeps its place among the pixels.
+/// A mesh, rotated from frame to frame so that no edge keeps its position relative to the pixels.
 fn turned(mesh: Mesh, shiny: bool) -> Vec<Scene> {
     let mut scene = Scene::showing(mesh);
-    // By its sphere, as it is turned about two axes.
+    // Framed by the bounding sphere, since the mesh turns about two axes.
     scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
     for object in scene.objects_mut() {
         let materials = object.materials.iter_mut();
@@ -48,8 +48,8 @@ pub(super) fn torus() -> Vec<Scene> {
     turned(shapes::torus(48, 24), false)
 }
 
-/// A floor of two faces that runs away from the eye, with a lamp over its near end: faces that are as deep as they are
-/// large, and shades that differ as much as they can.
+/// A floor of two faces that recedes from the eye, with a lamp over its near end: faces as deep as they are large, and
+/// the greatest possible differences in shade.
 pub(super) fn floor() -> Vec<Scene> {
     let mut scene = Scene::new();
     let mut floor = Object::new(shapes::wall(1, 1));

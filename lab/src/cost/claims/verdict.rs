@@ -1,29 +1,29 @@
-//! Verdicts: the words of a claim in numbers.
+//! Verdicts: the words of a claim, in numbers.
 
 use crate::cost::Verdict;
 
-/// An error that is insignificant, or can be ignored: less than a shade, which is the least that a byte can show.
+/// An insignificant error, one that can be ignored: less than one shade, the least that a byte can show.
 pub(super) const INSIGNIFICANT: f64 = 1.0;
 
-/// A share of wrong pixels that can be ignored: one of a hundred.
+/// A negligible share of wrong pixels: one in a hundred.
 pub(super) const FEW: f64 = 0.01;
 
-/// High accuracy: no pixel a shade off. Half a shade is what bytes cost, whatever the arithmetic.
+/// High accuracy: no pixel off by a whole shade. Rounding to bytes alone costs half a shade, whatever the arithmetic.
 pub(super) const ACCURATE: f64 = 1.0;
 
 /// "Little more": up to a quarter.
 pub(super) const LITTLE_MORE: f64 = 1.25;
 
-/// Three additions against one.
+/// Three additions instead of one.
 pub(super) const THREE: f64 = 3.0;
 
-/// Greatest difference of two root mean squares that have met, in shades.
+/// Two root mean squares that differ by at most this many shades have met.
 pub(super) const MET: f64 = 0.1;
 
-/// The max ratio of times that counts as equally fast: a tenth slower.
+/// Greatest ratio of times that counts as equally fast: a tenth slower.
 pub(super) const AS_FAST: f64 = 1.1;
 
-/// Verdict on both: the first of two is so, and the second.
+/// Verdict on two conditions: both, one, or neither holds.
 pub(super) fn both(one: bool, other: bool) -> Verdict {
     match (one, other) {
         (true, true) => Verdict::Holds,
@@ -32,7 +32,7 @@ pub(super) fn both(one: bool, other: bool) -> Verdict {
     }
 }
 
-/// Verdict on whether a list falls: everywhere, or from its first to its last at least.
+/// Verdict on whether a list falls: at every step, or at least from first to last.
 pub(super) fn falls(list: &[f64]) -> Verdict {
     let ends = list.first().zip(list.last()).is_some_and(|(first, last)| last < first);
     both(ends, ends && list.windows(2).all(|pair| pair[1] <= pair[0]))

@@ -1,4 +1,4 @@
-//! The budgets: what they promise, what they keep, what they cost.
+//! The budgets: what they promise, what they keep and what they cost.
 
 use maud::{Markup, html};
 

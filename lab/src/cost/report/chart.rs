@@ -9,7 +9,7 @@ use super::labels::{Rectangle, places};
 use crate::cost::{ShadingRow, Study};
 use mode13h::settings::Shading;
 
-/// Errors below are drawn here: a logarithmic axis has no 0.
+/// Smaller errors are drawn here: a logarithmic axis has no 0.
 const FLOOR: f64 = 0.01;
 
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x26, 0x2b);
@@ -18,22 +18,22 @@ pub(super) const SHADINGS: RGBColor = RGBColor(0x1f, 0x5f, 0xa8);
 pub(super) const BUDGETS: RGBColor = RGBColor(0xc4, 0x4e, 0x12);
 const BEATEN: RGBColor = RGBColor(0x8a, 0x90, 0x99);
 
-/// What the axes say of every chart here.
+/// Note on the axes of every chart here.
 pub(super) const BETTER: &str = "better: down and left";
 
-/// The letters' height, in pixels.
+/// Height of the letters, in pixels.
 pub(super) const LETTERS: i32 = 13;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Error against time, both logarithmic, as an SVG file of 860 × 520 pixels on white: for each shading the root mean square
-/// error against `lit` and the time for a frame, the efficient ones filled and joined; for each budget the same.
+/// Error against time, both logarithmic, as an SVG file of 860 × 520 pixels on white. Each shading is a point of root
+/// mean square error against `lit` and time per frame, the efficient ones filled and joined; each budget is one too.
 #[must_use]
 pub fn chart_svg(study: &Study) -> String {
     svg((860, 520), |root| draw(study, root))
 }
 
-/// An SVG file, as far as it can be drawn.
+/// An SVG file, or as much of it as could be drawn.
 pub(super) fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Outcome) -> String {
     let mut text = String::new();
     let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -48,7 +48,7 @@ pub(super) fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Outcome) -> 
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// A point: where, its name, and how it is marked.
+/// A point: its position, its name and its mark.
 struct Point {
     at: (f64, f64),
     name: String,
@@ -85,7 +85,7 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
     let mut efficient: Vec<(f64, f64)> = points.iter().filter(|p| p.efficient).map(|p| p.at).collect();
     efficient.sort_by(|a, b| a.0.total_cmp(&b.0));
     chart.draw_series(LineSeries::new(efficient.iter().copied(), SHADINGS.stroke_width(2)))?;
-    // Shadings over budgets that lie at the same place.
+    // Shadings are drawn over budgets at the same position.
     for point in points.iter().filter(|p| p.budget).chain(points.iter().filter(|p| !p.budget)) {
         let (at, size) = (point.at, 5);
         let shape = if point.budget {
@@ -135,17 +135,17 @@ fn points(study: &Study) -> Vec<Point> {
         budget: true,
         efficient: false,
     });
-    // Efficient ones first: their names get the best places.
+    // Efficient ones first, so that their names get the best positions.
     let mut points: Vec<Point> = study.shadings.iter().map(shading).chain(budgets).collect();
     points.retain(|p| p.at.0.is_finite() && p.at.1.is_finite() && p.at.0 > 0.0);
     points.sort_by_key(|p| (!p.efficient, p.budget));
     points
 }
 
-/// A point as `shared/chart.js` takes it: nanoseconds, an error, and JSON of its kind and name.
+/// A point as `shared/chart.js` takes it: nanoseconds, an error, and its kind and name as JSON.
 type JsonPoint = (f64, f64, String);
 
-/// Points in JSON.
+/// Points as JSON.
 fn json(points: impl Iterator<Item = JsonPoint>) -> String {
     let shown = points.filter(|(ns, error, _)| ns.is_finite() && error.is_finite());
     let shown: Vec<String> =
@@ -153,7 +153,7 @@ fn json(points: impl Iterator<Item = JsonPoint>) -> String {
     format!("[{}]", shown.join(","))
 }
 
-/// A shading's mark. Names are those of shadings, which need no escapes.
+/// A shading's mark. Names of shadings need no escaping.
 fn shading_mark(shading: Shading, efficient: bool) -> String {
     format!(r#""kind":"shading","name":"{}","efficient":{efficient}"#, name_of(shading))
 }
@@ -195,7 +195,7 @@ pub(super) fn time_points_json(study: &Study) -> String {
     }))
 }
 
-/// Budgets that lie at the same place, as far as can be seen, get one name.
+/// Budgets whose points cannot be distinguished by eye share one name.
 fn join_budgets(points: &mut Vec<Point>, pixel: impl Fn(&Point) -> (i32, i32)) {
     let mut joined: Vec<Point> = Vec::new();
     for point in points.drain(..) {
@@ -215,7 +215,7 @@ fn join_budgets(points: &mut Vec<Point>, pixel: impl Fn(&Point) -> (i32, i32)) {
     *points = joined;
 }
 
-/// All points, with room, from tick to tick.
+/// A range with room for all points, from tick to tick.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for value in values {
@@ -224,16 +224,16 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high { (0.1, 10.0) } else { (low / 1.4, high * 1.4) }
 }
 
-/// 1, 2 and 5 of each power of ten; of many powers the powers alone.
+/// 1, 2 and 5 times each power of ten; if there are many powers, the powers alone.
 pub(super) fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     let steps: &[f64] = if high / low > 1e3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-    // Powers of ten that f64 can show.
+    // Exponents that f64 can represent.
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
     all.filter(|tick| (low..=high).contains(tick)).collect()
 }
 
-/// Points every few pixels along a line, that names may keep off.
+/// Points every few pixels along a line, for names to avoid.
 pub(super) fn along(corners: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let between = |ends: &[(i32, i32)]| {
         let (from, to) = (ends[0], ends[1]);
@@ -243,7 +243,7 @@ pub(super) fn along(corners: &[(i32, i32)]) -> Vec<(i32, i32)> {
     corners.windows(2).flat_map(between).collect()
 }
 
-/// A name at its place, with a line to its point if it stands far off.
+/// A name at its position, with a line to its point if it is far away.
 pub(super) fn name(root: &Area<'_>, text: &str, at: (i32, i32), place: Rectangle, color: RGBColor) -> Outcome {
     let middle = (place.top + place.bottom) / 2;
     let near = (at.0.clamp(place.left, place.right), at.1.clamp(place.top + 2, place.bottom - 2));
@@ -278,7 +278,7 @@ fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     Ok(())
 }
 
-/// The ends of a range of pixels, the lower first.
+/// Both ends of a range of pixels, the lower first.
 pub(super) trait IntoPair {
     fn into_pair(self) -> (i32, i32);
 }

@@ -1,4 +1,4 @@
-//! Other choices, and the sources' claims.
+//! The other choices, and the sources' claims.
 
 use maud::{Markup, html};
 
@@ -6,7 +6,7 @@ use super::figures::{count, percent, ratio, shades, time};
 use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::{Claim, Study};
 
-/// The options, grouped by aspect, for the page.
+/// The choices, grouped by aspect, for the page.
 pub(super) fn options(study: &Study) -> Markup {
     html! {
         @if !study.options.is_empty() { section {
@@ -17,7 +17,7 @@ pub(super) fn options(study: &Study) -> Markup {
     }
 }
 
-/// The options.
+/// The choices.
 pub(super) fn table(study: &Study) -> Table {
     let columns = [
         Column::text("aspect").brief(),

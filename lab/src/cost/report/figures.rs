@@ -1,4 +1,4 @@
-//! Numbers as text. A number that is not finite is a dash.
+//! Numbers as text. A number that is not finite becomes a dash.
 
 use std::fmt::Display;
 
@@ -6,7 +6,7 @@ use mode13h::settings::Shading;
 
 pub(super) const DASH: &str = "–";
 
-/// A time, in the unit in which it reads best.
+/// A time, in whichever unit reads best.
 pub(super) fn time(nanoseconds: f64) -> String {
     let (divisor, unit) = match nanoseconds.abs() {
         ns if ns < 999.5 => (1.0, "ns"),
@@ -17,7 +17,7 @@ pub(super) fn time(nanoseconds: f64) -> String {
     if nanoseconds.is_finite() { format!("{} {unit}", three_digits(nanoseconds / divisor)) } else { DASH.into() }
 }
 
-/// A time at an axis: 1 ms, not 1.00 ms.
+/// A time on an axis: 1 ms, not 1.00 ms.
 pub(super) fn time_tick(nanoseconds: f64) -> String {
     match time(nanoseconds).split_once(' ') {
         Some((number, unit)) if number.contains('.') => {
@@ -27,7 +27,7 @@ pub(super) fn time_tick(nanoseconds: f64) -> String {
     }
 }
 
-/// Three digits that count, none after the point beyond that.
+/// Three significant digits, and all digits before the decimal point.
 pub(super) fn three_digits(number: f64) -> String {
     match number.abs() {
         n if !n.is_finite() => DASH.into(),
@@ -37,19 +37,19 @@ pub(super) fn three_digits(number: f64) -> String {
     }
 }
 
-/// Shades, to the hundredth.
+/// Shades, to two decimals.
 pub(super) fn shades(number: f64) -> String {
     if number.is_finite() { format!("{number:.2}") } else { DASH.into() }
 }
 
-/// A budget as it was asked for.
+/// A budget as the user gave it.
 pub(super) fn asked(number: f64) -> String {
     if number.is_finite() { number.to_string() } else { DASH.into() }
 }
 
-/// Shades as a bound: rounded up, so that "at most" is true, to a tenth or below one to a hundredth.
+/// Shades as a bound, rounded up so that "at most" is true: to a tenth, or below one to a hundredth.
 pub(super) fn at_most(number: f64) -> String {
-    // A little is forgiven, else 0.7 as f64 were 0.71.
+    // A small slack, or else 0.7 as f64 would become 0.71.
     let up = |scale: f64| ((number * scale) - 1e-6).ceil().max(0.0) / scale;
     if !number.is_finite() {
         DASH.into()
@@ -60,7 +60,7 @@ pub(super) fn at_most(number: f64) -> String {
     }
 }
 
-/// A number without zeros at its end.
+/// A number without trailing zeros.
 fn plain(number: f64, digits: usize) -> String {
     let text = format!("{number:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
@@ -71,7 +71,7 @@ pub(super) fn counted_shades(text: &str) -> String {
     format!("{text} shade{}", if text == "1" { "" } else { "s" })
 }
 
-/// A ratio: three digits, more where it would read as 1 and is not.
+/// A ratio: three significant digits, or more if it would read as 1 and is not.
 pub(super) fn ratio(ratio: f64) -> String {
     let off = (ratio - 1.0).abs();
     if !ratio.is_finite() {
@@ -83,7 +83,7 @@ pub(super) fn ratio(ratio: f64) -> String {
     }
 }
 
-/// A shading's name; the default is marked.
+/// A shading's name, marked if it is the default.
 pub(super) fn name_of(shading: Shading) -> String {
     format!("{shading}{}", if shading == Shading::default() { " (default)" } else { "" })
 }
@@ -92,13 +92,13 @@ pub(super) fn name_of(shading: Shading) -> String {
 pub(super) fn percent(share: f64) -> String {
     match share * 100.0 {
         p if !p.is_finite() => DASH.into(),
-        // Never 100 % of what is not all.
+        // Never 100 % unless it is all.
         p if p < 100.0 && p > 99.9 => format!("{:.3} %", (p * 1000.0).floor() / 1000.0),
         p => format!("{} %", plain(p, 2)),
     }
 }
 
-/// A count with a thin space between thousands.
+/// A count with thin spaces between thousands.
 pub(super) fn count(number: impl Display) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -111,7 +111,7 @@ pub(super) fn count(number: impl Display) -> String {
     text
 }
 
-/// Names in a row: "a", "a and b", "a, b and c".
+/// Names joined: "a", "a and b", "a, b and c".
 pub(super) fn list(shadings: &[Shading]) -> String {
     match shadings {
         [] => String::new(),

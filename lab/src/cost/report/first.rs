@@ -1,4 +1,4 @@
-//! The first screen: one shade a face beside the nearest shading, how many times the time that takes, and the curve.
+//! The first screen: flat shading beside the most accurate shading, how many times the time that takes, and the curve.
 
 use maud::{Markup, html};
 use mode13h::settings::Shading;
@@ -8,7 +8,7 @@ use super::pictures;
 use super::summary::{brief, times};
 use crate::cost::{ShadingRow, Study};
 
-/// The first screen of a study; `chart` is its curve. Without two shadings to compare the curve alone.
+/// The first screen of a study; `chart` is its curve, shown alone if there are no two shadings to compare.
 pub(super) fn screen(study: &Study, chart: &Markup) -> Markup {
     let Some([cheap, near]) = ends(study) else { return html! { (chart) } };
     let [ratio, words] = price(cheap, near);
@@ -31,8 +31,8 @@ pub(super) fn screen(study: &Study, chart: &Markup) -> Markup {
     }
 }
 
-/// One shade a face, as on the page in the browser, or else the fastest shading; and the nearest to light at every pixel.
-/// Nothing where that is one, or no figures are known.
+/// Flat shading, as on the web page, or else the fastest shading; and the one nearest to light at every pixel. `None`
+/// if the two are one and the same, or figures are missing.
 fn ends(study: &Study) -> Option<[&ShadingRow; 2]> {
     let is_known = |row: &&ShadingRow| row.per_frame.median.is_finite() && row.error_lit.max.is_finite();
     let known = || study.shadings.iter().filter(is_known);
@@ -42,7 +42,7 @@ fn ends(study: &Study) -> Option<[&ShadingRow; 2]> {
     (cheap.shading != near.shading).then_some([cheap, near])
 }
 
-/// How many times the time the right one takes, as the page in the browser has it.
+/// How many times as long the right one takes, in the form the web page uses.
 fn price(cheap: &ShadingRow, near: &ShadingRow) -> [String; 2] {
     match times(near, cheap) {
         Some(times) if times.is_finite() && times > 0.0 => [format!("{} ×", brief(times)), "the time →".into()],
@@ -51,7 +51,7 @@ fn price(cheap: &ShadingRow, near: &ShadingRow) -> [String; 2] {
     }
 }
 
-/// What a study found, for somebody who knows none of its words.
+/// What a study found, for a reader who knows none of its terms.
 fn sentence(input: &str, cheap: &ShadingRow, near: &ShadingRow) -> String {
     let price = match times(near, cheap) {
         Some(times) if times.is_finite() && times > 0.0 => format!("{} times as long as", brief(times)),

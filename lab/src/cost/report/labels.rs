@@ -1,4 +1,4 @@
-//! Places of names beside the points of a chart.
+//! Positions for names beside the points of a chart.
 
 /// A rectangle in pixels: left, top, right, bottom.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -14,7 +14,7 @@ impl Rectangle {
         Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
     }
 
-    /// The pixels of both.
+    /// Area that two rectangles share, in pixels.
     fn overlap(self, other: Self) -> i32 {
         let across = self.right.min(other.right) - self.left.max(other.left);
         let down = self.bottom.min(other.bottom) - self.top.max(other.top);
@@ -26,14 +26,14 @@ impl Rectangle {
     }
 }
 
-/// A letter of a sans-serif face is 0.55 of its height wide in the mean, 0.6 to be safe.
+/// Width of a text. A letter of a sans-serif face is on average 0.55 of its height wide; 0.6 to be safe.
 pub(super) const fn width(text_length: usize, height: i32) -> i32 {
-    // Names of some dozen letters.
+    // Names have a few dozen letters at most.
     text_length as i32 * height * 6 / 10
 }
 
-/// A place for each point's name, of the given length, within `area`: close to the point, over no other name, none of
-/// `marks` and none of the pixels of `lines`, as far as there is room. Points are in pixels.
+/// A position for each point's name, of the given length, within `area`: close to the point and, as far as there is
+/// room, clear of the other names, of `marks` and of the pixels of `lines`. Points are in pixels.
 pub(super) fn places(
     points: &[((i32, i32), usize)],
     marks: &[(i32, i32)],
@@ -70,7 +70,7 @@ pub(super) fn places(
                 }
             }
         }
-        // A name wider than the area stands where it begins at its point.
+        // A name wider than the area starts at its point.
         let beside = Rectangle { left: x + 8, top: y - height / 2, right: x + 8 + wide, bottom: y + height / 2 };
         placed.push(best.map_or(beside, |(_, place)| place));
     }

@@ -1,4 +1,4 @@
-//! Method of measuring.
+//! How the figures were measured.
 
 use maud::{Markup, html};
 

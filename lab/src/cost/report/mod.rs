@@ -1,8 +1,8 @@
-//! A study as one HTML file that opens without a network, its charts as SVG.
+//! A study as one HTML file that opens without a network, with its charts as SVG.
 //!
 //! | file | what |
 //! |---|---|
-//! | `first` | the first screen: two pictures, how many times the time, the curve |
+//! | `first` | the first screen: two pictures, the ratio of their times, the curve |
 //! | `summary` | two sentences |
 //! | `text` | the study in a terminal |
 //! | `table` | a table, for the page and for a terminal |

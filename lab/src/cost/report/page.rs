@@ -6,7 +6,7 @@ use super::chart::{budget_points_json, points_json, time_points_json};
 use super::{budgets, chart_svg, choices, first, method, shadings, summary, times};
 use crate::cost::Study;
 
-/// The report's own style, and what it shares with the page in the browser: colours, chart and divider.
+/// The report's own style, and what it shares with the web page: colours, chart and divider.
 const STYLES: [&str; 3] =
     [include_str!("shared/tokens.css"), include_str!("style.css"), include_str!("shared/figures.css")];
 
@@ -30,7 +30,7 @@ pub(super) const NAMES: &str = "The old loop done right is gouraud-8.8-reseeded,
     pixel. A shade is 1/255 of full intensity. Errors are those of the light on a face, before texture, fog and dither: \
     against gouraud, exact linear interpolation of exact vertex light, or against lit, the lighting model at every pixel.";
 
-/// The whole study as one HTML file that needs nothing else: pictures and charts are in it, and nothing is loaded.
+/// The whole study as one self-contained HTML file: pictures and charts are embedded, and nothing is loaded.
 #[must_use]
 pub fn html(study: &Study) -> String {
     let title = format!("What accuracy costs: {}", study.input);
@@ -44,7 +44,8 @@ pub fn html(study: &Study) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 @for style in STYLES { style { (PreEscaped(style)) } }
-                // Without scripts nothing moves the divider, so both pictures stand side by side, and charts keep their size.
+                // Without scripts nothing moves the divider, so both pictures stand side by side, and charts keep their
+                // size.
                 noscript { style { (PreEscaped(WITHOUT_SCRIPTS)) } }
             }
             body {
@@ -107,7 +108,7 @@ fn time_chart(study: &Study) -> Markup {
     chart(description, axes, &time_points_json(study), None)
 }
 
-/// The chart of the page in the browser or, without scripts, an SVG, where there is one.
+/// A chart that the web page's script draws, or without scripts an SVG, if there is one.
 fn chart(description: &str, [across, down]: [&str; 2], points: &str, svg: Option<&str>) -> Markup {
     markup! {
         figure.chart role="img" aria-label=(description) data-points=(points) data-across=(across) data-down=(down) {

@@ -1,4 +1,4 @@
-//! Frames and error maps as PNG inside the file.
+//! Frames and error maps as PNGs inside the file.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -9,7 +9,7 @@ use mode13h::palette::Rgb;
 
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN, index_of};
 
-/// A frame of greys, as a URI; none if it is not one of 320 × 200.
+/// A frame of greys as a data URI; `None` unless it is 320 × 200.
 pub(super) fn frame(greys: &[u8]) -> Option<String> {
     let mut grey = [Rgb::BLACK; 256];
     for (color, level) in grey.iter_mut().zip(0..=255) {
@@ -18,7 +18,7 @@ pub(super) fn frame(greys: &[u8]) -> Option<String> {
     uri(greys, grey)
 }
 
-/// An error map in the colours of its levels, as a URI.
+/// An error map in the colours of its levels, as a data URI.
 pub(super) fn error_map(errors: &[f32]) -> Option<String> {
     let mut colors = [Rgb::from(NOT_TAKEN); 256];
     for (color, level) in colors.iter_mut().zip(LEVELS) {

@@ -9,7 +9,7 @@ use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study, ties};
 use mode13h::settings::Shading;
 
-/// A part of a frame's time: its name, its class in the style, and which it is.
+/// A part of a frame's time: its name, its CSS class, and the field it shows.
 type Part = (&'static str, &'static str, fn(&Split) -> f64);
 
 const PARTS: [Part; 5] = [
@@ -70,7 +70,7 @@ pub(super) fn times(study: &Study) -> Table {
         .note("★ efficient: no shading is as near to lit (root mean square) and faster, as far as the times show.")
 }
 
-/// A shading's name; the default is marked, and what is efficient if that is asked for.
+/// A shading's name, marked if it is the default and, if asked for, if it is efficient.
 fn name(row: &ShadingRow, marks_efficient: bool) -> Cell {
     let star = if marks_efficient && row.efficient { " ★" } else { "" };
     let default = if row.shading == Shading::default() { " (default)" } else { "" };

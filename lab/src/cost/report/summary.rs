@@ -4,12 +4,12 @@ use super::figures::{at_most, counted_shades, ratio, time};
 use crate::cost::{ShadingRow, Study};
 use mode13h::settings::Shading;
 
-/// Below this many shades a difference between two largest errors is none that anyone sees.
+/// Two largest errors that differ by less than this many shades look the same.
 const NOTHING: f64 = 0.05;
 
-/// A study in two sentences, whatever it found: how far the default loop is from exact and how fast it is beside the loop as
-/// printed, and what lighting every pixel gains and costs. Without the default or `gouraud-8.8` the fastest and the nearest of
-/// the other shadings. Bounds are rounded up.
+/// A study in two sentences, whatever it found: how far the default loop is from exact and how fast it is compared with
+/// the loop as printed, then what lighting every pixel gains and costs. Without the default or `gouraud-8.8`, it
+/// compares the fastest of the other shadings with the nearest. Bounds are rounded up.
 #[must_use]
 pub fn summary(study: &Study) -> [String; 2] {
     let find = |shading: Shading| study.shadings.iter().find(|row| row.shading == shading);
@@ -19,7 +19,7 @@ pub fn summary(study: &Study) -> [String; 2] {
     [arithmetic(&study.input, linear, find(Shading::GouraudVintage)), model(linear, find(Shading::Phong))]
 }
 
-/// The numeric error of the default loop, and its time beside the loop as printed.
+/// The numeric error of the default loop, and its time compared with the printed loop's.
 fn arithmetic(input: &str, linear: &ShadingRow, printed: Option<&ShadingRow>) -> String {
     let error = match linear.error_gouraud.max {
         error if !error.is_finite() => "has an error that is not known".to_string(),
@@ -35,7 +35,7 @@ fn arithmetic(input: &str, linear: &ShadingRow, printed: Option<&ShadingRow>) ->
     format!("On {input} {name} {error} and {time}.")
 }
 
-/// What lighting every pixel does to the error, and its price.
+/// What lighting every pixel does to the error, and what it costs.
 fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let left = linear.error_lit.max;
     let Some(phong) = phong else {
@@ -91,13 +91,13 @@ fn of_others(study: &Study) -> [String; 2] {
     [first, second]
 }
 
-/// Ratio of the time of `row` to that of `other`; `None` if the difference is not measurable.
+/// The ratio of the time of `row` to that of `other`; `None` if the difference is not measurable.
 pub(super) fn times(row: &ShadingRow, other: &ShadingRow) -> Option<f64> {
     let tied = row.as_fast_as.contains(&other.shading) || other.as_fast_as.contains(&row.shading);
     (!tied).then_some(row.ratio / other.ratio)
 }
 
-/// How fast `row` is beside `other`, which is called `name`.
+/// How fast `row` is compared with `other`, which is called `name`.
 fn speed(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     match times(row, other) {
         None => format!("as fast as {name}, as far as can be told"),
@@ -106,7 +106,7 @@ fn speed(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     }
 }
 
-/// How long `row` takes beside `other`, which is called `name`.
+/// How long `row` takes compared with `other`, which is called `name`.
 fn slowness(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     match times(row, other) {
         None => format!("takes as long as {name}, as far as can be told"),
@@ -115,7 +115,7 @@ fn slowness(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
     }
 }
 
-/// A ratio without zeros at its end.
+/// A ratio without trailing zeros.
 pub(super) fn brief(times: f64) -> String {
     let text = ratio(times);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }

@@ -1,15 +1,15 @@
-//! A table of the report: made once, shown on the page and in a terminal.
+//! A table of the report, built once and shown both on the page and in a terminal.
 
 use maud::{Markup, html};
 
 use super::figures::{DASH, ratio, time};
 use crate::cost::Nanoseconds;
 
-/// A column: its heading, and where it stands.
+/// A column: its heading, and where it is shown.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column {
     head: &'static str,
-    /// A heading over neighbours that have the same.
+    /// A heading shared with neighbouring columns.
     group: &'static str,
     is_text: bool,
     is_brief: bool,
@@ -26,18 +26,18 @@ impl Column {
         Self { is_text: true, ..Self::number(head) }
     }
 
-    /// The column in a terminal, too.
+    /// Shows the column in a terminal, too.
     pub(super) const fn brief(self) -> Self {
         Self { is_brief: true, ..self }
     }
 
-    /// The column under a heading that its neighbours share.
+    /// Puts the column under a heading shared with its neighbours.
     pub(super) const fn under(self, group: &'static str) -> Self {
         Self { group, ..self }
     }
 }
 
-/// One cell: its text, and how the page shows it if that is more than text.
+/// One cell: its text, and its markup on the page if that is more than the text.
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
     text: String,
@@ -45,7 +45,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// Text, and how the page shows it.
+    /// Text, and its markup on the page.
     pub(super) fn shown(text: impl Into<String>, markup: Markup) -> Self {
         Self { text: text.into(), markup: Some(markup) }
     }
@@ -61,17 +61,17 @@ impl<T: Into<String>> From<T> for Cell {
     }
 }
 
-/// A table. Columns in which nothing stands are left out, and so is a table without rows.
+/// A table. Empty columns are left out, and so is a table without rows.
 #[derive(Debug)]
 pub(super) struct Table {
     columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
-    /// What a heading means, or the table, and whether a terminal says it, too.
+    /// Notes on a heading or on the whole table, and whether a terminal shows them too.
     notes: Vec<(&'static str, bool)>,
 }
 
 impl Table {
-    /// A row has a cell for each column.
+    /// A table whose rows have one cell for each column.
     pub(super) fn new(columns: &[Column], mut rows: Vec<Vec<Cell>>) -> Self {
         let is_kept = |column: usize| rows.iter().any(|row| !row[column].is_empty());
         let kept: Vec<bool> = (0..columns.len()).map(is_kept).collect();
@@ -89,19 +89,19 @@ impl Table {
         Self { columns, rows, notes: Vec::new() }
     }
 
-    /// Says something below the table.
+    /// Adds a note below the table.
     pub(super) fn note(mut self, note: &'static str) -> Self {
         self.notes.push((note, true));
         self
     }
 
-    /// Says something of a column that stands on the page alone.
+    /// Adds a note on a column that only the page shows.
     pub(super) fn page_note(mut self, note: &'static str) -> Self {
         self.notes.push((note, false));
         self
     }
 
-    /// All columns, and all notes; nothing if there is no row.
+    /// All columns and notes; empty without rows.
     pub(super) fn html(&self) -> Markup {
         let has_groups = self.columns.iter().any(|column| !column.group.is_empty());
         html! {
@@ -130,7 +130,7 @@ impl Table {
         !group(column).is_empty() && (column == 0 || group(column) != group(column - 1))
     }
 
-    /// The headings over neighbours, with the count of their columns.
+    /// The shared headings, each with its number of columns.
     fn groups(&self) -> Vec<(&'static str, usize)> {
         let mut groups: Vec<(&'static str, usize)> = Vec::new();
         for column in &self.columns {
@@ -142,7 +142,7 @@ impl Table {
         groups
     }
 
-    /// The brief columns, aligned, and the notes; nothing if there is no row.
+    /// The brief columns, aligned, and the notes; empty without rows.
     pub(super) fn text(&self) -> String {
         let brief: Vec<usize> = (0..self.columns.len()).filter(|i| self.columns[*i].is_brief).collect();
         if self.rows.is_empty() || brief.is_empty() {
@@ -153,7 +153,7 @@ impl Table {
         let length = |text: &str| text.chars().count();
         let mut widths: Vec<usize> =
             (0..brief.len()).map(|i| lines.iter().map(|line| length(&line[i])).max().unwrap_or(0)).collect();
-        // The headings over neighbours, each as wide as what stands below it at most.
+        // The shared headings, each at most as wide as the columns below it.
         let mut groups = String::new();
         let mut i = 0;
         while i < brief.len() {
@@ -186,17 +186,17 @@ fn shown(cell: &Cell) -> Markup {
     cell.markup.clone().unwrap_or_else(|| html! { (cell.text) })
 }
 
-/// The quartiles of a time.
+/// The median and quartiles of a time.
 pub(super) fn quartiles(of: &Nanoseconds) -> Cell {
     soft(format!("{} – {}", time(of.lower_quartile), time(of.upper_quartile)))
 }
 
-/// An interval: from – to.
+/// An interval: low – high.
 pub(super) fn interval((low, high): (f64, f64)) -> Cell {
     soft(format!("{} to {}", ratio(low), ratio(high)))
 }
 
-/// Text that stands back, and may take two lines.
+/// Subdued text that may wrap onto two lines.
 fn soft(text: String) -> Cell {
     Cell::shown(text.clone(), html! { span.soft { (text) } })
 }

@@ -1,4 +1,4 @@
-//! Reports of studies made by hand.
+//! Reports of hand-made studies.
 
 use std::collections::HashSet;
 
@@ -73,7 +73,7 @@ fn study(shadings: Vec<ShadingRow>) -> Study {
     }
 }
 
-/// Everything that a study may hold.
+/// A study with every part that one can have.
 fn whole() -> Study {
     let shadings =
         Shading::ALL.into_iter().zip(1_u8..).map(|(of, i)| shading(of, f64::from(i), 0.7, 20.0 / f64::from(i)));
@@ -107,14 +107,14 @@ fn whole() -> Study {
     study
 }
 
-/// Takes the one script out of a page. Returns the page without it, and the script.
+/// Splits a page into the page without its one script, and the script.
 fn apart(page: &str) -> (String, &str) {
     let (before, rest) = page.split_once("<script type=\"module\">").expect("a script");
     let (script, after) = rest.split_once("</script>").expect("an end of the script");
     (format!("{before}{after}"), script)
 }
 
-/// Makes XML of an HTML page: replaces the first line, leaves out the script, and closes the elements that have no end.
+/// Turns an HTML page into XML: replaces the first line, drops the script, and closes void elements.
 fn as_xml(page: &str) -> String {
     let (page, _) = apart(page);
     let mut text = page
@@ -126,7 +126,7 @@ fn as_xml(page: &str) -> String {
         let mut parts = text.split(name);
         let mut closed = parts.next().unwrap_or_default().to_string();
         for part in parts {
-            // Attributes hold no `>` unescaped.
+            // No attribute contains an unescaped `>`.
             let (attributes, rest) = part.split_once('>').expect("an end");
             closed += &format!("{name}{attributes}/>{rest}");
         }
@@ -172,7 +172,7 @@ fn a_report_is_well_formed_and_says_everything() {
     assert!(text.contains(&summary(&study).join(" ")));
 }
 
-/// The terminal says what the page says: every sentence, and every cell of its tables.
+/// The terminal shows what the page shows: every sentence, and every cell of its tables.
 #[test]
 fn the_text_says_what_the_page_says() {
     let study = whole();
@@ -181,7 +181,7 @@ fn the_text_says_what_the_page_says() {
     let says = |part: &str| assert!(page.contains(part), "{part}");
     assert!(text.starts_with(&summary(&study).join("\n")) && text.contains("(default)") && text.contains("★"));
     for line in text.lines() {
-        // Columns of a table stand two spaces apart, and a heading's group is a heading of its own.
+        // Columns of a table are two spaces apart, and a shared heading is a heading of its own.
         let is_input =
             line.starts_with(study.input.as_str()) || line.starts_with(&study.host.processor) || line.starts_with('"');
         for part in line.split("  ").map(str::trim).filter(|_| !is_input) {
@@ -193,7 +193,7 @@ fn the_text_says_what_the_page_says() {
     }
 }
 
-/// Each heading has rows below it, and each row a cell that is not empty; no pair is listed twice.
+/// Each heading has rows below it, and each row has a non-empty cell; no pair is listed twice.
 #[test]
 fn no_table_is_empty_and_no_pair_stands_twice() {
     let mut few = study(vec![shading(Shading::Flat, 1.0, 9.0, 28.0)]);
@@ -241,7 +241,7 @@ fn a_report_loads_nothing() {
         assert!(!script.contains(call), "{call}");
     }
     for foreign in ["http", "//", "@import", "<script", "<link", "url("] {
-        // Base 64 has slashes.
+        // Base64 contains slashes.
         let outside = own.split('"').filter(|part| !part.starts_with("data:image/png;base64,"));
         assert!(outside.into_iter().all(|part| !part.contains(foreign)), "{foreign}");
     }
@@ -263,7 +263,8 @@ fn the_chart_that_scripts_draw_has_every_point() {
         let end = format!(r#""budget":{}}}"#, row.max_error);
         assert!(points.contains(&end), "{end} in {points}");
     }
-    // The budgets' chart has its time and, where there is one, that of a single shading; the times' chart has each time.
+    // The budgets' chart has each budget's time and, if there is one, a single shading's; the times' chart has each
+    // time.
     let charts: Vec<&str> = document.descendants().filter_map(|n| n.attribute("data-points")).collect();
     let singles =
         study.budget.iter().filter(|row| row.best_single.is_some() && row.best_single_shading.is_some()).count();
@@ -279,7 +280,7 @@ fn the_chart_that_scripts_draw_has_every_point() {
         let point = format!(r#"{{"ms":{},"error":{},"kind":"budget""#, row.max_time / 1e6, row.largest);
         assert!(charts[2].contains(&point), "{point} in {}", charts[2]);
     }
-    // A study that nobody has timed.
+    // A study without times.
     let mut untimed = self::study(vec![shading(Shading::Flat, f64::NAN, 0.0, 0.0)]);
     untimed.budget.clear();
     assert!(html(&untimed).contains(r#"data-points="[]""#));
@@ -302,7 +303,7 @@ fn charts_name_every_point() {
     assert!(!names.iter().any(|name| name.contains("drawn at")), "no error is below the floor");
     let page = html(&study);
     assert!(page.contains("7.5") && page.contains("0.52"), "{page}");
-    // An error of 0 has a place, and the axis says so.
+    // An error of 0 has a position, and the axis says so.
     let exact = self::study(vec![shading(Shading::Phong, 1.0, 0.0, 0.0)]);
     assert!(texts(&chart_svg(&exact)).iter().any(|name| name.contains("below 0.01 drawn at 0.01")));
 }
@@ -395,7 +396,7 @@ fn the_first_screen_says_what_accuracy_costs() {
         row
     };
     let cases = [
-        // The left one is flat although another is faster.
+        // The left one is flat shading, although another is faster.
         (
             vec![shading(Flat, 1.0, 9.0, 28.0), shading(Gouraud88, 0.5, 0.6, 14.6), shading(Phong, 5.8, 0.0, 0.5)],
             Some((
@@ -406,7 +407,7 @@ fn the_first_screen_says_what_accuracy_costs() {
         ),
         (
             vec![shading(Phong, 3.0, 0.0, 0.5), shading(Gouraud88, 1.0, 0.6, 0.5)],
-            // Equal errors: the faster one is both ends.
+            // With equal errors the faster one is both ends.
             None,
         ),
         (

@@ -1,11 +1,11 @@
-//! A study in a terminal: the sentences and tables of the page, with fewer columns.
+//! A study in a terminal: the page's sentences and tables, with fewer columns.
 
 use super::page::NAMES;
 use super::{budgets, choices, shadings, summary, times};
 use crate::cost::{Claim, Study};
 use crate::lines::lines;
 
-/// The study as text: the page without its pictures, and the most important columns of its tables.
+/// The study as text: the page without its pictures, and with only the most important columns of its tables.
 #[must_use]
 pub fn text(study: &Study) -> String {
     let Study { input, host, kernel, frames, rounds, .. } = study;
@@ -32,7 +32,7 @@ pub fn text(study: &Study) -> String {
     parts.join("\n")
 }
 
-/// Lines of at most 100 letters.
+/// Wraps text to at most 100 columns.
 fn wrapped(text: &str) -> String {
     lines(text, 100).join("\n") + "\n"
 }

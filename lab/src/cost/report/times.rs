@@ -1,4 +1,4 @@
-//! The times for a frame: the errors that they allow.
+//! Times per frame, and the errors that they allow.
 
 use maud::{Markup, html};
 

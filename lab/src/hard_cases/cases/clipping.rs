@@ -16,12 +16,12 @@ use mode13h::scene::Scene;
 /// The near plane of these cases.
 const NEAR: f64 = 0.5;
 
-/// Cut corners are rounded on their own: a few shades either way.
+/// Clipped corners are rounded separately, so a few shades either way.
 const CUT: Measure = Measure { shades: 4, ..EXACT };
 
-/// A mesh whose vertices have these intensities in the light of [`light::scene`] from above.
+/// A mesh whose vertices have these intensities when lit from above by [`light::scene`].
 fn lit(positions: &[Vector], intensities: &[f64], triangles: &[[usize; 3]]) -> Option<Mesh> {
-    // The light comes along y: a normal that leans away from it by the arc cosine.
+    // The light comes along y, so the normal leans away from it by the arc cosine.
     let normal = |i: &f64| Vec3::new(0.0, *i as f32, (1.0 - i * i).sqrt() as f32);
     let positions = positions.iter().map(|p| Vec3::from_array(p.map(|c| c as f32))).collect();
     let triangles = triangles.iter().map(|t| t.map(|i| i as u32)).collect();
@@ -37,7 +37,7 @@ fn scene(mesh: Option<Mesh>, view: View) -> Scene {
 
 pub(super) fn r7() -> Comparison {
     let size = (30, 26);
-    // One unit is one pixel there.
+    // One unit is one pixel at that distance.
     let view = View { size, eye: [0.0, 0.0, 26.0], field_of_view: 2.0 * libm::atan(0.5) };
     let positions = [[-11.3, 8.4, 0.0], [-60_000.0, -100_000.0, 0.0], [120_000.0, -30_000.0, 0.0]];
     let triangles = [[0, 1, 2]];
@@ -48,7 +48,7 @@ pub(super) fn r7() -> Comparison {
     comparison
 }
 
-/// A floor one unit below the eye, from `z[0]` (towards the eye) on, a strip between each two.
+/// A floor one unit below the eye, starting at `z[0]` (toward the eye), with a strip between each two values.
 fn floor(z: &[f64]) -> (Vec<Vector>, Vec<[usize; 3]>, Vec<f64>) {
     let mut positions = Vec::new();
     let mut intensities = Vec::new();

@@ -6,18 +6,18 @@ use crate::hard_cases::face::{Corner, Face, at, flat, without_diagonals};
 use crate::hard_cases::fault::depth;
 use crate::hard_cases::panel::{Mark, Measure};
 
-/// Faces hide each other: which of them has a pixel counts, not how many drew it.
+/// Faces hide each other: what counts is which one has the pixel, not how many drew it.
 const BY_DEPTH: Measure = Measure { shades: 0, counts_writes: false, other_byte: Mark::Face };
 
-/// Bytes of three ramps of the palette: copper, steel and jade.
+/// Bytes from three ramps of the palette: copper, steel and jade.
 const COLORS: [u8; 3] = [44, 64 + 44, 128 + 44];
 
-/// A quad of one byte.
+/// A quad with one byte.
 fn quad([a, b, c, d]: [Corner; 4], color: u8) -> [Face; 2] {
     [flat([a, b, c], color), flat([a, c, d], color)]
 }
 
-/// A corner at this distance, in near distances.
+/// A corner at this distance, in multiples of the near plane's.
 fn far(x: f64, y: f64, w: f64) -> Corner {
     at(x, y, 0.0).deep(1.0 / w)
 }
@@ -50,7 +50,7 @@ pub(super) fn d1() -> Comparison {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy);
         let (dx, dy) = (dx / length, dy / length);
-        // Far where it begins, near where it ends.
+        // Far at its start, near at its end.
         let corner = |along: f64, across: f64| {
             at(from.0 + dx * along - dy * across, from.1 + dy * along + dx * across, 0.0)
                 .deep(0.3 + 0.4 * (along + overhang) / (length + 2.0 * overhang))

@@ -15,10 +15,10 @@ use mode13h::scene::{Camera, Object, Scene};
 
 const SIZE: (usize, usize) = (28, 26);
 
-/// Matt surfaces: the fault's own view and light come to the same within this many shades.
+/// Matt surfaces: the fault's own view and light agree with the engine's within this many shades.
 const LIT: Measure = Measure { shades: 12, ..EXACT };
 
-/// A mesh of white, without ambient light, seen by `view`.
+/// A white mesh without ambient light, seen by `view`.
 pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     let mut scene = Scene::new();
     let eye = Vec3::from_array(view.eye.map(|c| c as f32));
@@ -37,10 +37,10 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     scene
 }
 
-/// Rest of a case: a mesh, its lights, and the shades that the fault gives its vertices.
+/// What light cases need besides the view: a mesh, its lights, and the shades that the fault gives its vertices.
 struct Lit {
     mesh: Option<Mesh>,
-    /// The vertices' positions as the fault has them: the engine may split vertices.
+    /// The vertices' positions before the engine splits any vertices.
     positions: Vec<Vector>,
     triangles: Vec<[usize; 3]>,
     suns: Vec<Light>,
@@ -70,7 +70,7 @@ fn sun(towards: Vector) -> Light {
     Light::sun(towards.map(|c| c as f32))
 }
 
-/// Sums of the unit normals of each vertex's faces, as they are.
+/// For each vertex, the sum of its faces' unit normals, not normalized.
 fn sums(positions: &[Vector], triangles: &[[usize; 3]]) -> Vec<Vector> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for triangle in triangles {
@@ -92,10 +92,10 @@ pub(super) fn n1() -> Comparison {
         [cos, sin, 0.0]
     }));
     let mut triangles: Vec<[usize; 3]> = (0..RIM).map(|i| [0, 1 + i, 1 + (i + 1) % RIM]).collect();
-    // One corner twice: no area.
+    // Repeats one corner, so it has no area.
     triangles.push([1, 1, 2]);
     let towards = unit([0.4, 0.5, 1.0]);
-    // Of NaN nothing is the maximum, so it stays.
+    // Comparisons with NaN are false, so it stays.
     let shades = sums(&positions, &triangles).into_iter().map(|sum| {
         let intensity = dot(unit(sum), towards);
         if intensity < 0.0 { 0.0 } else { intensity * 255.0 }
@@ -141,7 +141,7 @@ pub(super) fn n2() -> Comparison {
     )
 }
 
-/// The bytes that a fault gives the vertices of a ball, from each vertex's normal.
+/// Compares a ball with the bytes that a fault gives its vertices from each vertex's normal.
 fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     let mesh = shapes::sphere(24, 16);
     let wide = |v: &Vec3| [v.x, v.y, v.z].map(f64::from);
@@ -153,7 +153,7 @@ fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     comparison
 }
 
-/// The low byte of a whole number of shades.
+/// The low byte of a shade rounded to a whole number.
 fn in_8_bits(shade: f64) -> u8 {
     (shade + 0.5).floor() as i64 as u8
 }
@@ -174,7 +174,7 @@ pub(super) fn n5() -> Comparison {
 }
 
 pub(super) fn n6() -> Comparison {
-    // The corner (1, 1, 1) towards the eye.
+    // The corner (1, 1, 1) points toward the eye.
     let (right, up, front) = (unit([1.0, 0.0, -1.0]), unit([-1.0, 2.0, -1.0]), unit([1.0, 1.0, 1.0]));
     let turn = |p: Vector| [dot(right, p), dot(up, p), dot(front, p)];
     let mut grid: Vec<Vector> = Vec::new();
@@ -185,7 +185,7 @@ pub(super) fn n6() -> Comparison {
             grid.len() - 1
         })
     };
-    // Each face of the cube in 2 × 2 squares; their corners are shared with the faces beside it.
+    // Each face of the cube is split into 2 × 2 squares, which share corners with the adjacent faces.
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             for (u, v) in [(-1.0, -1.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0)] {
@@ -203,13 +203,13 @@ pub(super) fn n6() -> Comparison {
         }
     }
     let towards = unit([0.15, 0.25, 1.0]);
-    // A grid point's faces are those of the axes on which it lies at ±1: its own coordinates are the sum.
+    // A grid point belongs to the faces of the axes on which it lies at ±1, so its own coordinates are the sum.
     let shades = grid.iter().map(|p| {
         let faces = p.iter().filter(|c| c.abs() == 1.0).count() as f64;
         (dot(turn(*p).map(|c| c / faces), towards)).max(0.0) * 255.0
     });
     let shades: Vec<f64> = shades.collect();
-    // Points at the middle of an edge or of a face have a 0 there, which adds nothing to the sum.
+    // Points in the middle of an edge or a face have a 0 there, which adds nothing to the sum.
     let positions: Vec<Vector> = grid.iter().map(|p| turn(p.map(|c| c * 0.6))).collect();
     let mut comparison = compare(
         4.0,

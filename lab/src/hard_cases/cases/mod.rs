@@ -1,4 +1,4 @@
-//! The table of cases, and what the ways to build one share.
+//! The table of cases, and what the functions that build them share.
 
 mod clipping;
 mod hidden;
@@ -216,10 +216,10 @@ pub static CASES: &[Case] = &[
     },
 ];
 
-/// Every pixel as it must be, and the writes counted.
+/// Every pixel exact, with writes counted.
 const EXACT: Measure = Measure { shades: 0, counts_writes: true, other_byte: Mark::Shade };
 
-/// The fault measured against the engine, which draws the faces.
+/// Compares the fault with the engine, which draws the faces.
 fn against_engine(
     size: (usize, usize),
     faces: &[Face],
@@ -244,7 +244,7 @@ fn edges(faces: &[Face]) -> Vec<Segment> {
     faces.iter().flat_map(Face::edges).collect()
 }
 
-/// Both sides of a scene in greys: the fault measured against the engine.
+/// Compares the fault with the engine on a scene in greys.
 fn of_scene(
     (right, triangles): (Panel, Vec<Triangle>),
     measure: Measure,

@@ -9,7 +9,7 @@ use crate::hard_cases::panel::{Measure, Panel};
 use mode13h::palette::builtin;
 use mode13h::raster::Interpolation;
 
-/// A byte may be a shade off: the engine's own rounding.
+/// A byte may be one shade off through the engine's own rounding.
 const ROUNDED: Measure = Measure { shades: 1, ..EXACT };
 
 pub(super) fn r2() -> Comparison {
@@ -42,7 +42,7 @@ pub(super) fn r14() -> Comparison {
 }
 
 pub(super) fn c5() -> Comparison {
-    // The horizon at y = 3; the floor lies 22 units of 1/w below it and is 28 wide.
+    // The horizon is at y = 3; the floor is 22 units of 1/w below it and 28 wide.
     let on_floor = |across: f64, w: f64| (15.0 + 14.0 * across / w, 3.0 + 22.0 / w);
     let corner = |across: f64, w: f64| {
         let (x, y) = on_floor(across, w);
@@ -57,21 +57,21 @@ pub(super) fn c5() -> Comparison {
     comparison
 }
 
-/// Pixels a side of the square that N8's quad lies and turns in.
+/// Side, in pixels, of the square in which N8's quad lies and turns.
 const BOX: usize = 17;
 
 pub(super) fn n8() -> Comparison {
     let size = (2 * BOX, BOX);
     let quad = [at(1.3, 5.2, 20.0), at(10.6, 0.9, 240.0), at(15.7, 12.4, 30.0), at(4.2, 16.1, 250.0)];
     let quad = quad.map(Corner::rounded);
-    // A quarter turn within the box, and on to the box beside it.
+    // A quarter turn within the box, then across to the box beside it.
     let turned = quad.map(|c| Corner { x: BOX as f64 - c.y, y: c.x, ..c }.moved(BOX as f64, 0.0));
     let split = |[a, b, c, d]: [Corner; 4]| [gouraud([a, b, c]), gouraud([a, c, d])];
     let faces: Vec<Face> = [quad, turned].into_iter().flat_map(split).collect();
     let [quad_vertices, turned_vertices] = [quad, turned].map(|q| q.map(|corner| corner.vertex()));
     let mut fault = engine::draw_by_table(size, &[&quad_vertices, &turned_vertices]);
     let mut right = engine::draw_faces(size, &faces, false);
-    // The half on the left, and beside it the same turned.
+    // The left half, and beside it the same half turned.
     let beside = |panel: &Panel| {
         let mut beside = Panel::new(size);
         for y in 0..BOX {
@@ -86,7 +86,7 @@ pub(super) fn n8() -> Comparison {
     };
     for panel in [&mut fault, &mut right] {
         let due = beside(panel);
-        // Rows that were columns start elsewhere: a shade either way.
+        // Rows that were columns start elsewhere, so a shade either way.
         panel.mark_against(&due, Measure { shades: 2, ..EXACT });
     }
     let outline =
@@ -96,7 +96,7 @@ pub(super) fn n8() -> Comparison {
 }
 
 pub(super) fn n9() -> Comparison {
-    // Ribs from the upper to the lower edge, dark and light in turn.
+    // Ribs from the upper to the lower edge, alternately dark and light.
     let ribs = [(1.2, 3.6), (9.1, 6.2), (12.4, 16.9), (23.6, 18.1)];
     let mut faces: Vec<Face> = Vec::new();
     for (i, pair) in ribs.windows(2).enumerate() {

@@ -8,7 +8,7 @@ use crate::hard_cases::fault::{cover, paint};
 use crate::hard_cases::panel::{Measure, Panel};
 use mode13h::palette::builtin;
 
-/// Three corners of one shade.
+/// A face with one shade at all three corners.
 fn plain(points: [(f64, f64); 3], shade: f64) -> Face {
     gouraud(points.map(|(x, y)| at(x, y, shade)))
 }
@@ -32,7 +32,7 @@ pub(super) fn r3() -> Comparison {
     let mut faces = Vec::new();
     for row in 0..6_u32 {
         for column in 0..7_u32 {
-            // Somewhere in its own 4 × 4 pixels, and turned: by two sequences without a pattern.
+            // Somewhere within its own 4 × 4 pixels, and rotated, by two sequences without a pattern.
             let number = f64::from(row * 7 + column);
             let (u, v) = ((number * 0.618_034).fract(), (number * 0.414_214).fract());
             let (x, y) = (f64::from(column) * 4.0 + 2.0 + 1.4 * u, f64::from(row) * 4.0 + 1.8 + 1.4 * v);
@@ -98,7 +98,7 @@ pub(super) fn r6() -> Comparison {
     };
     let faces = |order: usize| triangles.map(|corners| gouraud(orders(corners)[order]));
     let (mut fault, mut right) = (drawn(0), engine::draw_faces(size, &faces(0), false));
-    // Less than this is not to be seen, and would be marked everywhere.
+    // Smaller errors are invisible and would be marked everywhere.
     fault.mark_against(&drawn(1), Measure { shades: 5, ..EXACT });
     right.mark_against(&engine::draw_faces(size, &faces(1), false), EXACT);
     Comparison {
@@ -121,7 +121,7 @@ pub(super) fn r8() -> Comparison {
     let mut right = engine::draw_in_bands((30, 28), &comparison.triangles, ROWS);
     right.mark_against(&comparison.right, EXACT);
     comparison.right = right;
-    // The bands.
+    // The boundaries of the bands.
     let bands = (1..4).map(|band| (ROWS * band) as f64);
     comparison.outline.extend(bands.map(|y| [(0.0, y), (30.0, y)]));
     comparison
@@ -143,7 +143,7 @@ pub(super) fn r11() -> Comparison {
         .collect();
     let moved = |face: &Face| gouraud(face.corners.map(|corner| corner.moved(RIGHT as f64, DOWN as f64)));
     let both: Vec<Face> = first.iter().copied().chain(first.iter().map(moved)).collect();
-    // The first picture twice.
+    // The first picture, twice.
     let twice = |panel: &Panel| {
         let mut twice = panel.clone();
         for y in 0..size.1 {

@@ -1,11 +1,11 @@
-//! Faults of cover: which pixels a triangle has.
+//! Faults of cover: which pixels a triangle owns.
 
 use super::{centre, paint, side, wrapped};
 use crate::hard_cases::face::{Corner, gouraud};
 use crate::hard_cases::panel::Panel;
 
-/// No fill rule: every pixel whose centre is inside **or on any edge**. A triangle without area has
-/// all of its three edges everywhere on its line.
+/// No fill rule: every pixel whose centre is inside **or on any edge**. All three edges of a triangle without area lie
+/// on the same line.
 pub(in crate::hard_cases) fn no_fill_rule(panel: &mut Panel, corners: &[Corner; 3]) {
     let [a, b, c] = *corners;
     let area = side(a, b, (c.x, c.y));
@@ -29,12 +29,12 @@ pub(in crate::hard_cases) fn no_fill_rule(panel: &mut Panel, corners: &[Corner; 
     }
 }
 
-/// Every pixel that a span touches, from the one its left end lies in to the one its right end lies
-/// in, and every row that the triangle reaches: one pixel at least, however small the triangle is.
+/// Every pixel that a span touches, from the one that contains its left end to the one that contains its right end, and
+/// every row that the triangle touches: at least one pixel, however small the triangle.
 pub(in crate::hard_cases) fn every_pixel_touched(panel: &mut Panel, corners: &[Corner; 3]) {
     let rows = corners.iter().fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c.y), high.max(c.y)));
     for y in rows.0.floor() as i32..=rows.1.floor() as i32 {
-        // The part of the triangle within the row: of each edge the two ends, cut to the row.
+        // The part of the triangle within the row, from each edge's two ends clipped to the row.
         let (mut left, mut right) = (f64::MAX, f64::MIN);
         for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b])) {
             let (low, high) = (a.y.min(b.y).max(f64::from(y)), a.y.max(b.y).min(f64::from(y) + 1.0));
@@ -52,20 +52,20 @@ pub(in crate::hard_cases) fn every_pixel_touched(panel: &mut Panel, corners: &[C
     }
 }
 
-/// One row of the Hungarian tutorial's table: where its two edges cross it, and their shades there.
+/// One row of the Hungarian tutorial's table: where two edges cross it, and the shades there.
 #[derive(Clone, Copy, Default)]
 struct TableRow {
     ends: [(i32, i32); 2],
     count: usize,
 }
 
-/// Part of a pixel that a row's slope is cut to. In 8.8 the fault shows after a few hundred rows; a
-/// picture has some thirty.
+/// Fraction of a pixel that a row's slope is truncated to. In 8.8 the fault shows only after a few hundred rows, and a
+/// picture has about thirty.
 const SLOPE: f64 = 16.0;
 
-/// The Hungarian tutorial's table with slopes that are cut off: every edge is walked from its first corner to its
-/// second, one addition a row, so the error of the slope is added once a row too. A neighbour walks the same
-/// edge the other way and comes to other places.
+/// The Hungarian tutorial's table with truncated slopes: every edge is walked from its first corner to its second with
+/// one addition per row, so the slope's error is added every row too. A neighbour walks the same edge in the other
+/// direction and ends up at other positions.
 pub(in crate::hard_cases) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut table = vec![TableRow::default(); panel.height()];
     let first_centre = |coordinate: f64| (coordinate - 0.5).ceil() as i32;
@@ -76,7 +76,7 @@ pub(in crate::hard_cases) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]
             rows.reverse();
         }
         let Some(&begin) = rows.first() else { continue };
-        // The cut, toward zero; in 1/256. Shades are in 8.8.
+        // Truncates toward zero, in 1/256 pixel. Shades are in 8.8.
         let slope = |from: f64, to: f64, parts: f64| ((to - from) / (b.y - a.y) * parts).trunc() / parts * 256.0;
         let (dx, ds) = (slope(a.x, b.x, SLOPE) as i32, slope(a.shade, b.shade, 256.0) as i32);
         let ahead = f64::from(begin) + 0.5 - a.y;
@@ -104,8 +104,7 @@ pub(in crate::hard_cases) fn cut_slopes(panel: &mut Panel, corners: &[Corner; 3]
     }
 }
 
-/// Each edge as a line x = m·y + b from the frame's own corner, m cut off: the further down the
-/// frame, the further off.
+/// Each edge is a line x = m·y + b from the frame's own corner with m truncated, so the error grows down the frame.
 pub(in crate::hard_cases) fn lines_from_the_corner(panel: &mut Panel, corners: &[Corner; 3]) {
     for y in 0..panel.height() as i32 {
         let yc = f64::from(y) + 0.5;
@@ -126,7 +125,7 @@ pub(in crate::hard_cases) fn lines_from_the_corner(panel: &mut Panel, corners: &
     }
 }
 
-/// Corners on whole pixels, as all five sources have them.
+/// Corners rounded to whole pixels, which is what all five sources do.
 pub(in crate::hard_cases) fn whole_pixels(corners: &[Corner; 3]) -> [Corner; 3] {
     corners.map(on_whole_pixel)
 }
@@ -135,8 +134,8 @@ fn on_whole_pixel(corner: Corner) -> Corner {
     Corner { x: (corner.x + 0.5).floor(), y: (corner.y + 0.5).floor(), ..corner }
 }
 
-/// Drawing in bands by cutting the face itself: where it crosses from one band into the next it gets
-/// new corners, rounded to whole pixels.
+/// Draws in bands by cutting the face itself: where it crosses from one band into the next it gets new corners, rounded
+/// to whole pixels.
 pub(in crate::hard_cases) fn cut_at_bands(panel: &mut Panel, corners: &[Corner; 3], rows_each: usize) {
     for first in (0..panel.height()).step_by(rows_each) {
         let (top, bottom) = (first as f64, (first + rows_each) as f64);
@@ -152,7 +151,7 @@ pub(in crate::hard_cases) fn cut_at_bands(panel: &mut Panel, corners: &[Corner; 
     }
 }
 
-/// The part of a convex polygon where `distance` is 0 or more (Sutherland and Hodgman 1974).
+/// The part of a convex polygon where `distance` is not negative (Sutherland and Hodgman 1974).
 fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f64) -> Vec<Corner> {
     let mut kept = Vec::new();
     for (i, b) in polygon.iter().enumerate() {
@@ -160,7 +159,7 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f64) -> Vec<Corner> {
         let (da, db) = (distance(a), distance(b));
         if (da < 0.0) != (db < 0.0) {
             let between = |from: f64, to: f64| from + (to - from) * da / (da - db);
-            // The rows of the bands are whole, so the cut's y is exact.
+            // Band boundaries are whole rows, so the cut's y is exact.
             kept.push(Corner {
                 x: between(a.x, b.x),
                 y: between(a.y, b.y).round(),
@@ -175,7 +174,7 @@ fn cut(polygon: &[Corner], distance: impl Fn(&Corner) -> f64) -> Vec<Corner> {
     kept
 }
 
-/// Coordinates kept as whole pixels in the 16-bit words of the time: beyond ±32,768 they wrap.
+/// Whole-pixel coordinates in the 16-bit words of the time, which wrap beyond ±32,768.
 pub(in crate::hard_cases) fn words_of_16_bits(corners: &[Corner; 3]) -> [Corner; 3] {
     let word = |pixels: f64| f64::from((pixels + 0.5).floor() as i64 as i16);
     corners.map(|corner| Corner { x: word(corner.x), y: word(corner.y), ..corner })

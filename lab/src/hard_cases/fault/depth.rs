@@ -1,10 +1,10 @@
-//! Faults of depth: which face a pixel belongs to.
+//! Faults of depth: which face a pixel shows.
 
 use super::{Sample, samples};
 use crate::hard_cases::face::Face;
 use crate::hard_cases::panel::Panel;
 
-/// Painter's order: the polygons one over the other, from the one whose middle is farthest.
+/// Painter's order: polygons drawn over one another, starting with the one whose middle is farthest.
 pub(in crate::hard_cases) fn painters_order(panel: &mut Panel, polygons: &[&[Face]]) {
     let middle = |faces: &[Face]| faces.iter().flat_map(|face| face.corners).map(|corner| corner.depth).sum::<f64>();
     let mut order = polygons.to_vec();
@@ -14,14 +14,14 @@ pub(in crate::hard_cases) fn painters_order(panel: &mut Panel, polygons: &[&[Fac
     }
 }
 
-/// A depth buffer of 16 bits: near / w in steps of 1/65,536. Far away two faces share a step, and the
-/// first drawn wins whichever is nearer.
+/// A 16-bit depth buffer: near / w in steps of 1/65,536. Far away two faces share a step, and the one drawn first wins
+/// even if the other is nearer.
 pub(in crate::hard_cases) fn buffer_of_16_bits(panel: &mut Panel, faces: &[Face]) {
     buffered(panel, faces, |face, sample| (sample.of(face.corners.map(|c| c.depth)) * 65_536.0).floor());
 }
 
-/// Depth added up in f32 from the face's first corner on, which another order of the same corners
-/// rounds differently: two faces in one place win here and there.
+/// Depth summed in f32 from the face's first corner on, which rounds differently if the corners come in another order:
+/// of two coincident faces each wins here and there.
 pub(in crate::hard_cases) fn rounded_from_the_first_corner(panel: &mut Panel, faces: &[Face]) {
     buffered(panel, faces, |face, sample| {
         let [a, b, c] = face.corners.map(|corner| corner.depth as f32);

@@ -1,4 +1,4 @@
-//! Faults of light and of projection, on a view of their own.
+//! Faults of light and of projection, with a view of their own.
 
 use super::paint;
 use crate::hard_cases::face::{Corner, gouraud};
@@ -19,7 +19,7 @@ pub(in crate::hard_cases) fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 pub(in crate::hard_cases) fn unit(v: Vector) -> Vector {
-    // Of the zero vector NaN: here the faults begin.
+    // NaN for the zero vector, which is where the faults begin.
     v.map(|c| c / dot(v, v).sqrt())
 }
 
@@ -33,7 +33,7 @@ pub(in crate::hard_cases) struct View {
 }
 
 impl View {
-    /// A point on the screen **whatever the sign of w**: behind the eye both coordinates change sides.
+    /// Projects a point to the screen **whatever the sign of w**: behind the eye both coordinates change sign.
     pub(in crate::hard_cases) fn project(&self, point: Vector, shade: f64) -> Corner {
         let [x, y, z] = subtract(point, self.eye);
         let (width, height) = (self.size.0 as f64, self.size.1 as f64);
@@ -48,7 +48,7 @@ impl View {
     }
 }
 
-/// Draws the faces of a mesh that are turned towards the eye, or all, with these bytes at the vertices.
+/// Draws a mesh with these bytes at the vertices: only the faces turned toward the eye, or all if `two_sided`.
 pub(in crate::hard_cases) fn lit_mesh(
     panel: &mut Panel,
     view: View,

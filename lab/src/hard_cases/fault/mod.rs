@@ -1,8 +1,8 @@
-//! The wrong side of a picture: small, honest implementations of the faults that the engine guards
-//! against. Each does one thing wrong and the rest right. Nothing else in the crate uses them.
+//! The wrong side of a picture: small, honest implementations of the faults that the engine guards against. Each gets
+//! one thing wrong and the rest right. Nothing else in the crate uses them.
 //!
-//! They are written with f64: the corners of the cases are multiples of 1/256 within some dozen
-//! pixels, so that what is meant to be exact here is.
+//! They use f64: the corners of the cases are multiples of 1/256 within a few dozen pixels, so that everything meant to
+//! be exact here is.
 
 pub(super) mod cover;
 pub(super) mod depth;
@@ -13,8 +13,7 @@ use super::face::{Corner, Face};
 use super::panel::Panel;
 use mode13h::raster::Interpolation;
 
-/// Twice the area of a → b → (x, y); positive if the point lies to the right of a → b on a screen
-/// whose y runs down.
+/// Twice the area of a → b → (x, y); positive if the point lies to the right of a → b on a screen whose y points down.
 fn side(a: Corner, b: Corner, (x, y): (f64, f64)) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
@@ -24,13 +23,13 @@ fn centre(x: i32, y: i32) -> (f64, f64) {
     (f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
 
-/// A shade as the byte that 8 bits keep of it: nearest, and beyond 0 or 255 **wrapped**.
+/// A shade as a byte: rounded to the nearest, and **wrapped** outside 0 to 255.
 fn wrapped(shade: f64) -> u8 {
-    // Below 2⁶³ whatever a case does; the last cast keeps the low byte, which is the fault.
+    // Below 2⁶³ in every case; the last cast keeps the low byte, which is the fault.
     (shade + 0.5).floor() as i64 as u8
 }
 
-/// A pixel that a triangle owns, with the weights of the corners there: they sum to 1.
+/// A pixel that a triangle owns, with the weights of the corners there, which sum to 1.
 #[derive(Clone, Copy)]
 struct Sample {
     x: i32,
@@ -44,7 +43,7 @@ impl Sample {
         a * values[0] + b * values[1] + c * values[2]
     }
 
-    /// The byte of its face there: the face's one, or linear over the screen.
+    /// The byte of its face there: the face's single one, or interpolated linearly on the screen.
     fn byte(&self, face: &Face) -> u8 {
         match face.interpolation {
             Interpolation::Flat(byte) => byte,
@@ -53,7 +52,7 @@ impl Sample {
     }
 }
 
-/// The pixels that a triangle owns, by the top-left rule: what a fault uses that is not about cover.
+/// The pixels that a triangle owns by the top-left rule, for faults that are not about cover.
 fn samples(size: (usize, usize), corners: &[Corner; 3]) -> Vec<Sample> {
     let [a, b, c] = *corners;
     let area = side(a, b, (c.x, c.y));
@@ -62,7 +61,7 @@ fn samples(size: (usize, usize), corners: &[Corner; 3]) -> Vec<Sample> {
         return samples;
     }
     let owns = |from: Corner, to: Corner, doubled: f64| {
-        // Turned so that the inside is to the right of every edge.
+        // Oriented so that the inside is to the right of every edge.
         let (dx, dy) = if area > 0.0 { (to.x - from.x, to.y - from.y) } else { (from.x - to.x, from.y - to.y) };
         let doubled = doubled * area.signum();
         doubled > 0.0 || (doubled == 0.0 && (dy < 0.0 || (dy == 0.0 && dx > 0.0)))
@@ -79,7 +78,7 @@ fn samples(size: (usize, usize), corners: &[Corner; 3]) -> Vec<Sample> {
     samples
 }
 
-/// Draws faces as they should be, in f64, one over the other.
+/// Draws faces as they should be, in f64, one over another.
 pub(super) fn paint(panel: &mut Panel, faces: &[Face]) {
     for face in faces {
         for sample in samples((panel.width(), panel.height()), &face.corners) {

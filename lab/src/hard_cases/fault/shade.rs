@@ -11,7 +11,7 @@ struct Row {
     right: (f64, f64),
 }
 
-/// Crossings of a convex polygon's edges with the centre of row `y`; `None` where there is none.
+/// Where a convex polygon's edges cross the centre of row `y`; `None` if they do not.
 fn row(corners: &[Corner], y: i32) -> Option<Row> {
     let yc = f64::from(y) + 0.5;
     let mut ends = Vec::new();
@@ -29,9 +29,9 @@ fn row(corners: &[Corner], y: i32) -> Option<Row> {
     }
 }
 
-/// A step for every row, (Bs − As) / (Bx − Ax), which has no bound as the row gets short, and the Russian textbook's
-/// start with its As put back: As + (1 − frac(Ax))·step. That is the next whole pixel, not the next
-/// centre. The sums wrap in 8 bits.
+/// A separate step for every row, (Bs − As) / (Bx − Ax), which grows without bound as the row gets short, and the
+/// Russian textbook's start with its missing As restored: As + (1 − frac(Ax))·step. That is the shade at the next whole
+/// pixel, not at the next centre. The sums wrap in 8 bits.
 pub(in crate::hard_cases) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut last = None;
     for sample in samples((panel.width(), panel.height()), corners) {
@@ -47,8 +47,7 @@ pub(in crate::hard_cases) fn step_of_each_row(panel: &mut Panel, corners: &[Corn
     }
 }
 
-/// No sub-pixel correction: a row's first pixel gets the shade of the edge, wherever in the pixel the
-/// edge is.
+/// No sub-pixel correction: a row's first pixel gets the shade at the edge, wherever in the pixel the edge is.
 pub(in crate::hard_cases) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3]) {
     let mut last = None;
     for sample in samples((panel.width(), panel.height()), corners) {
@@ -62,8 +61,8 @@ pub(in crate::hard_cases) fn start_at_the_edge(panel: &mut Panel, corners: &[Cor
     }
 }
 
-/// Every pixel that a row touches, with the triangle's plane carried on beyond its edges: below 0 and
-/// above 255 the byte wraps.
+/// Every pixel that a row touches, with the triangle's plane extrapolated beyond its edges: below 0 and above 255 the
+/// byte wraps.
 pub(in crate::hard_cases) fn carried_on_beyond_the_edges(panel: &mut Panel, corners: &[Corner; 3]) {
     for y in 0..panel.height() as i32 {
         let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, y) else { continue };
