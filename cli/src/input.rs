@@ -12,13 +12,14 @@ use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use mode13h::light::Light;
 use mode13h::mesh::{Mesh, Weight, shapes};
 use mode13h::palette::{Palette, builtin};
-use mode13h::scene::{Scene, Shared, UpAxis};
+use mode13h::scene::{Camera, Object, Scene, Shared, UpAxis};
 use mode13h::texture::Texture;
 use mode13h_assets::look::Look;
-use mode13h_assets::model;
-use mode13h_assets::model_file::{self, Embedded, Format, ModelFileError, Options};
+use mode13h_assets::model::{self, Playback, with_textures};
+use mode13h_assets::model_file::{self, Embedded, Format, ModelFileError, Options, Rig};
 use mode13h_assets::palette_file::{self, LoadErrorKind};
 use mode13h_assets::shipped::Shipped;
 use mode13h_assets::{SceneExt, scene_file};
@@ -35,25 +36,37 @@ pub(crate) struct Model {
     textures: Embedded,
     /// The axis that points up, if its file says so.
     up: Option<UpAxis>,
+    /// The lights, the camera and the animations that its file brings.
+    lights: Vec<Light>,
+    camera: Option<Camera>,
+    rig: Option<Rig>,
     /// One of the engine's shapes, not from a file.
     pub(crate) is_shape: bool,
 }
 
 impl Model {
-    /// The stage on which it is shown, in greys.
-    pub(crate) fn stage(self, up: Option<UpAxis>) -> Result<Turntable, Failure> {
+    /// The stage on which it is shown, in greys. With an axis of the user's own the file's lights and camera are left out,
+    /// and with a camera of the user's own the file's.
+    pub(crate) fn stage(self, up: Option<UpAxis>, has_camera: bool) -> Result<Turntable, Failure> {
         if self.is_shape {
             return Ok(Turntable::of_shape(self.mesh, up));
         }
         let textures = textures(&self.mesh, &self.textures);
-        Turntable::of_model(self.mesh, up.or(self.up), &textures).map_err(Failure::from)
+        let object = with_textures(Object::new(self.mesh), &textures);
+        let (lights, camera) = if up.is_none() { (self.lights, self.camera) } else { (Vec::new(), None) };
+        let camera = camera.filter(|_| !has_camera);
+        let stage = match lights.is_empty() && camera.is_none() {
+            true => Turntable::of_model(object, up.or(self.up), self.rig),
+            false => Turntable::of_composed(object, &lights, camera, self.rig),
+        };
+        stage.map_err(Failure::from)
     }
 }
 
 /// Scene or model that INPUT names.
 pub(crate) enum Input {
     Model(Box<Model>),
-    Scene { name: String, scene: Box<Scene>, look: Option<Look> },
+    Scene { name: String, scene: Box<Scene>, look: Option<Look>, playbacks: Vec<Playback> },
 }
 
 impl Input {
@@ -174,12 +187,12 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         return model_or(words, options, &format!("models are {} files, scenes .toml", Format::extensions()), &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene_file::Loaded { scene, look, warnings, files, .. } = loaded.map_err(Failure::from)?;
+    let scene_file::Loaded { scene, look, warnings, files, playbacks, .. } = loaded.map_err(Failure::from)?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);
     }
-    Ok(Input::Scene { name: name_of(words), scene: Box::new(scene), look })
+    Ok(Input::Scene { name: name_of(words), scene: Box::new(scene), look, playbacks })
 }
 
 /// No scene is longer; what is, is refused as too long.
@@ -197,10 +210,10 @@ fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
 
 /// The model of a file that was read. Warnings go to standard error, a line each.
 fn of_file(name: String, loaded: model_file::Loaded) -> Model {
-    let model_file::Loaded { mesh, textures, up, warnings, files, .. } = loaded;
+    let model_file::Loaded { mesh, textures, up, warnings, files, lights, camera, rig, .. } = loaded;
     read_files::add_all(&files);
     warnings.iter().for_each(warn);
-    Model { name, mesh, textures, up, is_shape: false }
+    Model { name, mesh, textures, up, lights, camera, rig, is_shape: false }
 }
 
 /// Says a line on standard error.
@@ -226,7 +239,8 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
             mesh.smooth(Weight::Angle, options.crease);
         }
         let name = words.to_string_lossy().into_owned();
-        Ok(Model { name, mesh, textures: Embedded::new(), up: None, is_shape: true })
+        let (textures, lights) = (Embedded::new(), Vec::new());
+        Ok(Model { name, mesh, textures, up: None, lights, camera: None, rig: None, is_shape: true })
     } else if Format::of_path(path).is_some() || (path.extension().is_none() && format_of_contents(path).is_some()) {
         load(path, options).map(|loaded| of_file(name_of(words), loaded)).map_err(Failure::from)
     } else {

@@ -38,9 +38,9 @@ pub(crate) struct Drawing {
     zoom: Option<f64>,
     /// Look from the point EYE at TARGET
     ///
-    /// A point is X,Y,Z, in units of the scene; a model's centre is 0,0,0.
+    /// A point is X,Y,Z, in units of the scene; a model's centre is 0,0,0, unless it brings lights.
     ///
-    /// [default: the scene's camera, or one that shows the whole model; TARGET is 0,0,0]
+    /// [default: the scene's or the model's camera, or one that shows the whole model; TARGET is 0,0,0]
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
     /// The axis of a model that points up [default: y; z for a flat sheet facing z]
@@ -159,7 +159,7 @@ struct Pipeline {
 pub(crate) struct Moment {
     /// Draw the scene as it is at SECONDS
     ///
-    /// Several frames start there. A model turns by 90 degrees a second.
+    /// Several frames start there. A model turns by 90 degrees a second, or plays its animation.
     ///
     /// [default: the scene's `picture` for a single frame, otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
@@ -253,7 +253,7 @@ impl Drawing {
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let name = model.name.clone();
-                let mut stage = model.stage(self.up.map(UpAxis::from))?;
+                let mut stage = model.stage(self.up.map(UpAxis::from), self.camera.is_some())?;
                 stage.scene.objects_mut().iter_mut().for_each(|object| object.name.clone_from(&name));
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
@@ -261,10 +261,10 @@ impl Drawing {
             Input::Scene { .. } if self.up.is_some() => {
                 return Err(Failure::words("--up is for models; in a scene, each model has a key for it"));
             }
-            Input::Scene { scene, .. } => {
+            Input::Scene { scene, playbacks, .. } => {
                 let auto = scene.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
-                (Turntable::of_scene(*scene), colors)
+                (Turntable::of_moving_scene(*scene, playbacks), colors)
             }
         };
         if let Some(zoom) = self.zoom {

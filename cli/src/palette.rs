@@ -127,7 +127,7 @@ fn make(
     let model = input::model(model, &model_file::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let name = model.name.clone();
-    let mut stage = model.stage(up.map(UpAxis::from))?;
+    let mut stage = model.stage(up.map(UpAxis::from), false)?;
     let automatic = stage.automatic().map_err(Failure::from)?.clone();
     let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);

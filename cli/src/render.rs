@@ -70,7 +70,7 @@ pub(crate) struct Options {
     frames: Option<u32>,
     /// Rotate by DEGREES, spread over all frames
     ///
-    /// A single frame is rotated by all of it. Frame i of N is rotated by i/N of DEGREES, so 360 loops seamlessly. A scene that moves goes through one round in 360
+    /// A single frame is rotated by all of it. Frame i of N is rotated by i/N of DEGREES, so 360 loops seamlessly. A scene or a model that moves by itself goes through one round in 360
     /// degrees; around one that does not, the camera circles.
     ///
     /// [default: 0; for an animation 360]

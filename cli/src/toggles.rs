@@ -136,6 +136,7 @@ mod tests {
     use mode13h::palette::builtin;
     use mode13h::texture::Texture;
     use mode13h::vga::Vga;
+    use mode13h_assets::model::with_textures;
     use mode13h_assets::shipped;
 
     fn all_scenes() -> Vec<(&'static str, Scene)> {
@@ -191,7 +192,9 @@ mod tests {
         let texture = "crate".parse::<Texture>().ok().map(mode13h::scene::Shared::new);
         let cube = builtin::by_name("cube").expect("built in").palette.clone();
         for colors in [Colors::Auto, cube.into()] {
-            let mut stage = Turntable::of_model(shapes::cube(), None, std::slice::from_ref(&texture)).expect("a model");
+            let mut stage =
+                Turntable::of_model(with_textures(shapes::cube().into(), std::slice::from_ref(&texture)), None, None)
+                    .expect("a model");
             stage.set_colors(&colors).expect("a legal scene");
             stage.scene.settings.dither = None;
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());

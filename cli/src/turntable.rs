@@ -2,7 +2,7 @@
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::{Blend, Material, RampChoice};
+use mode13h::light::{Blend, Light, Material, RampChoice};
 use mode13h::mesh::Mesh;
 use mode13h::palette::{Palette, Rgb};
 use mode13h::render::RenderError;
@@ -11,7 +11,8 @@ use mode13h::settings::DitherPattern;
 use mode13h::texture::Texture;
 use mode13h_assets::auto_palette::{self, AutomaticPalette};
 use mode13h_assets::look::Look;
-use mode13h_assets::model::{studio, with_textures};
+use mode13h_assets::model::{Playback, composed, studio};
+use mode13h_assets::model_file::Rig;
 
 /// Colours of the frame's bytes.
 #[derive(Clone, PartialEq, Debug)]
@@ -72,6 +73,8 @@ pub(crate) struct Turntable {
     palette: Option<Palette>,
     /// Dither that the scene asks for, whatever the palette.
     own_dither: Option<DitherPattern>,
+    /// The models in it that move by themselves.
+    playbacks: Vec<Playback>,
     /// Dither or none, whatever the scene and the palette, if that was asked for.
     dither: Option<Option<DitherPattern>>,
     /// The look whose colours an automatic palette gets.
@@ -90,6 +93,9 @@ enum Shown {
     Scene,
 }
 
+/// The longest round, in seconds, as in a scene's file: a film has a frame for every part of it.
+const MAX_DURATION: f64 = 3600.0;
+
 impl Turntable {
     /// A shape as [`Scene::showing`] shows it, in greys.
     pub(crate) fn of_shape(mesh: Mesh, up: Option<UpAxis>) -> Turntable {
@@ -98,18 +104,52 @@ impl Turntable {
         Turntable::new(Scene::showing(object), Shown::Model)
     }
 
-    /// A model in the [`studio`], in greys. `textures` are those of its surfaces.
-    pub(crate) fn of_model(
-        mesh: Mesh,
-        up: Option<UpAxis>,
-        textures: &[Option<Shared<Texture>>],
+    /// A model in the [`studio`], in greys. One that moves by itself stands still otherwise.
+    pub(crate) fn of_model(object: Object, up: Option<UpAxis>, rig: Option<Rig>) -> Result<Turntable, RenderError> {
+        let mut stage = Turntable::new(studio(object, up)?, Shown::Model);
+        if let Some(playback) = stage.play(rig, false, false) {
+            // Its angles are set from the time all the same.
+            stage.scene.motions.iter_mut().for_each(|motion| turn_by(motion, 0.0));
+            stage.camera = playback.framing(&stage.scene.objects()[0]);
+            stage.playbacks.push(playback);
+        }
+        Ok(stage)
+    }
+
+    /// A model with lights or a camera of its own, in greys.
+    pub(crate) fn of_composed(
+        object: Object,
+        lights: &[Light],
+        camera: Option<Camera>,
+        rig: Option<Rig>,
     ) -> Result<Turntable, RenderError> {
-        let scene = studio(with_textures(Object::new(mesh), textures), up)?;
-        Ok(Turntable::new(scene, Shown::Model))
+        let mut stage = Turntable::new(composed(object, lights, camera)?, Shown::Scene);
+        if let Some(playback) = stage.play(rig, !lights.is_empty(), camera.is_some()) {
+            if camera.is_none() {
+                stage.camera = playback.framing(&stage.scene.objects()[0]);
+            }
+            stage.playbacks.push(playback);
+        }
+        Ok(stage)
+    }
+
+    /// The first animation of a rig, played by the only object; a round takes as long.
+    fn play(&mut self, rig: Option<Rig>, lights: bool, camera: bool) -> Option<Playback> {
+        let playback = Playback::new(rig?, 0, &self.scene, *self.scene.object_ids().first()?)?;
+        let duration = playback.clip().duration();
+        if duration > 0.0 {
+            self.scene.duration = duration.min(MAX_DURATION);
+        }
+        Some(playback.with_lights_and_camera(lights, camera))
     }
 
     pub(crate) fn of_scene(scene: Scene) -> Turntable {
         Turntable::new(scene, Shown::Scene)
+    }
+
+    /// A scene with models in it that move by themselves.
+    pub(crate) fn of_moving_scene(scene: Scene, playbacks: Vec<Playback>) -> Turntable {
+        Turntable { playbacks, ..Turntable::of_scene(scene) }
     }
 
     fn new(scene: Scene, shown: Shown) -> Turntable {
@@ -125,6 +165,7 @@ impl Turntable {
             has_images: true,
             palette,
             own_dither,
+            playbacks: Vec::new(),
             dither: None,
             look: None,
             automatic: None,
@@ -142,11 +183,12 @@ impl Turntable {
         self.scene.duration
     }
 
-    /// Time and pose for `--turn`. A model is turned. In a scene that moves by itself time goes on, 360 degrees being one
+    /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself time goes on, 360 degrees being one
     /// round; round a scene that stands still the camera moves.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
+            _ if !self.playbacks.is_empty() => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
             Shown::Scene if moves => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
             _ => (seconds, Pose { turn: degrees.to_radians(), ..Pose::FIRST }),
         }
@@ -157,6 +199,9 @@ impl Turntable {
         let Pose { turn, tilt, zoom } = pose;
         self.scene.camera = self.camera;
         self.scene.set_time(seconds);
+        for playback in &mut self.playbacks {
+            playback.show(&mut self.scene, seconds);
+        }
         let is_turned = turn != 0.0 || tilt != 0.0;
         match self.shown {
             Shown::Model => {
@@ -193,6 +238,7 @@ impl Turntable {
         self.camera = Camera { eye, target, near, ..self.camera };
         let moves_eye = |motion: &Motion| matches!(motion, Motion::Path { what: Moving::Eye | Moving::Target, .. });
         self.scene.motions.retain(|motion| !moves_eye(motion));
+        self.playbacks.iter_mut().for_each(Playback::release_camera);
     }
 
     /// Sets the background that a frame is cleared to, from the next [`set_colors`](Self::set_colors) on.
@@ -310,6 +356,11 @@ impl Turntable {
         let mut stage = Turntable { frames_still: false, ..self.clone() };
         stage.show(0.0, Pose::FIRST);
         let mut scene = stage.scene;
+        // The user may turn it.
+        if !self.playbacks.is_empty() && matches!(self.shown, Shown::Model) {
+            let turns = 1.0 / scene.duration;
+            scene.motions.iter_mut().for_each(|motion| turn_by(motion, turns));
+        }
         scene.palette.clone_from(&self.palette);
         scene.objects_mut().iter_mut().zip(self.materials_shown()).for_each(|(object, own)| object.materials = own);
         scene
@@ -324,6 +375,13 @@ impl Turntable {
         for material in self.materials.iter_mut().flatten() {
             (material.texture, material.environment, material.blend) = (None, None, Blend::Opaque);
         }
+    }
+}
+
+/// Sets the turns a second, about y alone, of a motion that spins.
+fn turn_by(motion: &mut Motion, per_second: f64) {
+    if let Motion::Spin { turns, .. } = motion {
+        *turns = [0.0, per_second, 0.0];
     }
 }
 

@@ -9,6 +9,7 @@
 mod bounds;
 mod error;
 mod facts;
+mod moved;
 pub mod normals;
 mod orientation;
 mod parts;

@@ -50,6 +50,9 @@ pub struct Parts {
     /// `None` the groups decide, and without groups 40°, except that a scan, whose sharp edges end anywhere, is smooth
     /// everywhere.
     pub crease: Option<Angle>,
+    /// Nothing is mended: triangles keep their number, their order and their corners, as whoever moves the vertices needs
+    /// it ([`Mesh::with_vertices`]).
+    pub as_given: bool,
 }
 
 impl Parts {
@@ -89,6 +92,7 @@ impl Mesh {
             mut lines,
             mut groups,
             crease,
+            as_given,
         } = parts;
         check(&places, &triangles)?;
         let of_vertices = [("normals", normals.len()), ("texture coordinates", texcoords.len())];
@@ -114,7 +118,7 @@ impl Mesh {
         let mut points = topology::weld(&places);
         let mut edges = Edges::new(&triangles, &points);
         let mut repairs = Repairs::default();
-        if edges.balance() {
+        if !as_given && edges.balance() {
             let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
             // A mesh that consists of nothing else stays as it is.
             if !pairs.is_empty() && 2 * pairs.len() < triangles.len() {

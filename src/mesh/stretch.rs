@@ -26,12 +26,6 @@ impl Mesh {
             // its direction.
             normals::unit(narrow([x * (least / fx), y * (least / fy), z * (least / fz)])).unwrap_or(*n)
         });
-        let normals = normals.collect();
-        let mut mesh = Self::with_normals(positions, normals, self.triangles.clone())?;
-        mesh.texcoords = self.texcoords.clone();
-        mesh.surfaces = self.surfaces.clone();
-        mesh.triangle_surfaces = self.triangle_surfaces.clone();
-        mesh.lines = self.lines.clone();
-        Ok(mesh.with_facts())
+        self.with_vertices(positions, normals.collect())
     }
 }

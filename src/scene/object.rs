@@ -62,8 +62,7 @@ impl Object {
     /// palette's first ramp, the second its second, and so on, wrapping around.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
-        let mesh = mesh.into();
-        let mesh = if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) };
+        let mesh = in_parts(mesh.into());
         // A palette has at most 256 ramps, a power of two, and their numbers wrap around.
         let numbers = (0..=u16::MAX).cycle();
         let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
@@ -130,6 +129,13 @@ impl Object {
     #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// Shows another mesh in the same place and with the same materials, one for each of its surfaces: the next pose of an
+    /// animation. The renderer computes everything it caches for the object again, even if the mesh is equal, so do not
+    /// call this while nothing moves.
+    pub fn set_mesh(&mut self, mesh: impl Into<Shared<Mesh>>) {
+        self.mesh = in_parts(mesh.into());
     }
 
     /// The mesh, for callers who store it.
@@ -307,6 +313,11 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// The mesh, with every vertex in one surface.
+fn in_parts(mesh: Shared<Mesh>) -> Shared<Mesh> {
+    if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) }
 }
 
 impl From<Mesh> for Object {

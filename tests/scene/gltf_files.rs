@@ -12,16 +12,16 @@ use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
 
 /// A glTF file while it is written: the entries of its lists, and its buffer.
 #[derive(Default)]
-struct Gltf {
-    bytes: Vec<u8>,
-    lists: HashMap<&'static str, Vec<String>>,
+pub(crate) struct Gltf {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) lists: HashMap<&'static str, Vec<String>>,
     /// What else stands in the root.
-    more: String,
+    pub(crate) more: String,
 }
 
 impl Gltf {
     /// Adds an entry to a list, and returns its index.
-    fn add(&mut self, list: &'static str, entry: impl Into<String>) -> usize {
+    pub(crate) fn add(&mut self, list: &'static str, entry: impl Into<String>) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(entry.into());
         list.len() - 1
@@ -36,7 +36,7 @@ impl Gltf {
     }
 
     /// An accessor over rows that follow one another.
-    fn accessor(&mut self, bytes: &[u8], component: u32, count: usize, kind: &str, more: &str) -> usize {
+    pub(crate) fn accessor(&mut self, bytes: &[u8], component: u32, count: usize, kind: &str, more: &str) -> usize {
         let view = self.view(bytes, None);
         self.add(
             "accessors",
@@ -46,14 +46,14 @@ impl Gltf {
         )
     }
 
-    fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
+    pub(crate) fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
         let bytes: Vec<u8> = rows.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect();
         // Those of positions must have bounds; nothing reads them.
         let bounds = if N == 3 { ",\"min\":[0,0,0],\"max\":[0,0,0]" } else { "" };
         self.accessor(&bytes, 5126, rows.len(), &format!("VEC{N}"), bounds)
     }
 
-    fn indices(&mut self, indices: &[u32], component: u32) -> usize {
+    pub(crate) fn indices(&mut self, indices: &[u32], component: u32) -> usize {
         let bytes: Vec<u8> = match component {
             5121 => indices.iter().map(|&i| i as u8).collect(),
             5123 => indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
@@ -63,11 +63,11 @@ impl Gltf {
     }
 
     /// A mesh of one primitive; `more` follows its attributes.
-    fn mesh(&mut self, attributes: &str, more: &str) -> usize {
+    pub(crate) fn mesh(&mut self, attributes: &str, more: &str) -> usize {
         self.add("meshes", format!("{{\"primitives\":[{{\"attributes\":{{{attributes}}}{more}}}]}}"))
     }
 
-    fn json(&self, buffer: &str) -> String {
+    pub(crate) fn json(&self, buffer: &str) -> String {
         let lists: String = self.lists.iter().map(|(name, list)| format!(",\"{name}\":[{}]", list.join(","))).collect();
         let length = self.bytes.len();
         let buffers =
@@ -75,7 +75,7 @@ impl Gltf {
         format!("{{\"asset\":{{\"version\":\"2.0\"}}{buffers}{lists}{}}}", self.more)
     }
 
-    fn glb(&self) -> Vec<u8> {
+    pub(crate) fn glb(&self) -> Vec<u8> {
         let mut text = self.json("").into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
         let mut body = self.bytes.clone();
@@ -87,7 +87,7 @@ impl Gltf {
 }
 
 /// Positions and triangles of a shape, each point once, in the order in which the triangles use them.
-fn points_of(mesh: &Mesh) -> (Vec<[f32; 3]>, Vec<u32>) {
+pub(crate) fn points_of(mesh: &Mesh) -> (Vec<[f32; 3]>, Vec<u32>) {
     let mut positions: Vec<[f32; 3]> = Vec::new();
     let indices = mesh.triangles().as_flattened().iter().map(|&vertex| {
         let place = mesh.positions()[vertex as usize].to_array();
@@ -109,7 +109,7 @@ fn obj(positions: &[[f32; 3]], indices: &[u32]) -> Mesh {
     loaded(text.as_bytes(), "a.obj").mesh
 }
 
-fn with_files(bytes: &[u8], name: &str, files: &[(&str, &[u8])]) -> Result<Loaded, ModelFileError> {
+pub(crate) fn with_files(bytes: &[u8], name: &str, files: &[(&str, &[u8])]) -> Result<Loaded, ModelFileError> {
     let file = |path: &Path| {
         let found = files.iter().find(|(name, _)| Path::new(name) == path);
         found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(|| io::ErrorKind::NotFound.into())
@@ -117,7 +117,7 @@ fn with_files(bytes: &[u8], name: &str, files: &[(&str, &[u8])]) -> Result<Loade
     model_file::parse(bytes, name, file, &Options::default())
 }
 
-fn loaded(bytes: &[u8], name: &str) -> Loaded {
+pub(crate) fn loaded(bytes: &[u8], name: &str) -> Loaded {
     with_files(bytes, name, &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -415,7 +415,8 @@ fn what_is_left_out_is_one_warning() {
     let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     file.add("materials", "{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}");
     file.add("textures", "{}");
-    file.mesh(&format!("\"POSITION\":{positions}"), ",\"material\":0");
+    let targets = format!(",\"material\":0,\"targets\":[{{\"POSITION\":{positions}}}]");
+    file.mesh(&format!("\"POSITION\":{positions}"), &targets);
     file.mesh(&format!("\"POSITION\":{positions}"), ",\"mode\":1");
     file.add("nodes", "{\"mesh\":0}");
     file.add("nodes", "{\"mesh\":1}");
@@ -424,6 +425,6 @@ fn what_is_left_out_is_one_warning() {
         .into();
     assert_eq!(
         loaded(&file.glb(), "a.glb").warnings,
-        ["a.glb: left out: cameras, points and lines, textures of normals, that materials are unlit"]
+        ["a.glb: left out: morph targets, points and lines, textures of normals, that materials are unlit"]
     );
 }

@@ -9,6 +9,7 @@ mod errors;
 mod export;
 mod gif;
 mod gltf_files;
+mod gltf_motion;
 #[cfg(feature = "alloc")]
 mod mesh_normals;
 #[cfg(feature = "alloc")]

@@ -1,5 +1,6 @@
 //! Model files as scenes: mesh, textures, palette and framing in one call.
 
+mod playback;
 mod studio;
 
 use core::error::Error;
@@ -7,14 +8,16 @@ use core::fmt;
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::model_file::{self, Embedded, ModelFileError, Options};
+use crate::model_file::{self, Embedded, ModelFileError, Options, Rig};
 use crate::texture;
+use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::render::RenderError;
-use mode13h::scene::{Object, Shared, UpAxis};
+use mode13h::scene::{Camera, Object, Shared, UpAxis};
 use mode13h::texture::Texture;
 
-pub use studio::studio;
+pub use playback::Playback;
+pub use studio::{composed, studio};
 
 /// The reason why a model file gives no scene.
 #[non_exhaustive]
@@ -55,6 +58,12 @@ pub struct Model {
     pub warnings: Vec<String>,
     /// The axis that points up, if the format says so.
     pub up: Option<UpAxis>,
+    /// The lights of the file, as in [`model_file::Loaded`].
+    pub lights: Vec<Light>,
+    /// The camera of the file.
+    pub camera: Option<Camera>,
+    /// What moves them; see [`Playback`].
+    pub rig: Option<Rig>,
 }
 
 /// Reads a model file, the files that it names, and its textures.
@@ -69,8 +78,9 @@ pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Model, ModelFil
     let mut warnings = loaded.warnings;
     warnings.extend(of_textures);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let object = with_textures(Object::new(loaded.mesh).named(name.to_string()), &textures);
-    Ok(Model { object, warnings, up: loaded.up })
+    let object = with_textures(Object::new(loaded.mesh.clone()).named(name.to_string()), &textures);
+    let model_file::Loaded { up, lights, camera, rig, .. } = loaded;
+    Ok(Model { object, warnings, up, lights, camera, rig })
 }
 
 /// The texture of each surface of a mesh: one that the model file contains, or a file, if the surface names one that

@@ -17,11 +17,12 @@
 use core::ops::Range;
 
 use mode13h::Angle;
+use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::palette::Rgb;
 use mode13h::render::RenderError;
-use mode13h::scene::{Object, Scene, UpAxis, framing};
+use mode13h::scene::{Camera, Object, Scene, UpAxis, framing};
 
 use crate::auto_palette;
 use crate::wide::{cross, dot, sub, widen};
@@ -55,10 +56,41 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     let has_colors = object.has_colors();
     let mut scene = Scene::showing_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
     scene.clear_lights();
+    light(&mut scene, Vec3::from_array);
+    finish(scene, has_colors)
+}
+
+/// Makes a scene of a model that brings lights or a camera, as its author arranged it: the model stands where it stands in its
+/// file, and still. Without lights it has the studio's, seen from the camera; without a camera one that frames a whole turn.
+///
+/// # Errors
+/// Those of [`Renderer::draw`](mode13h::render::Renderer::draw).
+pub fn composed(mut object: Object, lights: &[Light], camera: Option<Camera>) -> Result<Scene, RenderError> {
+    expose(&mut object);
+    let has_colors = object.has_colors();
+    let mut scene = Scene::new();
+    scene.camera = camera.unwrap_or_else(|| Camera::framing_turn(&object));
+    scene.add(object);
+    if lights.is_empty() {
+        let Camera { eye, target, up, .. } = scene.camera;
+        let back = (eye - target).normalize_or(Vec3::Z);
+        let right = up.cross(back).normalize_or(back.any_orthonormal_vector());
+        light(&mut scene, |[x, y, z]| right * x + back.cross(right) * y + back * z);
+    }
+    lights.iter().for_each(|light| _ = scene.add_light(*light));
+    finish(scene, has_colors)
+}
+
+/// Adds the studio's lights, whose directions `place` puts into the scene.
+fn light(scene: &mut Scene, place: impl Fn([f32; 3]) -> Vec3) {
     // Two lights at right angles add up to the length of (key, fill) on the face that is lit most.
     let key = 1.0 / libm::sqrtf(1.0 + FILL_SHARE * FILL_SHARE);
-    scene.add_light(Light::sun(KEY).with_intensity(key));
-    scene.add_light(Light::sun(FILL).with_intensity(key * FILL_SHARE));
+    scene.add_light(Light::sun(place(KEY)).with_intensity(key));
+    scene.add_light(Light::sun(place(FILL)).with_intensity(key * FILL_SHARE));
+}
+
+/// The scene with a background from which it stands out.
+fn finish(mut scene: Scene, has_colors: bool) -> Result<Scene, RenderError> {
     let color = background(&auto_palette::colors_seen(&scene)?, has_colors);
     scene.background_color = Some(color);
     scene.background = scene.palette.as_ref().map_or(0, |palette| palette.nearest(color));
@@ -116,7 +148,7 @@ mod tests {
 
     #[test]
     fn both_lights_together_are_full_light_at_most() {
-        let [key, fill] = [KEY, FILL].map(mode13h::glam::Vec3::from_array);
+        let [key, fill] = [KEY, FILL].map(Vec3::from_array);
         assert!(key.dot(fill).abs() < 1e-6);
     }
 }

@@ -12,7 +12,8 @@ use super::ModelFileErrorKind;
 use super::lists::{Corner, Lists};
 use super::polygon::Splitter;
 
-/// Makes the mesh from the lists, with their positions in f32. Unused surfaces are dropped.
+/// Makes the mesh from the lists, with their positions in f32. Unused surfaces are dropped. With `as_given` its faults are
+/// not repaired.
 ///
 /// # Errors
 /// The error, with the line if one is at fault.
@@ -21,6 +22,7 @@ pub(super) fn mesh(
     positions: Vec<Vec3>,
     surfaces: Vec<Surface>,
     crease: Option<Angle>,
+    as_given: bool,
 ) -> Result<(Mesh, Repairs), (Option<u64>, ModelFileErrorKind)> {
     let Split { triangles, triangle_surfaces, lines, groups, surfaces } = split(&lists, &positions, surfaces)?;
     let Lists { texcoords, normals, corners, .. } = lists;
@@ -54,6 +56,7 @@ pub(super) fn mesh(
         lines,
         groups,
         crease,
+        as_given,
     };
     drop((positions, texcoords, normals, triples));
     Mesh::from_parts(parts).map_err(|error| (None, ModelFileErrorKind::Mesh(error)))

@@ -5,13 +5,13 @@
 //! | Wavefront OBJ with MTL | [`obj`] | positions, texture coordinates, normals, smoothing groups, materials |
 //! | STL, text and binary | `stl` | triangles; corners at the same position are one vertex |
 //! | PLY, text and both binaries | `ply` | faces of any size, strips, normals, texture coordinates, colours |
-//! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene at rest as one mesh: materials, textures in the file and beside it, colours |
+//! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene as one mesh: materials, textures in the file and beside it, colours; lights, a camera, animations |
 //!
 //! The file name's extension determines the format, with or without `.gz` after it. Without a known extension the
 //! contents decide. Gzipped files are unpacked, whatever their name.
 //!
 //! Whatever the format, the same code splits faces, fills in missing normals, recentres a model far from 0, repairs
-//! scans and locates errors; [`obj`] describes it.
+//! scans and locates errors; [`obj`] describes it. Only a model that moves is not repaired.
 
 mod colors;
 mod error;
@@ -23,6 +23,7 @@ pub mod obj;
 mod ply;
 mod polygon;
 mod progress;
+mod rig;
 mod stl;
 pub(crate) mod tokens;
 pub(crate) mod warnings;
@@ -35,14 +36,17 @@ use std::path::{Path, PathBuf};
 
 use flate2::bufread::MultiGzDecoder;
 use mode13h::Angle;
+use mode13h::light::Light;
 use mode13h::mesh::{Mesh, Surface};
-use mode13h::scene::{Shared, UpAxis};
+use mode13h::scene::{Camera, Shared, UpAxis};
 use mode13h::texture::Texture;
 
 pub(crate) use colors::paint;
 pub use error::{ModelFileError, ModelFileErrorKind, Place};
 use lists::Lists;
 use progress::Counted;
+pub use rig::{Clip, Pose, Rig};
+use rig::{Nodes, Staged};
 use warnings::Warnings;
 
 /// A model and the warnings from reading it.
@@ -63,6 +67,12 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
     /// The point in the file that is 0 in the mesh: the centre of a model far from 0, otherwise 0.
     pub origin: [f64; 3],
+    /// The lights of the file, in the mesh's coordinates, exposed so that all of them together are full light in its middle.
+    pub lights: Vec<Light>,
+    /// The first camera of the file, in the mesh's coordinates.
+    pub camera: Option<Camera>,
+    /// What moves the mesh, the lights and the camera, if anything does. All of these are at rest.
+    pub rig: Option<Rig>,
 }
 
 /// Textures inside a model file, by the name in [`Surface::texture`].
@@ -173,7 +183,8 @@ pub fn load_with(
         return Err(ModelFileError::of_file(path, ModelFileErrorKind::Directory));
     }
     let file = BufReader::with_capacity(1 << 16, Counted::new(file, metadata.len(), progress));
-    let Parsed { mut mesh, textures, up, mut warnings, named, origin } = read(file, path, ordinary_file, options)?;
+    let Parsed { mut mesh, textures, up, mut warnings, named, origin, staged } =
+        read(file, path, ordinary_file, options)?;
     let outside = outside(&mesh, &textures);
     let files = [path.to_owned()].into_iter().chain(named).chain(outside).collect();
     for surface in mesh.surfaces_mut() {
@@ -183,7 +194,8 @@ pub fn load_with(
             warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
         }
     }
-    Ok(Loaded { mesh, textures, up, warnings: warnings.into_lines(), files, origin })
+    let Staged { lights, camera, rig } = staged;
+    Ok(Loaded { mesh, textures, up, warnings: warnings.into_lines(), files, origin, lights, camera, rig })
 }
 
 /// Reads a model from `reader`. `path` is used in errors, its extension determines the format, and the files that the
@@ -211,9 +223,10 @@ pub fn parse(
 }
 
 impl From<Parsed> for Loaded {
-    fn from(Parsed { mesh, textures, up, warnings, named, origin }: Parsed) -> Self {
+    fn from(Parsed { mesh, textures, up, warnings, named, origin, staged }: Parsed) -> Self {
         let files = named.into_iter().chain(outside(&mesh, &textures)).collect();
-        Self { mesh, textures, up, warnings: warnings.into_lines(), files, origin }
+        let Staged { lights, camera, rig } = staged;
+        Self { mesh, textures, up, warnings: warnings.into_lines(), files, origin, lights, camera, rig }
     }
 }
 
@@ -249,6 +262,7 @@ pub(crate) struct Parsed {
     /// The paths that the caller was asked for.
     named: Vec<PathBuf>,
     origin: [f64; 3],
+    staged: Staged,
 }
 
 /// A model as its format's reader produces it, before faces are split and repaired.
@@ -260,6 +274,7 @@ pub(crate) struct Draft {
     pub(crate) textures: Embedded,
     pub(crate) up: Option<UpAxis>,
     pub(crate) warnings: Warnings,
+    pub(crate) nodes: Nodes,
 }
 
 fn read(
@@ -299,7 +314,7 @@ pub(crate) fn finish(
     named: Vec<PathBuf>,
     options: &Options,
 ) -> Result<Parsed, ModelFileError> {
-    let Draft { mut lists, mut surfaces, textures, up, mut warnings } = draft;
+    let Draft { mut lists, mut surfaces, textures, up, mut warnings, nodes } = draft;
     let shown = path.display();
     let place = |place: Place| match place {
         Place::Line(line) => format!("{shown}:{line}"),
@@ -325,7 +340,10 @@ pub(crate) fn finish(
     if surfaces.is_empty() {
         surfaces.push(Surface::default());
     }
-    let (mesh, mended) = gather::mesh(lists, positions, surfaces, options.crease).map_err(|(line, kind)| {
+    let moves = !nodes.clips.is_empty();
+    let corners: Vec<u32> =
+        if moves { lists.corners.iter().map(|corner| corner.position).collect() } else { Vec::new() };
+    let (mesh, mended) = gather::mesh(lists, positions, surfaces, options.crease, moves).map_err(|(line, kind)| {
         ModelFileError { path: path.to_owned(), place: line.map(Place::Line), kind } //
     })?;
     match mended.pairs {
@@ -338,5 +356,7 @@ pub(crate) fn finish(
         1 => warnings.push(|| format!("{shown}: turned round a body that was inside out")),
         turned => warnings.push(|| format!("{shown}: turned round {turned} bodies that were inside out")),
     }
-    Ok(Parsed { mesh, textures, up, warnings, named, origin: middle.unwrap_or_default() })
+    let origin = middle.unwrap_or_default();
+    let staged = nodes.stage(&mesh, &corners, origin);
+    Ok(Parsed { mesh, textures, up, warnings, named, origin, staged })
 }

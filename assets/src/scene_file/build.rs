@@ -6,7 +6,7 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light};
 use mode13h::scene::framing::{Swept, Turning};
-use mode13h::scene::{Fog, Motion, Moving, PaletteAnimation, Scene};
+use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene, Shared};
 use mode13h::settings::Accuracy;
 use mode13h::settings::Settings;
 use toml::Spanned;
@@ -18,6 +18,7 @@ use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, HalfAngle, List, OffOr, OneOrThree, Vector, VertexBits};
 use super::{SceneErrorKind, motion};
+use crate::model::Playback;
 
 /// Builds one scene.
 pub(super) struct Builder<'a> {
@@ -25,15 +26,16 @@ pub(super) struct Builder<'a> {
     scene: Scene,
     /// The space that the objects cover as they move, if the camera has no explicit position.
     swept: Vec<Swept>,
+    playbacks: Vec<Playback>,
 }
 
 impl<'a> Builder<'a> {
     pub(super) fn new(path: &'a FilePath, open: &'a mut Open<'a>) -> Self {
-        Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new() }
+        Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new(), playbacks: Vec::new() }
     }
 
-    /// Builds the scene, with warnings.
-    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>), Fault> {
+    /// Builds the scene, with warnings, and with the models in it that move by themselves.
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>, Vec<Playback>), Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
         }
@@ -70,7 +72,7 @@ impl<'a> Builder<'a> {
         }
         self.camera(layout)?;
         self.scene.set_time(0.0);
-        Ok((self.scene, self.named.warnings))
+        Ok((self.scene, self.named.warnings, self.playbacks))
     }
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {
@@ -147,12 +149,22 @@ impl<'a> Builder<'a> {
                 [0.0, _, 0.0] => Turning::Upright,
                 _ => Turning::Free,
             };
-            for object in objects.object(layout, &mut self.named)? {
-                if is_framed {
-                    self.swept.push(Swept::new(&object, turning, path.as_ref()));
-                }
+            let (own, moving) = objects.object(layout, &mut self.named)?;
+            for object in own {
                 let start = object.angles;
                 let id = self.scene.add(object);
+                let object = &self.scene[id];
+                let playback = moving.as_ref().and_then(|moving| {
+                    Some(Playback::new(Shared::clone(&moving.rig), 0, &self.scene, id)?.stretched(moving.stretch))
+                });
+                if is_framed {
+                    let swept = |object: &Object| Swept::new(object, turning, path.as_ref());
+                    match &playback {
+                        Some(playback) => self.swept.extend(playback.poses(object).map(|object| swept(&object))),
+                        None => self.swept.push(swept(object)),
+                    }
+                }
+                self.playbacks.extend(playback);
                 if turns != [0.0; 3] {
                     // One loop takes the duration.
                     let turns = turns.map(|turns| turns / self.scene.duration);

@@ -55,6 +55,7 @@ use serde::Deserialize;
 use toml::de::Deserializer;
 
 use crate::look::Look;
+use crate::model::Playback;
 use build::Builder;
 use error::{Fault, not_a_scene, not_toml};
 pub use error::{SceneError, SceneErrorKind};
@@ -78,6 +79,8 @@ pub struct Loaded {
     /// The files that were read or looked for: the scene file itself if it was loaded from one, and the models, MTL
     /// files, textures and palettes that it names. Some may not exist.
     pub files: Vec<PathBuf>,
+    /// The models in it that move by themselves. The scene has them at rest; [`Playback::show`] moves them.
+    pub playbacks: Vec<Playback>,
 }
 
 /// Reads a scene file. The files that it names are resolved relative to its folder.
@@ -147,9 +150,9 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
         files.push(path.to_owned());
         open(path)
     };
-    let (scene, warnings) = Builder::new(path, &mut open).scene(&layout)?;
+    let (scene, warnings, playbacks) = Builder::new(path, &mut open).scene(&layout)?;
     // Includes those that are not looked for because no face has texture coordinates.
     let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
     files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
-    Ok(Loaded { scene, look: layout.look.map(|look| look.0), warnings, files })
+    Ok(Loaded { scene, look: layout.look.map(|look| look.0), warnings, files, playbacks })
 }

@@ -14,7 +14,7 @@ use toml::Spanned;
 use super::error::Fault;
 use super::value::FileName;
 use super::{LONGEST, SceneErrorKind};
-use crate::model_file::{self, Format, Options};
+use crate::model_file::{self, Format, Options, Rig};
 use crate::palette_file;
 use crate::texture::{self, LoadError, LoadErrorKind};
 
@@ -29,6 +29,8 @@ pub(super) struct NamedModel {
     pub(super) origin: [f64; 3],
     /// The axis that points up, if its format says so.
     pub(super) up: Option<UpAxis>,
+    /// What moves it, if anything does.
+    pub(super) rig: Option<Shared<Rig>>,
 }
 
 /// The files that a scene names, resolved relative to its folder.
@@ -75,7 +77,8 @@ impl<'a> Named<'a> {
             .map_err(|error| Fault::of(name.span(), SceneErrorKind::Model(error)))?;
         self.warnings.extend(loaded.warnings);
         self.textures.extend(loaded.textures.into_iter().map(|(name, texture)| (PathBuf::from(name), texture)));
-        let model = NamedModel { mesh: Shared::new(loaded.mesh), origin: loaded.origin, up: loaded.up };
+        let (mesh, rig) = (Shared::new(loaded.mesh), loaded.rig.map(Shared::new));
+        let model = NamedModel { mesh, origin: loaded.origin, up: loaded.up, rig };
         self.models.insert(key, model.clone());
         Ok(model)
     }

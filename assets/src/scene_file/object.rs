@@ -14,6 +14,7 @@ use super::layout::ObjectLayout;
 use super::named::{Named, NamedModel};
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
+use crate::model_file::Rig;
 
 /// The changes to a mesh before it is used.
 #[derive(Clone, Copy, PartialEq)]
@@ -34,6 +35,13 @@ impl Change {
     }
 }
 
+/// What moves the mesh of an object.
+pub(super) struct Moving {
+    pub(super) rig: Shared<Rig>,
+    /// The factors of the mesh's length along x, y and z.
+    pub(super) stretch: Vec3,
+}
+
 /// A shape by its name, its subdivisions and its change.
 type ShapeKey = (&'static str, Vec<u32>, [u32; 5]);
 
@@ -46,12 +54,12 @@ pub(super) struct Objects {
 }
 
 impl Objects {
-    /// Makes the objects of a layout, one for each of its positions, without their motion.
+    /// Makes the objects of a layout, one for each of its positions, without their motion; and what moves their mesh.
     pub(super) fn object(
         &mut self,
         layout: &Spanned<ObjectLayout>,
         named: &mut Named<'_>,
-    ) -> Result<Vec<Object>, Fault> {
+    ) -> Result<(Vec<Object>, Option<Moving>), Fault> {
         let span = layout.span();
         let layout = layout.get_ref();
         let (scale, stretch) = match layout.scale.as_ref().map(Spanned::get_ref) {
@@ -80,19 +88,19 @@ impl Objects {
         if let (None, Some(crease)) = (&layout.model, &layout.crease) {
             return Err(Fault::value(crease.span(), "only a model has a crease angle"));
         }
-        let (mesh, origin, up) = match (&layout.shape, &layout.model) {
-            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3], None),
+        let (mesh, origin, up, rig) = match (&layout.shape, &layout.model) {
+            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3], None, None),
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
                 }
-                let NamedModel { mesh, origin, up } = named.model(
+                let NamedModel { mesh, origin, up, rig } = named.model(
                     model,
                     layout.crease.as_ref().map(|crease| Angle::from_degrees(crease.get_ref().0.into())),
                 )?;
                 let mesh =
                     if change == Change::NONE { mesh } else { Shared::new(changed(&mesh, change, layout, &span)?) };
-                (mesh, origin, up)
+                (mesh, origin, up, rig)
             }
             (Some(_), Some(model)) => {
                 return Err(Fault::value(model.span(), "beside a `shape`: an object is one of both"));
@@ -118,14 +126,12 @@ impl Objects {
             object.angles = degrees.map(|degrees| Angle::from_degrees(degrees.0));
         }
         self.materials(layout, &mut object, named)?;
-        Ok(positions
-            .into_iter()
-            .map(|position| {
-                let mut object = object.clone();
-                object.position = position;
-                object
-            })
-            .collect())
+        let objects = positions.into_iter().map(|position| {
+            let mut object = object.clone();
+            object.position = position;
+            object
+        });
+        Ok((objects.collect(), rig.map(|rig| Moving { rig, stretch })))
     }
 
     fn shape(

@@ -845,6 +845,49 @@ fn standard_input_is_read_once_and_shown_as_often_as_asked_for() {
     assert!(read(&directory, "mode13h-0001.png") == read(&directory, "mode13h-0003.png"));
 }
 
+/// A model and a scene with it play an animation of one second: a moment of it is told by `--time`, and a film is one round.
+#[test]
+fn an_animation_is_played() {
+    let directory = directory();
+    let bar = include_bytes!("../../../tests/corpus/gltf/skinned");
+    std::fs::write(directory.path().join("bar.glb"), bar).expect("written");
+    let scene = "duration = 1\n[[objects]]\nmodel = \"bar.glb\"\n[camera]\neye = [0, 1, 5]\ntarget = [0, 1, 0]\n";
+    std::fs::write(directory.path().join("bar.toml"), scene).expect("written");
+    for input in ["bar.glb", "bar.toml"] {
+        let at = |seconds: &str| {
+            succeed(&directory, &["render", input, "-o", "x.png", "--camera", "0,1,5:0,1,0", "--time", seconds]);
+            read(&directory, "x.png")
+        };
+        let [start, middle, end, again] = ["0", "0.5", "1", "-0.5"].map(at);
+        assert!(start == end && middle == again && start != middle, "{input}");
+        let (line, film) = film(&directory, &[input, "-o", "x.gif", "--fps", "10"]);
+        assert!(line.contains("10 frames"), "{line}");
+        assert!(film.images.len() > 1, "{input}");
+    }
+}
+
+/// A model's own lights and camera are taken, unless the command line has a view of its own.
+#[test]
+fn a_model_brings_lights_and_a_camera() {
+    let directory = directory();
+    let lit = include_bytes!("../../../tests/corpus/gltf/lights_camera");
+    std::fs::write(directory.path().join("lit.glb"), lit).expect("written");
+    let picture = |words: &[&str]| {
+        let output = run(&directory, &[&["render", "lit.glb", "-o", "x.png"], words].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.success() && said == "mode13h: lit.glb: left out: cameras without perspective\n",
+            "{said}"
+        );
+        read(&directory, "x.png")
+    };
+    let own = picture(&[]);
+    // The file's stands at (0, 1, 5) and looks along −z; its angle is of its own.
+    let same_view = picture(&["--camera", "0,1,5:0,1,0"]);
+    let studio = picture(&["--up", "y"]);
+    assert!(own != same_view && own != studio && same_view != studio);
+}
+
 /// A program for DOS says what a scene loses in it.
 #[test]
 fn dos_says_what_is_left_out() {

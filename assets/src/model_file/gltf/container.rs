@@ -48,6 +48,15 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
             return Err(fault(format!("meshes[{i}]: there are no such positions")));
         }
     }
+    // Nor does it check what animations move.
+    for (i, animation) in root.animations.iter_mut().enumerate() {
+        let beyond = |channel: &json::animation::Channel| channel.target.node.value() >= root.nodes.len();
+        if let Some(channel) = animation.channels.iter().position(beyond) {
+            return Err(fault(format!("animations[{i}].channels[{channel}]: there is no such node")));
+        }
+        // Properties of extensions.
+        animation.channels.retain(|channel| matches!(channel.target.path, json::validation::Checked::Valid(_)));
+    }
     // Whatever else is required, the rest can be drawn.
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {

@@ -7,9 +7,13 @@
 //! | `POSITION`, `NORMAL`, `TEXCOORD_n`, `COLOR_0` in any type of number, sparse or not | positions, normals, texture coordinates; a colour for each face without a texture, up to 256 in all |
 //! | materials | surfaces, by the rules below |
 //! | images in the file, as data URIs and beside it | textures, placed by `KHR_texture_transform` |
+//! | skins: joints, inverse bind matrices, `JOINTS_n` and `WEIGHTS_n` | the mesh at rest as the joints put it, and a [`Rig`](rig::Rig) |
+//! | animations of translation, rotation and scale | clips of the rig |
+//! | `KHR_lights_punctual` | suns, lamps and spot lights, by the rule in `rig/stage.rs` |
+//! | the first camera in perspective | a camera |
 //!
 //! Both sides of a face are drawn unless the mesh is closed, so `doubleSided` needs no handling. A single warning lists
-//! everything ignored. Models with animations, skins or morph targets are read in their rest pose.
+//! everything ignored, such as morph targets: the mesh is read without them.
 //!
 //! **Materials.** With base colour b (in sRGB, like all factors here), metallic factor m and roughness r:
 //!
@@ -27,26 +31,30 @@
 mod accessor;
 mod container;
 mod material;
-mod place;
+mod motion;
+mod nodes;
+mod skin;
 
 use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
 use ::gltf::mesh::Mode;
-use ::gltf::{Document, Node, Primitive, Semantic};
+use ::gltf::{Primitive, Semantic};
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::palette::Rgb;
 use mode13h::scene::UpAxis;
 
 use crate::model_file::lists::{Corner, Wide, push};
+use crate::model_file::rig::place::Placement;
+use crate::model_file::rig::{self, Matrix, Vertices};
 use crate::model_file::warnings::Warnings;
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place, paint};
 use crate::wide::dot;
 use accessor::Buffers;
 pub(crate) use container::recognizes;
 use material::{Materials, encoded};
-use place::Placement;
+use skin::Skins;
 
 /// The max number of corners of all faces: a mesh may be used by many nodes, so a small file may be a large model.
 const MAX_CORNERS: usize = 3 << 26;
@@ -62,20 +70,32 @@ pub(crate) fn draft(
     let buffers = Buffers::read(&document, binary, path, file).map_err(fault)?;
     let mut draft = Draft { up: Some(UpAxis::Y), ..Draft::default() };
     let mut left_out = LeftOut::default();
-    left_out.of_document(&document);
+    let (mut skeleton, scene) = nodes::read(&document).map_err(fault)?;
+    let clips = motion::read(&document, &buffers, &skeleton, &mut left_out).map_err(fault)?;
+    let lights = nodes::lights(&scene, &mut left_out);
+    let camera = nodes::camera(&document, &scene, &mut left_out);
+    // The transforms that the vertices of each mesh hang on: its node's, or the joints of a skin.
+    let mut skins = Skins::default();
+    let mut bindings = Vec::new();
+    for node in &scene {
+        let Some(mesh) = node.mesh() else { continue };
+        let of_node = skeleton.add(Matrix { node: node.index(), before: None });
+        let joints = node.skin().map(|skin| skins.of(&skin, &mut skeleton, &buffers)).transpose().map_err(fault)?;
+        bindings.push((mesh, Binding { of_node, joints }));
+    }
     let mut reading = Reading {
         materials: Materials::new(path, &buffers),
         buffers: &buffers,
         left_out,
         colors: Vec::new(),
         color_surface: None,
+        transforms: skeleton.transforms(&skeleton.places(|_| None)),
+        moving: (!clips.is_empty()).then(Vertices::default),
     };
-    for (node, place) in placed(&document).map_err(fault)? {
-        let Some(mesh) = node.mesh() else { continue };
-        reading.left_out.add("skins", u64::from(node.skin().is_some()));
+    for (mesh, binding) in bindings {
         for primitive in mesh.primitives() {
             let part = format!("meshes[{}].primitives[{}]", mesh.index(), primitive.index());
-            reading.primitive(&primitive, place, &mut draft).map_err(|kind| {
+            reading.primitive(&primitive, binding, &mut draft).map_err(|kind| {
                 let kind = match kind {
                     ModelFileErrorKind::Fault(what) => ModelFileErrorKind::Fault(format!("{part}: {what}")),
                     kind => kind,
@@ -84,7 +104,8 @@ pub(crate) fn draft(
             })?;
         }
     }
-    let Reading { mut materials, left_out, colors, color_surface, .. } = reading;
+    let Reading { mut materials, left_out, colors, color_surface, moving, .. } = reading;
+    draft.nodes = rig::Nodes { skeleton, clips, vertices: moving.unwrap_or_default(), lights, camera };
     draft.surfaces = core::mem::take(&mut materials.surfaces);
     draft.textures = core::mem::take(&mut materials.textures);
     if let Some(surface) = color_surface {
@@ -94,29 +115,13 @@ pub(crate) fn draft(
     Ok(draft)
 }
 
-/// The nodes of the scene and their transforms, in the order of the file.
-fn placed(document: &Document) -> Result<Vec<(Node<'_>, Placement)>, String> {
-    let roots: Vec<Node<'_>> = match document.default_scene().or_else(|| document.scenes().next()) {
-        Some(scene) => scene.nodes().collect(),
-        None => {
-            let mut is_child = vec![false; document.nodes().len()];
-            document.nodes().flat_map(|node| node.children()).for_each(|child| is_child[child.index()] = true);
-            document.nodes().filter(|node| !is_child[node.index()]).collect()
-        }
-    };
-    let mut is_placed = vec![false; document.nodes().len()];
-    let mut waiting: Vec<(Node<'_>, Placement)> = roots.into_iter().rev().map(|root| (root, Placement::NONE)).collect();
-    let mut nodes = Vec::new();
-    while let Some((node, of_parent)) = waiting.pop() {
-        if core::mem::replace(&mut is_placed[node.index()], true) {
-            return Err(format!("nodes[{}] stands twice in the scene", node.index()));
-        }
-        let place = of_parent.after(Placement::of_matrix(node.transform().matrix()));
-        let children: Vec<Node<'_>> = node.children().collect();
-        waiting.extend(children.into_iter().rev().map(|child| (child, place)));
-        nodes.push((node, place));
-    }
-    Ok(nodes)
+/// What the vertices of a mesh in a node hang on.
+#[derive(Clone, Copy)]
+struct Binding {
+    /// The place of the node's own transform in the skeleton.
+    of_node: u32,
+    /// The place of the first joint's, and the number of joints, if it has a skin.
+    joints: Option<(u32, usize)>,
 }
 
 struct Reading<'a> {
@@ -127,13 +132,17 @@ struct Reading<'a> {
     colors: Vec<(usize, Rgb)>,
     /// The surface of these faces.
     color_surface: Option<usize>,
+    /// The transforms that vertices hang on, at rest.
+    transforms: Vec<Placement>,
+    /// The vertices before their transforms, one for each position, if anything moves.
+    moving: Option<Vertices>,
 }
 
 impl Reading<'_> {
     fn primitive(
         &mut self,
         primitive: &Primitive<'_>,
-        place: Placement,
+        binding: Binding,
         draft: &mut Draft,
     ) -> Result<(), ModelFileErrorKind> {
         if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
@@ -161,18 +170,36 @@ impl Reading<'_> {
         let colors = attribute(&Semantic::Colors(0)).filter(|_| !is_textured);
         let colors = colors.map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
         let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
+        // By the specification a skinned mesh does not stand where its node does, but where its joints are.
+        let skinned = match binding.joints {
+            Some(joints) => skin::influences(primitive, count, joints, self.buffers).map_err(fault)?,
+            None => None,
+        };
+        let own = self.transforms[binding.of_node as usize];
+        let transforms = &self.transforms;
+        let place = |vertex: usize| skinned.as_ref().map_or(own, |skinned| skinned.blended(vertex, transforms));
 
+        if let Some(moving) = &mut self.moving {
+            for vertex in 0..count {
+                moving.positions.push(positions[vertex].map(|c| c as f32));
+                moving.normals.push(normals.as_ref().map_or([0.0; 3], |normals| normals[vertex].map(|c| c as f32)));
+                match &skinned {
+                    Some(skinned) => moving.influences.push(skinned.of(vertex).iter().copied()),
+                    None => moving.influences.push([(binding.of_node, 1.0)]),
+                }
+            }
+        }
         let lists = &mut draft.lists;
         let first = [lists.positions.len(), lists.texcoords.len(), lists.normals.len()];
-        for position in positions {
-            let position = place.point(position);
+        for (vertex, position) in positions.into_iter().enumerate() {
+            let position = place(vertex).point(position);
             if let Some(c) = position.iter().find(|c| !(**c as f32).is_finite()) {
                 return Err(ModelFileErrorKind::Fault(format!("a position of {c} is not finite")));
             }
             push(&mut lists.positions, Wide::new(position))?;
         }
-        for normal in normals.iter().flatten().take(count) {
-            let normal = place.normal(*normal);
+        for (vertex, normal) in normals.iter().flatten().take(count).enumerate() {
+            let normal = place(vertex).normal(*normal);
             let length = libm::sqrt(dot(normal, normal));
             let normal = Vec3::from_array(normal.map(|c| (c / length) as f32));
             push(&mut lists.normals, if normal.is_finite() { normal } else { Vec3::ZERO })?;
@@ -207,11 +234,11 @@ impl Reading<'_> {
                 _ => [i + 1, i, i + 2],
             };
             let mut corners: [usize; 3] = corners.map(vertex);
-            if place.mirrors() {
-                corners.swap(1, 2);
-            }
             if let Some(beyond) = corners.iter().find(|&&corner| corner >= count) {
                 return Err(ModelFileErrorKind::Fault(format!("there is no vertex {beyond}, only {count}")));
+            }
+            if place(corners[0]).mirrors() {
+                corners.swap(1, 2);
             }
             let lists = &mut draft.lists;
             let start = lists.corners.len();
@@ -253,13 +280,6 @@ impl LeftOut {
         if count > 0 {
             *self.counts.entry(what).or_default() += count;
         }
-    }
-
-    fn of_document(&mut self, document: &Document) {
-        self.add("animations", document.animations().len() as u64);
-        self.add("cameras", document.cameras().len() as u64);
-        let lights = document.extensions_used().filter(|name| *name == "KHR_lights_punctual").count();
-        self.add("lights", lights as u64);
     }
 
     /// Makes a single warning of all.

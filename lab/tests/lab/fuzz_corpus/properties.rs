@@ -9,10 +9,11 @@ use std::str::FromStr;
 
 use mode13h::export::{MAX_SIDE, Picture, PixelShape, Scale};
 use mode13h::glam::{Vec2, Vec3};
+use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Palette, Rgb, builtin};
-use mode13h::render::Renderer;
-use mode13h::scene::Scene;
+use mode13h::render::{Renderer, Screen};
+use mode13h::scene::{Camera, Object, Scene};
 use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
@@ -20,7 +21,7 @@ use mode13h::vga::Vga;
 use mode13h_assets::SceneExt;
 use mode13h_assets::animation::{FrameRate, GifWriter};
 use mode13h_assets::model_file::obj;
-use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
+use mode13h_assets::model_file::{self, Clip, Loaded, ModelFileError, ModelFileErrorKind, Options, Pose};
 use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h_assets::scene_file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h_assets::texture;
@@ -166,8 +167,22 @@ pub fn gltf(bytes: &[u8]) {
 fn model(bytes: &[u8], name: &str) {
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     match model_file::parse(bytes, name, none, &Options::default()) {
-        Ok(Loaded { mesh, warnings, textures, .. }) => {
+        Ok(Loaded { mesh, warnings, textures, lights, camera, rig, .. }) => {
             check_mesh(&mesh);
+            check_staged(&mesh, &lights, camera);
+            for (clip, duration) in rig.iter().flat_map(|rig| rig.clips().iter().map(Clip::duration).enumerate()) {
+                assert!(duration.is_finite());
+                for seconds in [0.0, duration / 3.0, duration, -1.0, f64::NAN] {
+                    let Some(Pose { mesh: posed, lights, camera, .. }) =
+                        rig.as_ref().map(|rig| rig.pose(&mesh, clip, seconds))
+                    else {
+                        continue;
+                    };
+                    check_mesh(&posed);
+                    assert_eq!((posed.triangles(), posed.surfaces()), (mesh.triangles(), mesh.surfaces()));
+                    check_staged(&posed, &lights, camera);
+                }
+            }
             warnings.iter().for_each(|warning| assert_one_line(warning));
             for texture in mesh.surfaces().iter().filter_map(|surface| surface.texture.as_ref()) {
                 // Others are files, whatever their names.
@@ -185,6 +200,18 @@ fn model(bytes: &[u8], name: &str) {
     }
     // Whatever it is by its contents.
     let _ = model_file::parse(bytes, "standard input", none, &Options::default());
+}
+
+/// That the renderer takes the lights and the camera that a model brings.
+fn check_staged(mesh: &Mesh, lights: &[Light], camera: Option<Camera>) {
+    let mut scene = Scene::new();
+    // Whether an object can be drawn from here is no matter of theirs.
+    scene.add(Object::new(shapes::cube()).at(mesh.bounds().centre));
+    lights.iter().for_each(|light| _ = scene.add_light(*light));
+    scene.camera = camera.unwrap_or(scene.camera);
+    if let Err(error) = Renderer::new().make_plan(&scene, Screen::MODE_13H) {
+        panic!("{error}: {lights:?} {camera:?}");
+    }
 }
 
 /// LF, CR LF and CR end a line; an end of line at the end of the text begins no further line.

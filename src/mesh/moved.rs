@@ -1,0 +1,42 @@
+//! A mesh with its vertices elsewhere: stretched, or in the next pose of an animation.
+
+use alloc::vec::Vec;
+
+use glam::Vec3;
+
+use super::{Mesh, MeshError};
+
+impl Mesh {
+    /// Copies the mesh with its vertices at other positions, and with other normals, one of each for each vertex. Triangles,
+    /// surfaces and texture coordinates stay. Normals are made unit.
+    ///
+    /// Whether the copy is closed, looks outward and is convex is found out anew, as a bend may change all of it. That takes
+    /// most of the time.
+    ///
+    /// ```
+    /// use mode13h::glam::Vec3;
+    /// use mode13h::mesh::shapes;
+    /// let cube = shapes::cube();
+    /// // Turned inside out.
+    /// let positions = cube.positions().iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect();
+    /// let normals = cube.normals().iter().map(|n| Vec3::new(n.x, -n.y, -n.z)).collect();
+    /// let mirrored = cube.with_vertices(positions, normals)?;
+    /// assert!(mirrored.is_closed() && !mirrored.is_outward() && !mirrored.is_convex());
+    /// # Ok::<(), mode13h::mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`with_normals`](Self::with_normals), and a number of positions other than that of the vertices.
+    pub fn with_vertices(&self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<Self, MeshError> {
+        let (given, needed) = (positions.len(), self.positions.len());
+        if given != needed {
+            return Err(MeshError::Count { what: "positions", given, needed });
+        }
+        let mut mesh = Self::with_normals(positions, normals, self.triangles.clone())?;
+        mesh.texcoords.clone_from(&self.texcoords);
+        mesh.surfaces.clone_from(&self.surfaces);
+        mesh.triangle_surfaces.clone_from(&self.triangle_surfaces);
+        mesh.lines.clone_from(&self.lines);
+        Ok(mesh.with_facts())
+    }
+}
