@@ -1,9 +1,8 @@
 //! Golden frames: indexed PNGs, compared by index and by palette.
 //!
-//! Integer results are the same bits on every machine, and the floats before them keep to rules that
-//! make them so (ARCHITECTURE.md): a frame that differs is a change of the engine's bytes, which
-//! belongs into CHANGELOG.md. With `MODE13H_WRITE_GOLDEN=1` they are written anew, drawn by the portable
-//! kernel, and the test fails.
+//! Integer results are the same bits on every machine, and the floats before them follow rules that make them so
+//! (ARCHITECTURE.md): a frame that differs is a change of the engine's bytes, which belongs in CHANGELOG.md. With
+//! `MODE13H_WRITE_GOLDEN=1` they are regenerated, drawn with the portable kernel, and the test fails.
 
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter};
@@ -29,8 +28,8 @@ impl Indexed {
     }
 }
 
-/// Compares the frame that each kernel draws with the golden one, `tests/golden/<name>.png`. Returns the
-/// pictures to look at: of frames that differ, or that were written anew.
+/// Compares the frame that each kernel draws with the golden one, `tests/golden/<name>.png`. Returns the pictures to
+/// look at, of frames that differ or were regenerated.
 pub fn check(name: &str, tried: &mut Tried, mut frame: impl FnMut(Kernel) -> Indexed) -> Vec<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("{name}.png"));
     if std::env::var_os("MODE13H_WRITE_GOLDEN").is_some() {
