@@ -1,29 +1,29 @@
-# What the scripts machines/*/run have in common; they source it.
+# What the scripts machines/*/run share; they source it.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-# One place for all: core and alloc are built once for a target and kept.
+# One place for all: core and alloc are built once per target and reused.
 machines=${MACHINES_TARGET:-$root/target/machines}
 mkdir -p "$machines"
 wrong=0
 
-# needs PACKAGE...: installs what is not there.
+# needs PACKAGE...: installs missing packages.
 needs() {
     local package missing=()
     for package; do
         dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
     done
-    # Another machine may be installing at this moment.
+    # Another machine may be installing at the same time.
     [ ${#missing[@]} = 0 ] ||
         apt-get -o DPkg::Lock::Timeout=600 install -q -y --no-install-recommends "${missing[@]}" >&2
 }
 
-# compiled TARGET [RUSTFLAGS...]: builds the program for a target with core and alloc, and nothing else. Debian's
-# compiler brings their source; rustup's has it as the component rust-src.
+# compiled TARGET [RUSTFLAGS...]: builds the program for a target with only core and alloc. Debian's compiler includes
+# their source; rustup's has it as the component rust-src.
 compiled() {
     local target=$1
     shift
     needs rustc-web cargo-web rust-web-src rust-web-llvm
-    # rust-lld names the linker that belongs to this compiler, and links for all of these processors.
+    # rust-lld is the linker that belongs to this compiler, and links for all of these processors.
     needs "$(basename "$(readlink /usr/bin/rust-lld)")"
     local flags="$* -C linker=rust-lld -C linker-flavor=${linker:-ld.lld} -C relocation-model=${relocation:-static}"
     RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 RUSTFLAGS=$flags /usr/bin/cargo build -q --release \
@@ -31,15 +31,15 @@ compiled() {
         -Z build-std=core,alloc -Z build-std-features=compiler-builtins-mem
 }
 
-# host WORD...: the program on this machine.
+# host WORD...: runs the program on this machine.
 host() {
     cargo build -q --release --manifest-path "$root/machines/frames/Cargo.toml" --features std --target-dir "$machines"
     "$machines/release/frames" "$@"
 }
 
 # drawn MACHINE STEP COMMAND...: runs the program, which prints a line for each kernel, and prints
-# `machine, kernel: hash, frames, time, verdict`. The program knows the hash of each frame on other machines. Of the first
-# frame that is different, the first pixel is looked for, beside this machine's own.
+# `machine, kernel: hash, frames, time, verdict`. The program knows the hash of each frame on other machines. For the
+# first frame that differs, it finds the first differing pixel by comparing with this machine's own frame.
 drawn() {
     local machine=$1 step=$2 line kernel rest now then verdict name lines=0
     shift 2
@@ -66,7 +66,7 @@ drawn() {
     fi
 }
 
-# pixel FRAME KERNEL COMMAND...: the first pixel of a frame that the program draws otherwise than this machine does.
+# pixel FRAME KERNEL COMMAND...: the first pixel of a frame that the program draws differently from this machine.
 pixel() {
     local frame=$1 kernel=$2
     shift 2
@@ -78,7 +78,7 @@ pixel() {
         }'
 }
 
-# loops MACHINE COMMAND...: every loop over pixels against its definition, by every kernel.
+# loops MACHINE COMMAND...: checks every pixel loop against its definition, with every kernel.
 loops() {
     local machine=$1 said then=$SECONDS verdict
     shift
@@ -87,7 +87,7 @@ loops() {
     tail -n +2 <<<"$said"
 }
 
-# The step of a machine: every frame, or what the first argument says. Words that follow are the program's, such as
+# The step of a machine: every frame, or what the first argument says. The remaining words are the program's, such as
 # kernel=portable.
 step=${1:-1}
 words=("${@:2}")

@@ -1,6 +1,6 @@
-; A ROM of 2 MB in place of a PC's BIOS: switches the processor to 64 bits with AVX-512, copies the program into memory, and
-; starts it. Two of Linux's calls are served: write says its text at port E9h, exit ends Bochs. Of an exception nobody
-; hears: the processor shuts down, and Bochs ends.
+; A 2 MB ROM in place of a PC's BIOS: switches the processor to 64 bits with AVX-512, copies the program into memory,
+; and starts it. It serves two Linux calls: write prints its text to port E9h, exit ends Bochs. Exceptions are not
+; handled: the processor shuts down, and Bochs ends.
 ;     nasm -D IMAGE="'FILE'" -D WORDS="'FILE'"
 place   equ 1000000h                    ; the program's first instruction (image.ld)
 stack   equ 0F00000h                    ; as Linux leaves it: the number of words, their addresses
@@ -33,7 +33,7 @@ protected:
         mov edi, place
         mov ecx, image_size
         rep movsb
-        ; Bochs has memory that is not zero.
+        ; Bochs's memory is not zeroed.
         xor eax, eax
         mov ecx, place + memory
         sub ecx, edi
@@ -45,7 +45,7 @@ protected:
         mov edi, stack
         mov ecx, words_size
         rep movsb
-        ; The first 4 GB as they are: four pages of 1 GB.
+        ; Identity-map the first 4 GB: four pages of 1 GB.
         mov dword [tables], tables + 1000h + 3
         mov edi, tables + 1000h
 .page:  lea edx, [eax + 83h]
@@ -84,7 +84,7 @@ wide:   xor ecx, ecx                    ; XCR0: x87, SSE, AVX, and the three par
         mov eax, place
         jmp rax
 
-; RAX is the call, RSI and RDX the text; RCX is where it goes back to, R11 may be changed.
+; RAX is the call, RSI and RDX the text; RCX holds the return address, R11 may be changed.
 serve:  cmp eax, 1
         jne exit
         push rcx
@@ -98,7 +98,7 @@ serve:  cmp eax, 1
         pop rsi
         pop rcx
         jmp rcx
-; The status is said, then the word that ends Bochs.
+; Prints the status, then the word that ends Bochs.
 exit:   lea eax, [rdi + '0']
         mov dx, 0E9h
         mov esi, status

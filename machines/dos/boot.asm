@@ -1,4 +1,4 @@
-; The first sector of a floppy of 1.44 MB: reads what follows to 1000h:0, one sector at a time, and starts the stub there.
+; The first sector of a 1.44 MB floppy: reads what follows to 1000h:0, one sector at a time, and starts the stub there.
         org 7C00h
         bits 16
 start:  jmp short begin

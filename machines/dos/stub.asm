@@ -1,11 +1,11 @@
-; The 16-bit half of the program for DOS: `nasm -f bin`, 4,096 bytes, which stand before the flat image of player/.
+; The 16-bit half of the program for DOS: `nasm -f bin`, 4,096 bytes, placed before the flat image of player/.
 ;
-; From a floppy (boot.asm) it is started at `boot`, where there is no DOS: it then serves the few calls of DOS itself.
+; From a floppy (boot.asm) it is started at `boot`, without DOS: it then serves the few DOS calls itself.
 ;
-; It sees to a 386 in real mode with enough extended memory (XMS), enters protected mode with segments whose base is the
-; program's own, so that address 0 is the first byte of this file, and calls the image. The image may ask for one service:
-; an interrupt of DOS or the BIOS, in real mode. Interrupts are off in protected mode: what the keyboard sends waits until
-; the next service.
+; It checks for a 386 in real mode with enough extended memory (XMS), enters protected mode with segments based at the
+; program itself, so that address 0 is the first byte of this file, and calls the image. The image may request one
+; service: an interrupt of DOS or the BIOS, in real mode. Interrupts are off in protected mode: keyboard input waits
+; until the next service.
 
 IMAGE   equ 1000h                       ; where the image is, and begins
 
@@ -25,7 +25,7 @@ film_length     dd 0
 stack_top       dd 0                    ; of protected mode
 heap_kb         dd 0                    ; extended memory that is needed
 
-; What the image is given, beside the four above: the address of `film` is its argument.
+; What the image receives besides the four above: the address of `film` is its argument.
 heap            dd 0                    ; offset of the extended memory
 low             dd 0                    ; offset of linear address 0
 command         dd 0                    ; offset of the command line: a byte with its length, then the words
@@ -67,7 +67,7 @@ no_xms  db 'There is no extended memory: load HIMEM.SYS in CONFIG.SYS.', 13, 10,
 no_room db 'There is too little extended memory: 4 MB are enough for most scenes.', 13, 10, '$'
 no_a20  db 'The memory above 1 MB cannot be reached: line A20 stays off.', 13, 10, '$'
 
-; Says the line at DX, and ends with status 1.
+; Prints the line at DX, and ends with status 1.
 say_and_end:
         push cs
         pop ds
@@ -144,7 +144,7 @@ begin:  cld
         mov dx, no_a20
         jnz no_processor.unlock
 
-        ; The base of all segments is where the program begins.
+        ; All segments are based at the start of the program.
 based:
         xor eax, eax
         mov ax, cs
@@ -203,7 +203,7 @@ no_processor:
         pop dx
         jmp say_and_end
 
-; To protected mode, and there to EBX.
+; To protected mode, continuing at EBX.
 protected:
         cli
         o32 lgdt [gdtr]
@@ -228,7 +228,7 @@ run:    cld
         mov [status], al
         mov ebx, finish
 
-; To real mode, and there to BX.
+; To real mode, continuing at BX.
 to_real:
         mov [saved_esp], esp
         jmp CODE16:.with_limits
@@ -330,7 +330,7 @@ booted: cld
         out 92h, al
         mov ax, 2401h                   ; and by the BIOS
         int 15h
-        ; A byte at 500h, and that of 1 MB above it, are two.
+        ; A byte at 500h and the one 1 MB above it are distinct.
         mov ax, 0FFFFh
         mov fs, ax
         mov byte [es:500h], 0
@@ -341,7 +341,7 @@ booted: cld
         jmp based
 .end:   jmp say_and_end
 
-; The calls of DOS that are needed: 9 and 40h print, 4Ch ends; others fail.
+; The DOS calls that are needed: 9 and 40h print, 4Ch ends; others fail.
 dos:    cmp ah, 40h
         je .write
         cmp ah, 9

@@ -28,11 +28,11 @@ fn interpolations(random: &mut Random) -> impl FnMut(&mut Random) -> Interpolati
     move |random| all.unwrap_or_else(|| interpolation(random))
 }
 
-/// A triangle of at most `reach` units about somewhere in or near the frame; one in four on whole or half pixels.
+/// A triangle of at most `reach` units somewhere in or near the frame; one in four on whole or half pixels.
 fn small(random: &mut Random, width: i64, height: i64, reach: i64) -> [Vertex; 3] {
     let (cx, cy) = (random.within(-300, width * 256 + 300), random.within(-300, height * 256 + 300));
     let snap = random.one_of(&[1, 1, 1, 128]);
-    // Of equal depths the first has to stay.
+    // With equal depths the first must stay.
     let level = random.one_of(&[None, None, Some(9), Some(10)]);
     let mut place = || {
         let shade = random.one_of(&[0, 0xFF00, -1, -1, -1]);
@@ -43,7 +43,7 @@ fn small(random: &mut Random, width: i64, height: i64, reach: i64) -> [Vertex; 3
     [place(), place(), place()]
 }
 
-/// Anything from smaller than a pixel to larger than what batches draw themselves, and what `support` has.
+/// From smaller than a pixel to larger than what batches draw themselves, plus the triangles of `support`.
 fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     match random.within(0, 9) {
         0 => triangle(random, width, height),
@@ -54,14 +54,14 @@ fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     }
 }
 
-/// What batches are compared with.
+/// The reference for batches.
 fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
     let mut sum = DrawStats::default();
     triangles.iter().for_each(|(vertices, interpolation)| sum += raster.triangle(vertices, *interpolation));
     sum
 }
 
-/// `triangles` of them for each kernel.
+/// The number of triangles for each kernel, out of `triangles`.
 fn per_kernel(triangles: u64) -> u64 {
     triangles * Kernel::available().count() as u64
 }
@@ -123,7 +123,7 @@ struct Place {
     depth: bool,
 }
 
-/// The bytes, the depths and the counts of drawing with `draw`.
+/// Bytes, depths and counts after drawing with `draw`.
 fn drawn(
     place: &Place,
     kernel: Kernel,
@@ -185,8 +185,8 @@ fn batches_draw_what_single_triangles_do() {
     assert!(total.pixels > 100_000, "{total:?}");
 }
 
-/// Triangles of about the same size lie in groups that go the same way: of one row each, of two, of four, of eight and of
-/// more. Many lie one upon another, and at the frame's edges, where no pixel is behind the last.
+/// Triangles of similar size come in groups with the same orientation: of one row each, of two, of four, of eight and
+/// of more. Many overlap, and many lie at the frame's edges, where no pixel follows the last.
 #[test]
 fn triangles_of_one_size_are_drawn_as_one_by_one() {
     let mut random = Random::named("batches of small triangles of one size");
@@ -235,7 +235,7 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
     assert!(total.tested > 50_000 && total.pixels > 50_000, "{total:?}");
 }
 
-/// A corner anywhere in a frame, one in three coordinates at an end, with a depth if there is one.
+/// A corner anywhere in a frame, one coordinate in three at an end, with a depth if there is one.
 fn corner(random: &mut Random, width: i64, height: i64, level: Option<i64>) -> Vertex {
     let mut along = |side: i64| {
         let at = random.within(0, side * 256);
@@ -249,7 +249,7 @@ fn corner(random: &mut Random, width: i64, height: i64, level: Option<i64>) -> V
 #[test]
 fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
     let mut random = Random::named("batches of large triangles");
-    // The largest that batches draw themselves, and a little more, in each direction.
+    // The largest that batches draw themselves, and slightly larger, in each direction.
     let frames = [(320, 200), (640, 400), (512, 512), (520, 515), (1_024, 256), (1_030, 200), (63, 4_096), (65, 4_096)];
     let mut total = DrawStats::default();
     for round in 0..160 {
@@ -283,7 +283,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
     assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
 }
 
-/// Where set-up in f64 is at the end of its digits: what is larger is drawn by single triangles.
+/// Where f64 set-up runs out of digits: larger triangles are drawn singly.
 #[test]
 fn r4_large_triangles_of_batches_start_exactly() {
     let mut tried = Tried::new("r4_large_triangles_of_batches_start_exactly", per_kernel(320));
@@ -296,7 +296,7 @@ fn r4_large_triangles_of_batches_start_exactly() {
         band: 0..shapes::SIDE as u32,
         depth: false,
     };
-    // By their number of squares of a batch.
+    // By the number of squares that a batch divides them into.
     let (mut larger, mut smaller) = (0, 0);
     for _ in 0..320 {
         let interpolation = random.one_of(&[Interpolation::Gouraud, Interpolation::GouraudReseeded]);
@@ -329,7 +329,7 @@ fn r4_large_triangles_of_batches_start_exactly() {
     assert!(larger > 60 && smaller > 20, "{larger} are larger than what a batch draws, {smaller} are not");
 }
 
-/// A depth buffer laid over other rows than the frame's: those that it lacks are not drawn, as one by one.
+/// A depth buffer for rows other than the frame's: rows that it lacks are not drawn, just as one by one.
 #[test]
 fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
     const WIDTH: u32 = 32;

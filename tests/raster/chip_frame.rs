@@ -1,4 +1,4 @@
-//! The chip's scene on this machine: the bytes that `.ci/chip` gets from a Cortex-M0.
+//! The chip's scene on this machine: the same bytes that `.ci/chip` gets from a Cortex-M0.
 
 #[path = "../support/chip_scene.rs"]
 mod scene;

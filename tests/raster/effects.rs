@@ -1,6 +1,5 @@
-//! Triangles with effects against a naive oracle, which takes every pixel for itself and every stage by
-//! the letter of its definition; and what must change nothing: order, winding, clip rectangle, bands,
-//! kernel.
+//! Triangles with effects against a naive oracle, which treats every pixel on its own and every stage by the letter of
+//! its definition; and things that must not matter: order, winding, clip rectangle, bands, kernel.
 
 use crate::support::triangles;
 use crate::support::tried::Tried;
@@ -24,9 +23,9 @@ use std::ops::Range;
 
 const WIDTH: i32 = 150;
 const HEIGHT: i32 = 60;
-/// What the frame holds before.
+/// What the frame holds before drawing.
 const BEFORE: u8 = 77;
-/// What lies between its rows.
+/// Padding bytes between its rows.
 const BETWEEN: u8 = 0xA5;
 
 /// Columns and rows of a frame, and the bytes from one row to the next.
@@ -37,17 +36,17 @@ struct Size {
     pitch: i32,
 }
 
-/// That of most tests.
+/// The size used in most tests.
 const SIZE: Size = Size { width: WIDTH, height: HEIGHT, pitch: WIDTH + 11 };
 
 impl Size {
-    /// As usual or, in one of four cases, low and wide; of any pitch.
+    /// The usual size or, in one of four cases, low and wide; with any pitch.
     fn any(random: &mut Random) -> Self {
         let (width, height) = random.one_of(&[(WIDTH, HEIGHT), (WIDTH, HEIGHT), (WIDTH, HEIGHT), (1_021, 9)]);
         Self { width, height, pitch: width + random.within(0, 99) as i32 }
     }
 
-    /// Its pixels, nothing drawn yet.
+    /// Its pixels before drawing.
     fn pixels(self) -> Vec<u8> {
         vec![BEFORE; (self.width * self.height) as usize]
     }
@@ -60,7 +59,7 @@ impl Size {
         Rect { x0: 0, y0: 0, x1: self.width as u32, y1: self.height as u32 }
     }
 
-    /// Lets `draw` at these rows of the frame that holds `pixels`. What lies between the rows has to stay.
+    /// Runs `draw` on these rows of the frame in `pixels`. Padding between rows must not change.
     fn draw<T>(self, pixels: &mut [u8], rows: Range<u32>, draw: impl FnOnce(Frame<'_>) -> T) -> T {
         let (width, pitch) = (self.width as usize, self.pitch as usize);
         let pixels = &mut pixels[rows.start as usize * width..rows.end as usize * width];
@@ -80,12 +79,12 @@ impl Size {
     }
 }
 
-/// Tables and an image, all random.
+/// Random tables and a random image.
 struct Stock {
     tables: Vec<Box<[u8; 65_536]>>,
     map: Box<[u8; 32_768]>,
     texels: Vec<u8>,
-    /// Of all levels from 1 on.
+    /// All levels from 1 on.
     levels: Vec<u8>,
 }
 
@@ -102,7 +101,7 @@ impl Stock {
     }
 }
 
-/// Light that is exact in f64: the sum of the first three values, held in range.
+/// Light that is exact in f64: the sum of the first three values, clamped to the range.
 #[derive(Debug)]
 struct Sum;
 
@@ -134,7 +133,7 @@ fn attributes(random: &mut Random) -> [Attributes; 3] {
     })
 }
 
-/// Any two, seldom so that the least is above the greatest; shades beyond 255, too, which count as that.
+/// Random limits, rarely with the minimum above the maximum; including shades beyond 255, which count as 255.
 fn limits(random: &mut Random) -> Limits {
     let [a, b] = [0, 1].map(|_| random.within(0, 0xFFFF) as u16);
     let (least, most) = if random.within(0, 9) == 0 { (a, b) } else { (a.min(b) / 4, a.max(b)) };
@@ -181,7 +180,7 @@ struct Naive<'a> {
     vertices: &'a [Vertex; 3],
     attributes: &'a [Attributes; 3],
     look: &'a PixelPipeline<'a>,
-    /// The shades of the corners, or each of their channels.
+    /// The corners' shades, or each of their channels.
     shades: Vec<oracle::Shades>,
 }
 
@@ -192,7 +191,7 @@ impl<'a> Naive<'a> {
         attributes: &'a [Attributes; 3],
         look: &'a PixelPipeline<'a>,
     ) -> Self {
-        // Of what is not shaded the channels are linear.
+        // Without shading the channels are linear.
         let interpolation =
             if let ShadeSource::Shaded(interpolation) = look.source { interpolation } else { Interpolation::default() };
         let channels = [0, 1, 2].map(|i| attributes.each_ref().map(|a| a.channels[i].to_bits()));
@@ -203,7 +202,7 @@ impl<'a> Naive<'a> {
         Self { size, corners: vertices.each_ref().map(oracle::point), vertices, attributes, look, shades }
     }
 
-    /// A value that is linear on the screen, in 8.8, without the half: exact at `seed`, then in steps.
+    /// A value linear on the screen, in 8.8, without the rounding half: exact at `seed`, then stepped.
     fn linear(&self, values: [u16; 3], seed: i32, x: i32, y: i32) -> i128 {
         let values = values.map(i128::from);
         let exact = oracle::interpolate(self.corners, values, oracle::centre(seed, y));
@@ -216,7 +215,7 @@ impl<'a> Naive<'a> {
         self.vertices.each_ref().map(|v| i128::from(v.depth().max(1)))
     }
 
-    /// A value that is linear on the face.
+    /// A value linear on the face.
     fn on_face(&self, values: [i128; 3], x: i32, y: i32) -> Ratio {
         let depths = self.depths();
         let products = [0, 1, 2].map(|i| depths[i] * values[i]);
@@ -227,8 +226,8 @@ impl<'a> Naive<'a> {
         }
     }
 
-    /// A shade that is quadratic on the screen, as it is defined: by the basis of six functions, each 1 at one of the points
-    /// and 0 at the others. All are whole numbers over the square of the area.
+    /// A shade quadratic on the screen, by definition: in the basis of six functions, each 1 at one of the points and 0
+    /// at the others. All are whole numbers over the square of the area.
     fn quadratic(&self, channel: usize, x: i32, y: i32) -> Ratio {
         let weight = |corner: usize| {
             let one = [0, 1, 2].map(|i| i128::from(i == corner));
@@ -243,7 +242,7 @@ impl<'a> Naive<'a> {
         Ratio { n: sum, d: area * area }
     }
 
-    /// The byte of it within its limits. One that is half-way between two counts as the even one.
+    /// Its byte within the limits. Halfway between two, the even one counts.
     fn quadratic_byte(&self, limits: Limits, channel: usize, (x, y): (i32, i32), threshold: u8, off: i128) -> u8 {
         let exact = self.quadratic(channel, x, y);
         let nearest = Ratio { n: 2 * exact.n + exact.d, d: 2 * exact.d }.floor() + off;
@@ -251,11 +250,11 @@ impl<'a> Naive<'a> {
         ((nearest.max(least).min(most) + i128::from(threshold)) >> 8) as u8
     }
 
-    /// The level of a mipmap at a pixel: of the coordinates' exact derivatives, with the depth in whole sixteenths.
+    /// The mipmap level at a pixel: from the coordinates' exact derivatives, with the depth in whole sixteenths.
     fn level(&self, mapping: Mapping, last: u32, x: i32, y: i32) -> u32 {
         let depths = if mapping == Mapping::Affine { [1; 3] } else { self.depths() };
         let at = |values: [i128; 3], x, y| oracle::interpolate(self.corners, values, oracle::centre(x, y)).n;
-        // By the quotient's rule, times the divisor's square.
+        // By the quotient rule, times the divisor squared.
         let derivative = |of: usize, dx: i32, dy: i32| {
             let products = [0, 1, 2].map(|i| depths[i] * i128::from(self.attributes[i].texture[of]));
             let (n, d) = (at(products, x, y), at(depths, x, y));
@@ -308,8 +307,8 @@ impl<'a> Naive<'a> {
         (level, texels.at(whole(u, texels.width()), whole(v, texels.height())))
     }
 
-    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and `last`. `off` is
-    /// added, in 1/256 shade, to the lit pixels on either side of it, or to the three channels of a curve.
+    /// The byte of a pixel in a row whose first and last covered pixels inside the frame are `first` and `last`. `off`
+    /// is added, in 1/256 shade, to the lit pixels on either side of it, or to the three channels of a curve.
     fn byte(&self, (first, last): (i32, i32), x: i32, y: i32, before: u8, off: [i128; 3]) -> u8 {
         let seed = first + (x - first) / 64 * 64;
         let threshold = self.look.dither.map_or(128, |thresholds| thresholds.row(y as usize).at(x as usize));
@@ -320,15 +319,15 @@ impl<'a> Naive<'a> {
             byte_of(self.linear(values, seed, x, y), threshold)
         };
         let sampling = |x: i32, off: i128| {
-            // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the sum's nearest f64 is off by
-            // some parts in 2⁵¹, the f32 by one in 2²⁴.
+            // Whole numbers below 2¹⁵ times depths below 2³⁰ times areas: the nearest f64 to the sum is off by a few
+            // parts in 2⁵¹, the f32 by one in 2²⁴.
             let point = [0, 1, 2].map(|i| {
                 let exact = self.on_face(self.attributes.each_ref().map(|a| a.lit[i] as i128), x, y);
                 (exact.n as f64 / exact.d as f64) as f32
             });
             (i128::from(Sum::of(point)) + off).clamp(0, 0xFF00)
         };
-        // The shift of a channel, before what is between the lit pixels is made of it.
+        // The channel's shift is added before interpolating between the lit pixels.
         let lit = |shift: usize| match self.look.source {
             ShadeSource::LitEvery(apart, _) => {
                 let apart = apart.pixels() as i32;
@@ -384,26 +383,28 @@ impl<'a> Naive<'a> {
         byte
     }
 
-    /// Whether a byte may be drawn where the exact one is another, because light is in floats: if the lit pixels, or the
-    /// channels of a curve, are off by a 256th of a shade, which they may be.
+    /// Returns whether a byte may be drawn although the exact one differs, because light is in floating point: it may
+    /// if it results when the lit pixels, or the channels of a curve, are off by 1/256 shade, which they may be.
     ///
     /// With ε = 2⁻⁵³, A the triangle's area, V and D its greatest value times depth and its greatest depth:
     ///
-    /// 1. A numerator is a sum over the corners of exact weights times values, at the piece's first pixel (3εAV), and k times
-    ///    such a sum of the weights' changes. Weights are 0 to A at both pixels, so k times the changes are at most 2A in all
-    ///    (4εAV, and εAV for the product with k). With the last sum it is off by less than 11εAV, a divisor by 11εAD.
-    /// 2. A divisor is at least A. V is at most 20,000 · 2³⁰ and D 2³⁰, so a value is off by less than 22ε · 20,000 · 2³⁰,
-    ///    0.053, and the sum of three by 0.16. In f32 that adds 0.007, and here 0.007 again: less than 1.
-    /// 3. A shade on a curve is off by less than 0.1: see `quadratic_shades_are_the_definition`, for values below 20,000.
+    /// 1. A numerator is a sum over the corners of exact weights times values, at the piece's first pixel (3εAV), and k
+    ///    times such a sum of the weights' changes. Weights are 0 to A at both pixels, so k times the changes are at
+    ///    most 2A in all (4εAV, and εAV for the product with k). With the last sum it is off by less than 11εAV, a
+    ///    divisor by 11εAD.
+    /// 2. A divisor is at least A. V is at most 20,000 · 2³⁰ and D 2³⁰, so a value is off by less than 22ε · 20,000 ·
+    ///    2³⁰, 0.053, and the sum of three by 0.16. In f32 that adds 0.007, and here 0.007 again: less than 1.
+    /// 3. A shade on a curve is off by less than 0.1: see `quadratic_shades_are_the_definition`, for values below
+    ///    20,000.
     ///
-    /// Whole numbers made of shades that are off by less than 1 differ by 1 at most.
+    /// Integers rounded from shades that are off by less than 1 differ by at most 1.
     fn may_be(&self, row: (i32, i32), x: i32, y: i32, byte: u8) -> bool {
         const OFF: [i128; 3] = [-1, 0, 1];
         let off = OFF.iter().flat_map(|a| OFF.iter().flat_map(move |b| OFF.map(|c| [*a, *b, c])));
         !sum_is_exact(self.look) && off.into_iter().any(|off| self.byte(row, x, y, BEFORE, off) == byte)
     }
 
-    /// The first and the last covered pixel of a row inside the frame.
+    /// The first and last covered pixels of a row inside the frame.
     fn row(&self, y: i32) -> Option<(i32, i32)> {
         let covers = |x: &i32| oracle::covers(self.corners, oracle::centre(*x, y));
         let first = (0..self.size.width).find(covers)?;
@@ -412,7 +413,7 @@ impl<'a> Naive<'a> {
         Some((first, last))
     }
 
-    /// The frame: bytes, and of each row the first and the last pixel that is covered.
+    /// The frame's bytes, and the first and last covered pixels of each row.
     fn frame(&self) -> (Vec<u8>, Vec<Option<(i32, i32)>>) {
         let mut bytes = self.size.pixels();
         let rows: Vec<_> = (0..self.size.height).map(|y| self.row(y)).collect();
@@ -426,7 +427,7 @@ impl<'a> Naive<'a> {
     }
 }
 
-/// What the raster draws.
+/// Draws with the raster.
 fn draw(
     size: Size,
     vertices: &[Vertex; 3],
@@ -493,7 +494,7 @@ fn triangles_with_effects_are_the_oracles() {
             let inside = (clip.x0..clip.x1).contains(&x) && (clip.y0..clip.y1).contains(&y);
             assert_eq!(clipped[place], if inside { bytes[place] } else { BEFORE }, "({x}, {y}) in {clip:?}");
         }
-        // R9: in bands it is the same.
+        // R9: bands change nothing.
         let cut = random.within(1, i64::from(height) - 1) as u32;
         let mut banded = size.pixels();
         for rows in [0..cut, cut..height as u32] {
@@ -506,9 +507,8 @@ fn triangles_with_effects_are_the_oracles() {
     assert!(pixels > 300_000, "{pixels} pixels were compared");
 }
 
-/// With a depth buffer a pixel is drawn where it is nearer, and the depth is kept if the look says so.
-/// A face without any effect has the bytes of a plain triangle, to the bit: whatever interpolates its shades, and its channels
-/// one by one; whole or within a clip rectangle; by every kernel.
+/// A face without any effect has exactly the bytes of a plain triangle: whatever interpolates its shades, and its
+/// channels one by one; whole or within a clip rectangle; with every kernel.
 #[test]
 fn without_effects_faces_are_plain_triangles() {
     let mut tried = Tried::new("without_effects_faces_are_plain_triangles", 3_000);
@@ -516,11 +516,11 @@ fn without_effects_faces_are_plain_triangles() {
     let kernels: Vec<Kernel> = Kernel::available().collect();
     let mut long = 0;
     while tried.more() {
-        // Of spans that begin anew, too.
+        // Including reseeded spans.
         let wide = Size { width: 1_021, height: 40, pitch: 1_030 };
         let size = if random.within(0, 1) == 0 { wide } else { Size::any(&mut random) };
         let vertices = triangles::triangle(&mut random, size.width.into(), size.height.into());
-        // That of the sources covers other pixels.
+        // The sources' interpolation covers other pixels.
         let exact = Interpolation::INTERPOLATED.iter().filter(|of| **of != Interpolation::GouraudVintage);
         let mut exact: Vec<Interpolation> = exact.copied().collect();
         exact.push(Interpolation::Flat(random.within(0, 255) as u8));
@@ -553,6 +553,7 @@ fn without_effects_faces_are_plain_triangles() {
     assert!(long > 50, "{long} with long spans");
 }
 
+/// With a depth buffer a pixel is drawn where it is nearer, and the depth is stored if the look says so.
 #[test]
 fn effects_keep_to_the_depth_buffer() {
     let mut tried = Tried::new("effects_keep_to_the_depth_buffer", 400);
@@ -588,7 +589,7 @@ fn effects_keep_to_the_depth_buffer() {
     }
 }
 
-/// Whatever the order of the corners, with a depth buffer of either kind.
+/// In any order of the corners, with either kind of depth buffer.
 #[test]
 fn r6_order_and_winding_make_no_difference_with_effects() {
     let mut tried = Tried::new("r6_order_and_winding_make_no_difference_with_effects", 400);
@@ -626,8 +627,8 @@ fn r6_order_and_winding_make_no_difference_with_effects() {
     assert!(pixels > 30_000, "{pixels} pixels");
 }
 
-/// Faces of one pipeline in a batch give the bytes, depths and counts of each face drawn alone, row by row: what many pieces
-/// share (stages, light for pixels of several faces, the list's end in the middle of a face) changes nothing.
+/// Faces of one pipeline in a batch get the bytes, depths and counts of each face drawn alone, row by row. What several
+/// pieces share (stages, light for pixels of several faces, the list's end in the middle of a face) changes nothing.
 #[test]
 fn effects_in_batches_are_those_row_by_row() {
     let mut tried = Tried::new("effects_in_batches_are_those_row_by_row", 1000);
@@ -638,7 +639,7 @@ fn effects_in_batches_are_those_row_by_row() {
     let (mut pixels, mut many) = (0, 0);
     let mut batch = EffectBatch::new();
     while tried.more() {
-        // Up to 9 pixels across, some of them over the frame's edges and some of many rows; or of any size.
+        // Up to 9 pixels across, some of them over the frame's edges and some with many rows; or of any size.
         let count = random.one_of(&[1, 3, 20, EffectBatch::CAPACITY]);
         let (size, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
         let faces: Vec<_> = (0..count)
@@ -706,8 +707,8 @@ fn effects_in_batches_are_those_row_by_row() {
     assert!(many > 200, "{many} lists were full");
 }
 
-/// Shades of either sign, more than can be shown among them, on triangles of every kind: each byte is that of the exact
-/// number or of one that is off by no more than f32 is, and all kernels agree.
+/// Shades of either sign, including ones too large to show, on triangles of every kind: each byte is that of the exact
+/// number or of one within the error of f32, and all kernels agree.
 #[test]
 fn quadratic_shades_are_the_definition() {
     let mut tried = Tried::new("quadratic_shades_are_the_definition", 3_000);
@@ -737,8 +738,8 @@ fn quadratic_shades_are_the_definition() {
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             continue;
         }
-        // Terms of up to 8 · 5/3 of the greatest shade, each off by 2^-24 of it, six of them; rounding to whole numbers by a
-        // half, which is what the exact byte has, too.
+        // Six terms of up to 8 · 5/3 of the greatest shade, each off by 2^-24 of it, and rounding to whole numbers by a
+        // half, which the exact byte has, too.
         let off = (f64::from(1_i32 << 17) * 8.0 * 5.0 / 3.0 * 6.0 / f64::from(1 << 24)).max(0.01);
         let [least, most] = [limits[channel].least, limits[channel].most].map(|of| f64::from(of.to_bits().min(0xFF00)));
         for (place, byte) in bytes.iter().enumerate() {
@@ -762,7 +763,7 @@ fn quadratic_shades_are_the_definition() {
     assert!(pixels > 300_000 && held > 30_000, "{pixels} pixels, {held} held");
 }
 
-/// What is no number, too large or too small to be worked with: bytes stay within the limits, and every kernel has the same.
+/// NaN, and values too large or too small to compute with: bytes stay within the limits, and every kernel agrees.
 #[test]
 fn quadratic_shades_of_any_numbers_stay_within() {
     let mut tried = Tried::new("quadratic_shades_of_any_numbers_stay_within", 1_000);
@@ -802,8 +803,8 @@ fn quadratic_shades_of_any_numbers_stay_within() {
     }
 }
 
-/// Every level is chosen for many pixels, by every mapping: texels are the numbers of their levels, and each is the
-/// oracle's, with every kernel, whole or in bands.
+/// Every level is chosen for many pixels with every mapping: texels are the numbers of their levels, and each agrees
+/// with the oracle, with every kernel, whole or in bands.
 #[test]
 fn levels_are_the_definition() {
     let mut tried = Tried::new("levels_are_the_definition", 600);
@@ -864,9 +865,9 @@ fn levels_are_the_definition() {
     assert!(pixels.iter().flatten().all(|&count| count > 0), "{pixels:?}");
 }
 
-/// The level is right by what it is for: between the pixel chosen for and the next in either direction coordinates are no
-/// farther apart than √2 texels of the level, as an exact length, and the level before would not do, but for the 12 % that
-/// a length may be taken too long. On triangles that face the eye, whose coordinates change alike everywhere.
+/// The level serves its purpose: from the pixel it was chosen for to the next in either direction, coordinates are at
+/// most √2 texels of the level apart, as an exact length, and the level before would not do, apart from the 12 % by
+/// which a length may be overestimated. On triangles that face the eye, whose coordinates change uniformly.
 #[test]
 fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
     let mut tried = Tried::new("a_level_is_the_least_whose_texels_are_as_large_as_pixels", 2_000);
@@ -879,7 +880,7 @@ fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
     let vertices = [at(0, 0), at(40 * 256, 0), at(0, 40 * 256)].map(|vertex| vertex.expect("in range"));
     while tried.more() {
         let mapping = random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]);
-        // Texels to a pixel, some turn of the image, and a shear.
+        // Texels per pixel, a rotation of the image, and a shear.
         let reach = 0.05 * 2_f64.powf(13.0 * random.unit());
         let [across, down] = [0, 1].map(|_| {
             let (sin, cos) = (6.3 * random.unit()).sin_cos();
@@ -899,7 +900,7 @@ fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
         };
         let level = draw(SIZE, &vertices, &attributes, &look, None, Kernel::PORTABLE)[0];
         let longest = across[0].hypot(across[1]).max(down[0].hypot(down[1]));
-        // 181/128 is √2 but for 1 part in 10⁴; coordinates are rounded to a part in 2²¹ of a texel a pixel.
+        // 181/128 is √2 to 1 part in 10⁴; coordinates are rounded to a part in 2²¹ of a texel per pixel.
         let (most, slack) = (std::f64::consts::SQRT_2 * f64::from(1 << level), 1.001);
         assert!(level == 8 || longest <= most * slack, "{longest} texels to a pixel, level {level}");
         assert!(level == 0 || 1.119 * longest * slack > most / 2.0, "{longest} texels to a pixel, level {level}");

@@ -1,5 +1,5 @@
-//! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all input; depth
-//! order against exact planes. Whole scenes are in `hidden_scenes.rs`.
+//! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all kinds of input; depth order
+//! against exact planes. Whole scenes are in `hidden_scenes.rs`.
 
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
@@ -12,13 +12,13 @@ use mode13h_conformance::oracle;
 
 type Face = ([Vertex; 3], Interpolation);
 
-/// A frame, drawn into by one method; with what the raster counted.
+/// A frame drawn with one method, and what the raster counted.
 #[derive(Clone, Copy)]
 struct Sheet {
     width: u32,
     height: u32,
     clip: Rect,
-    /// Rows of a band.
+    /// Rows per band.
     rows_each: u32,
 }
 
@@ -30,7 +30,7 @@ impl Sheet {
     }
 
     fn draw(self, mut paint: impl FnMut(Raster<'_>) -> DrawStats) -> (Vec<u8>, DrawStats) {
-        // Bytes between the rows, and after them, must stay.
+        // Padding between the rows, and bytes after them, must not change.
         let pitch = self.width as usize + 3;
         let mut bytes = vec![Self::EMPTY; pitch * self.height as usize];
         let mut drawn = DrawStats::default();
@@ -62,7 +62,7 @@ fn in_turn(mut raster: Raster<'_>, faces: &[Face]) -> DrawStats {
     drawn
 }
 
-/// Both methods, whole, clipped and in bands.
+/// Checks both methods, whole, clipped and in bands.
 fn check(tried: &mut Tried, random: &mut Random, lists: &mut Lists, (width, height): (u32, u32), faces: &[Face]) {
     let whole = Sheet::new(width, height);
     let mut ends = |size: u32| {
@@ -87,7 +87,7 @@ fn check(tried: &mut Tried, random: &mut Random, lists: &mut Lists, (width, heig
             );
         }
         assert_eq!(line_drawn.covered, depth_drawn.covered);
-        // Each pixel once: those that the depth buffer holds something for.
+        // Each pixel once: those for which the depth buffer holds something.
         let mut depths: Vec<u32> = Vec::new();
         let mut shown = 0;
         sheet.draw(|raster| {
@@ -101,7 +101,7 @@ fn check(tried: &mut Tried, random: &mut Random, lists: &mut Lists, (width, heig
     }
 }
 
-/// The smallest case that still fails, by leaving out one face after another.
+/// The smallest case that still fails, found by removing one face after another.
 fn shrink(sheet: Sheet, lists: &mut Lists, faces: &[Face]) -> (Sheet, Vec<Face>) {
     let mut faces = faces.to_vec();
     let mut i = 0;
@@ -127,7 +127,7 @@ fn soups(mut tried: Tried) {
     while tried.more() {
         let (width, height) = random.one_of(&[(96, 24), (200, 40), (17, 60), (320, 20), (1, 9), (70, 1)]);
         let mut faces: Vec<Face> = Vec::new();
-        // Depths of all sizes; few and near to each other, so that many are equal; up to the greatest; one for all.
+        // Depths of all sizes; few and close together, so that many are equal; the greatest ones; one for all.
         let kind = random.within(0, 4);
         for _ in 0..random.log_uniform(7) {
             let mut vertices = triangle(&mut random, width.into(), height.into());
@@ -139,13 +139,13 @@ fn soups(mut tried: Tried) {
                 _ => vertices = with_depths(vertices, || 7),
             }
             let flat = random.one_of(&[Interpolation::Flat(0), Interpolation::Flat(200)]);
-            // The scan-line method gives exact cover to all.
+            // The scan-line method gives every face exact cover.
             let interpolation = Some(random.one_of(Interpolation::INTERPOLATED))
                 .filter(|interpolation| interpolation.has_exact_cover());
             let interpolation = if random.within(0, 2) == 0 { flat } else { interpolation.unwrap_or_default() };
             faces.push((vertices, interpolation));
             if random.within(0, 5) == 0 {
-                // Again, and turned round, in other shades.
+                // Again, with the opposite winding and other shades.
                 let [a, b, c] = vertices.map(|v| v.with_shade(U8F8::from(77)));
                 faces.push((random.one_of(&[[a, b, c], [c, b, a]]), interpolation));
             }
@@ -197,9 +197,9 @@ fn face(corners: [Corner; 3], index: u8) -> Face {
     (corners.map(|(x, y, m)| vertex(x, y, 0, depth(m))), Interpolation::Flat(index))
 }
 
-/// Draws the faces with indices 10, 11 … by depth buffer and by scan-line. Wherever a face's plane is in
-/// front of another's by more than 2⁻¹⁴ of the greater, the other must not be seen. Returns how many
-/// pairs that decided, and the picture.
+/// Draws the faces with indices 10, 11 … with a depth buffer and by scan-line. Where a face's plane is in front of
+/// another's by more than 2⁻¹⁴ of the greater depth, the other must not be seen. Returns the number of pairs decided
+/// that way, and the picture.
 fn check_order(lists: &mut Lists, corners: &[[Corner; 3]]) -> (u64, Vec<u8>) {
     let faces: Vec<Face> = corners.iter().zip(10..).map(|(corners, index)| face(*corners, index)).collect();
     let sheet = Sheet::new(SHEET.0, SHEET.1);
@@ -236,7 +236,7 @@ fn flat_place(random: &mut Random) -> (i64, i64) {
     (random.within(-2000, i64::from(WIDTH) * 256 + 2000), random.within(-2000, i64::from(HEIGHT) * 256 + 2000))
 }
 
-/// From far to near, all sizes alike.
+/// From far to near, all magnitudes equally likely.
 fn inverse_w(random: &mut Random) -> i64 {
     ((FAR as f64 * (NEAR as f64 / FAR as f64).powf(random.unit())) as i64).clamp(FAR, NEAR)
 }
@@ -255,7 +255,7 @@ fn c3_near_to_far_is_1_to_10_000() {
                 (x, y, inverse_w(&mut random))
             });
             corners.push(triangle);
-            // The same again, hardly nearer or farther; twice the bound, and half of it.
+            // The same again, barely nearer or farther: by twice the bound, and by half of it.
             let share = random.one_of(&[1 << 10, 1 << 12, 1 << 13, 1 << 15]);
             let sign = random.one_of(&[1, -1]);
             corners.push(triangle.map(|(x, y, m)| (x, y, (m + sign * m / share).clamp(FAR / 2, NEAR))));
@@ -265,11 +265,11 @@ fn c3_near_to_far_is_1_to_10_000() {
     assert!(decided > 100_000, "{decided}");
 }
 
-/// Three long faces, each over the next at one end and under the third at the other.
+/// Three long faces, each above the next at one end and below the third at the other.
 fn circle(random: &mut Random) -> [[Corner; 3]; 3] {
     let (x, y) = (random.within(0, 4000), random.within(0, 300));
     let (far, near) = (random.within(FAR, 3 * FAR), random.within(40 * FAR, 300 * FAR));
-    // The corners of a triangle; each face reaches from beyond one to beyond the next.
+    // The corners of a triangle; each face extends from beyond one to beyond the next.
     let corners = [(6_000 + x, 300 + y), (16_000 + x, 2_500 + y), (5_000 + x, 5_300 + y)];
     [0, 1, 2].map(|i| {
         let (from, to) = (corners[i], corners[(i + 1) % 3]);
@@ -297,7 +297,7 @@ fn d1_three_faces_in_a_circle() {
         }
         let (pairs, right) = check_order(&mut lists, &corners);
         decided += pairs;
-        // No order at all is right without a depth for every pixel.
+        // No painting order is right without a depth for every pixel.
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let faces = order.map(|i| face(corners[i], 10 + i as u8));
             let (painted, _) = Sheet::new(SHEET.0, SHEET.1).draw(|raster| in_turn(raster, &faces));
@@ -315,7 +315,7 @@ fn d2_faces_that_pass_through_each_other() {
     let mut both = 0;
     while tried.more() {
         let mut corners = Vec::new();
-        // Two faces over nearly the same ground, near on one side the one, on the other the other.
+        // Two faces over nearly the same area, of which one is nearer on one side and the other on the other.
         let ground = [(); 3].map(|()| flat_place(&mut random));
         let (a, b) = (inverse_w(&mut random), inverse_w(&mut random));
         for m in [[a, b, (a + b) / 2], [b, a, (a + b) / 2]] {
@@ -339,7 +339,7 @@ fn d3_the_first_submitted_of_equals_wins() {
     let mut pixels = 0;
     while tried.more() {
         let [a, b, c] = triangle(&mut random, WIDTH.into(), HEIGHT.into());
-        // The same three vertices, and triangles of one constant depth.
+        // The same three vertices, and triangles with a single constant depth.
         let constant = random.within(1, u32::MAX.into());
         let of_one_depth = |v: [Vertex; 3]| with_depths(v, || constant);
         let mut other = || of_one_depth(triangle(&mut random, WIDTH.into(), HEIGHT.into()));
@@ -347,7 +347,7 @@ fn d3_the_first_submitted_of_equals_wins() {
         for triangles in [[[a, b, c], [c, a, b], [b, a, c]], constants] {
             let faces: Vec<Face> =
                 triangles.iter().zip(10..).map(|(v, index)| (*v, Interpolation::Flat(index))).collect();
-            // Drawn from the last to the first without any depth: the first is on top.
+            // Drawn from last to first without depths, so the first is on top.
             let reversed: Vec<Face> = faces.iter().rev().copied().collect();
             let (right, _) = sheet.draw(|raster| in_turn(raster, &reversed));
             assert_eq!(sheet.depth_buffer(&faces).0, right, "{faces:?}");
@@ -356,8 +356,8 @@ fn d3_the_first_submitted_of_equals_wins() {
             assert_eq!(narrow, right, "u16 cells, {faces:?}");
             pixels += right.iter().filter(|byte| **byte >= 10).count();
         }
-        // Other faces in one plane: the depth is a whole number at every vertex, the same function of the
-        // place. What wins there is rounding; it is the same in both.
+        // Other faces in one plane: the depth is a whole number at every vertex, the same function of the position.
+        // Rounding decides which wins; it is the same in both.
         let (dx, dy) = (random.within(-9, 9), random.within(-9, 9));
         let soup: Vec<Face> = (0..6)
             .map(|index| {
@@ -446,7 +446,7 @@ fn depths_of_earlier_frames_do_not_count() {
         for object in 0..=1 {
             scene.objects_mut()[object].angles = [number(3.0), number(3.0), number(3.0)].map(Angle::from_radians);
         }
-        // Beyond the screen's edges and through the near plane, too.
+        // Also beyond the screen's edges and through the near plane.
         let far = number(3.0);
         scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
         scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);

@@ -29,12 +29,12 @@ fn palette_of(color: impl Fn(u8) -> Rgb) -> Palette {
     Palette::from_colors(core::array::from_fn(|i| color(i as u8)))
 }
 
-/// 256 colours, all different, with all bits in use.
+/// 256 different colours that use all bits.
 fn scattered() -> Palette {
     palette_of(|i| Rgb::new(i, i.wrapping_mul(37), 255 - i))
 }
 
-/// A machine whose 65,536 bytes and colours are all put to use.
+/// A machine with all of its 65,536 bytes and colours in use.
 fn busy() -> Vga {
     let mut vga = Vga::new();
     for (offset, byte) in vga.memory_mut().iter_mut().enumerate() {
@@ -154,7 +154,7 @@ fn p4_a_write_broken_off_leaves_the_entry_alone() {
             }
             assert_eq!(entries(&vga), before, "after {values} values");
 
-            // The next index begins a new count of three, wherever the old one stood.
+            // The next index starts a new count of three, wherever the old one stood.
             vga.write_port(index_port, 7);
             assert_eq!(entries(&vga), before);
             vga.write_port(WRITE, 9);
@@ -216,8 +216,7 @@ fn a_whole_palette_goes_through_the_ports() {
     assert_eq!(vga.read_port(WRITE), 0, "once around");
 }
 
-/// The same card, written as the register descriptions read: an address, a count, a latch, and an
-/// array of entries.
+/// The same card, written as the register descriptions read: an address, a count, a latch and an array of entries.
 struct NaiveDac {
     entries: [[u8; 3]; 256],
     address: usize,
@@ -261,7 +260,7 @@ impl NaiveDac {
                 }
                 value
             }
-            // The clock stands at the first dot.
+            // The clock is at the first dot.
             STATUS => 0,
             _ => 0xFF,
         }
@@ -290,7 +289,7 @@ proptest! {
         prop_assert_eq!(&vga.palette(), &shown.with_ramps(0).unwrap());
     }
 
-    /// However the time is cut up, the beam ends where the dots that went by put it.
+    /// However the time is divided, the beam ends up where the elapsed dots put it.
     #[test]
     fn time_does_not_drift(steps in proptest::collection::vec(prop_oneof![0..100_u64, 0..20_000_000_u64, any::<u64>()], 0..20)) {
         let mut vga = Vga::new();
@@ -340,7 +339,7 @@ fn a_frame_has_its_dots_shown_and_hidden() {
     let mut vga = Vga::new();
     let (mut shown, mut retrace, mut now) = (0, 0, 0);
     for dot in 0..800_u64 * 449 {
-        // The first whole nanosecond at which this many dots have gone by.
+        // The first whole nanosecond at which this many dots have elapsed.
         let then = (dot * 40_000).div_ceil(1_007);
         vga.advance(then - now);
         now = then;
@@ -519,7 +518,7 @@ fn equal_stamps_mean_equal_memory() {
     one.poke(1, 4);
     assert_ne!(copy.stamp(), one.stamp());
 
-    // More than a block of stamps: the blocks of two machines stay apart.
+    // More than one block of stamps: the blocks of two machines stay separate.
     let mut seen = std::collections::BTreeSet::new();
     for k in 0..2_200_000 {
         one.poke(k, 0);
@@ -549,7 +548,7 @@ fn scan_out_looks_every_byte_up_through_the_mask() {
             vga.scan_out_row_rgb565(row, &mut row565);
             for (x, &color) in row565.iter().enumerate() {
                 let [r, g, b] = vga.dac().entry(vga.pixels()[320 * row + x] & mask).map(u16::from);
-                // 6 bits to 5 by dropping one, green as it is.
+                // 6 bits to 5 by dropping one; green is unchanged.
                 assert_eq!(color, (r >> 1) << 11 | g << 5 | b >> 1, "{x}, {row}, mask {mask:X}");
             }
         }

@@ -1,4 +1,4 @@
-//! The fill rule, as pictures. A dot is a pixel left alone; each pixel may be drawn once.
+//! The fill rule, as pictures. A dot is a pixel left untouched; each pixel may be drawn once.
 
 use crate::support::display::Display;
 use crate::support::tried::Tried;
@@ -22,8 +22,8 @@ fn r4_a_square_of_two_triangles_on_pixel_centres() {
 fn r4_a_fan_round_a_centre() {
     let mut tried = Tried::new("r4_a_fan_round_a_centre", 1);
     tried.add(1);
-    // Eight triangles round (3.5, 3.5), every corner a pixel centre: the middle pixel belongs to d,
-    // for which it lies on a top edge and on a left one.
+    // Eight triangles around (3.5, 3.5) with every corner on a pixel centre: the middle pixel belongs to d, where it is
+    // on a top edge and on a left one.
     let ring = [(0.5, 0.5), (3.5, 0.5), (6.5, 0.5), (6.5, 3.5), (6.5, 6.5), (3.5, 6.5), (0.5, 6.5), (0.5, 3.5)];
     let mut display = Display::new(7, 7);
     for (i, mark) in ('a'..='h').enumerate() {

@@ -1,5 +1,5 @@
-//! R5: triangles that share edges draw each pixel inside exactly once and none outside; and their shades agree along the
-//! edges (N9).
+//! R5: triangles that share edges draw each pixel inside exactly once and none outside; and their shades agree along
+//! the edges (N9).
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
@@ -12,13 +12,13 @@ use mode13h_conformance::oracle::{self, Point};
 const WIDTH: i32 = 80;
 const HEIGHT: i32 = 60;
 
-/// A polygon, and triangles that part it.
+/// A polygon, and triangles that it is divided into.
 struct Parted {
     outline: Vec<(i64, i64)>,
     triangles: Vec<[(i64, i64); 3]>,
 }
 
-/// Counts how often each pixel is drawn, and compares with the outline.
+/// Counts how often each pixel is drawn, and compares that with the outline.
 fn check(parted: &Parted, tried: &mut Tried) {
     let mut counts = vec![0_u32; (WIDTH * HEIGHT) as usize];
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
@@ -60,7 +60,7 @@ fn doubled_area(a: (i64, i64), b: (i64, i64), c: (i64, i64)) -> i64 {
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
-/// A star-shaped polygon, parted as a fan round its centre.
+/// A star-shaped polygon, divided as a fan around its centre.
 fn fan(random: &mut Random) -> Option<Parted> {
     let centre = place(random);
     let mut ring: Vec<(i64, i64)> = (0..random.within(3, 40)).map(|_| place(random)).collect();
@@ -71,7 +71,7 @@ fn fan(random: &mut Random) -> Option<Parted> {
     triangles.iter().all(|&[a, b, c]| doubled_area(a, b, c) > 0).then_some(Parted { outline: ring, triangles })
 }
 
-/// A strip between two chains, the upper one everywhere above the lower one.
+/// A strip between two chains, the upper one above the lower one everywhere.
 fn strip(random: &mut Random) -> Option<Parted> {
     let columns = random.within(1, 20);
     let mut x = random.within(-3000, 5000);
@@ -87,14 +87,14 @@ fn strip(random: &mut Random) -> Option<Parted> {
         triangles.push([upper[i], upper[i + 1], lower[i]]);
         triangles.push([upper[i + 1], lower[i + 1], lower[i]]);
     }
-    // Where the chain leans so far that a triangle turns over, they overlap.
+    // Where the chain leans so far that a triangle flips, they overlap.
     let turned = triangles.iter().any(|&[a, b, c]| doubled_area(a, b, c) <= 0);
     lower.reverse();
     upper.extend(lower);
     (!turned).then_some(Parted { outline: upper, triangles })
 }
 
-/// A grid of quads whose inner corners are moved about, each split along one diagonal.
+/// A grid of quads whose inner corners are displaced, each split along one diagonal.
 fn grid(random: &mut Random) -> Option<Parted> {
     let (columns, rows) = (random.within(1, 12), random.within(1, 12));
     let (x0, y0) = place(random);
@@ -125,7 +125,7 @@ fn grid(random: &mut Random) -> Option<Parted> {
     (!turned).then_some(Parted { outline, triangles })
 }
 
-/// A triangle, parted again and again at random points inside it, some diagonals then flipped.
+/// A triangle, split repeatedly at random points inside it, with some diagonals then flipped.
 fn split(random: &mut Random) -> Option<Parted> {
     let outline = [place(random), place(random), place(random)];
     let [a, b, c] = outline;
@@ -188,15 +188,15 @@ fn r5_long_shared_edges() {
     shared_edges(Tried::new("r5_long_shared_edges", 10_000_000), 10_000_000);
 }
 
-/// The Russian article says that the intensity has jumps at face borders (slip 5). With shared vertices it has not:
-/// along the common edge the planes of both faces are within the rounding of a shade.
+/// The Russian article says that the intensity jumps at face borders (slip 5). With shared vertices it does not: along
+/// the common edge the planes of both faces agree to within the rounding of a shade.
 #[test]
 fn n9_slip_5_two_faces_agree_along_their_edge() {
     let mut tried = Tried::new("n9_slip_5_two_faces_agree_along_their_edge", 3000);
     let mut random = Random::named("n9");
     let mut centres = 0;
     while tried.more() {
-        // An edge through pixel centres: from one to another, and those on the way.
+        // An edge through pixel centres, and the centres on it from one end to the other.
         let (parts, dx, dy) = (random.within(1, 12), random.within(-12, 12), random.within(-12, 12));
         let (x, y) = (random.within(0, 200), random.within(0, 100));
         let shade = |random: &mut Random| random.within(0, 0xFF00);
@@ -221,7 +221,7 @@ fn n9_slip_5_two_faces_agree_along_their_edge() {
         };
         for k in 0..=parts {
             let (x, y) = ((x + k * dx) as i32, (y + k * dy) as i32);
-            // Exactly, the two are equal; each start is rounded by less than 1/256 shade.
+            // In exact arithmetic the two are equal; each start is rounded by less than 1/256 shade.
             let shades = ends.map(|v| i64::from(v.shade().to_bits()));
             let exact = (shades[0] * (parts - k) + shades[1] * k) as f64 / parts as f64 + 128.0;
             for start in [one.start(x, y), two.start(x, y)] {

@@ -12,7 +12,7 @@ use mode13h_conformance::oracle;
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 24;
 
-/// The shadings with exact cover, and what a report calls the farthest that a byte of theirs was off.
+/// The shadings with exact cover, and the report's name for the largest error of their bytes.
 const EXACT: &[(Interpolation, &str)] = &[
     (Interpolation::Gouraud, "shades off in gouraud-8.8"),
     (Interpolation::GouraudReseeded, "in gouraud-8.8-reseeded"),
@@ -38,18 +38,18 @@ fn every_shading_with_exact_cover_is_looked_at() {
     assert_eq!(names.len(), Interpolation::INTERPOLATED.len() + 1, "each has a name of its own");
 }
 
-/// The pixels that one triangle covers, with its cover, bytes, range and error checked.
+/// Checks the cover, bytes, range and error of one triangle. Returns the number of pixels it covers.
 fn check(vertices: &[Vertex; 3]) -> u32 {
     measure(vertices, WIDTH, HEIGHT).covered
 }
 
-/// What a triangle comes to.
+/// Measurements of one triangle.
 #[derive(Default)]
 struct Measured {
     covered: u32,
-    /// Bytes that are not those of the definition, or not drawn where it draws.
+    /// Bytes that differ from the definition, or are not drawn where it draws.
     differ: u32,
-    /// The farthest from the exact shade, of each of `EXACT`.
+    /// Largest difference from the exact shade, for each of `EXACT`.
     off: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ impl Measured {
     }
 }
 
-/// Cover, bytes, range and error of one triangle in all shadings with exact cover, and flat.
+/// Measures cover, bytes, range and error of one triangle with all shadings with exact cover, and flat.
 fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
     let shades = vertices.each_ref().map(|v| i128::from(v.shade().to_bits()));
     let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
@@ -73,7 +73,7 @@ fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
             expected[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
         }
         let (bound_n, bound_d) = oracle::bound(interpolation, width.into()).expect("a bound");
-        // Two backgrounds tell a byte that is drawn from one that is left alone.
+        // With two backgrounds a drawn byte can be distinguished from an untouched one.
         let on = |empty| draw(vertices, interpolation, width, height, None, empty);
         let (on_0, on_1) = (on(0), on(1));
         measured.covered = 0;
@@ -116,8 +116,8 @@ fn r1_zero_area_draws_nothing() {
     }
 }
 
-/// A sliver a hundred pixels long and at most 1/256 pixel wide that covers this pixel, and what its shades change by from
-/// one pixel to the next.
+/// A sliver a hundred pixels long and at most 1/256 pixel wide that covers this pixel, and the change of its shades
+/// from one pixel to the next.
 fn sliver_through(random: &mut Random, (x, y): (i64, i64)) -> Option<([Vertex; 3], oracle::Ratio)> {
     let turn = random.unit() * std::f64::consts::TAU;
     let along = ((turn.cos() * 25_600.0) as i64, (turn.sin() * 25_600.0) as i64);
@@ -128,9 +128,9 @@ fn sliver_through(random: &mut Random, (x, y): (i64, i64)) -> Option<([Vertex; 3
     if dx.pow(2) + dy.pow(2) < 25_000_i64.pow(2) {
         return None;
     }
-    // The third corner is up to so many times as far from the edge as the centre; 25,600 times is a unit.
+    // The third corner is up to this many times as far from the edge as the centre; 25,600 times is one unit.
     let times = random.log_uniform(14) as i64 + 1;
-    // And lies between the edge's ends.
+    // And it lies between the edge's ends.
     let part = -(times * ((centre.0 - a.0) * dx + (centre.1 - a.1) * dy)).div_euclid(dx.pow(2) + dy.pow(2));
     let c = (a.0 + (centre.0 - a.0) * times + part * dx, a.1 + (centre.1 - a.1) * times + part * dy);
     let shades = random.one_of(&[[0, 0, 0xFF00], [0xFF00, 0xFF00, 0], [0, 0xFF00, 0x1234], [0x00FF, 0, 0xFF00]]);
@@ -150,10 +150,10 @@ fn r2_slivers() {
         let pixel = (random.within(0, i64::from(WIDTH) - 1), random.within(0, i64::from(HEIGHT) - 1));
         let Some((vertices, slope)) = sliver_through(&mut random, pixel) else { continue };
         let covered = check(&vertices);
-        // So thin a sliver covers the one pixel, and seldom others.
+        // So thin a sliver covers the one pixel, and rarely others.
         assert!(covered >= 1, "{pixel:?} of {vertices:?}");
         most = most.max(covered);
-        // A change in 16.16, whose whole part has 16 bits with the sign: 2¹⁵ shades, 2²³ of their 256ths.
+        // A change in 16.16, whose integer part has 16 bits including the sign: 2¹⁵ shades, 2²³ of their 256ths.
         let is_beyond = slope.n.abs() >= slope.d << 23;
         beyond += u64::from(is_beyond);
         tried.add(u64::from(is_beyond));
@@ -186,7 +186,7 @@ fn r4_every_sixteenth_of_a_pixel() {
     for place in 0..256 {
         for corner in 0..3 {
             for _ in 0..4 {
-                // The other corners on centres, so that edges pass through centres too.
+                // The other corners are on centres, so that edges pass through centres too.
                 let mut corners =
                     [(0, 0); 3].map(|_| (random.within(0, 40) * 256 + 128, random.within(0, 20) * 256 + 128));
                 let (x, y) = (random.within(0, 40) * 256, random.within(0, 20) * 256);
@@ -215,7 +215,7 @@ fn r6_order_and_winding_make_no_difference() {
     }
 }
 
-/// Bytes and depths of 32 bits and of 16 of a triangle before a half that is near and one that is far.
+/// Bytes and 32-bit and 16-bit depths of a triangle drawn over a half that is near and one that is far.
 fn draw_with_depth(vertices: &[Vertex; 3], interpolation: Interpolation) -> (Vec<u8>, Vec<u32>, Vec<u16>) {
     const SIZE: usize = (WIDTH * HEIGHT) as usize;
     let (mut bytes, mut wide) = (vec![0; 2 * SIZE], vec![1_u32; SIZE]);
@@ -235,7 +235,7 @@ fn draw_with_depth(vertices: &[Vertex; 3], interpolation: Interpolation) -> (Vec
 fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
     let mut tried = Tried::new("r8_a_clip_rectangle_changes_no_byte_inside_it", 1500);
     let mut random = Random::named("r8");
-    // Wide enough for a third start.
+    // Wide enough for a third reseeding.
     const WIDE: u32 = 200;
     while tried.more() {
         let vertices = triangle(&mut random, i64::from(WIDE), i64::from(HEIGHT));
@@ -330,7 +330,7 @@ fn r14_shades_at_both_ends() {
 #[test]
 fn r7_outside_the_guard_band_is_refused() {
     let mut tried = Tried::new("r7_outside_the_guard_band_is_refused", 12);
-    // 4,096 pixels, as is stated, in which all of the raster's sums are proved to fit.
+    // 4,096 pixels, the stated limit, up to which all of the raster's sums are proved to fit.
     let (zero, edge) = (I24F8::from_bits(0), 4096 * 256);
     assert_eq!(Vertex::GUARD_BAND, edge);
     for (bits, legal) in
@@ -373,8 +373,8 @@ fn against_the_oracle(mut tried: Tried) {
     }
 }
 
-/// Rows from end to end, in mode 13h and in the widest frame: where sums drift the farthest, and where what
-/// is near and what is far are the farthest apart.
+/// Rows from end to end, in mode 13h and in the widest frame: where sums drift the most, and near and far are the
+/// furthest apart.
 #[test]
 fn whole_rows_keep_to_the_bounds() {
     let mut tried = Tried::new("whole_rows_keep_to_the_bounds", 60);
@@ -382,13 +382,13 @@ fn whole_rows_keep_to_the_bounds() {
     while tried.more() {
         let (width, height) = random.one_of(&[(320, 3), (320, 3), (320, 3), (4096, 1)]);
         let mut corner = |x: i64| {
-            // Shades of any size, so that steps of less than 1/256 are among them.
+            // Shades of any size, including steps of less than 1/256.
             let shade = (random.log_uniform(16) as i64 - 1).min(0xFF00);
             let shade = if random.within(0, 1) == 0 { shade } else { 0xFF00 - shade };
             vertex(x * 256, random.within(-40 * 256, 40 * 256), shade, random.log_uniform(32) as i64)
         };
         let (left, right) = (corner(-100), corner(i64::from(width).min(4_000) + 90));
-        // Beyond the upper or the lower edge, so that all rows are covered more often than not.
+        // Beyond the upper or the lower edge, so that usually all rows are covered.
         let third = corner(i64::from(width) / 2);
         let y = if random.within(0, 1) == 0 { -3_000 } else { 3_000 };
         let third = vertex(third.x().to_bits().into(), y * 256, third.shade().to_bits().into(), third.depth().into());
@@ -409,7 +409,7 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
             Interpolation::Flat(7),
         ]);
         let triangles: Vec<_> = (0..6).map(|_| triangle(&mut random, WIDTH.into(), HEIGHT.into())).collect();
-        // The last is the first again with other shades: of equal depths the first submitted wins.
+        // The last repeats the first with other shades: with equal depths the first submitted wins.
         let twin = triangles[0].map(|v| vertex(v.x().to_bits().into(), v.y().to_bits().into(), 0, v.depth().into()));
         let all: Vec<_> = triangles.iter().copied().chain([twin]).collect();
         let (mut expected, mut nearest) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0; (WIDTH * HEIGHT) as usize]);
@@ -467,21 +467,21 @@ fn depth_buffers_hold_what_their_frame_holds() {
     assert_eq!(depths, [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
 }
 
-/// The shadings that are linear on the face, and how far they are off beside the half for the byte.
+/// Shadings linear on the face, and their error beyond the byte's half.
 const ON_THE_FACE: &[(Interpolation, f64)] = &[
     (Interpolation::GouraudHyperbolic, 0.0),
     #[cfg(feature = "alloc")]
     (Interpolation::Float, 1.0 / 8192.0),
 ];
 
-/// C5: w from 1 to 10⁴ within one triangle. Truth is the shade that is linear on the face, at the
-/// rounded vertices, from unrounded w.
+/// C5: w from 1 to 10⁴ within one triangle. The truth is the shade that is linear on the face, at the rounded vertices,
+/// from unrounded w.
 fn perspective_correct_shades(mut tried: Tried) {
     let mut random = Random::named("c5");
     let mut pixels = 0_u64;
     while tried.more() {
         let corners = triangle(&mut random, WIDTH.into(), HEIGHT.into());
-        // The first vertex on the near plane, so that the depths span the most there is.
+        // The first vertex is on the near plane, so that the depths span the full range.
         let w = [1.0, f64::powf(10.0, random.unit() * 4.0), f64::powf(10.0, random.unit() * 4.0)];
         let vertices = [0, 1, 2].map(|i| {
             let depth = (f64::powi(2.0, 30) / w[i]).round() as i64;
@@ -492,7 +492,7 @@ fn perspective_correct_shades(mut tried: Tried) {
         let (low, high) = vertices
             .iter()
             .fold((u16::MAX, 0), |(low, high), v| (low.min(v.shade().to_bits()), high.max(v.shade().to_bits())));
-        // Of the shadings that are linear on the face, in turn.
+        // The shadings that are linear on the face, in turn.
         let (interpolation, more) = random.one_of(ON_THE_FACE);
         let on = |empty| draw(&vertices, interpolation, WIDTH, HEIGHT, None, empty);
         let (on_0, on_1) = (on(0), on(1));
@@ -528,7 +528,7 @@ fn c5_long_perspective_correct_shades() {
     perspective_correct_shades(Tried::new("c5_long_perspective_correct_shades", 300_000));
 }
 
-/// Lists of all lengths about a batch's, of shadings that a batch takes and of those that it does not.
+/// Lists of all lengths around a batch's, with shadings that a batch takes and others.
 #[test]
 fn a_list_is_drawn_as_triangle_by_triangle() {
     let (width, height) = (96_u32, 64_u32);
@@ -540,7 +540,7 @@ fn a_list_is_drawn_as_triangle_by_triangle() {
     let mut pixels = 0;
     for _ in 0..200 {
         let length = random.one_of(&[0, 1, 127, 128, 129, 300]) as usize;
-        // One in five does not go into a batch.
+        // One in five does not fit into a batch.
         let pick = |random: &mut Random| {
             if random.within(0, 4) == 0 { random.one_of(&all) } else { Interpolation::GouraudReseeded }
         };
@@ -566,8 +566,8 @@ fn a_list_is_drawn_as_triangle_by_triangle() {
     assert!(pixels > 100_000, "{pixels}");
 }
 
-/// The last rows of the largest frame are those of a band that holds them alone. A frame has 16 MB and its depths have 64:
-/// offsets that a `usize` of 32 bits holds.
+/// The last rows of the largest frame agree with a band that holds only them. A frame has 16 MB and its depths 64,
+/// which are offsets that a 32-bit `usize` can hold.
 #[test]
 fn the_last_rows_of_the_largest_frame_are_drawn() {
     const SIDE: u32 = Frame::MAX_SIDE;
@@ -575,7 +575,7 @@ fn the_last_rows_of_the_largest_frame_are_drawn() {
     assert!(u64::from(SIDE).pow(2) * size_of::<u32>() as u64 <= i32::MAX as u64);
     let (side, kept) = (SIDE as usize, (FIRST * SIDE) as usize);
     let mut random = Random::named("the_last_rows_of_the_largest_frame_are_drawn");
-    // One corner of each is at the frame's lower edge.
+    // Each has one corner at the frame's lower edge.
     let corner = |random: &mut Random, highest: i64| {
         let (x, y) = (random.within(0, 1 << 20), random.within(highest, 1 << 20));
         vertex(x, y, random.within(0, 0xFF00), random.within(1, u32::MAX.into()))

@@ -1,4 +1,4 @@
-//! Triangles as the sources print them: against a naive walk over edges and rows, and quiet for all legal input.
+//! Triangles as the sources print them: against a naive walk over edges and rows, without panics on any valid input.
 
 use crate::support::triangles::{draw, triangle, vertex};
 use crate::support::tried::Tried;
@@ -11,11 +11,11 @@ use mode13h_conformance::oracle;
 
 const VINTAGE: Interpolation = Interpolation::GouraudVintage;
 
-/// A row at a time, by hand.
+/// One row at a time, by hand.
 #[test]
 fn rows_are_those_of_the_sources() {
     let mut tried = Tried::new("rows_are_those_of_the_sources", 2);
-    // In whole pixels, with fractions that are rounded away.
+    // In whole pixels, from fractions that are rounded away.
     let corner = |x: i64, y: i64, shade: i64| vertex(x * 256 - 60, y * 256 + 90, shade * 256, 5);
     let bytes = draw(&[corner(0, 0, 16), corner(7, 0, 85), corner(0, 2, 16)], VINTAGE, 7, 2, None, 9);
     // (85 − 16) / 7 in 1/256: 2,523.4, cut to 2,523.
@@ -33,7 +33,7 @@ fn rows_without_a_pixel_are_not_drawn() {
     let mut tried = Tried::new("rows_without_a_pixel_are_not_drawn", 4_000);
     let mut random = Random::named("period, no pixel");
     while tried.more() {
-        // Left and right lie on the same whole pixel, or top and bottom do.
+        // Left and right are on the same whole pixel, or top and bottom are.
         let (x, y) = (random.within(-40, 200) * 256, random.within(-20, 40) * 256);
         let upright = random.within(0, 1) == 0;
         let mut corner = || {
@@ -49,8 +49,8 @@ fn rows_without_a_pixel_are_not_drawn() {
     }
 }
 
-/// Corners anywhere in the guard band and on its edge, slivers, all shades and depths; any clip rectangle, bands,
-/// with and without a depth buffer: quiet, and what the naive walk says.
+/// Corners anywhere in the guard band and on its edge, slivers, all shades and depths; any clip rectangle, bands, with
+/// and without a depth buffer: no panic, and the result of the naive walk.
 #[test]
 fn r7_period_is_quiet() {
     let mut tried = Tried::new("r7_period_is_quiet", 3_000);
@@ -100,7 +100,7 @@ fn any_corners(random: &mut Random, width: u32, height: u32) -> [Vertex; 3] {
     })
 }
 
-/// A triangle in a frame with bytes all round that must stay.
+/// A triangle in a frame surrounded by bytes that must not change.
 struct Case {
     corners: [Vertex; 3],
     size: (u32, u32),
@@ -114,7 +114,7 @@ const EMPTY: u8 = 3;
 const MARGIN: usize = 9;
 
 impl Case {
-    /// Draws it by `paint`, band by band, and returns the frame without its margins.
+    /// Draws it with `paint`, band by band, and returns the frame without its margins.
     fn draw(&self, mut paint: impl FnMut(Raster<'_>, u32)) -> Vec<u8> {
         let (width, height) = self.size;
         let pitch = width as usize + MARGIN;
@@ -134,7 +134,7 @@ impl Case {
         .collect()
     }
 
-    /// The pixels inside the clip rectangle by the naive walk, with their place in the frame.
+    /// The naive walk's pixels inside the clip rectangle, with their offsets in the frame.
     fn pixels(&self) -> Vec<(oracle::Pixel, usize)> {
         let (width, height) = self.size;
         let inside = |pixel: &oracle::Pixel| {
@@ -162,7 +162,7 @@ impl Case {
         pixels.len() as u64
     }
 
-    /// On a buffer that holds these depths.
+    /// With a depth buffer that holds these depths.
     fn with_depth<D: Cell + std::fmt::Debug>(&self, held: Vec<D>) {
         let (width, height) = self.size;
         let (mut nearest, mut expected) = (held.clone(), vec![EMPTY; (width * height) as usize]);
@@ -183,7 +183,7 @@ impl Case {
     }
 }
 
-/// The scan-line method gives it exact cover; a pixel has the shade of the nearest that the sources' rows have.
+/// The scan-line method gives it exact cover; each pixel gets the nearest shade in the sources' rows.
 #[cfg(feature = "alloc")]
 #[test]
 fn by_scan_line_its_shades_are_on_exact_cover() {
@@ -206,7 +206,7 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
             pixels += 1;
         }
         assert_eq!(bytes, expected, "{corners:?}");
-        // Where the sources have the pixel too it is the same.
+        // Where the sources have the pixel too, the byte is the same.
         let own = draw(&corners, VINTAGE, width, height, None, EMPTY);
         let other = draw(&corners, VINTAGE, width, height, None, EMPTY + 1);
         for place in 0..own.len() {
@@ -217,7 +217,7 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
     assert!(pixels > 20 * tried.stated(), "{pixels} pixels");
 }
 
-/// Neighbours walk their common edge alike, so that they draw no pixel twice.
+/// Neighbours walk their common edge the same way, so they draw no pixel twice.
 #[test]
 fn neighbours_share_no_pixel() {
     let mut tried = Tried::new("neighbours_share_no_pixel", 1_000);

@@ -1,12 +1,12 @@
-//! Nothing is allocated after the first frame of a plan, counted by an allocator that counts.
+//! Nothing is allocated after the first frame of a plan, as counted by an allocator.
 //!
-//! The plan of a frame is what is decided for each object and the way to hidden surfaces. A frame may allocate
-//! only if no frame before it had its plan: so the second frame of a scene whose plan stays may not, however
-//! many faces more come into view as it turns. Two things have no bound known beforehand that would not waste memory,
-//! and grow with what is seen: triangles that tessellation splits, and the parts of those that planes cut. There a frame
-//! may allocate that has more of them than any before; a second turn, which has no more than the first, may not.
+//! A frame's plan consists of the decisions for each object and the hidden-surface method. A frame may allocate only if
+//! no frame before it had its plan, so the second frame of a scene with an unchanged plan may not, no matter how many
+//! more faces come into view as it turns. Two things have no bound known in advance that would not waste memory, and
+//! grow with what is seen: triangles split by tessellation, and parts of those cut by clip planes. A frame that has
+//! more of them than any before may allocate for them; a second turn, which has no more than the first, may not.
 //!
-//! Bytes that a frame says it allocated are those that the allocator kept of it, but for the plan.
+//! The bytes that a frame reports as allocated are those that the allocator retains for it, apart from the plan.
 
 use allocation_counter::measure;
 use mode13h::Angle;
@@ -23,13 +23,14 @@ use mode13h_assets::shipped;
 
 use crate::support::tried::Tried;
 
-/// Frames of a turn.
+/// Frames per turn.
 const FRAMES: u32 = 6;
 
-/// Bytes of a plan, at most, for each object.
+/// Bytes of a plan, at most, per object.
 const PLAN: i64 = 10_000;
 
-/// What was decided, reasons aside: for each object each effect and by which of several ways, and the way to hidden surfaces.
+/// The decisions without the reasons: for each object each effect and which of several methods it uses, and the
+/// hidden-surface method.
 type Decided = (Vec<Vec<(bool, Choice)>>, HiddenSurfaces);
 
 fn decided(renderer: &Renderer) -> Decided {
@@ -42,7 +43,7 @@ fn decided(renderer: &Renderer) -> Decided {
     (objects.collect(), plan.hidden_surfaces())
 }
 
-/// The allocations of one frame and the bytes that are kept of them, and what it came to.
+/// One frame's allocations, the bytes retained of them, and its statistics.
 fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga, seconds: f64) -> ((u64, i64), Stats) {
     let mut drawn = None;
     let counted = measure(|| {
@@ -53,13 +54,13 @@ fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga, seconds: f64)
     ((counted.count_total, counted.bytes_current), stats)
 }
 
-/// Draws two turns, and says what is wrong.
+/// Draws two turns, and reports what is wrong.
 fn turns(what: &str, scene: &mut Scene, renderer: &mut Renderer) -> Vec<String> {
     let mut vga = Vga::new();
     let mut wrong = Vec::new();
     let (mut plans, mut most) = (Vec::new(), [0; 4]);
     for frame in 0..2 * FRAMES {
-        // Six poses of a turn of 10 s, and the same again.
+        // Six poses of a turn that takes 10 s, then the same again.
         let seconds = f64::from(frame % FRAMES) * 10.0 / f64::from(FRAMES);
         let ((count, kept), stats) = draw(renderer, scene, &mut vga, seconds);
         let plan = decided(renderer);
@@ -71,7 +72,7 @@ fn turns(what: &str, scene: &mut Scene, renderer: &mut Renderer) -> Vec<String> 
         let counts = [stats.vertices, stats.faces, stats.drawn, stats.clipped];
         let more = grows && counts.iter().zip(most).any(|(count, most)| *count > most);
         most = [0, 1, 2, 3].map(|i| most[i].max(counts[i]));
-        // The plan, which says why in words, is not of its count.
+        // The plan's text with its reasons is not included.
         let apart = kept - i64::try_from(stats.allocated).expect("it fits");
         if frame == 0 && !(0..=PLAN * scene.objects().len() as i64).contains(&apart) {
             wrong.push(format!("{what}: {kept} bytes are kept, {} by its own count", stats.allocated));
@@ -130,7 +131,7 @@ fn nothing_is_allocated_after_the_first_frame_of_a_plan() {
     assert!(wrong.is_empty(), "{} frames:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// A body that turns about its axis once in 10 s.
+/// An object that turns about its axis once in 10 s.
 fn turning(mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(mesh));
@@ -163,7 +164,7 @@ fn nor_of_a_fine_body_or_one_that_is_cut() {
 #[test]
 fn an_allocation_is_counted() {
     assert_eq!(measure(|| drop(std::hint::black_box(vec![1_u8]))).count_total, 1);
-    // The first frame of a renderer, and nothing of the second.
+    // The first frame of a renderer allocates, the second does not.
     let mut scene = "torus".parse::<shipped::Shipped>().expect("it is shipped").load().expect("it loads").scene;
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     let ((first, _), _) = draw(&mut renderer, &mut scene, &mut vga, 0.0);

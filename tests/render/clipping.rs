@@ -1,4 +1,4 @@
-//! What the camera sees when geometry reaches behind it or beyond the guard band.
+//! What the camera sees when geometry extends behind it or beyond the guard band.
 
 mod far;
 
@@ -28,9 +28,9 @@ fn r7_a_floor_of_any_size_is_closed_to_the_horizon() {
     let mut tried = Tried::new("r7_a_floor_of_any_size_is_closed_to_the_horizon", 36);
     for reach in [1e4_f32, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0] {
         for n in [1, 2, 3, 5, 8, 13] {
-            // The far edge is projected fy / reach below the horizon: less than half a pixel. So the
-            // rows from the horizon down, from 100 to 199, are all floor, and no other is. (The floor
-            // begins under the eye: the picture's lower edge is nearer than the far edge by far.)
+            // The far edge is projected fy / reach below the horizon: less than half a pixel. So exactly the rows from
+            // the horizon down, 100 to 199, are all floor. (The floor begins under the eye, and the picture's lower
+            // edge is much nearer than the far edge.)
             let (counts, stats) = counts(&scene(floor(reach, n)));
             for (place, &times) in counts.iter().enumerate() {
                 let inside = place / WIDTH >= HEIGHT / 2;
@@ -58,10 +58,9 @@ fn r7_floors_up_to_the_greatest_number() {
     far::floors_up_to_the_greatest_number(Tried::new("r7_floors_up_to_the_greatest_number", 20_000));
 }
 
-/// Two faces share an edge through the whole picture, which they fill. The edge begins in the last half
-/// pixel before the guard band's limit, which is only for rounding: the one face is drawn as it is, the
-/// other, whose third corner lies beyond the limit, is clipped. If it were clipped there too its edge
-/// would be another.
+/// Two faces that fill the picture share an edge through all of it. The edge begins in the last half pixel before the
+/// guard band's limit, which is reserved for rounding: one face is drawn unclipped, the other, whose third corner lies
+/// beyond the limit, is clipped. If it were clipped at the edge too, its edge would differ.
 #[test]
 fn r7_a_corner_within_rounding_of_the_limit() {
     let mut tried = Tried::new("r7_a_corner_within_rounding_of_the_limit", 1000);
@@ -99,8 +98,8 @@ fn r7_a_corner_within_rounding_of_the_limit() {
     assert!(clipped.iter().all(|&clipped| clipped > 700), "one face is clipped, the other is not: {clipped:?}");
 }
 
-/// A wall that reaches beyond the frame on all sides covers every pixel of it, the last column and row of the largest frame
-/// among them.
+/// A wall that extends beyond the frame on all sides covers every pixel, including the last column and row of the
+/// largest frame.
 #[test]
 fn r7_a_wall_fills_frames_of_every_size() {
     let sizes =
@@ -128,8 +127,7 @@ fn r7_a_wall_fills_frames_of_every_size() {
     tried.done();
 }
 
-/// There is no far plane: with every method a wall is seen from a hundred thousand million times the
-/// near distance.
+/// There is no far plane: every method shows a wall at a hundred thousand million times the near distance.
 #[test]
 fn c3_what_is_very_far_is_drawn() {
     let mut tried = Tried::new("c3_what_is_very_far_is_drawn", 4);
@@ -191,8 +189,8 @@ fn corners_about_the_near_plane(mut tried: Tried) {
     let stated = tried.stated();
     tried.worst("faces in sight", drawn as f64);
     tried.worst("cuts with their shades", cuts as f64);
-    // Of the nine distances three are before the near plane, as is the near plane itself: of 19 faces in 27 a corner is in
-    // sight or on the plane, and of half of them at least the screen shows something.
+    // Of the nine distances three are beyond the near plane and one is on it. With the three alone 19 of 27 faces have
+    // a corner in sight, and at least half of those show something on the screen.
     assert!(drawn * 4 > stated && hidden * 10 > stated, "of {stated} faces {drawn} in sight, {hidden} before the eye");
     assert!(cuts * 4 > stated, "{cuts} cuts");
 }
@@ -205,7 +203,7 @@ fn c1_the_visible_part_is_what_a_ray_hits() {
     let fx = fy * 6.0 / 5.0;
     let mut hits = 0;
     while tried.more() {
-        // In front of the eye, behind it, to the sides; beyond the guard band too.
+        // In front of the eye, behind it, to the sides; also beyond the guard band.
         let size = f64::from(random.log_uniform(10) as u32);
         let mut corner = || [0; 3].map(|_| (random.unit() * 2.0 - 1.0) * size).map(|c| f64::from(c as f32));
         let [a, b, c] = [corner(), corner(), corner()];
@@ -216,8 +214,8 @@ fn c1_the_visible_part_is_what_a_ray_hits() {
             for x in 0..WIDTH {
                 let centre = (x as f64 + 0.5, y as f64 + 0.5);
                 let ray = |dx: f64, dy: f64| [(centre.0 + dx - 160.0) / fx, -(centre.1 + dy - 100.0) / fy, -1.0];
-                // Within 1/64 pixel of an edge rounding may decide: the vertices are rounded to half of
-                // 1/256 both ways, an f32 vertex is off by less than that, and cuts by 1/128.
+                // Within 1/64 pixel of an edge rounding may decide: vertices are rounded by half of 1/256 both ways, an
+                // f32 vertex is off by less than that, and a cut by 1/128.
                 let near_edge = |dx: f64, dy: f64| hit(a, b, c, ray(dx, dy));
                 let middle = near_edge(0.0, 0.0);
                 let e = 1.0 / 64.0;
@@ -232,8 +230,8 @@ fn c1_the_visible_part_is_what_a_ray_hits() {
     assert!(hits > 100_000, "faces were hit: {hits}");
 }
 
-/// Whether the ray from the origin meets the triangle beyond the near plane. `ray`'s z is −1, so its
-/// parameter is the distance along the view.
+/// Returns whether the ray from the origin hits the triangle beyond the near plane. `ray`'s z is −1, so its parameter
+/// is the distance along the view.
 fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
     let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let cross =
@@ -252,8 +250,8 @@ fn c4_odd_views_are_quiet() {
 
 type Line = [(BigRational, BigRational); 2];
 
-/// The edges of the polygon that these triangles make up: those that one of them alone has, as
-/// (from, to) in 1/256 pixel.
+/// The edges of the polygon that these triangles form: those that belong to only one of them, as (from, to) in 1/256
+/// pixel.
 fn outline(parts: &[[Vertex; 3]]) -> Vec<[(i32, i32); 2]> {
     let at = |v: &Vertex| (v.x().to_bits(), v.y().to_bits());
     let edges: Vec<[(i32, i32); 2]> =
@@ -261,7 +259,7 @@ fn outline(parts: &[[Vertex; 3]]) -> Vec<[(i32, i32); 2]> {
     edges.iter().copied().filter(|&[a, b]| !edges.contains(&[b, a])).collect()
 }
 
-/// The part of a segment that lies on the screen, in pixels; `None` if none does.
+/// The part of a segment on the screen, in pixels; `None` if there is none.
 fn on_screen([a, b]: [(i32, i32); 2]) -> Option<[(f64, f64); 2]> {
     let pixels = |(x, y): (i32, i32)| (f64::from(x) / 256.0, f64::from(y) / 256.0);
     let (a, b) = (pixels(a), pixels(b));
@@ -282,8 +280,7 @@ fn on_screen([a, b]: [(i32, i32); 2]) -> Option<[(f64, f64); 2]> {
     (t0 < t1).then(|| [point(t0), point(t1)])
 }
 
-/// How far a point is from a line, in pixels. The product is exact; only its root and the quotient
-/// are rounded.
+/// Distance of a point from a line, in pixels. The product is exact; only its root and the quotient are rounded.
 fn distance((x, y): (f64, f64), [a, b]: &Line) -> f64 {
     let exact = |x: f64| BigRational::from_float(x).expect("finite");
     let (dx, dy) = (&b.0 - &a.0, &b.1 - &a.1);
@@ -308,7 +305,7 @@ fn r7_long_edges_of_far_triangles() {
 /// f32 coordinates turn the edge by 2⁻²³, 0.0005 over 4,096 pixels.
 fn edges_of_far_triangles(mut tried: Tried) {
     let mut random = Random::named("r7 edges");
-    // What the engine works out from the field of view: tan of f64 is within an ulp of this.
+    // What the engine computes from the field of view: tan in f64 is within an ulp of this.
     let fy = 100.0 / f64::tan(f64::from(1.0_f32) / 2.0);
     let fx = fy * 6.0 / 5.0;
     let mut edges = 0_u32;
@@ -347,7 +344,7 @@ fn edges_of_far_triangles(mut tried: Tried) {
     assert!(edges > 300, "edges were on the screen: {edges}");
 }
 
-/// How far a point is from the nearest of these segments, in pixels.
+/// Distance of a point from the nearest of these segments, in pixels.
 fn nearest(edges: &[[(i32, i32); 2]], (x, y): (f64, f64)) -> f64 {
     let pixels = |(x, y): (i32, i32)| (f64::from(x) / 256.0, f64::from(y) / 256.0);
     edges.iter().fold(f64::INFINITY, |least, &[a, b]| {
@@ -358,8 +355,8 @@ fn nearest(edges: &[[(i32, i32); 2]], (x, y): (f64, f64)) -> f64 {
     })
 }
 
-/// A corner passes slowly through the near plane: nothing pops. The truth here is the shade that is
-/// linear along the face in space, at the point where the pixel's ray meets it.
+/// A corner passes slowly through the near plane, and nothing pops. The truth here is the shade linear along the face
+/// in space, at the point where the pixel's ray hits it.
 #[test]
 fn c2_a_corner_passing_through_the_near_plane() {
     let mut tried = Tried::new("c2_a_corner_passing_through_the_near_plane", 1000);
@@ -386,7 +383,7 @@ fn c2_a_corner_passing_through_the_near_plane() {
         // The light at the corners: ka·Ia + kd·n·l.
         let material = &scene.objects()[0].materials[0];
         let shades = normals.map(|normal| {
-            // Towards the sun: (0, 0.3, 1).
+            // Toward the sun: (0, 0.3, 1).
             let [x, y, z] = normal.to_array().map(f64::from);
             let length = (x * x + y * y + z * z).sqrt() * (0.3_f64.powi(2) + 1.0).sqrt();
             let cosine = (0.3 * y + z) / length;
@@ -394,7 +391,7 @@ fn c2_a_corner_passing_through_the_near_plane() {
             255.0 * (ambient + f64::from(material.diffuse) * cosine.max(0.0)).clamp(0.0, 1.0)
         });
         for part in &parts {
-            // At the corners that are not cut the engine has these, to the rounding of a shade.
+            // At the unclipped corners the engine has these, to the rounding of a shade.
             let drawn = part.each_ref().map(|v: &Vertex| f64::from(v.shade().to_bits()) / 256.0);
             let (low, high) = shades.iter().fold((255.0, 0.0), |(low, high), &s| (s.min(low), s.max(high)));
             assert!(drawn.iter().all(|shade| (low - 0.01..=high + 0.01).contains(shade)), "{drawn:?} of {shades:?}");
@@ -428,7 +425,7 @@ struct Step {
 }
 
 impl Step {
-    /// How far the outlines are apart: of points along each the farthest from the other.
+    /// How far apart the outlines are: the largest distance from points along each to the other.
     fn movement(&self, other: &Self) -> f64 {
         let reach = |from: &Self, to: &Self| {
             let mut farthest = 0.0_f64;
@@ -443,7 +440,7 @@ impl Step {
         reach(self, other).max(reach(other, self))
     }
 
-    /// Pixels away from all edges change by no more than the truth does there, and one shade.
+    /// Pixels away from all edges change by at most one shade more than the truth does there.
     fn compare(&self, before: &Self, step: i32) -> u64 {
         let margin = self.movement(before) + 1.0;
         let mut compared = 0;

@@ -12,7 +12,7 @@ use mode13h::vga::Vga;
 pub(crate) const WIDTH: usize = Vga::WIDTH;
 pub(crate) const HEIGHT: usize = Vga::HEIGHT;
 
-/// How often each pixel is covered by what `renderer` draws.
+/// How often what `renderer` draws covers each pixel.
 pub(crate) fn counts_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u32>, Stats) {
     let mut counts = vec![0; WIDTH * HEIGHT];
     let clip = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
@@ -42,7 +42,7 @@ pub(crate) fn scene(mesh: Mesh) -> Scene {
     scene
 }
 
-/// A floor one below the eye, `reach` to all sides, of `n × n` squares of two triangles.
+/// A floor one below the eye, extending `reach` to all sides, of `n × n` squares of two triangles each.
 pub(crate) fn floor(reach: f32, n: u32) -> Mesh {
     let at = |i: u32| reach * (i as f32 / n as f32 * 2.0 - 1.0);
     let positions = (0..=n).flat_map(|z| (0..=n).map(move |x| Vec3::new(at(x), -1.0, at(z)))).collect();

@@ -1,5 +1,5 @@
-//! Whole frames against the oracle: the triangles as handed to the raster, drawn again in i128,
-//! pixel by pixel, must give the same bytes.
+//! Whole frames against the oracle: the triangles passed to the raster, drawn again in i128, pixel by pixel, must give
+//! the same bytes.
 //!
 //! `MODE13H_MODEL=model.obj cargo test --test render frames` tries a model of your own as well.
 
@@ -19,7 +19,7 @@ use mode13h_conformance::oracle;
 const WIDTH: i32 = Vga::WIDTH as i32;
 const HEIGHT: i32 = Vga::HEIGHT as i32;
 
-/// Draws the scene twice, once by the oracle; returns how many pixels are not background.
+/// Draws the scene twice, once with the oracle; returns the number of pixels that are not background.
 fn check(scene: &Scene, shading: Shading) -> usize {
     let mut renderer = Renderer::new();
     renderer.settings.accuracy = Some(shading.into());
@@ -27,7 +27,7 @@ fn check(scene: &Scene, shading: Shading) -> usize {
     let stats = renderer
         .for_each_triangle(scene, Screen::MODE_13H, |v, interpolation| triangles.push((*v, interpolation)))
         .expect("a legal scene");
-    // Of faces that are not compared the last is seen. With exact cover no two share a pixel then.
+    // Without depth comparison the last face is seen. With exact cover no two share a pixel then.
     let compares = stats.hidden_surfaces == HiddenSurfaces::DepthBuffer;
 
     let mut expected = vec![scene.background; (WIDTH * HEIGHT) as usize];
@@ -83,7 +83,8 @@ fn every_shape_on_every_shading_is_the_oracles_frame() {
     }
 }
 
-/// One shade half a step below the next: where quotients are estimated, not one pixel can be decided so. There are more
+/// All shades half a step below the next, so that estimated quotients cannot decide a single pixel. There are more
+/// faces than are listed at a time.
 /// faces than are listed at a time.
 #[test]
 fn many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles() {
@@ -103,7 +104,7 @@ fn many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles() {
 fn close_up_the_clipped_frame_is_the_oracles() {
     let mut tried = Tried::new("close_up_the_clipped_frame_is_the_oracles", 12);
     for step in 0..12_u8 {
-        // From before the torus to within it, faces pass the near plane and the guard band.
+        // From in front of the torus to inside it, faces pass the near plane and the guard band.
         let mut scene = turned(shapes::torus(24, 12), f64::from(step) * 10.0);
         scene.camera.near = 0.3;
         scene.camera.eye.z = 1.4 - 0.1 * f32::from(step);
@@ -131,8 +132,8 @@ fn a_model_of_your_own() {
     }
 }
 
-/// A closed convex body seen from outside: what its front faces cover is the whole silhouette, with
-/// no hole and no pixel twice, so the depth buffer has nothing to decide.
+/// A closed convex object seen from outside: its front faces cover the whole silhouette without holes or overlaps, so
+/// the depth buffer has nothing to decide.
 #[test]
 fn d4_back_faces_alone_give_the_depth_buffers_frame() {
     let mut tried = Tried::new("d4_back_faces_alone_give_the_depth_buffers_frame", 3 * 12);
@@ -157,7 +158,7 @@ fn d4_back_faces_alone_give_the_depth_buffers_frame() {
     }
 }
 
-/// A face that is cut in parts comes just where the list of faces that are drawn together is full.
+/// A clipped face that comes exactly where the list of faces drawn together is full.
 #[test]
 fn a_face_in_parts_is_whole_where_the_list_is_full() {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -166,7 +167,7 @@ fn a_face_in_parts_is_whole_where_the_list_is_full() {
         positions.extend(corners.map(Vec3::from_array));
         triangles.push([first, first + 1, first + 2]);
     };
-    // Nine times 64 faces, of which the last reaches behind the eye.
+    // Nine times 64 faces, of which the last extends behind the eye.
     for i in 0..575_u16 {
         let (x, y) = (f32::from(i % 24) / 12.0 - 1.0, f32::from(i / 24) / 12.0 - 1.0);
         face([[x, y, 0.0], [x + 0.08, y, 0.0], [x, y + 0.08, 0.0]]);

@@ -56,7 +56,7 @@ fn golden_frames_of_every_scene() {
 }
 
 /// Grass, bricks and glazed tiles, each in its own colours, from three sides; and once in the nearest entries of the
-/// cube, and in ramps that know nothing of them.
+/// cube, and in ramps that were not made for them.
 #[test]
 fn golden_frames_of_a_house() {
     use mode13h::light::Light;

@@ -1,25 +1,25 @@
-//! `tests/HARD_CASES.md` against the tests: every hard case has one row, every row names its tests, and
-//! every test is there, is named, and reports how many cases it tried.
+//! `tests/HARD_CASES.md` against the tests: every hard case has one row, every row names its tests, and every test
+//! exists, is named, and reports how many cases it tested.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-/// The groups of cases, and how many each has.
+/// The groups of cases, and the number of cases in each.
 const GROUPS: [(char, u32); 9] =
     [('S', 7), ('R', 14), ('C', 5), ('N', 9), ('T', 3), ('D', 4), ('P', 5), ('E', 1), ('F', 5)];
 
 /// The folders of the workspace that hold tests.
 const SOURCES: [&str; 6] = ["src", "tests", "lab/src", "lab/tests", "cli/src", "cli/tests"];
 
-/// What a row says in place of tests as long as nothing is built that they could try.
+/// What a row says instead of tests while the feature to test does not exist yet.
 const PENDING: &str = "pending: feature";
 
 fn ids() -> impl Iterator<Item = String> {
     GROUPS.into_iter().flat_map(|(group, count)| (1..=count).map(move |number| format!("{group}{number}")))
 }
 
-/// Whether a name is that of a test of the case: `r5_…` for R5.
+/// Returns whether a name is that of a test of the case: `r5_…` for R5.
 fn is_named_after(name: &str, id: &str) -> bool {
     name.strip_prefix(&id.to_lowercase()).is_some_and(|rest| rest.starts_with('_'))
 }
@@ -33,7 +33,7 @@ fn is_in_word(c: char) -> bool {
 /// A row of a table whose first cell is a group's letter and a number.
 struct Row<'a> {
     id: &'a str,
-    /// The words in backticks that are named after the case.
+    /// The names in backticks that begin with the case.
     tests: Vec<&'a str>,
     is_pending: bool,
 }
@@ -54,12 +54,12 @@ fn row(line: &str) -> Option<Row<'_>> {
     Some(Row { id, tests: words.filter(|word| is_named_after(word, id)).collect(), is_pending: line.contains(PENDING) })
 }
 
-// The sources, read as rustfmt leaves them
+// The sources, as rustfmt formats them
 
 struct Function {
     file: String,
     name: String,
-    /// Without comments and without space behind an opening bracket.
+    /// Without comments and without the space after an opening bracket.
     body: String,
     is_test: bool,
 }
@@ -86,7 +86,7 @@ fn functions(file: &str, text: &str) -> Vec<Function> {
     functions
 }
 
-/// The name of the function that begins in a line.
+/// The name of the function that starts on a line.
 fn function_name(line: &str) -> Option<&str> {
     let mut rest = line.trim_start();
     while let Some(after) = ["pub ", "pub(crate) ", "const ", "unsafe "].iter().find_map(|word| rest.strip_prefix(word))
@@ -97,7 +97,7 @@ fn function_name(line: &str) -> Option<&str> {
     (!name.is_empty()).then_some(name)
 }
 
-/// Whether `#[test]` is among the attributes and comments at the end of these lines.
+/// Returns whether `#[test]` is among the attributes and comments at the end of these lines.
 fn is_marked(before: &[&str]) -> bool {
     let lines = before.iter().rev().map(|line| line.trim());
     lines
@@ -105,8 +105,8 @@ fn is_marked(before: &[&str]) -> bool {
         .any(|line| line == "#[test]")
 }
 
-/// The functions that a macro of the file makes tests of: one that writes `#[test]` over `fn $…`, and is
-/// called with their names.
+/// Functions that a macro in the file turns into tests: one that writes `#[test]` above `fn $…`, and is called with
+/// their names.
 fn stamped(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     for definition in text.split("macro_rules! ").skip(1) {
@@ -121,9 +121,9 @@ fn stamped(text: &str) -> Vec<&str> {
     names
 }
 
-/// Whether a test of this case reports the number of cases under its name: by itself, as
-/// `Tried::new("r5_…", …)` or, once a kernel, `Tried::new(format!("s2_… {}", …)`; or by a function of its
-/// file that takes the name, or the part of it behind `s7_`.
+/// Returns whether a test of this case reports the number of cases under its name: by itself, as `Tried::new("r5_…",
+/// …)` or, once per kernel, `Tried::new(format!("s2_… {}", …)`; or through a function of its file that takes the name,
+/// or the part of it after `s7_`.
 fn reports(test: &Function, id: &str, functions: &[Function]) -> bool {
     let name = &test.name;
     let by_itself = [format!("Tried::new(\"{name}\","), format!("Tried::new(format!(\"{name} {{}}\",")];
@@ -183,8 +183,7 @@ fn faults(list: &str, functions: &[Function]) -> Vec<String> {
     faults
 }
 
-/// The functions in all files of Rust below a directory of the project, but for this file, whose samples
-/// are none.
+/// The functions in all Rust files below a directory of the project, except this file, whose samples do not count.
 fn read_sources(directory: &str, functions: &mut Vec<Function>) {
     let entries = fs::read_dir(crate::support::workspace::root().join(directory)).expect(directory);
     let mut names: Vec<_> = entries.map(|entry| entry.expect(directory).file_name()).collect();
@@ -200,7 +199,7 @@ fn read_sources(directory: &str, functions: &mut Vec<Function>) {
     }
 }
 
-/// For every case the tests that the sources have, in backticks, to be pasted into its row.
+/// For every case the tests in the sources, in backticks, ready to paste into its row.
 fn tests_by_case(functions: &[Function]) -> String {
     let mut text = String::new();
     for id in ids() {
@@ -211,7 +210,7 @@ fn tests_by_case(functions: &[Function]) -> String {
     text
 }
 
-/// For every case what the last runs of its tests have reported, as far as they have run.
+/// For every case what the last runs of its tests have reported, if they have run.
 fn reported_by_case() -> String {
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tried");
     let files = fs::read_dir(directory).into_iter().flatten().flatten();
@@ -251,7 +250,7 @@ fn every_hard_case_has_tests_that_report() {
     );
 }
 
-/// The table of the long run in docs/measurements.md names the tests there are.
+/// The table of the long run in docs/measurements.md names existing tests.
 #[test]
 fn every_long_test_is_in_the_measurements() {
     let document = crate::support::workspace::root().join("docs/measurements.md");
@@ -272,7 +271,7 @@ fn every_long_test_is_in_the_measurements() {
 
 // The checks can fail.
 
-/// A list and a file in order.
+/// A valid list and file.
 fn sample() -> (String, String) {
     let (mut list, mut source) = (String::from("| id | case | tests |\n|---|---|---|\n"), String::new());
     for id in ids() {
@@ -283,7 +282,7 @@ fn sample() -> (String, String) {
     (list, source)
 }
 
-/// What is found when `from` has become `to` in the list, or else in the file.
+/// What is found after `from` is replaced by `to` in the list, or else in the file.
 #[track_caller]
 fn faults_after(from: &str, to: &str) -> Vec<String> {
     let (list, source) = sample();

@@ -1,5 +1,5 @@
-//! The four ways to leave out hidden surfaces, on whole scenes: which one is taken, and that all of
-//! them give the same picture where they are right.
+//! The four hidden-surface methods on whole scenes: which one is chosen, and that all of them give the same picture
+//! where they are right.
 
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -14,7 +14,7 @@ use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
-/// A bar of which all coordinates are whole numbers, so that its sides are exactly plane.
+/// A bar with integer coordinates, so that its sides are exactly planar.
 fn bar(centre: [i32; 3], along: [i32; 3], across: [i32; 3]) -> Mesh {
     let thick = [0, 0, 1];
     let positions = (0..8)
@@ -31,7 +31,7 @@ fn bar(centre: [i32; 3], along: [i32; 3], across: [i32; 3]) -> Mesh {
     mesh
 }
 
-/// Three bars that overlap in a circle: each from behind the next, at one end, to before the third.
+/// Three bars that overlap in a cycle: each from behind the next at one end to in front of the third.
 fn bars() -> Scene {
     let mut scene = Scene::new();
     for (centre, along, across) in [
@@ -77,8 +77,8 @@ fn d1_bars_in_a_circle_are_never_left_to_the_painter() {
     assert_eq!(wrong, 72, "painter's order is wrong in every one of them");
 }
 
-/// Two bodies so far away that all their depths are 1: their ranges are equal, not apart. Of equal depths the first submitted
-/// stays, which painting one over the other would not keep.
+/// Two objects so far away that all their depths are 1: their ranges are equal, not disjoint. With equal depths the
+/// first submitted stays, which painting one over the other would not preserve.
 #[test]
 fn d3_objects_of_equal_depths_are_not_left_to_the_painter() {
     let mut tried = Tried::new("d3_objects_of_equal_depths_are_not_left_to_the_painter", 4);
@@ -104,10 +104,10 @@ fn d3_objects_of_equal_depths_are_not_left_to_the_painter() {
     }
 }
 
-/// Opaque faces of a body that has glass, too, hide one another as if they were a body of their own.
+/// Opaque faces of an object that also has glass hide one another as if they were an object of their own.
 #[test]
 fn opaque_faces_beside_glass_hide_each_other() {
-    // Sheets across the view: opaque near ones, glass, opaque far ones; in the mesh the far ones come last.
+    // Sheets across the view: near opaque ones, glass, far opaque ones; the far ones come last in the mesh.
     let sheets = [(2.0, 0), (-1.0, 1), (-2.0, 0)];
     let mesh = |with: &[u16]| {
         let (mut positions, mut triangles, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
@@ -135,7 +135,7 @@ fn opaque_faces_beside_glass_hide_each_other() {
     };
     let (together, way) = picture(&scene(&[mesh(&[0, 1])]), None);
     assert_eq!(way, HiddenSurfaces::DepthBuffer);
-    // The opaque ones as an object, and the glass as another.
+    // The opaque ones as one object, and the glass as another.
     let mut apart = scene(&[mesh(&[0]), mesh(&[1])]);
     apart.objects_mut()[0].materials[1].blend = Blend::Opaque;
     assert_eq!(picture(&apart, None).1, HiddenSurfaces::DepthBuffer);
@@ -146,7 +146,7 @@ fn opaque_faces_beside_glass_hide_each_other() {
     assert_eq!(picture(&glass, None).1, HiddenSurfaces::BackFaces);
 }
 
-/// Of each pixel, how many triangles cover it, by the oracle.
+/// Number of triangles that cover each pixel, by the oracle.
 fn covers(scene: &Scene) -> Vec<u32> {
     let (width, height) = (Vga::WIDTH as i32, Vga::HEIGHT as i32);
     let mut counts = vec![0; (width * height) as usize];
@@ -172,7 +172,7 @@ fn d4_all_four_methods_on_convex_meshes() {
     let mut random = Random::named("d4");
     let (mut doubly, mut covered, mut differ) = (0, 0, 0);
     let shipped = ["cube", "sphere", "cylinder", "cone"].map(|name| (shapes::by_name(name).expect("listed"), 30));
-    // So fine that faces near the outline turn over when they are rounded, and cover what others do.
+    // So fine that faces near the silhouette flip when rounded, and overlap others.
     let fine = [shapes::sphere(128, 64), shapes::sphere(300, 20), shapes::cone(300, 1)].map(|mesh| (mesh, 60));
     for (mesh, poses) in shipped.into_iter().chain(fine) {
         for _ in 0..poses {
@@ -201,7 +201,7 @@ fn d4_all_four_methods_on_convex_meshes() {
     assert!(covered > 100_000, "{covered}");
 }
 
-/// Convex objects one behind the other, drawn far to near; what lies side by side is not.
+/// Convex objects one behind another are drawn far to near; objects side by side are not.
 #[test]
 fn d4_painters_order_is_taken_for_convex_objects_that_are_apart() {
     let mut tried = Tried::new("d4_painters_order_is_taken_for_convex_objects_that_are_apart", 40);
@@ -211,7 +211,7 @@ fn d4_painters_order_is_taken_for_convex_objects_that_are_apart() {
         let mut scene = Scene::new();
         scene.camera.field_of_view = Angle::from_radians(1.2);
         let eye = f64::from(scene.camera.eye.z);
-        // No shape reaches farther than √3 from its middle. Some are cut by the near plane.
+        // No shape extends farther than √3 from its centre. Some are cut by the near plane.
         let mut z = eye - random.unit() * 2.0;
         let mut objects = Vec::new();
         for _ in 0..random.within(2, 6) {
@@ -247,7 +247,7 @@ fn d4_painters_order_is_taken_for_convex_objects_that_are_apart() {
         for (place, once) in once.iter().enumerate() {
             assert!(!once || chosen[place] == by_depth[place], "pixel {place}");
         }
-        // Another in the depths of the last: no more.
+        // One more object at the last one's depths, and painter's order no longer suffices.
         let mut beside = scene.objects()[0].clone();
         beside.position.x += 3.0;
         scene.add(beside);

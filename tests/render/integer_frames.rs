@@ -1,4 +1,4 @@
-//! Whole scenes through the integer vertex path: against the f32 path, clipped, over a full turn.
+//! Whole scenes through the integer vertex path: against the f32 path, clipped, and over a full turn.
 
 use std::f64::consts::TAU;
 
@@ -32,7 +32,7 @@ fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     vga.pixels().to_vec()
 }
 
-/// An angle that both paths have exactly, in 65,536ths of a turn.
+/// An angle that both paths represent exactly, in 65,536ths of a turn.
 fn steps(steps: i64) -> f64 {
     steps as f64 * TAU / 65_536.0
 }
@@ -45,8 +45,8 @@ fn distance(p: (f64, f64), a: (f64, f64), b: (f64, f64)) -> f64 {
     (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
 }
 
-/// How far apart the two paths' vertices may be on the screen, either way, in pixels, in a scene made by
-/// [`framed`](crate::support::scenes::framed) whose angles both have exactly.
+/// How far apart the two paths' vertices may be on the screen along either axis, in pixels, in a scene made by
+/// [`framed`](crate::support::scenes::framed) whose angles both represent exactly.
 ///
 /// An entry of the 16.16 matrix is off by half a unit and a hair of what the scale's mantissa makes of 1, so a
 /// vertex at r or nearer to the pivot by 0.51 · √3 · r / 65,536 along each axis, all else by less than
@@ -57,12 +57,12 @@ fn vertex_bound(scene: &Scene) -> f64 {
     let eye = f64::from(scene.camera.eye.z);
     let off = 0.51 * 3.0_f64.sqrt() * radius / 65_536.0 + (radius + eye) * (2.0_f64.powi(-21) + 2.0_f64.powi(-24));
     let focal = 100.0 / f64::tan(scene.camera.field_of_view.to_radians() / 2.0) * 6.0 / 5.0;
-    // All of it lies in the picture's height, so |X| / W and |Y| / W are below the tangent of 40°/2.
+    // All of it lies within the picture's height, so |X| / W and |Y| / W are below the tangent of 40°/2.
     let screen = focal * off * (1.0 + f64::tan(scene.camera.field_of_view.to_radians() / 2.0)) / (eye - radius);
     screen + 1.0 / 256.0
 }
 
-/// Compares the frames of both paths; returns how many pixels were compared, and how many differ at all.
+/// Compares the frames of both paths; returns the number of pixels compared, and of those that differ at all.
 fn compare(scene: &Scene, name: &str) -> (u64, u64) {
     let off = vertex_bound(scene);
     assert!(off < 2.0 / 256.0, "{name}: 1/128 pixel is the bound: {off}");
@@ -72,8 +72,8 @@ fn compare(scene: &Scene, name: &str) -> (u64, u64) {
     let (float, integer) =
         (frame(&mut renderer(VertexPath::Float), scene), frame(&mut renderer(VertexPath::Integer), scene));
 
-    // Of every pixel: whether an edge is so near that rounding may decide, and the nearest two depths,
-    // with how far the depth, and the shade, may be off.
+    // For every pixel: whether an edge is so near that rounding may decide, and the nearest two depths, with how far
+    // the depth, and the shade, may be off.
     let mut undecided = vec![false; WIDTH * HEIGHT];
     let mut seen = vec![Vec::<(f64, f64, f64)>::new(); WIDTH * HEIGHT];
     for vertices in &triangles {
@@ -88,7 +88,7 @@ fn compare(scene: &Scene, name: &str) -> (u64, u64) {
             for x in range(|p| p.0, WIDTH) {
                 let place = y * WIDTH + x;
                 let centre = (x as f64 + 0.5, y as f64 + 0.5);
-                // Vertices that move by `off` along both axes move an edge by at most √2 of it.
+                // Vertices that move by `off` along both axes move an edge by at most √2 of that.
                 let edges = [(0, 1), (1, 2), (2, 0)];
                 if edges.iter().any(|&(a, b)| distance(centre, at[a], at[b]) <= off * 2.0_f64.sqrt()) {
                     undecided[place] = true;
@@ -97,7 +97,7 @@ fn compare(scene: &Scene, name: &str) -> (u64, u64) {
                 if !oracle::covers(points, oracle::centre(x as i32, y as i32)) {
                     continue;
                 }
-                // The value, and how much it changes from here to a pixel further along x and y.
+                // The value, and its change from here to a pixel further along x and y.
                 let plane = |values: [i128; 3]| {
                     let value = |dx: i32, dy: i32| {
                         let ratio = oracle::interpolate(points, values, oracle::centre(x as i32 + dx, y as i32 + dy));
@@ -108,7 +108,7 @@ fn compare(scene: &Scene, name: &str) -> (u64, u64) {
                 };
                 let (depth, depth_slope) = plane(vertices.each_ref().map(|v| i128::from(v.depth())));
                 let (_, shade_slope) = plane(vertices.each_ref().map(|v| i128::from(v.shade().to_bits())));
-                // Depths themselves by as much as w: less than 2⁻¹⁶ of them, and rounding.
+                // Depths themselves by the same share as w: less than 2⁻¹⁶ of them, plus rounding.
                 seen[place].push((depth, depth_slope * off + depth / 65_536.0 + 2.0, shade_slope * off / 256.0));
             }
         }
@@ -160,7 +160,7 @@ fn both_paths_draw_the_same_picture() {
     assert!(differ < all as u64 / 200, "few bytes differ: {differ}");
 }
 
-/// Of a shading that a path lacks the plan names the one that is drawn instead.
+/// For a shading that a path lacks, the plan names the one drawn instead.
 #[test]
 fn the_plan_names_the_shading_that_is_drawn() {
     let mut tried = Tried::new("the_plan_names_the_shading_that_is_drawn", 2 * 10);
@@ -193,10 +193,10 @@ fn the_plan_names_the_shading_that_is_drawn() {
 #[test]
 fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
     let mut tried = Tried::new("every_shading_and_odd_scene_is_drawn_and_counted_alike", 5 * 4);
-    // Vertices that the paths have a unit apart may be a whole pixel apart on `gouraud-vintage`.
+    // Vertices that differ by a unit between the paths may differ by a whole pixel in `gouraud-vintage`.
     let known = |shading: &Shading| shading.in_integers() == *shading && shading.has_exact_cover();
     for shading in Shading::ALL.into_iter().filter(known) {
-        // A size and place of its own, the pivot aside, the mesh laid back; three materials.
+        // A scale and position of its own, off the pivot, with the mesh laid back; three materials.
         for (scale, place) in [(1.0_f32, 0.0_f32), (1e-5, 1e-6), (3.7e8, -2e9), (0.001, 5.0)] {
             let mut scene = Scene::new();
             let mut object = Object::new(shapes::torus(24, 12));
@@ -217,7 +217,7 @@ fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
             assert_eq!((f.vertices, f.faces, f.hidden_surfaces), (i.vertices, i.faces, i.hidden_surfaces));
             assert_eq!((i.clipped, i.culled + i.drawn), (0, i.faces));
             assert_eq!(i.lit, if shading == Shading::Flat { i.drawn } else { i.vertices });
-            // A face seen on its edge may count as turned away on one path and not on the other.
+            // A face seen edge-on may count as turned away on one path and not on the other.
             assert!(f.culled.abs_diff(i.culled) <= 4, "{f}; {i}");
             let differ = float.0.iter().zip(&integer.0).filter(|(a, b)| a.abs_diff(**b) > 1).count();
             let drawn = float.0.iter().filter(|b| **b != 0).count();
@@ -270,7 +270,7 @@ fn t2_steps_of_any_size() {
         assert!(frame(&mut renderer, &scene) == first, "and back");
         tried.add(1);
     }
-    // Beyond what f64 can count turns in it is some angle.
+    // Beyond the range where f64 can count turns, any angle will do.
     scene.objects_mut()[id].angles = [f64::MAX, -1e300, f64::MIN_POSITIVE].map(Angle::from_radians);
     frame(&mut renderer, &scene);
     tried.add(1);
@@ -296,7 +296,7 @@ fn e1_a_changed_mesh_is_converted_anew() {
     let mut random = Random::named("e1 integer");
     let mut scene = crate::support::scenes::framed(shapes::cube());
     while tried.more() {
-        // A mesh that is dropped leaves its address to the next.
+        // A dropped mesh leaves its address to the next.
         let mesh = match random.within(0, 3) {
             0 => shapes::cube(),
             1 => shapes::torus(random.within(3, 20) as u32, 6),
@@ -369,14 +369,14 @@ fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
             Vec3::new(random.unit() as f32 * 4.0 - 2.0, random.unit() as f32 * 4.0 - 2.0, z)
         };
         let corners = [corner(), corner(), corner()];
-        // In 16.16 a corner a hair nearer than the near plane may lie on it.
+        // In 16.16 a corner slightly nearer than the near plane may lie on it.
         let visible = corners.iter().any(|p| -p.z >= 0.249_999);
         let intensities = [0; 3].map(|_| random.unit());
         let normals = intensities.map(normal).to_vec();
         let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
         let scene = lit(scene(mesh));
         let (counts, _) = counts(&scene);
-        // Normals and cosines are in 16.16: each is off by a unit or two, which is as many 256ths of a shade.
+        // Normals and cosines are in 16.16: each is off by one or two units, which is as many 256ths of a shade.
         let renderer = &mut renderer(VertexPath::Integer);
         cuts += cuts_on_the_near_plane(renderer, &scene, corners, intensities, 6.0);
         assert!(visible || counts.iter().all(|&times| times == 0), "nothing of {corners:?} is in sight");
@@ -407,9 +407,9 @@ fn c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits() {
             for x in 0..WIDTH {
                 let ray =
                     |dx: f64, dy: f64| [(x as f64 + 0.5 + dx - 160.0) / fx, -(y as f64 + 0.5 + dy - 100.0) / fy, -1.0];
-                // Within 1/64 pixel of an edge rounding may decide: vertices and cuts are rounded to half
-                // of 1/256. The matrix is exact here, and vertices have 30 bits: near the eye, at 1/4 of
-                // up to 1,024 units, 2⁻¹⁹ of the distance, which is 2⁻¹⁰ pixel.
+                // Within 1/64 pixel of an edge rounding may decide: vertices and cuts are rounded by half of 1/256. The
+                // matrix is exact here, and vertices have 30 bits: near the eye, at 1/4 of up to 1,024 units, 2⁻¹⁹ of
+                // the distance, which is 2⁻¹⁰ pixel.
                 let middle = hit(a, b, c, ray(0.0, 0.0));
                 let e = 1.0 / 64.0;
                 if [(e, e), (e, -e), (-e, e), (-e, -e)].iter().any(|&(dx, dy)| hit(a, b, c, ray(dx, dy)) != middle) {
@@ -423,8 +423,8 @@ fn c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits() {
     assert!(hits > 100_000, "faces were hit: {hits}");
 }
 
-/// Whether the ray from the origin meets the triangle beyond the near plane. `ray`'s z is −1, so its
-/// parameter is the distance along the view.
+/// Returns whether the ray from the origin hits the triangle beyond the near plane. `ray`'s z is −1, so its parameter
+/// is the distance along the view.
 fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
     let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let cross =
@@ -491,7 +491,7 @@ fn scenes_that_16_16_cannot_hold_are_refused_and_others_drawn() {
 #[test]
 fn r10_denormal_and_huge_scenes_are_scaled_into_range() {
     let mut tried = Tried::new("r10_denormal_and_huge_scenes_are_scaled_into_range", 9);
-    // The same scene at any power of two is the same picture: scaling is exact.
+    // The same scene scaled by any power of two gives the same picture: scaling is exact.
     let picture = |exponent: i32| {
         let size = (f64::from(exponent)).exp2() as f32;
         let cube = shapes::cube();

@@ -70,12 +70,12 @@ fn n6_unit_vectors_have_length_1() {
 fn check_unit(v: [i32; 3]) {
     let Some(unit) = unit_vector(bits(v)) else { return assert_eq!(v, [0; 3]) };
     let unit = unit.map(I16F16::to_bits);
-    // 2⁻¹⁴ of 65,536 is 4 units; what `vector::unit` promises is one.
+    // 2⁻¹⁴ of 65,536 is 4 units; `vector::unit` promises one.
     let square: i64 = unit.iter().map(|&c| i64::from(c) * i64::from(c)).sum();
     assert!((65_535 * 65_535..=65_537 * 65_537).contains(&square), "{v:?}: {unit:?}");
     let length = v.iter().map(|&c| f64::from(c) * f64::from(c)).sum::<f64>().sqrt();
     for (c, exact) in unit.iter().zip(v) {
-        // Half a unit, and 2⁻²⁸ for the cut.
+        // Half a unit, and 2⁻²⁸ for the truncation.
         assert!((f64::from(*c) - f64::from(exact) / length * 65_536.0).abs() < 0.501, "{v:?}: {unit:?}");
     }
     if v.iter().all(|&c| c != i32::MIN) {
@@ -84,7 +84,7 @@ fn check_unit(v: [i32; 3]) {
     }
 }
 
-/// A mesh of the crate in 16.16, its vertices at the same place made one.
+/// A mesh of the crate in 16.16, with coincident vertices merged.
 fn welded(mesh: &Mesh) -> (Vec<Vector>, Vec<[u16; 3]>) {
     let fix = |p: &Vec3| p.to_array().map(|c| I16F16::round_from_f64(c.into()).expect("in the unit sphere"));
     let mut positions: Vec<Vector> = Vec::new();
@@ -108,7 +108,7 @@ fn n6_averaged_normals_have_length_1() {
         for (vertex, normal) in normals.iter().enumerate() {
             let square: i64 = normal.iter().map(|c| i64::from(c.to_bits()).pow(2)).sum();
             assert!((65_535 * 65_535..=65_537 * 65_537).contains(&square), "{name}, {vertex}: {normal:?}");
-            // The sum of the unit normals, in f64, of the faces that have an area.
+            // The sum in f64 of the unit normals of the faces that have an area.
             let mut sum = [0.0; 3];
             let mut faces = 0;
             for t in triangles.iter().filter(|t| t.contains(&(vertex as u16))) {
@@ -123,7 +123,7 @@ fn n6_averaged_normals_have_length_1() {
             }
             let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
             for (c, exact) in real(*normal).iter().zip(sum) {
-                // Each face's normal is half a unit off, the sum by all of them, and then itself.
+                // Each face's normal is off by half a unit, the sum by all of those, and then by its own rounding.
                 let bound = (1.0 + 0.51 * f64::from(faces) * 3.0_f64.sqrt() / length) / 65_536.0;
                 assert!((c - exact / length).abs() < bound, "{name}, {vertex}: {c} {}", exact / length);
             }
@@ -136,7 +136,7 @@ fn n6_averaged_normals_have_length_1() {
 fn n2_normals_that_cancel() {
     let mut tried = Tried::new("n2_normals_that_cancel", 4);
     let positions = [[0, 0, 0], [70_000, 13, 0], [5, 80_000, 999], [7, 7, 7]].map(bits);
-    // A folded sheet: two faces back to back. Vertex 3 has no face but one without area.
+    // A folded sheet: two faces back to back. Vertex 3 belongs only to a face without area.
     let triangles = [[0_u16, 1, 2], [0, 2, 1], [3, 3, 3]];
     let mut normals = [Vector::default(); 4];
     average_normals(&positions, &triangles, &mut normals).expect("sound");
@@ -158,12 +158,12 @@ fn t1_the_turn_stays_orthonormal() {
                 let product: i64 = (0..3).map(|k| rows[i][k] * rows[j][k]).sum();
                 let off = (product - if i == j { 1 << 32 } else { 0 }).abs();
                 tried.worst("from orthonormal", off as f64 / 4_294_967_296.0);
-                // 2⁻¹³ is asked for; the rounding of nine entries gives less than 2⁻¹⁵.
+                // 2⁻¹³ is required; rounding nine entries gives less than 2⁻¹⁵.
                 assert!(off < 1 << (32 - 15), "{angles:?}: rows {i} and {j}");
             }
         }
     };
-    // Frame by frame, three axes at their own speed, then anywhere.
+    // Frame by frame, three axes each at its own speed, then arbitrary angles.
     for frame in 0..500_000_u32 {
         check(&mut tried, [frame, frame.wrapping_mul(3), frame / 7].map(|a| a as u16));
         tried.add(1);
@@ -184,17 +184,17 @@ fn the_turn_is_the_f64_turn() {
         object.angles = steps.map(|a| f64::from(a) * TAU / 65_536.0).map(Angle::from_radians);
         let exact = object.rotation().transpose().to_cols_array_2d();
         for (row, exact) in rows.iter().flatten().zip(exact.as_flattened()) {
-            // 0.501 units, and half an f32's last bit of what it is compared with.
+            // 0.501 units, and half of the last bit of the f32 that it is compared with.
             assert!((row - f64::from(*exact)).abs() < 0.51 / 65_536.0, "{steps:?}");
         }
     }
 }
 
-// ------------------------------------------------------------------ the way to the screen
+// ------------------------------------------------------------------ transform and projection
 
 const PAINT: Paint = Paint { ambient: I16F16::from_bits(0), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
 
-/// The triangles of a mesh as the raster gets them.
+/// The triangles of a mesh as passed to the raster.
 fn triangles(
     view: &View,
     object: Object<'_, u16>,
@@ -234,8 +234,8 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
         let view = straight_view(width, height, focal, near);
         let corner = |random: &mut Random| {
             let z = -(random.log_uniform(31) as i32).clamp(near, 0x7FFF_0000);
-            // Within the picture's surroundings more often than not, and on exact halves of 1/256 pixel:
-            // there 512·f·x = odd · 65,536 · w.
+            // Usually within the surroundings of the picture, and on exact halves of 1/256 pixel, where 512·f·x = odd ·
+            // 65,536 · w.
             let most = (i64::from(z) * -4095 * 65_536 / i64::from(focal[0].max(focal[1]))).clamp(1, 0x7FFF_0000) as i32;
             [any(random, most), any(random, most), z].map(|c| c.clamp(-0x7FFF_0000, 0x7FFF_0000))
         };
@@ -249,7 +249,7 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
         }
         let positions = corners.map(bits);
         let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false).expect("legal");
-        // A mesh in finer units: each of X, Y and W is rounded to the nearest 1/65,536, halves upward.
+        // A mesh in finer units: X, Y and W are each rounded to the nearest 1/65,536, halves upward.
         let finer = random.one_of(&[0, 0, 1, 2, 5]);
         let object = Object { mesh: mesh.with_exponent(-finer), placement: Placement::default(), paints: &[PAINT] };
         let drawn = triangles(&view, object, &[]).expect("legal");
@@ -304,8 +304,8 @@ fn normalised(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c / length)
 }
 
-/// Camera, placement and mesh anywhere: every vertex is where f64 says, to within the rounding of the
-/// matrix to 16.16 and of the transformed vertex to 1/65,536.
+/// Arbitrary camera, placement and mesh: every vertex is where f64 says, to within the rounding of the matrix to 16.16
+/// and of the transformed vertex to 1/65,536.
 #[test]
 fn vertices_are_where_f64_has_them() {
     let mut tried = Tried::new("vertices_are_where_f64_has_them", 20_000);
@@ -318,18 +318,18 @@ fn vertices_are_where_f64_has_them() {
         let up = units(&mut random, 100);
         let steps = [0; 3].map(|_| random.next_u64() as u16);
         let exponent = random.within(-6, 6) as i8;
-        // The scene's 1,000 units are so many of the mesh.
+        // The scene's 1,000 units are this many of the mesh's.
         let most = ((1000 * 64) >> (exponent + 6)).min(32_767);
         let (pivot, scale) = (units(&mut random, most), random.within(1, 2 * 65_536) as i32);
         let corners = [0; 3].map(|_| units(&mut random, most));
-        // Near what the eye looks at, so that it is in the picture now and then.
+        // Near what the eye looks at, so that it is sometimes in the picture.
         let position = [0, 1, 2].map(|i| target[i] + any(&mut random, 300 * 65_536));
 
         let [e, t, u] = [eye, target, up].map(|v| real(bits(v)));
         let forward = normalised([0, 1, 2].map(|i| t[i] - e[i]));
         let right = cross(forward, normalised(u));
         if dot(right, right) < 0.01 {
-            // Along the view what is up is not much more than rounding.
+            // If up points along the view, little more than rounding is left of it.
             continue;
         }
         let right = normalised(right);
@@ -445,8 +445,8 @@ fn n4_shades_against_big_rationals() {
     }
 }
 
-/// Faces of the guard band's size, near the eye, where a unit of 1/65,536 is a large part of a vertex's
-/// depth: cuts lie on the exact edges, with the shades that the unclipped face has there.
+/// Faces of the guard band's size, near the eye, where a unit of 1/65,536 is a large part of a vertex's depth: cuts lie
+/// on the exact edges, with the shades that the unclipped face has there.
 #[test]
 fn c1_cuts_lie_on_the_edges_with_their_shades() {
     let mut tried = Tried::new("c1_cuts_lie_on_the_edges_with_their_shades", 10_000);
@@ -477,10 +477,10 @@ fn c1_cuts_lie_on_the_edges_with_their_shades() {
         let area = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
         let whole = area(at[0], at[1], at[2]);
         if whole.abs() < 1e5 {
-            // Hardly more than a line: rounding to 1/256 pixel decides its shades.
+            // Little more than a line: rounding to 1/256 pixel decides its shades.
             continue;
         }
-        // Seen from behind, the normal is turned round: no light.
+        // Seen from behind, the normal is flipped: no light.
         let lit = |n: Vector| if whole < 0.0 { f64::from(n[2].to_bits().max(0)) / 65_536.0 * 65_280.0 } else { 0.0 };
         let shades = normals.map(lit);
         let plane = |p: (f64, f64)| {
@@ -582,8 +582,8 @@ fn what_16_16_cannot_hold_is_refused() {
     check(stage(object, &[Sun { direction: corner, ..sun }], 1, 1) == Err(IntegerError::Light), "no direction");
 }
 
-/// Everything at its extremes: no overflow, which the test profile checks for, and what is drawn is
-/// legal, for a vertex that exists is.
+/// Everything at its extremes: no overflow, which the test profile checks for, and whatever is drawn is valid, since
+/// any vertex that exists is.
 #[test]
 fn r7_any_legal_input_is_quiet() {
     let mut tried = Tried::new("r7_any_legal_input_is_quiet", 100_000);

@@ -21,7 +21,7 @@ fn drawn(scene: &Scene) -> Vec<u8> {
     vga.pixels().to_vec()
 }
 
-/// A torus, a cube that stands before it, and a cone beside them.
+/// A torus, a cube in front of it, and a cone beside them.
 fn three() -> (Scene, [ObjectId; 3]) {
     let mut scene = Scene::new();
     scene.camera.eye.z *= 2.0;
@@ -55,7 +55,7 @@ fn a_hidden_object_is_as_one_that_was_removed() {
     }
 }
 
-/// On one renderer, shown again and hidden again.
+/// With one renderer, shown and hidden repeatedly.
 #[test]
 fn a_kept_renderer_hides_and_shows() {
     let (mut scene, [torus, ..]) = three();
@@ -68,7 +68,7 @@ fn a_kept_renderer_hides_and_shows() {
     }
 }
 
-/// Numbers that f32 and f64 hold exactly, so that the frame is that of the object placed by hand.
+/// Numbers that f32 and f64 represent exactly, so that the frame is that of the object placed by hand.
 #[test]
 fn a_child_stands_where_its_parent_puts_it() {
     let (mut scene, [torus, cube, cone]) = three();
@@ -80,20 +80,21 @@ fn a_child_stands_where_its_parent_puts_it() {
     (by_hand[cube].position, by_hand[cube].scale) = (Vec3::new(1.5, 0.5, 0.0), 0.5);
     (by_hand[cone].position, by_hand[cone].scale) = (Vec3::new(2.0, 0.5, 0.0), 0.25);
     (scene[cube].position, scene[cube].scale, scene[cube].parent) = (Vec3::new(0.75, 0.25, 1.0), 0.25, Some(torus));
-    // And one that hangs from that: its turn is the cube's, which the cone by hand has not.
+    // And a child of that. It would turn with the cube, which the cone placed by hand does not, so the cube is not
+    // turned.
     scene[cube].angles = [Angle::default(); 3];
     by_hand[cube].angles = [Angle::default(); 3];
     (scene[cone].position, scene[cone].scale, scene[cone].parent) = (Vec3::new(1.0, 0.0, 0.0), 0.5, Some(cube));
     let frame = drawn(&scene);
     assert!(frame == drawn(&by_hand));
 
-    // What hangs from a hidden object is hidden.
+    // Children of a hidden object are hidden.
     scene[cube].visible = false;
     by_hand[cube].visible = false;
     by_hand[cone].visible = false;
     assert!(drawn(&scene) == drawn(&by_hand) && drawn(&scene) != frame);
 
-    // Without its parent a child stands by itself.
+    // Without its parent a child stands alone.
     scene.remove(torus);
     by_hand.remove(torus);
     (by_hand[cube], by_hand[cone]) = (scene[cube].clone(), scene[cone].clone());
@@ -119,7 +120,7 @@ fn parents_in_a_circle_and_on_the_integer_path_are_refused() {
     scene[cone].parent = None;
     scene[cone].scale = f32::MAX;
     scene[torus].scale = f32::MAX;
-    // 10⁷⁷ is no number of f32, but f64 holds it.
+    // 10⁷⁷ overflows f32, but not f64.
     assert!(Renderer::new().draw(&scene, &mut vga).is_ok());
 }
 
@@ -143,8 +144,8 @@ fn ids_outlive_removals_and_name_nothing_afterwards() {
     assert!(scene.lights().is_empty() && scene.light_ids().is_empty());
 }
 
-/// A step at half the light: what is darker than 127 is then black, what is lighter than 128 white. A byte is the nearest
-/// to its shade, so nothing is said of the two between.
+/// A step at half the light: anything darker than 127 becomes black, anything lighter than 128 white. A byte is the
+/// nearest to its shade, so nothing is said about the two in between.
 #[test]
 fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
     let step = LightResponse::new(|intensity| if intensity < 0.5 { 0.0 } else { 1.0 });
@@ -154,7 +155,7 @@ fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
     {
         let mut scene = Scene::showing(shapes::sphere(48, 24));
         scene.background = 77;
-        // A budget lights such an object at every pixel: no bound is known for it.
+        // With a budget such an object is lit at every pixel, since no bound is known for it.
         scene.settings.accuracy = Some(if budget.is_some() { Shading::Phong } else { shading }.into());
         let plain = drawn(&scene);
         scene.settings =
@@ -177,7 +178,7 @@ fn a_response_to_light_is_asked_at_vertices_faces_and_pixels() {
     }
 }
 
-/// At the vertices, and linear between: a response that is constant leaves one shade, on one channel and on three.
+/// At the vertices, and linear in between: a constant response leaves one shade, on one channel and on three.
 #[test]
 fn a_constant_response_is_one_shade() {
     for (colored, constant, shown) in
@@ -194,7 +195,7 @@ fn a_constant_response_is_one_shade() {
         let frame = drawn(&scene);
         let mut seen = frame.into_iter().filter(|byte| *byte != 7).peekable();
         assert!(seen.peek().is_some());
-        // A colour of three channels is looked up by the upper five bits of each: within 8.
+        // A colour on three channels is looked up by the upper five bits of each: within 8.
         let room = if colored { 8 } else { 0 };
         let near = |a: Rgb, b: Rgb| [(a.r, b.r), (a.g, b.g), (a.b, b.b)].iter().all(|(a, b)| a.abs_diff(*b) <= room);
         let wrong = seen.find(|byte| !near(palette[*byte], shown));

@@ -1,4 +1,4 @@
-//! What games ask of a picture: where a point is in it, and what was there before.
+//! What games need from a picture: where a point is in it, and what was there before.
 
 use mode13h::glam::Vec3;
 use mode13h::mesh::shapes;
@@ -22,7 +22,7 @@ fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurface
     drawn.expect("drawn");
 }
 
-/// A small sphere is drawn about the point that its middle projects to.
+/// A small sphere is drawn around the point that its centre projects to.
 #[test]
 fn a_point_is_where_it_is_drawn() {
     let mut random = Random::named("on screen");
@@ -34,7 +34,7 @@ fn a_point_is_where_it_is_drawn() {
         let mut scene = Scene::new();
         scene.add(Object::new(shapes::sphere(12, 8)).at(at).scaled(0.05));
         scene.camera = Camera { eye: point() * 2.0, target: point(), ..Camera::default() };
-        // What is the same over black and over white.
+        // Pixels that are the same over black and over white were drawn.
         let [dark, bright] = [0, 255].map(|fill| {
             let mut bytes = vec![fill; SIZE];
             draw(&scene, &mut bytes, false, None);
@@ -43,7 +43,7 @@ fn a_point_is_where_it_is_drawn() {
         let drawn = (0..SIZE).filter(|&at| dark[at] == bright[at]);
         let pixels: Vec<(f32, f32)> = drawn.map(|at| ((at % 400) as f32, (at / 400) as f32)).collect();
         let Some([x, y, distance]) = scene.camera.project(at, SCREEN) else {
-            // Its near half may still be there.
+            // Its near half may still be visible.
             hidden += 1;
             continue;
         };
@@ -52,7 +52,7 @@ fn a_point_is_where_it_is_drawn() {
         if !(20.0..380.0).contains(&x) || !(20.0..280.0).contains(&y) || distance < 2.0 {
             continue;
         }
-        // At most 10 pixels across, whose middles lie within the ball's outline.
+        // At most 10 pixels across, with centres within the ball's silhouette.
         let count = pixels.len() as f32;
         let mean = pixels.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
         assert!(count > 3.0, "nothing at ({x}, {y})");
@@ -62,7 +62,7 @@ fn a_point_is_where_it_is_drawn() {
     assert!(seen > 60 && hidden > 5, "{seen} seen, {hidden} hidden");
 }
 
-/// Pixels that a scene draws are the same over anything; all others stay.
+/// Pixels that a scene draws do not depend on what was there; all others are unchanged.
 #[test]
 fn drawing_over_changes_what_is_drawn_and_no_more() {
     let mut scene = Scene::showing(shapes::torus(24, 12));

@@ -14,7 +14,7 @@ use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
-/// The frame of a new renderer, prepared by `prepare`.
+/// The frame of a new renderer set up by `prepare`.
 fn draw(scene: &Scene, prepare: impl FnOnce(&mut Renderer)) -> (Vec<u8>, Stats, Renderer) {
     let mut renderer = Renderer::new();
     prepare(&mut renderer);
@@ -27,7 +27,7 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-/// Which effects a scene's objects call for.
+/// Whether any of a scene's objects call for an effect.
 fn called_for(renderer: &Renderer, effect: Effect) -> bool {
     renderer.plan().is_on_anywhere(effect)
 }
@@ -53,7 +53,7 @@ fn the_full_work_gives_the_same_bytes() {
     let mut tried = Tried::new("the_full_work_gives_the_same_bytes", 200);
     for (name, scene) in scenes::all() {
         let (expected, stats, chosen) = draw(&scene, |_| ());
-        // What saves work by being on: culling, and hidden surfaces without depths.
+        // Effects that save work by being on: culling, and hidden surfaces without depths.
         let (full, _, _) =
             draw(&scene, |renderer| renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
         let covered_twice = differing(&expected, &full);
@@ -64,7 +64,7 @@ fn the_full_work_gives_the_same_bytes() {
             }
             let on = effect != Effect::BackFaceCulling;
             if !on && called_for(&chosen, Effect::NearClipping) {
-                // The near plane cuts the body open, and its inside, which is never drawn, would show.
+                // The near plane cuts the object open, and its inside, which is never drawn, would show.
                 continue;
             }
             let (bytes, forced, renderer) = draw(&scene, |renderer| {
@@ -78,8 +78,8 @@ fn the_full_work_gives_the_same_bytes() {
                 "{name}: {effect} is forced"
             );
             let differ = differing(&expected, &bytes);
-            // Neither side of a face that is seen on its edge to within rounding is nearer: of equal depths
-            // the first submitted is drawn, and a back face may be that.
+            // For a face that is edge-on within rounding, neither side is nearer: with equal depths the first submitted
+            // is drawn, and that may be a back face.
             let allowed = if on { 0 } else { forced.faces as usize / 100 };
             assert!(differ <= allowed, "{name}, {effect} forced: {differ} pixels differ");
             tried.add(1);
@@ -88,7 +88,7 @@ fn the_full_work_gives_the_same_bytes() {
     }
 }
 
-/// Within an error budget, too: what is out of range, such as a lamp, changes no decision on a face.
+/// Also within an error budget: what is out of range, such as a lamp, changes no decision on a face.
 #[test]
 fn the_full_work_gives_the_same_bytes_within_a_budget() {
     let mut tried = Tried::new("the_full_work_gives_the_same_bytes_within_a_budget", 1_000);
@@ -97,7 +97,7 @@ fn the_full_work_gives_the_same_bytes_within_a_budget() {
     let all: Vec<_> = scenes::all().into_iter().chain(random_scenes).collect();
     for (name, mut scene) in all {
         for _ in 0..random.within(1, 3) {
-            // As strong as may be, and out of everybody's range.
+            // As strong as possible, and out of everyone's range.
             let place = Vec3::from([0; 3].map(|_| 300.0 + 50.0 * random.unit() as f32));
             scene.add_light(Light::lamp(place, 20.0).with_intensity(10.0_f32.powf(8.0 * random.unit() as f32 - 4.0)));
         }
@@ -115,7 +115,7 @@ fn the_full_work_gives_the_same_bytes_within_a_budget() {
             for effect in Effect::ALL.into_iter().filter(|effect| effect.class() == Class::SavesWork) {
                 let on = effect != Effect::BackFaceCulling;
                 if !on && called_for(&chosen, Effect::NearClipping) {
-                    // As without a budget: the inside of a body that is cut open would show.
+                    // As without a budget: the inside of an object that is cut open would show.
                     continue;
                 }
                 let (bytes, forced, _) = frame(Some((effect, on)));
@@ -145,7 +145,7 @@ fn neutral_input_gives_the_same_bytes() {
             let differ = differing(&expected, &bytes);
             assert!(differ == 0, "{name}, {effect} on neutral input: {differ} pixels differ");
             let ran = match effect {
-                // An image that is mixed from channels is the channels themselves.
+                // Mixing an image from channels gives the channels themselves.
                 Effect::Texture | Effect::EnvironmentMap => stats.raster.textured + stats.raster.mixed,
                 Effect::Transparency => stats.raster.blended,
                 Effect::Dither => stats.raster.dithered,
@@ -157,7 +157,7 @@ fn neutral_input_gives_the_same_bytes() {
     }
 }
 
-/// Proof (b): the counters of what is off are zero, and those of what is on are not.
+/// Proof (b): the counters of disabled effects are zero, and those of enabled effects are not.
 #[test]
 fn counters_of_what_is_off_are_zero() {
     let mut tried = Tried::new("counters_of_what_is_off_are_zero", 20);
@@ -192,7 +192,7 @@ fn counters_of_what_is_off_are_zero() {
 }
 
 /// Proof (d): where an effect that changes the picture is called for, leaving it out changes the picture.
-/// These have tests of their own: what is kept, what is hidden, and clipping, which cannot be switched off.
+/// Effects with tests of their own: cached vertices, hidden objects, and clipping, which cannot be switched off.
 fn is_elsewhere(effect: Effect) -> bool {
     matches!(effect, Effect::Transform | Effect::HiddenSurfaces | Effect::NearClipping | Effect::ScreenClipping)
 }
@@ -202,7 +202,7 @@ fn leaving_out_what_is_called_for_changes_the_picture() {
     let mut tried = Tried::new("leaving_out_what_is_called_for_changes_the_picture", 15);
     let mut changed = [false; Effect::COUNT];
     for (name, mut scene) in scenes::all() {
-        // Of a cycle, a moment at which it has moved.
+        // For a cycle, a moment at which it has moved.
         scene.set_time(0.3);
         let frame = |force: Option<Effect>| {
             let mut renderer = Renderer::new();
@@ -245,7 +245,7 @@ fn d1_the_plan_never_picks_painters_order_for_what_overlaps() {
     }
 }
 
-/// E1: where nothing changes nothing is drawn, and whatever changes is.
+/// E1: where nothing changes nothing is drawn, and whatever changes is drawn.
 #[test]
 fn e1_what_stays_is_not_drawn_again() {
     let mut tried = Tried::new("e1_what_stays_is_not_drawn_again", 40);
@@ -256,7 +256,7 @@ fn e1_what_stays_is_not_drawn_again() {
         let second = renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert!(first.redrawn && !second.redrawn, "{name}: {second}");
         assert_eq!((second.vertices, second.raster.pixels, second.allocated), (0, 0, 0), "{name}");
-        // Somebody touches the frame.
+        // The frame is modified from outside.
         vga.pixels_mut()[5000] ^= 1;
         let third = renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert!(third.redrawn && third.vertices == 0, "{name}: the vertices are kept: {third}");
@@ -270,14 +270,14 @@ fn e1_what_stays_is_not_drawn_again() {
     }
 }
 
-/// A plan that is made and not drawn is the plan of the next frame, and leaves that frame as it would have been.
+/// A plan made without drawing is the next frame's plan, and does not affect that frame.
 #[test]
 fn a_plan_alone_is_that_of_the_next_frame() {
     let mut tried = Tried::new("a_plan_alone_is_that_of_the_next_frame", 60);
     for (name, mut scene) in scenes::all() {
         let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
         let (mut plain, mut plain_vga) = (Renderer::new(), Vga::new());
-        // The first frame, one that moves, and one that stays.
+        // The first frame, one that moves, and one that does not.
         for turn in [0.0, 0.1, 0.0] {
             scene.objects_mut()[0].rotate_y(Angle::from_radians(turn));
             for _ in 0..2 {
@@ -288,7 +288,7 @@ fn a_plan_alone_is_that_of_the_next_frame() {
             let plain_stats = plain.draw(&scene, &mut plain_vga).expect("a legal scene");
             assert_eq!(&plan, plain.plan(), "{name}");
             assert_eq!(renderer.plan(), plain.plan(), "{name}");
-            // Memory that the plan takes was taken before.
+            // Memory for the plan was allocated earlier.
             stats.allocated = plain_stats.allocated;
             assert_eq!(stats, plain_stats, "{name}");
             assert_eq!(differing(vga.pixels(), plain_vga.pixels()), 0, "{name}");
@@ -297,7 +297,7 @@ fn a_plan_alone_is_that_of_the_next_frame() {
     }
 }
 
-/// Vertices that were kept by force while the object moved are made as soon as nobody forces that.
+/// Vertices kept by force while the object moved are recomputed as soon as that is no longer forced.
 #[test]
 fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
     let mut tried = Tried::new("vertices_that_were_kept_by_force_are_made_when_they_are_let_go", 20);
@@ -340,7 +340,7 @@ fn an_effect_is_switched_for_one_object_or_for_all() {
     assert_eq!(is_on(&taken_back), [false; 5]);
 }
 
-/// The plan's words are there for every decision, and the same every time.
+/// The plan has text for every decision, and the same text every time.
 #[test]
 fn every_decision_has_a_reason() {
     let mut tried = Tried::new("every_decision_has_a_reason", 300);
@@ -355,7 +355,7 @@ fn every_decision_has_a_reason() {
     }
 }
 
-/// A shininess of 0 is no highlight, however the frame is drawn, and the plan says so.
+/// A shininess of 0 means no highlight, however the frame is drawn, and the plan says so.
 #[test]
 fn a_shininess_of_0_is_no_highlight() {
     let mut tried = Tried::new("a_shininess_of_0_is_no_highlight", 60);
@@ -390,13 +390,13 @@ fn a_shininess_of_0_is_no_highlight() {
             }
         }
     }
-    // Without a diffuse share it answers no light.
+    // Without a diffuse share it responds to no light.
     let mut dark = scenes::showing("sphere");
     (dark.objects_mut()[0].materials[0].specular, dark.objects_mut()[0].materials[0].diffuse) = (0.8, 0.0);
     assert!(!called_for(&draw(&dark, |_| ()).2, Effect::Lighting));
 }
 
-/// Any shininess that is a number of at least 0 is drawn. Any other is refused.
+/// Any shininess that is a number of at least 0 is accepted. Anything else is rejected.
 #[test]
 fn a_shininess_below_0_is_refused() {
     let draw_with = |shininess: f32| {
@@ -413,8 +413,8 @@ fn a_shininess_below_0_is_refused() {
     }
 }
 
-/// Proof (a) for light at every pixel and for splitting: switched on, they change no pixel by more than the
-/// error that the plan printed.
+/// Proof (a) for light at every pixel and for splitting: switched on, they change no pixel by more than the error that
+/// the plan stated.
 #[test]
 fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
     // The shipped scenes are files.
@@ -423,7 +423,7 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
     let mut bounds = Vec::new();
     for (name, scene) in scenes::all() {
         let (expected, _, chosen) = draw(&scene, |_| ());
-        // Bytes are shades only where nothing is made of them afterwards.
+        // Bytes are shades only if no later stage changes them.
         let more = [
             Effect::Texture,
             Effect::EnvironmentMap,
@@ -445,8 +445,8 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
         };
         let printed = chosen.rows(&scene);
         assert!(printed.iter().any(|row| row.reason.contains("linear shades are off by at most")), "{name}");
-        // A linear shade is off by three quarters, or over a row by 1.75, light at a pixel by a half, in
-        // entries of the ramp; of which there are no more than 256.
+        // A linear shade is off by three quarters, or over a row by 1.75, light at a pixel by a half, in entries of the
+        // ramp, of which there are at most 256.
         let allowed = bound + 1.75 + 0.5;
         for (effect, shading) in [(Effect::Phong, Some(Shading::Phong)), (Effect::Tessellation, None)] {
             let (bytes, stats, _) = draw(&scene, |renderer| match shading {
@@ -456,7 +456,8 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
                 None => renderer.force(effect, Some(true)),
             });
             assert!(shading.is_none() || stats.raster.lit > 0 || stats.lit == 0, "{name}: {stats}");
-            // A vertex that splitting makes is rounded to 1/256 pixel itself: along an outline a pixel may come or go.
+            // A vertex created by splitting is itself rounded to 1/256 pixel, so a pixel may come or go along a
+            // silhouette.
             let shows = |byte: u8| byte != scene.background;
             let (both, one): (Vec<_>, Vec<_>) =
                 expected.iter().zip(&bytes).filter(|(a, b)| a != b).partition(|(a, b)| shows(**a) && shows(**b));
@@ -471,7 +472,7 @@ fn light_at_every_pixel_changes_no_more_than_the_plan_says() {
     assert!(useful * 2 > bounds.len(), "most bounds say something: {bounds:?}");
 }
 
-/// Proof (a) for the perspective of textures: switched on, it moves no texel farther than the plan printed.
+/// Proof (a) for the perspective of textures: switched on, it moves no texel farther than the plan stated.
 #[test]
 fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let mut tried = Tried::new("perspective_moves_no_texel_farther_than_the_plan_says", 30);
@@ -480,7 +481,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     let texture = mode13h::texture::Texture::new(64, 1, (0..64).collect(), colors).expect("sound");
     let texture = mode13h::scene::Shared::new(texture);
     let mut random = mode13h_conformance::Random::named("perspective");
-    // The greatest share of what was printed that was seen.
+    // The greatest observed share of the stated distance.
     let mut seen = 0.0_f64;
     while tried.more() {
         let pieces = random.within(1, 24) as u32;
@@ -500,10 +501,10 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
         assert!(!called_for(&renderer, Effect::Perspective));
         assert_eq!(called_for(&free, Effect::Perspective), texels > 0.5);
         for (a, b) in affine.iter().zip(&perspective).filter(|(a, b)| (**a, **b) != (0, 0)) {
-            // Four entries of the palette are shown as one level. The image's far end repeats at its near one.
+            // Four entries of the palette show as one level. The image's far end repeats next to its near one.
             let apart = (a >> 2).abs_diff(b >> 2);
             let apart = f64::from(apart.min(64 - apart));
-            // The coordinates are apart by so much; the texels that they lie in by less than one more.
+            // The coordinates are this far apart, and the texels that contain them by less than one more.
             assert!(apart < texels + 1.0, "{apart} texels apart, {texels:.3} printed");
             seen = seen.max((apart - 1.0) / texels);
         }
@@ -511,7 +512,7 @@ fn perspective_moves_no_texel_farther_than_the_plan_says() {
     assert!(seen > 0.3, "the bound says little: at most {seen:.2} of it was seen");
 }
 
-/// Proof (a) for mipmaps: where no more than a texel goes to a pixel they change no byte, though levels are chosen.
+/// Proof (a) for mipmaps: with at most one texel per pixel they change no byte, although levels are chosen.
 #[test]
 fn mipmaps_change_nothing_of_what_is_near() {
     let mut tried = Tried::new("mipmaps_change_nothing_of_what_is_near", 60);
@@ -525,7 +526,7 @@ fn mipmaps_change_nothing_of_what_is_near() {
                 let object = &mut scene.objects_mut()[0];
                 object.materials[0].texture = Some(mode13h::scene::Shared::clone(&texture));
                 object.angles = [angle, angle, angle].map(Angle::from_radians);
-                // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 to a pixel.
+                // 128 texels on √2 units: even the far corners of the tilted wall have fewer than √2 texels per pixel.
                 scene.camera.eye = mode13h::glam::Vec3::new(0.0, 0.0, 0.8);
                 if channels {
                     scene.add_light(mode13h::light::Light::sun([1.0, 0.2, 1.0]).with_color([1.0, 0.5, 0.2]));
@@ -546,8 +547,8 @@ fn mipmaps_change_nothing_of_what_is_near() {
     }
 }
 
-/// The plan's figure against what is drawn: of a wall that is parallel to the screen every level 0 is seen as long as it
-/// is below √2, and none where it is above.
+/// The plan's figure against what is drawn: a wall parallel to the screen shows level 0 everywhere as long as the
+/// figure is below √2, and nowhere when it is above.
 #[test]
 fn mipmaps_are_called_for_by_texels_to_a_pixel() {
     let mut tried = Tried::new("mipmaps_are_called_for_by_texels_to_a_pixel", 40);
@@ -561,13 +562,14 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
         let (bytes, _, renderer) = draw(&scene, |_| ());
         let decision = renderer.plan().objects()[0][Effect::Mipmaps];
         let mode13h::plan::Reason::TexelsToPixel { texels } = decision.reason else { panic!("the plan says how many") };
-        // 128 texels on √2 units; a pixel is higher than it is wide, and half of the screen's rows lie within half the angle.
+        // 128 texels on √2 units; a pixel is taller than it is wide, and half of the screen's rows lie within half the
+        // angle.
         let expected =
             8192.0_f64.sqrt() * f64::from(distance) * (scene.camera.field_of_view.to_radians() / 2.0).tan() / 100.0;
         assert!((expected..expected * 1.01).contains(&texels), "{texels} texels to a pixel, not {expected}");
         assert_eq!(decision.on, texels > core::f64::consts::FRAC_1_SQRT_2);
         let without = draw(&scene, |renderer| renderer.settings.mipmaps = Some(false)).0;
-        // The corners' coordinates and places are rounded.
+        // The corners' coordinates and positions are rounded.
         if texels < 1.40 {
             assert_eq!(differing(&bytes, &without), 0, "{texels} texels to a pixel");
         } else if texels > 1.44 {
@@ -577,7 +579,7 @@ fn mipmaps_are_called_for_by_texels_to_a_pixel() {
     }
 }
 
-/// What is asked for has the last word, the renderer's before the scene's; where there is no texture there is nothing.
+/// An explicit setting has the last word, the renderer's before the scene's; without a texture there is nothing to set.
 #[test]
 fn mipmaps_are_asked_for() {
     let mut floor = scenes::floor("bricks", 8.0);
@@ -606,15 +608,15 @@ fn shown(scene: &Scene, bytes: &[u8]) -> Picture {
     bytes.iter().map(color).map(|c| [c.r, c.g, c.b].map(f64::from)).collect()
 }
 
-/// How far two pictures are apart: the root of the mean square over the pixels and their channels.
+/// Distance between two pictures: the root mean square over the pixels and their channels.
 fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let squares: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b) * (a - b)).sum();
     (squares / (3 * a.len()) as f64).sqrt()
 }
 
-/// What mipmaps are for. Right is the mean of what is drawn, in perspective, where each pixel is 16 × 16 smaller ones. Over
-/// small steps of the camera every frame is nearer to that with mipmaps than without, and so is its change from the frame
-/// before: it sparkles less. By how much is printed.
+/// What mipmaps are for. The reference is the mean of what is drawn in perspective where each pixel is 16 × 16 smaller
+/// ones. Over small steps of the camera every frame is nearer to that with mipmaps than without, and so is its change
+/// from the frame before: it sparkles less. The improvement is printed.
 #[test]
 fn mipmaps_lessen_sparkle_on_every_frame() {
     const SIZE: (usize, usize) = (128, 80);
@@ -643,7 +645,7 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         let mut scene = scenes::floor(image, 24.0);
         paint(&mut scene);
         let (mut errors, mut sparkles) = ([[0.0; 2]; 3], [[0.0; 2]; 3]);
-        // What is right, and for each mapping what is drawn without and with.
+        // The reference, and for each mapping what is drawn without and with mipmaps.
         let mut before: Option<(Picture, [[Picture; 2]; 3])> = None;
         for frame in 0..FRAMES {
             let moved = f32::from(frame) * 0.01;
@@ -681,7 +683,7 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
     }
 }
 
-/// Clipping that is called for stays on: without it triangles would reach beyond what the raster can draw.
+/// Clipping that is needed stays on: without it triangles would extend beyond what the raster can draw.
 #[test]
 fn clipping_that_is_needed_cannot_be_switched_off() {
     let mut tried = Tried::new("clipping_that_is_needed_cannot_be_switched_off", 2 * 40);
@@ -710,8 +712,8 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
     }
 }
 
-/// Each way to hidden surfaces is chosen by what the objects are: none, a convex one, one that is not, two of which one lies
-/// behind the other, and two in one place.
+/// Each hidden-surface method is chosen for the right objects: none, a convex one, one that is not, two of which one
+/// lies behind the other, and two in the same place.
 #[test]
 fn the_way_to_hidden_surfaces_follows_the_objects() {
     let mut tried = Tried::new("the_way_to_hidden_surfaces_follows_the_objects", 5);
@@ -740,7 +742,7 @@ fn the_way_to_hidden_surfaces_follows_the_objects() {
     }
 }
 
-/// The plan names a near distance that is enough, if the camera's is not, and only then.
+/// The plan suggests a sufficient near distance if the camera's is too small, and only then.
 #[test]
 fn a_near_distance_that_depths_cannot_take_is_told() {
     let mut scene = Scene::showing(shapes::torus(24, 12));

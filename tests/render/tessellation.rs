@@ -32,8 +32,8 @@ fn point(v: &Vertex) -> Place {
     (v.x().to_bits(), v.y().to_bits())
 }
 
-/// The outline of triangles that turn the same way: the edges that no neighbour runs through the other
-/// way, as loops.
+/// The outline of triangles with the same winding: the edges that no neighbour traverses in the other direction, as
+/// loops.
 fn outlines(triangles: &[[Vertex; 3]]) -> Vec<Vec<Point>> {
     let mut edges: HashMap<(Place, Place), i32> = HashMap::new();
     for [a, b, c] in triangles {
@@ -65,7 +65,7 @@ fn outlines(triangles: &[[Vertex; 3]]) -> Vec<Vec<Point>> {
     loops
 }
 
-/// A wall somewhere before the eye, with a lamp somewhere near it.
+/// A wall somewhere in front of the eye, with a lamp somewhere near it.
 fn wall(random: &mut Random) -> Scene {
     let mut scene = Scene::new();
     let mut object = Object::new(shapes::wall(random.within(1, 4) as u32, random.within(1, 4) as u32));
@@ -76,7 +76,7 @@ fn wall(random: &mut Random) -> Scene {
     let z = 3.5 * (random.unit() * random.unit()) as f32;
     object.position = Vec3::new(random.unit() as f32 - 0.5, random.unit() as f32 - 0.5, z);
     if random.within(0, 2) == 0 {
-        // A highlight too.
+        // With a highlight, too.
         object.materials[0].specular = 0.5;
         object.materials[0].shininess = 1.0 + 30.0 * random.unit() as f32;
     }
@@ -90,8 +90,8 @@ fn wall(random: &mut Random) -> Scene {
     scene
 }
 
-/// Neighbours that are split differently leave no hole and draw no pixel twice: what is left of the
-/// wall's faces has one outline, and each pixel inside it is covered once.
+/// Neighbours that are split differently leave no hole and draw no pixel twice: what remains of the wall's faces has
+/// one outline, and each pixel inside it is covered once.
 #[test]
 fn r12_walls_that_are_split_are_closed() {
     let mut tried = Tried::new("r12_walls_that_are_split_are_closed", 150);
@@ -122,8 +122,8 @@ fn r12_walls_that_are_split_are_closed() {
     assert!(split > 75 && clipped > 10, "{split} were split, {clipped} clipped");
 }
 
-/// The same of a mesh with creases, whose faces have vertices of their own there: each edge is split in
-/// one place, or not at all, whichever face is asked.
+/// The same for a mesh with creases, whose faces have separate vertices there: each edge is split in one place, or not
+/// at all, whichever face is asked.
 #[test]
 fn r12_creases_are_split_alike_from_both_sides() {
     let mut tried = Tried::new("r12_creases_are_split_alike_from_both_sides", 60);
@@ -137,7 +137,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
         scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
         scene.settings.tessellation = Some(1.0);
         let (parts, _) = triangles(&scene);
-        // Convex: what is seen of it has one outline, unless rounding turned a face over.
+        // Convex: what is visible has one outline, unless rounding flipped a face.
         let outlines = outlines(&parts);
         assert_eq!(outlines.len(), 1, "{} triangles", parts.len());
         let corners: HashSet<_> = parts.iter().flatten().map(point).collect();
@@ -145,7 +145,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
     }
 }
 
-/// A body with a highlight by one light.
+/// An object with a highlight under one light.
 fn lit_by(mesh: Mesh, light: Light, shininess: f32) -> Scene {
     let mut scene = crate::support::scenes::framed(mesh);
     scene.clear_lights();
@@ -173,11 +173,11 @@ fn middle(scene: &Scene, shading: Shading) -> u8 {
 fn n7_a_highlight_inside_a_face() {
     let mut tried = Tried::new("n7_a_highlight_inside_a_face", 9);
     let scene = highlight();
-    // Straight before the eye the light is mirrored into it: 0.2 + 0.8 of 255.
+    // Straight ahead the light is mirrored into the eye: 0.2 + 0.8 of 255.
     let misses = |shading: &Shading| !shading.lights_pixels() && *shading != Shading::GouraudTessellated;
     for shading in Shading::ALL.into_iter().filter(misses) {
         let shade = middle(&scene, shading);
-        // A face's one shade is that of its own middle, off the highlight.
+        // A flat face has the shade of its own middle, off the highlight.
         assert!(shade < 200, "{shading} misses it: {shade}");
         tried.add(1);
     }
@@ -188,8 +188,7 @@ fn n7_a_highlight_inside_a_face() {
     }
 }
 
-/// N3: normals that point apart at the two ends of an edge.
-/// A highlight splits the faces that it is on, and none on the other side of a sphere.
+/// A highlight splits the faces that it touches, and none on the other side of a sphere.
 #[test]
 fn faces_far_from_a_highlight_are_not_split() {
     let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);
@@ -202,11 +201,11 @@ fn faces_far_from_a_highlight_are_not_split() {
     assert_eq!(split.iter().filter(right).count(), whole.iter().filter(right).count());
 }
 
-/// Half-way between two opposite normals is one of them or the other: a face has two tones, those of two faces of which all
-/// normals are the one or the other, and where the tones meet nothing is brighter or darker than both.
+/// N3: halfway between two opposite normals the normal is one of them. A face has two tones, those of two faces whose
+/// normals are all the one or all the other, and where the tones meet nothing is brighter or darker than both.
 #[test]
 fn n3_opposite_normals_at_two_ends_of_an_edge() {
-    // Of none of the ramp's entries.
+    // Not one of the ramp's entries.
     const BACKGROUND: u8 = 7;
     let mut tried = Tried::new("n3_opposite_normals_at_two_ends_of_an_edge", 18 * 40);
     let mut random = Random::named("n3");
@@ -236,7 +235,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
                 // Shades are linear from corner to corner of a part: 3 % of the way to the other tone is 8 shades, two
                 // entries, and rounding.
                 Shading::GouraudTessellated => (0.97, 3),
-                // What lies between pixels that are lit.
+                // Interpolated between pixels that are lit.
                 _ => (0.2, 1),
             };
             let draw = |scene: &Scene| {
@@ -272,11 +271,12 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
                 let sum = weights(&corners, place).iter().zip([1.0, -1.0, third]).map(|(w, n)| w * n).sum::<f64>();
                 let (one, other) = (one[place], other[place]);
                 let (low, high, off) = match sum {
-                    // The table is asked for x and y of the sum as they are: none looks to the eye, 2 % is 5 shades.
+                    // The table is indexed with x and y of the sum as they are: none points to the eye, 2 % is 5
+                    // shades.
                     _ if shading == Shading::PhongTable && sum.abs() < 0.02 && specular == 0.0 => {
                         (to_eye[place], to_eye[place], 2)
                     }
-                    // Neither the table nor corners of parts say how bright a highlight is.
+                    // Neither the table nor the corners of parts determine how bright a highlight is.
                     _ if shading == Shading::PhongTable || shading != Shading::Phong && specular > 0.0 => continue,
                     _ if sum > near => (one, one, off),
                     _ if sum < -near => (other, other, off),
@@ -302,7 +302,7 @@ fn weights(corners: &[Vertex; 3], place: usize) -> [f64; 3] {
     areas.map(|area| area / areas.iter().sum::<f64>())
 }
 
-/// P2: with dither no index of another ramp, whatever the shading and the ramp.
+/// P2: dither uses no index of another ramp, whatever the shading and the ramp.
 #[test]
 fn p2_dither_keeps_to_its_ramp() {
     let mut tried = Tried::new("p2_dither_keeps_to_its_ramp", 10 * 25);
@@ -320,7 +320,7 @@ fn p2_dither_keeps_to_its_ramp() {
             (material.specular, material.shininess) = (1.0, 5.0);
             let mut vga = Vga::new();
             let stats = Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
-            // A table of normals holds whole shades: there is nothing between two entries.
+            // A table of normals holds whole shades, so there is nothing between two entries.
             assert_eq!(stats.raster.dithered > 1000, shading != Shading::PhongTable, "{shading}");
             assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{shading}, {ramp:?}");
             tried.add(1);

@@ -15,7 +15,7 @@ use mode13h_assets::palette_file;
 
 use crate::support::workspace;
 
-/// A `main` that returns an error prints it by `Debug`.
+/// A `main` that returns an error prints it with `Debug`.
 #[test]
 fn errors_print_what_they_display() {
     let mut scene = Scene::showing(shapes::cube());
@@ -37,7 +37,7 @@ fn errors_print_what_they_display() {
     }
 }
 
-/// Every error of the library does, by the one macro.
+/// Every error of the library does so, through the one macro.
 #[test]
 fn every_error_prints_what_it_displays() {
     let mut folders = ["src", "assets/src"].map(|folder| workspace::root().join(folder)).to_vec();

@@ -1,4 +1,5 @@
-//! Pictures on disk: what is in them, read back by a decoder, and that files are whole or not there (hard case F4).
+//! Pictures on disk: their contents, read back by a decoder, and that files are either complete or absent (hard case
+//! F4).
 
 use std::fs;
 use std::io::{self, Cursor, Write};
@@ -49,7 +50,7 @@ fn bytes_of(colors: &[Rgb]) -> Vec<u8> {
     colors.iter().flat_map(|c| [c.r, c.g, c.b]).collect()
 }
 
-/// A machine whose pixels differ from their neighbours, with every index in use.
+/// A machine on which neighbouring pixels differ, with every index in use.
 fn patterned() -> Vga {
     let mut vga = Vga::new();
     vga.set_palette(builtin::by_name("copper").expect("a built-in").palette);
@@ -170,7 +171,7 @@ fn a_part_of_a_larger_frame_is_exported_by_its_pitch() {
     assert_eq!(decoded.density, Some((1, 1)));
 }
 
-/// A file is the same on a machine that has the high byte of a number first in memory.
+/// Files are the same on a big-endian machine.
 #[test]
 fn a_png_begins_with_these_bytes() {
     let bytes = [7; 258 * 3];
@@ -196,7 +197,7 @@ fn a_png_begins_with_these_bytes() {
     assert_eq!(chunk(b"IEND"), b"\0\0\0\0IEND\xAEB\x60\x82");
 }
 
-/// The largest picture in three planes or in true colour has an offset for each byte on a machine of 32 bits.
+/// The largest picture in three planes or in true colour has an offset for each byte on a 32-bit machine.
 #[test]
 fn the_largest_picture_has_offsets_of_32_bits() {
     assert!(3 * u64::from(MAX_SIDE).pow(2) + 1_000_000 <= i32::MAX as u64);
@@ -393,7 +394,7 @@ fn f4_a_picture_that_cannot_be_written_names_the_file() {
 #[test]
 fn f4_a_full_disk_is_an_error() {
     let mut tried = Tried::new("f4_a_full_disk_is_an_error", 3);
-    // A device that is always full. It is written to and not replaced.
+    // A device that is always full. It is written to, not replaced.
     let error = export::png(&patterned(), "/dev/full").expect_err("full");
     assert!(matches!(error.kind, ExportErrorKind::DiskFull), "{error}");
     tried.add(1);

@@ -1,5 +1,5 @@
-//! GIF films, read back by a decoder and put together frame by frame: every colour, every delay, nothing drawn that
-//! need not be, and no file that is not whole (hard case F4).
+//! GIF films, read back by a decoder and put together frame by frame: every colour, every delay, nothing drawn
+//! unnecessarily, and no incomplete file (hard case F4).
 
 use std::cell::Cell;
 use std::error::Error;
@@ -21,7 +21,7 @@ use crate::support::tried::Tried;
 
 // The oracle
 
-/// One frame as it was given to the writer.
+/// One frame as passed to the writer.
 #[derive(Clone)]
 struct Given {
     pixels: Vec<u8>,
@@ -53,7 +53,7 @@ impl Given {
     }
 }
 
-/// Each colour of a palette once, in the order of its entries.
+/// The different colours of a palette, in the order of its entries.
 fn different(palette: &[Rgb; 256]) -> Vec<Rgb> {
     (0..256).filter(|&i| !palette[..i].contains(&palette[i])).map(|i| palette[i]).collect()
 }
@@ -66,7 +66,7 @@ fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
     film.finish().expect("finished")
 }
 
-/// The same, each frame made ready before the ones that come before it.
+/// The same, with each frame prepared before the ones that precede it.
 fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> {
     let ready = (0..frames.len()).rev().map(|i| {
         let picture = frames[i].picture();
@@ -85,18 +85,18 @@ fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> 
 fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
     let mut random = Random::named("a_frame_that_was_made_ready_for_another_place_is_still_a_frame");
     let frame = noise(&mut random, 9, 7, 9);
-    // It changes nothing beside itself, but as a film's first it is all that there is.
+    // Following itself it changes nothing, but as a film's first frame it is all there is.
     let alone = GifFrame::after(&frame.picture(), &frame.picture(), Scale::Double, &frame.palette).expect("made");
     let mut film = GifWriter::new(Vec::new(), Scale::Double, FrameRate::default());
     film.add_frame(alone).expect("added");
-    // Of another size it is refused, and the film goes on.
+    // With another size it is refused, and the film goes on.
     let other = GifFrame::first(&frame.picture(), Scale::One).expect("made");
     let refused = film.add_frame(other).expect_err("refused");
     assert!(matches!(refused.kind, AnimationErrorKind::OtherSize { .. }), "{refused}");
     let (file, _) = film.finish().expect("finished");
     assert!(file == write(&[frame], Scale::Double, FrameRate::default()).0);
 
-    // What leaves out what stays, though its rectangle is all, cannot begin a film either.
+    // A frame that omits unchanged pixels, although its rectangle is the whole picture, cannot start a film either.
     let before = Given { pixels: vec![7; 60 * 9], width: 60, height: 9, pitch: 60, palette: grey() };
     let mut frame = before.clone();
     (frame.pixels[0], frame.pixels[60 * 9 - 1]) = (90, 91);
@@ -108,7 +108,7 @@ fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
     assert!(file == write(&[frame], Scale::One, FrameRate::default()).0);
 }
 
-/// What is seen, and for how long, in 1/100 s: what follows itself without a change is one.
+/// What is seen, and for how long, in 1/100 s; unchanged pictures are merged.
 fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u64)> {
     let mut seen: Vec<(&[Rgb], u64)> = Vec::new();
     for (colors, delay) in shown {
@@ -120,21 +120,21 @@ fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u6
     seen
 }
 
-/// Writes a film, decodes it, and compares: what is seen at each moment; the rectangle of each image with the least that
-/// holds all pixels that change; that an image has a palette only where it needs one. Returns the images.
+/// Writes a film, decodes it, and compares: what is seen at each moment; that each image's rectangle is the smallest
+/// that holds all changing pixels; that an image has a palette only where it needs one. Returns the images.
 fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) {
     let (file, film) = write(frames, scale, rate);
     assert!(write_made_ready(frames, scale, rate) == file, "frames that were made ready beforehand");
     let decoded = decode(&file);
     let (width, height) = scale.size(frames[0].width, frames[0].height);
     assert_eq!((decoded.width, decoded.height), (width, height));
-    // Each colour once, and black for what is left of a table whose length is a power of two.
+    // Each colour once, with black filling up a table whose length is a power of two.
     let first = different(&frames[0].palette);
     assert_eq!(decoded.palette[..first.len()], first);
     assert!(decoded.palette[first.len()..].iter().all(|color| *color == Rgb::BLACK));
 
     let given: Vec<Vec<Rgb>> = frames.iter().map(|frame| frame.colors(scale)).collect();
-    // Of the rates here none is so near to another quotient that f64 would round it over a whole number.
+    // At the rates here no quotient is so close to another that f64 would round it across a whole number.
     let begins = |number: usize| (100.0 * number as f64 / rate.frames_per_second()).ceil() as u64;
     let expected = seen(given.iter().enumerate().map(|(i, colors)| (colors.as_slice(), begins(i + 1) - begins(i))));
     let shown = seen(decoded.images.iter().map(|image| (image.shown.as_slice(), image.delay)));
@@ -151,7 +151,7 @@ fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) 
         let (xs, ys): (Vec<usize>, Vec<usize>) =
             (0..width * height).filter(changed).map(|at| (at % width, at / width)).unzip();
         match before {
-            // Nothing changes, but the one before could stay no longer.
+            // Nothing changes, but the image before could stay no longer.
             Some(before) if xs.is_empty() => {
                 assert!(before.delay + image.delay > 65_535, "image {i} is not needed");
                 assert_eq!((left, top, w, h), (0, 0, 1, 1));
@@ -198,7 +198,7 @@ fn random_palette(random: &mut Random) -> [Rgb; 256] {
 }
 
 /// The next frame of a random film: nothing changes, or some pixels, or all, or the palette, or both, or the indices
-/// while the colours stay.
+/// while the colours stay the same.
 fn next(random: &mut Random, before: &Given) -> Given {
     let mut frame = before.clone();
     let pixels = frame.pixels.len() as i64;
@@ -217,7 +217,7 @@ fn next(random: &mut Random, before: &Given) -> Given {
             frame.palette = random_palette(random);
             some_pixels(random, &mut frame);
         }
-        // Half the entries stand for the colours of the other half.
+        // Half of the entries have the colours of the other half.
         7 => {
             for i in 0..128 {
                 frame.palette[i + 128] = frame.palette[i];
@@ -258,8 +258,8 @@ fn random_films_show_what_was_given() {
     assert!(images > 1_000, "{images} images");
 }
 
-/// A still ground of noise, which cannot be compressed, over which something goes: what it leaves as it was is
-/// transparent where an index is free, and written where none is.
+/// A still background of noise, which cannot be compressed, with something moving over it: unchanged pixels are
+/// transparent if an index is free, and written if none is.
 #[test]
 fn what_stays_is_transparent_where_that_is_shorter() {
     let mut random = Random::named("what_stays_is_transparent_where_that_is_shorter");
@@ -268,7 +268,7 @@ fn what_stays_is_transparent_where_that_is_shorter() {
         let frames: Vec<Given> = (0..6)
             .map(|i| {
                 let mut pixels = ground.clone();
-                // In opposite corners, so that the rectangle is nearly all.
+                // In opposite corners, so that the rectangle is almost the whole picture.
                 (0..5).for_each(|k| pixels[i * 100 + k] ^= 1);
                 (0..5).for_each(|k| pixels[(59 - i) * 100 + 95 + k] ^= 1);
                 Given { pixels, width: 100, height: 60, pitch: 100, palette: grey() }
@@ -286,7 +286,8 @@ fn what_stays_is_transparent_where_that_is_shorter() {
     }
 }
 
-/// 256 entries of 64 colours, as a DAC of 6 bits has greys: what differs in its index alone is written alike.
+/// 256 entries of 64 colours, as a 6-bit DAC shows greys: pixels that differ only in their index are written the same
+/// way.
 #[test]
 fn indices_of_one_color_are_one() {
     let mut random = Random::named("indices_of_one_color_are_one");
@@ -312,7 +313,7 @@ fn one_frame_is_a_film() {
     }
 }
 
-/// A file is the same on a machine that has the high byte of a number first in memory.
+/// Files are the same on a big-endian machine.
 #[test]
 fn a_film_has_these_bytes() {
     let frame = Given { pixels: vec![0; 258 * 3], width: 258, height: 3, pitch: 258, palette: grey() };
@@ -321,7 +322,7 @@ fn a_film_has_these_bytes() {
     // 258 = 102h columns, 3 rows.
     assert_eq!(file[..10], *b"GIF89a\x02\x01\x03\0");
     let at = |bytes: &[u8]| file.windows(bytes.len()).position(|part| part == bytes);
-    // It stands for 300 = 12Ch hundredths of a second; the image has 102h columns and 3 rows, too.
+    // It is shown for 300 = 12Ch hundredths of a second; the image has 102h columns and 3 rows, too.
     let control = at(b"!\xF9\x04").expect("a delay");
     assert_eq!(file[control + 4..control + 6], *b"\x2C\x01");
     let image = at(b",\0\0\0\0").expect("an image");
@@ -329,7 +330,7 @@ fn a_film_has_these_bytes() {
     assert!(file.ends_with(b";"));
 }
 
-/// Of few indices, so that the encoder's codes begin short.
+/// Few indices, so that the encoder's codes start short.
 #[test]
 fn frames_of_few_colors() {
     for colors in [1, 2, 3, 4, 5, 16, 17, 128, 129, 255] {
@@ -359,7 +360,7 @@ fn a_change_is_cropped_to_its_rectangle() {
     assert_eq!(rectangles, [(0, 0, 640, 480), (20, 48, 2, 2), (20, 48, 6, 10), (24, 48, 616, 432)]);
 }
 
-/// The frame's bytes stay; the DAC fades. Black pixels stay as they are, and lie around the others.
+/// The frame's bytes stay; the DAC fades. Black pixels stay as they are, and surround the others.
 #[test]
 fn a_fade_redraws_what_fades() {
     let mut vga = Vga::new();
@@ -389,7 +390,8 @@ fn a_fade_redraws_what_fades() {
     assert!(images.iter().flat_map(|image| &image.shown).all(|color| *color == color.on_dac()));
 }
 
-/// A palette that changes only where no pixel has its index changes nothing; neither does an index of the same colour.
+/// A palette that changes only where no pixel has its index changes nothing; nor does another index with the same
+/// colour.
 #[test]
 fn what_is_not_seen_is_not_written() {
     let palette = grey();
@@ -404,7 +406,7 @@ fn what_is_not_seen_is_not_written() {
     assert_eq!((film.frames, images[0].delay), (3, 9));
 }
 
-/// Pixels that no pixel of a smaller film shows.
+/// Pixels that a smaller film does not show.
 #[test]
 fn a_change_that_falls_between_the_pixels_of_a_smaller_film() {
     let frame = |at: Option<usize>| {
@@ -429,7 +431,7 @@ fn a_film_that_stands_still_keeps_its_time() {
     let mut frames = vec![frame; 200];
     frames.push(last);
     let (images, film) = check(&frames, Scale::One, FrameRate::LOWEST);
-    // 65,535 is the most that an image can stay: 65 frames of 1,000.
+    // An image can stay for at most 65,535: 65 frames of 1,000.
     let delays: Vec<u64> = images.iter().map(|image| image.delay).collect();
     assert_eq!(delays, [65_000, 65_000, 65_000, 5_000, 1_000]);
     assert_eq!(film.seconds(), 2010.0);
@@ -447,7 +449,7 @@ fn delays_at_35_frames_a_second() {
     }
 }
 
-/// Each frame begins at the first hundredth that is not before its time: by rationals, for any rate.
+/// Each frame begins at the first hundredth not before its time: in rationals, for any rate.
 #[test]
 fn delays_add_up_to_the_exact_time() {
     let mut tried = Tried::new("delays_add_up_to_the_exact_time", 100_000);
@@ -456,7 +458,7 @@ fn delays_add_up_to_the_exact_time() {
         let rate = match random.within(0, 2) {
             0 => random.within(1, 500) as f64 / 10.0,
             1 => 0.1 + 49.9 * random.unit(),
-            // Just below 50, where a rounded quotient would lead to 1/100 s, which browsers make 10/100 s.
+            // Just below 50, where a rounded quotient would give 1/100 s, which browsers turn into 10/100 s.
             _ => f64::from_bits(50_f64.to_bits() - random.log_uniform(40) as u64),
         };
         let number = random.log_uniform(63) as u64;
@@ -499,7 +501,7 @@ fn frames_that_do_not_fit_are_refused_and_the_film_goes_on() {
     let size = Scale::To { width: 16, height: 12 };
     let mut film = GifWriter::new(Vec::new(), size, FrameRate::default());
     film.add(&first.picture()).expect("added");
-    // Of another size, also where the film would have the same.
+    // Frames of another size, also if the film would have the same size.
     for (width, height) in [(8, 5), (6, 8), (16, 12), (4, 3)] {
         let other = noise(&mut random, width, height, width);
         let error = film.add(&other.picture()).expect_err("refused");
@@ -544,7 +546,7 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Takes so many bytes, then is full.
+/// A disk that takes this many bytes and is then full.
 struct Disk {
     room: Rc<Cell<usize>>,
 }
@@ -582,7 +584,7 @@ fn f4_a_film_that_runs_out_of_room_at_any_byte_never_ends_well() {
             let full =
                 matches!(kind, Some(AnimationErrorKind::Io(error)) if error.kind() == io::ErrorKind::StorageFull);
             assert!(result.is_ok() || full, "{room} of {whole}: {result:?}");
-            // There is room again; but what was lost is lost.
+            // There is room again, but what was lost is lost.
             if full {
                 failed += 1;
                 left.set(1 << 20);
@@ -655,7 +657,7 @@ fn f4_a_film_that_cannot_be_written_names_the_file() {
 fn f4_a_film_on_a_full_disk_is_an_error() {
     let mut tried = Tried::new("f4_a_film_on_a_full_disk_is_an_error", 2);
     let mut random = Random::named("f4_a_film_on_a_full_disk_is_an_error");
-    // A device that is always full. It is written to and not replaced.
+    // A device that is always full. It is written to, not replaced.
     let mut film = GifFile::create("/dev/full", Scale::One, FrameRate::default()).expect("opened");
     film.add(&noise(&mut random, 320, 200, 320).picture()).expect("held");
     let error = film.add(&noise(&mut random, 320, 200, 320).picture()).expect_err("full");

@@ -1,4 +1,4 @@
-//! glTF: each way to write a mesh gives what OBJ gives, materials follow their rule, errors say which part.
+//! glTF: each way to write a mesh gives what OBJ gives, materials follow their rule, errors name the part.
 
 use std::collections::HashMap;
 use std::io;
@@ -10,7 +10,7 @@ use mode13h::palette::Rgb;
 use mode13h::scene::UpAxis;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
 
-/// A glTF file while it is written: the entries of its lists, and its buffer.
+/// A glTF file under construction: the entries of its lists, and its buffer.
 #[derive(Default)]
 pub(crate) struct Gltf {
     pub(crate) bytes: Vec<u8>,
@@ -48,7 +48,7 @@ impl Gltf {
 
     pub(crate) fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
         let bytes: Vec<u8> = rows.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect();
-        // Those of positions must have bounds; nothing reads them.
+        // Accessors for positions must have bounds; nothing reads them.
         let bounds = if N == 3 { ",\"min\":[0,0,0],\"max\":[0,0,0]" } else { "" };
         self.accessor(&bytes, 5126, rows.len(), &format!("VEC{N}"), bounds)
     }
@@ -176,7 +176,7 @@ fn strips_fans_and_lists_without_indices() {
     }
 }
 
-/// A tree of nodes: a quarter turn, a mirror and a stretch, all exact in f32.
+/// A tree of nodes: a quarter turn, a reflection and a stretch, all exact in f32.
 #[test]
 fn nodes_place_their_meshes() {
     let (positions, indices) = points_of(&shapes::torus(8, 4));
@@ -202,7 +202,7 @@ fn nodes_place_their_meshes() {
     assert_eq!(model.warnings, [""; 0], "nothing is inside out");
 }
 
-/// A normal of a slanted face stays at right angles to it when the node stretches it, also mirrored.
+/// The normal of a slanted face stays perpendicular to it when the node stretches it, also with a reflection.
 #[test]
 fn normals_go_with_their_faces() {
     for scale in ["[1,1,1]", "[4,1,1]", "[1,-3,1]", "[-2,-1,-5]"] {
@@ -214,12 +214,12 @@ fn normals_go_with_their_faces() {
         let mesh = loaded(&file.glb(), "a.glb").mesh;
         let [a, b, c] = mesh.triangles()[0].map(|vertex| mesh.positions()[vertex as usize]);
         let expected = (b - a).cross(c - a).normalize();
-        // Both are unit vectors, each of a few roundings by 2⁻²⁴.
+        // Both are unit vectors, each with a few roundings of 2⁻²⁴.
         assert!((mesh.normals()[0] - expected).length() < 2f32.powi(-21), "{scale}: {} {expected}", mesh.normals()[0]);
     }
 }
 
-/// Positions, texture coordinates and colours as whole numbers, with a stride, and with a sparse change.
+/// Positions, texture coordinates and colours as integers, with a stride, and with sparse changes.
 #[test]
 fn numbers_of_all_types() {
     let mut file = Gltf::default();
@@ -246,7 +246,7 @@ fn numbers_of_all_types() {
     assert_eq!(mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::new(0.2, 1.0), Vec2::new(1.0, 0.6)]);
 }
 
-/// A picture of one red row above a blue one.
+/// A picture with a red row above a blue one.
 fn picture() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
@@ -260,7 +260,7 @@ fn textures_lie_as_the_file_says() {
     for (transform, expected) in [
         ("", [[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]),
         ("\"offset\":[0.5,0.25],\"scale\":[2,0.5]", [[0.5, 0.25], [1.0, 0.5], [2.5, 0.75]]),
-        // Counter-clockwise as it is seen with v down: u goes up, so v sinks.
+        // Counter-clockwise as seen with v pointing down: u increases, so v decreases.
         ("\"rotation\":1.5707963267948966", [[0.0, 0.0], [0.5, -0.25], [1.0, -1.0]]),
     ] {
         let mut file = Gltf::default();
@@ -281,7 +281,7 @@ fn textures_lie_as_the_file_says() {
         file.add("nodes", "{\"mesh\":0}");
         let Loaded { mesh, textures, files, .. } = loaded(&file.glb(), "a.glb");
         for (pair, [u, v]) in mesh.texcoords().unwrap().iter().zip(expected) {
-            // The angle is a quarter turn but for the rounding of f32.
+            // The angle is a quarter turn up to the rounding of f32.
             assert!((*pair - Vec2::new(u, 1.0 - v)).length() < 1e-6, "{transform}: {pair} {u} {v}");
         }
         let name = mesh.surfaces()[0].texture.as_ref().unwrap();
@@ -291,7 +291,7 @@ fn textures_lie_as_the_file_says() {
     }
 }
 
-/// The rule, computed once more.
+/// The rule, implemented once more.
 #[test]
 fn materials_follow_the_rule() {
     let srgb = |linear: f64| if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
@@ -322,7 +322,7 @@ fn materials_follow_the_rule() {
     }
 }
 
-/// Faces of coloured vertices have the mean, in sRGB.
+/// Faces with coloured vertices get the mean, in sRGB.
 #[test]
 fn colors_of_vertices_are_texels() {
     let mut file = Gltf::default();

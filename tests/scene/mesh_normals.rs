@@ -1,5 +1,5 @@
-//! Normals: the sum made unit, weights, creases, and the hard cases N1, N2 and N6; what a mesh
-//! refuses; closed and convex against slow, exact oracles.
+//! Normals: the normalized sum, weights, creases, and the hard cases N1, N2 and N6; what a mesh refuses; closed and
+//! convex meshes against slow, exact oracles.
 
 use std::f32::consts::PI;
 
@@ -19,7 +19,7 @@ use proptest::prelude::*;
 
 const WEIGHTS: [Weight; 3] = [Weight::Count, Weight::Area, Weight::Angle];
 
-/// A cube with eight vertices, corners at ±1, each face cut along the diagonal from its first corner.
+/// A cube with eight vertices at ±1, each face split along the diagonal from its first corner.
 fn box8() -> Mesh {
     let positions = (0..8).map(|i| Vec3::from_array([1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 })));
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -31,7 +31,7 @@ fn length(v: Vec3) -> f64 {
     v.to_array().map(|c| f64::from(c).powi(2)).iter().sum::<f64>().sqrt()
 }
 
-/// Rounding to f32 moves each component by 2⁻²⁵ at most, so the length by 2⁻²⁴; N6 asks for 2⁻¹⁴.
+/// Rounding to f32 moves each component by at most 2⁻²⁵, so the length by 2⁻²⁴; N6 requires 2⁻¹⁴.
 fn assert_unit(mesh: &Mesh) {
     assert_eq!(mesh.normals().len(), mesh.positions().len());
     for &normal in mesh.normals() {
@@ -48,7 +48,7 @@ fn face_normal_points_at_who_sees_it_counter_clockwise() {
     }
 }
 
-/// The brightest shade of a mesh's vertices under a sun from `towards`, from where the eye looks, too: of 65,280.
+/// The brightest shade, of 65,280, of a mesh's vertices under a sun from `towards`, which is also the view direction.
 fn brightest(mesh: Mesh, towards: Vec3, path: VertexPath) -> u16 {
     let mut scene = Scene::new();
     let mut object = Object::new(mesh);
@@ -74,7 +74,7 @@ fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
     let mean = (Vec3::X + Vec3::Y + Vec3::Z) / 3.0;
     assert!(mean.length() < 0.58);
     for path in [VertexPath::Float, VertexPath::Integer] {
-        // A face that looks at the sun.
+        // A face that faces the sun.
         let flat = brightest(shapes::wall(1, 1), Vec3::Z, path);
         for weight in WEIGHTS {
             let mut mesh = box8();
@@ -84,9 +84,9 @@ fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
             for &normal in mesh.normals() {
                 let corner = brightest(mesh.clone(), normal, path);
                 tried.worst("256ths of a shade darker", f64::from(flat.abs_diff(corner)));
-                // On the float path 1 within 2⁻²² is rounded to the same shade. On the other normal and sun have 16 bits
-                // behind the point: each is off by less than 2⁻¹⁶ in length, and half of 2⁻¹⁶ along each axis turns them
-                // apart by so little that it is not seen; the product and the shade are rounded once more each.
+                // On the float path 1 within 2⁻²² rounds to the same shade. On the other, normal and sun have 16
+                // fraction bits: each length is off by less than 2⁻¹⁶, and half of 2⁻¹⁶ along each axis turns them
+                // apart too little to matter; the product and the shade add one rounding each.
                 let off = if path == VertexPath::Float { 0 } else { 3 };
                 assert!(flat.abs_diff(corner) <= off, "{path}, {weight:?}, {normal}: {corner}, not {flat}");
                 tried.add(1);
@@ -95,23 +95,23 @@ fn n6_a_rounded_corner_is_as_bright_as_a_flat_one() {
     }
 }
 
-/// At (1, 1, 1) each of the three faces has 90°, at (−1, −1, −1) too, whatever the diagonals; by
-/// count and by area a face that is cut there counts twice.
+/// At (1, 1, 1) each of the three faces has 90°, and at (−1, −1, −1) too, whatever the diagonals; weighted by count or
+/// by area, a face that is split there counts twice.
 #[test]
 fn weights() {
     let mut mesh = box8();
     let corner = |mesh: &Mesh, i: usize| mesh.normals()[i] * 3f32.sqrt();
     mesh.smooth(Weight::Angle, None);
     for i in 0..8 {
-        // 3 roundings of 2⁻²⁴ and the product's.
+        // Three roundings of 2⁻²⁴ and the product's.
         assert!(corner(&mesh, i).abs_diff_eq(mesh.positions()[i], 1e-6));
     }
     for weight in [Weight::Count, Weight::Area] {
         mesh.smooth(weight, None);
-        // Vertex 1 is a first corner in the face x = 1 alone: (2, −1, −1) / √6.
+        // Vertex 1 is a first corner only in the face x = 1: (2, −1, −1) / √6.
         assert!(mesh.normals()[1].abs_diff_eq(Vec3::new(2.0, -1.0, -1.0) / 6f32.sqrt(), 1e-6));
     }
-    // Two faces over the edge x = 0, one of three times the area.
+    // Two faces that share the edge x = 0, one with three times the area.
     let positions = vec![Vec3::ZERO, Vec3::Y, Vec3::X * 3.0, Vec3::Z];
     let mut mesh = Mesh::new(positions, vec![[0, 2, 1], [0, 1, 3]]).unwrap();
     mesh.smooth(Weight::Area, None);
@@ -133,7 +133,7 @@ fn crease_angle_splits_vertices() {
         }
     }
     assert!(mesh.is_closed() && mesh.is_convex());
-    // Vertices that were split count as one place: smooth again.
+    // Split vertices count as one position: smooth again.
     mesh.smooth(Weight::Angle, Some(Angle::from_degrees(90.0)));
     assert_eq!(mesh.positions().len(), 24);
     assert!(mesh.normals().iter().zip(mesh.positions()).all(|(n, p)| (*n * 3f32.sqrt()).abs_diff_eq(*p, 1e-6)));
@@ -146,7 +146,7 @@ fn crease_angle_splits_vertices() {
 
 #[test]
 fn a_crease_is_smooth_on_either_side() {
-    // A cylinder of eight sides: 45° from side to side, 90° to the caps.
+    // An eight-sided cylinder: 45° between sides, 90° to the caps.
     let mut mesh = shapes::cylinder(8, 1);
     mesh.smooth(Weight::Angle, Some(Angle::from_degrees(60.0)));
     let sides = mesh.normals().iter().filter(|n| n.y.abs() < 1e-6).count();
@@ -173,7 +173,7 @@ fn n1_faces_without_area_have_no_weight() {
         Vec3::X,
         Vec3::Y,
         Vec3::ONE * 7.0,
-        // On the line from vertex 0 to vertex 1, whose thirds f32 cannot hold.
+        // On the line from vertex 0 to vertex 1, whose thirds f32 cannot represent.
         Vec3::X / 3.0,
     ];
     let triangles = vec![[0, 1, 2], [0, 0, 0], [0, 3, 3], [1, 2, 1], [0, 4, 1], [1, 4, 0]];
@@ -210,7 +210,7 @@ fn n2_normals_that_cancel_leave_each_face_its_own() {
         }
     }
     assert!(sheet.is_closed() && !sheet.is_convex());
-    // Six faces about a point, three pairs of opposites.
+    // Six faces around a point, in three opposite pairs.
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let one_way = [[0, 1, 2], [0, 2, 3], [0, 3, 1]];
     let triangles = one_way.iter().flat_map(|&[a, b, c]| [[a, b, c], [a, c, b]]).collect();
@@ -223,7 +223,7 @@ fn n2_normals_that_cancel_leave_each_face_its_own() {
     }
 }
 
-/// Powers of two change no digit, so the normals are the same to the last bit.
+/// Powers of two change no digit, so the normals are identical to the last bit.
 #[test]
 fn normals_do_not_depend_on_size() {
     let cube = box8();
@@ -327,22 +327,22 @@ fn closed_needs_each_edge_as_often_each_way() {
     assert!(cube.is_closed() && cube.is_convex() && cube.volume() == 8.0);
     assert!(!with(|t| t.truncate(11)).is_closed());
     assert!(!with(|t| t[3].swap(0, 1)).is_closed());
-    // All faces twice: each edge twice each way. And two of them the other way as well.
+    // All faces twice, so each edge twice each way. And two of them the other way as well.
     let twice = with(|t| t.extend_from_within(..));
     assert!(twice.is_closed() && twice.is_outward() && !twice.is_convex());
     let thrice = with(|t| t.extend([[t[0][0], t[0][2], t[0][1]], t[0]]));
     assert!(thrice.is_closed() && thrice.is_outward() && !thrice.is_convex());
     assert_eq!((0..14).filter(|&t| thrice.has_twin(t)).collect::<Vec<_>>(), [0, 12, 13]);
     assert!(!with(|t| t.push([t[0][0], t[0][2], t[0][1]])).is_closed());
-    // A line changes nothing.
+    // A degenerate face changes nothing.
     assert!(with(|t| t.push([0, 0, 1])).is_convex());
-    // Inside out: closed, but its faces look inward.
+    // Inside out: closed, but its faces point inward.
     let inside_out = with(|t| t.iter_mut().for_each(|t| t.swap(0, 1)));
     assert!(inside_out.is_closed() && !inside_out.is_outward() && !inside_out.is_convex());
     assert!(inside_out.volume() == -8.0);
 }
 
-/// All edges of a double pyramid over a pentagram are convex, but it winds twice about its axis.
+/// All edges of a double pyramid over a pentagram are convex, but it winds around its axis twice.
 #[test]
 fn a_star_wound_twice_is_not_convex() {
     let mut positions = vec![Vec3::Y, Vec3::NEG_Y];
@@ -371,7 +371,7 @@ fn exact(p: Vec3) -> [BigRational; 3] {
     p.to_array().map(|c| BigRational::from_float(c).unwrap())
 }
 
-/// No vertex in front of any face, in rationals.
+/// Returns whether no vertex is in front of any face, in rationals.
 fn all_behind(mesh: &Mesh) -> bool {
     let points: Vec<_> = mesh.positions().iter().map(|&p| exact(p)).collect();
     mesh.triangles().iter().all(|t| {
@@ -386,8 +386,8 @@ fn all_behind(mesh: &Mesh) -> bool {
     })
 }
 
-/// As the definition says, vertex by vertex: all faces at the same place, in f64. `None` where they
-/// cancel, for which N2 has its own test.
+/// By the definition, vertex by vertex: all faces at the same position, in f64. `None` if they cancel, which N2 tests
+/// separately.
 fn naive_normal(mesh: &Mesh, vertex: usize, weight: Weight) -> Option<[f64; 3]> {
     let here = mesh.positions()[vertex];
     let mut sum = [0.0; 3];
@@ -419,8 +419,8 @@ fn naive_normal(mesh: &Mesh, vertex: usize, weight: Weight) -> Option<[f64; 3]> 
 }
 
 proptest! {
-    /// A coarse sphere with each vertex moved a little, so that about half of them stay convex; the
-    /// step is coarse enough that faces often lie in one plane exactly.
+    /// A coarse sphere with each vertex displaced slightly, so that about half of them stay convex; the step is coarse
+    /// enough that faces are often exactly coplanar.
     #[test]
     fn convex_is_what_the_exact_oracle_says(
         moves in prop::collection::vec(prop::array::uniform3(-3i8..=3), 26),
@@ -433,7 +433,7 @@ proptest! {
         };
         let positions: Vec<Vec3> = sphere.positions().iter().zip(&moves).map(moved).collect();
         let mesh = Mesh::new(positions, sphere.triangles().to_vec()).unwrap();
-        // True must be right; false may be caution only where a face has no area.
+        // True must be right; false may be cautious only if a face has no area.
         let solid = mesh.triangles().iter().all(|t| {
             let [a, b, c] = t.map(|i| mesh.positions()[i as usize]);
             face_normal(a, b, c).is_some()
@@ -443,7 +443,7 @@ proptest! {
         }
     }
 
-    /// 2⁻²³: the narrowing of each component to f32 by 2⁻²⁵, and the sums' rounding, far below.
+    /// 2⁻²³: rounding each component to f32 by 2⁻²⁵, and the sums' rounding, which is far smaller.
     #[test]
     fn smooth_is_what_the_naive_oracle_says(
         positions in prop::collection::vec(prop::array::uniform3(-1000.0f32..1000.0), 4..20),

@@ -1,4 +1,4 @@
-//! Meshes from what a model's file gives: what is left out, what is refused, what is mended.
+//! Meshes from the contents of a model's file: what is left out, what is refused, what is repaired.
 
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, MeshError, Parts, Surface, shapes};
@@ -52,7 +52,7 @@ fn what_is_not_finite_or_out_of_range_is_refused() {
     assert_eq!(with(|parts| parts.triangle_surfaces = vec![0, 1]), Err(MeshError::SurfaceOutOfRange { triangle: 1 }));
 }
 
-/// A normal that has no direction is given by the faces.
+/// A normal without a direction is computed from the faces.
 #[test]
 fn normals_without_a_direction_count_as_missing() {
     let odd = [None, Some(Vec3::ZERO), Some(Vec3::splat(f32::NAN)), Some(Vec3::new(0.0, 3.0, 0.0))];
@@ -82,8 +82,8 @@ fn a_body_that_is_inside_out_is_turned_with_its_lists() {
     assert_eq!((mesh.line(3), mesh.triangle_surfaces()[3]), (Some(4), 1));
 }
 
-/// Faces of a few points, many of them back to back, inside out or without area: whatever is mended, the lists stay
-/// together, and every face is one that was given.
+/// Faces over a few points, many of them back to back, inside out or without area: whatever is repaired, the lists stay
+/// in step, and every face is one that was given.
 #[test]
 fn lists_stay_together_whatever_is_mended() {
     let mut random = Random::new(29);
@@ -91,7 +91,7 @@ fn lists_stay_together_whatever_is_mended() {
     for _ in 0..20_000 {
         let points = 4 + random.below(5) as u32;
         let vertices = points + random.below(3) as u32;
-        // Vertices beyond the points lie on them again.
+        // Vertices beyond the points repeat their positions.
         let at = |i: u32| {
             // Corners of a cube, the first four of a tetrahedron.
             let corner = [0, 1, 2, 4, 3, 5, 6, 7][i as usize];
@@ -135,7 +135,7 @@ fn lists_stay_together_whatever_is_mended() {
         let texcoords = mesh.texcoords().expect("given");
         assert_eq!((texcoords.len(), mesh.normals().len()), (mesh.positions().len(), mesh.positions().len()));
         for (i, triangle) in mesh.triangles().iter().enumerate() {
-            // A face's line says which it was, and its corners' coordinates which vertices.
+            // A face's line identifies it, and its corners' coordinates identify the vertices.
             let line = mesh.line(i).expect("given") as usize - 1;
             assert_eq!(mesh.triangle_surfaces()[i], given.triangle_surfaces[line]);
             let mut before = given.triangles[line];

@@ -45,7 +45,7 @@ fn small_numbers_are_raised() {
     assert_eq!(shapes::teapot(0), shapes::teapot(2));
 }
 
-/// Every coordinate is rounded toward zero, so only the f64 rounding of the test itself is allowed.
+/// Every coordinate is rounded toward zero, so the tolerance is only the test's own f64 rounding.
 #[test]
 fn all_fit_the_unit_sphere_and_touch_it() {
     for (name, mesh) in all() {
@@ -55,7 +55,7 @@ fn all_fit_the_unit_sphere_and_touch_it() {
     }
 }
 
-/// The narrowing to f32 moves each component by 2⁻²⁵ at most.
+/// Rounding to f32 moves each component by at most 2⁻²⁵.
 #[test]
 fn n6_normals_are_unit() {
     let mut tried = Tried::new("n6_normals_are_unit", 5_664);
@@ -128,9 +128,8 @@ fn closed_and_convex() {
     }
 }
 
-/// The exact volumes of the polyhedra, not of the smooth bodies. Each coordinate is rounded by less
-/// than 2⁻²³ (the cone's base by 2⁻¹⁵), which moves the surface, of less than 4π, by no more than √3
-/// times that.
+/// The exact volumes of the polyhedra, not of the smooth shapes. Each coordinate is rounded by less than 2⁻²³ (the
+/// cone's base by 2⁻¹⁵), which moves the surface, whose area is below 4π, by no more than √3 times that.
 #[test]
 fn volumes() {
     /// Area of a regular polygon with its corners on the unit circle.
@@ -144,7 +143,7 @@ fn volumes() {
     };
     near(shapes::cube(), (2.0 / 3f64.sqrt()).powi(3), fine);
     for (slices, stacks) in [(3, 2), (7, 5), (48, 24)] {
-        // Between two rings a frustum of a pyramid.
+        // A frustum of a pyramid between two rings.
         let ring = |stack: u32| (PI * f64::from(stack) / f64::from(stacks)).sin_cos();
         let frusta = (0..stacks).map(|stack| {
             let ((r, z), (s, y)) = (ring(stack), ring(stack + 1));
@@ -176,7 +175,7 @@ fn wall_faces_the_viewer() {
     assert!((area - 2.0).abs() < 1e-5);
 }
 
-/// 32 patches of 2n² triangles, less n at each of the 8 patches that end in a pole.
+/// 32 patches of 2n² triangles, minus n at each of the 8 patches that end in a pole.
 #[test]
 fn teapot_patches() {
     for n in 2..12 {
@@ -190,7 +189,7 @@ fn teapot_patches() {
 fn teapot_proportions() {
     let bounds = shapes::teapot(16).bounds();
     let size = bounds.max - bounds.min;
-    // Handle at −3 to the spout's tip at 3.434; 2 to each side; 3.15 high.
+    // From the handle at −3 to the spout's tip at 3.434; 2 to each side; 3.15 high.
     assert!((size.x / size.y - 6.434 / 3.15).abs() < 1e-3, "{size}");
     assert!((size.z / size.y - 4.0 / 3.15).abs() < 1e-6, "{size}");
 }
@@ -207,8 +206,8 @@ fn teapot_poles() {
     assert_eq!(at(teapot.bounds().min.y), [Vec3::NEG_Y]);
 }
 
-/// Patches meet without a gap: an edge with only one face is found at the real openings alone, which
-/// are the rim, the lid's edge, and both ends of handle and spout.
+/// Patches meet without gaps: edges with only one face occur only at the real openings, which are the rim, the lid's
+/// edge, and both ends of handle and spout.
 #[test]
 fn teapot_has_no_cracks() {
     for n in [2, 5, 8] {
@@ -236,7 +235,7 @@ fn textures_lie_upright_and_the_right_way_round() {
         for triangle in mesh.triangles() {
             let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize]);
             let [ta, tb, tc] = triangle.map(|i| texcoords[i as usize]);
-            // Counter-clockwise on the picture as on the face: no mirror writing.
+            // Counter-clockwise on the picture as on the face, so nothing is mirrored.
             assert!((tb - ta).perp_dot(tc - ta) > 0.0, "{name}: {triangle:?}");
             let normal = face_normal(a, b, c).expect("it has an area");
             for (i, p) in [(0, a), (1, b), (2, c)] {
@@ -260,14 +259,14 @@ fn stretched_meshes_keep_their_normals_upright_on_their_faces() {
             assert_eq!(stretched.triangles(), mesh.triangles());
             assert_eq!(stretched.texcoords(), mesh.texcoords());
             assert_eq!(stretched.is_closed(), mesh.is_closed());
-            // By powers of two nothing is rounded.
+            // Scaling by powers of two rounds nothing.
             if factors.y != 3.3 {
                 assert_eq!(stretched.is_convex(), mesh.is_convex(), "{name}");
             }
             for (i, (&p, &normal)) in stretched.positions().iter().zip(stretched.normals()).enumerate() {
                 assert_eq!(p, mesh.positions()[i] * factors);
-                // A plane n·p = c is n/f · f·p = c: the direction is n/f. Here in f64, there with components rounded
-                // to 2⁻²⁵ at most, before and after they are made unit.
+                // A plane n·p = c becomes n/f · f·p = c, so the direction is n/f. Here it is computed in f64, there
+                // with components rounded by at most 2⁻²⁵, before and after normalizing.
                 let wide = |v: Vec3| v.to_array().map(f64::from);
                 let (given, factors) = (wide(mesh.normals()[i]), wide(factors));
                 let expected = [0, 1, 2].map(|i| given[i] / factors[i]);

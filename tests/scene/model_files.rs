@@ -1,4 +1,4 @@
-//! STL and PLY: each encoding of a mesh gives what OBJ gives, errors say where, and the contents say the format.
+//! STL and PLY: each encoding of a mesh gives what OBJ gives, errors say where, and the format is detected by content.
 
 use std::fmt::Write;
 use std::io;
@@ -33,7 +33,7 @@ struct Faces {
 }
 
 impl Faces {
-    /// The points of a shape, each once, in the order in which its triangles use them.
+    /// The points of a shape, each once, in the order its triangles use them.
     fn of_shape(mesh: &Mesh) -> Self {
         let mut positions: Vec<[f32; 3]> = Vec::new();
         let mut index = |vertex: u32| {
@@ -95,7 +95,7 @@ impl Faces {
         bytes
     }
 
-    /// As `ascii`, `binary_little_endian` or `binary_big_endian`, with an element and properties that are no model's.
+    /// As `ascii`, `binary_little_endian` or `binary_big_endian`, with an extra element and extra properties.
     fn ply(&self, encoding: &str) -> Vec<u8> {
         let mut bytes = format!(
             "ply\nformat {encoding} 1.0\ncomment of no use\nobj_info either\nelement noise 2\nproperty list uint short a\n\
@@ -141,7 +141,7 @@ impl Faces {
     }
 }
 
-/// All of a mesh but the lines of its faces, which are a file's own.
+/// Everything in a mesh except its faces' line numbers, which depend on the file.
 fn contents(mesh: &Mesh) -> impl PartialEq + core::fmt::Debug + '_ {
     (
         (mesh.positions(), mesh.normals(), mesh.texcoords(), mesh.triangles()),
@@ -166,7 +166,7 @@ fn every_encoding_gives_the_mesh_that_obj_gives() {
             assert_eq!(contents(&model.mesh), contents(&expected), "{name}");
             assert_eq!(model.warnings, [""; 0], "{name}");
             assert_eq!(model.up, name.to_lowercase().ends_with(".stl").then_some(UpAxis::Z));
-            // Without an extension the contents say what it is.
+            // Without an extension the contents decide.
             assert_eq!(contents(&loaded(&bytes, "standard input").mesh), contents(&expected), "{name} by its contents");
         }
     }
@@ -183,7 +183,7 @@ fn faces_of_any_size_are_split_as_in_obj() {
     }
 }
 
-/// The lines of the model, for what says where a face stands.
+/// The model's lines, where faces know their line.
 #[test]
 fn faces_of_texts_have_their_lines() {
     let faces = Faces::box_and_arrow();
@@ -271,7 +271,7 @@ fn errors_say_line_or_byte() {
     );
 }
 
-/// A face has the mean of its corners' colours, or its own, in whatever type of number.
+/// A face gets the mean of its corners' colours, or its own, in any number type.
 #[test]
 fn colors_of_scans_are_texels() {
     let ply = |of_vertex: &str, of_face: &str, rows: &str| {
@@ -310,7 +310,7 @@ fn colors_of_scans_are_texels() {
     assert_eq!(color(&wide, 0), Rgb::new(255, 0, 128));
 }
 
-/// Strips turn every second triangle round; a negative index ends one.
+/// Strips flip every second triangle; a negative index ends one.
 #[test]
 fn strips_are_triangles() {
     let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty int x\nproperty int y\nproperty int z\n\
@@ -336,7 +336,7 @@ fn textures_go_before_colors() {
     assert_eq!(model.mesh.surfaces()[0].texture.as_deref().map(Path::new), Some(Path::new("folder/a b.png")));
     assert_eq!(model.mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::X, Vec2::new(0.0, 0.5)]);
     assert!(model.textures.is_empty());
-    // A corner's own go before its vertex's.
+    // A corner's own values take precedence over its vertex's.
     let model = loaded(format!("{text}6 1 0 1 1 0 1\n"), "a.ply");
     assert_eq!(model.mesh.texcoords().unwrap(), [Vec2::X, Vec2::ONE, Vec2::Y]);
 }

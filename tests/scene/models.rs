@@ -1,11 +1,11 @@
-//! Model files as scenes: by one call, and nothing is left out without a word.
+//! Model files as scenes: in one call, and nothing is left out silently.
 
 use std::fs;
 
 use mode13h::scene::Scene;
 use mode13h_assets::SceneExt;
 
-/// A model of one square, whose material names this texture.
+/// A model of one square whose material names this texture.
 fn with_texture(name: &str, bytes: &[u8]) -> (tempfile::TempDir, Scene, Vec<String>) {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).expect("written");
@@ -20,7 +20,7 @@ fn with_texture(name: &str, bytes: &[u8]) -> (tempfile::TempDir, Scene, Vec<Stri
     (folder, scene, warnings)
 }
 
-/// A PNG of two pixels, the second of this opacity.
+/// A PNG of two pixels, the second with this opacity.
 fn png(color: png::ColorType, opacity: u8) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
@@ -29,7 +29,7 @@ fn png(color: png::ColorType, opacity: u8) -> Vec<u8> {
     let data: &[u8] = match color {
         png::ColorType::Indexed => {
             encoder.set_palette(vec![1, 2, 3, 4, 5, 6, 7, 8, 9]);
-            // The third entry shines through, and no pixel has it.
+            // The third entry is translucent, and no pixel uses it.
             encoder.set_trns(vec![255, opacity, 0]);
             &[0, 1]
         }
@@ -63,7 +63,7 @@ fn what_a_model_lacks_is_said_beside_the_scene() {
     assert!(warnings.len() == 2 && warnings[0].contains("a.png: no such texture"), "{warnings:?}");
 }
 
-/// Files of other kinds shine through, too.
+/// Other file formats can be translucent, too.
 #[test]
 fn transparency_of_other_kinds_is_said_beside_the_scene() {
     use image::ImageFormat::{Gif, Tga, WebP};

@@ -1,4 +1,4 @@
-//! OBJ and MTL: what is read, what is refused and where, and the same as `tobj` where that can read.
+//! OBJ and MTL: what is read, what is refused and where, and agreement with `tobj` where that can read the file.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -62,7 +62,7 @@ fn a_file_with_materials() {
     for (triangle, surface) in mesh.triangles().iter().zip(mesh.triangle_surfaces()) {
         for &i in triangle {
             let (p, n) = (mesh.positions()[i as usize], mesh.normals()[i as usize]);
-            // The lid has given normals, the sides meet at more than the crease angle.
+            // The lid has explicit normals; the sides meet at more than the crease angle.
             if *surface == 1 {
                 assert_eq!((n, texcoords[i as usize]), (Vec3::Y, Vec2::ZERO));
             } else {
@@ -158,7 +158,7 @@ fn faces_of_two_corners_are_left_out_with_one_note() {
     assert_eq!(refused(format!("{TRIANGLE}f 1 2\n")), "model.obj: no faces");
 }
 
-/// A sphere as a map would place it, and the same one about 0, whose coordinates are exact there.
+/// A sphere at map coordinates, and the same one around 0, where its coordinates are exact.
 #[test]
 fn a_model_far_from_0_keeps_its_shape() {
     let sphere = shapes::sphere(12, 6);
@@ -177,7 +177,7 @@ fn a_model_far_from_0_keeps_its_shape() {
     assert_eq!(far.mesh, near.mesh);
 }
 
-/// An index may name what follows; the first that never comes is the one at fault.
+/// An index may refer to a later vertex; the first that never comes is the error.
 #[test]
 fn f1_indices_that_look_ahead() {
     let mut tried = Tried::new("f1_indices_that_look_ahead", 3);
@@ -208,7 +208,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     let disc = mesh(&text);
     assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
     tried.add(1);
-    // A concave one: a saw of 5,000 teeth.
+    // A concave one: a saw with 5,000 teeth.
     let mut text = String::from("v 9999 -1 0\nv 0 -1 0\n");
     for i in 0..corners {
         writeln!(text, "v {i} {} 0", i % 2).unwrap();
@@ -224,7 +224,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     check_split(&saw, &face);
 }
 
-/// Rounded to f32, a ring of so many corners has dents; it is cut from side to side, in any plane.
+/// Rounded to f32, a ring of this many corners has dents; it is cut from side to side, in any plane.
 #[test]
 fn large_faces_that_are_monotone_are_split() {
     let corners = 30_000;
@@ -243,11 +243,11 @@ fn large_faces_that_are_monotone_are_split() {
             face.rotate_left(start);
             let mesh = mesh(face_text(&face));
             assert_eq!(mesh.triangles().len(), 29_998);
-            // In the others rounding leaves corners beside the plane.
+            // In the others rounding moves corners off the plane.
             if i == 0 {
                 check_split(&mesh, &face);
             }
-            // As large together as the face: where triangles overlapped they would be larger.
+            // Together as large as the face; overlapping triangles would be larger.
             let whole: f32 =
                 (1..face.len() - 1).map(|i| (face[i] - face[0]).cross(face[i + 1] - face[0]).length()).sum();
             let place = |i: u32| mesh.positions()[i as usize];
@@ -311,7 +311,7 @@ fn lines_of_all_kinds() {
 
 #[test]
 fn normals_that_are_missing_are_filled_in() {
-    // Two faces of one group over an edge; the first has normals, of which one is zero.
+    // Two faces of one group that share an edge; the first has normals, one of them zero.
     let text =
         "s 1\n".to_owned() + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nvn 0 0 5\nvn 0 0 0\nf 1//1 2//1 3//2\nf 1 3 4\n";
     let mesh = mesh(&text);
@@ -346,7 +346,7 @@ fn with_crease(text: &str, crease: Option<f32>) -> Mesh {
     .mesh
 }
 
-/// Strips of squares along z, each bent against the last by so many degrees, after the statements in front of it.
+/// Strips of squares along z, each at this many degrees to the last, after the given statements.
 fn bent(strips: &[(f32, &str)]) -> String {
     let (mut text, mut faces, mut angle, mut at) = (String::new(), String::new(), 0.0_f32, (0.0, 0.0));
     for (i, (bend, statement)) in strips.iter().enumerate() {
@@ -362,7 +362,8 @@ fn bent(strips: &[(f32, &str)]) -> String {
     text + &faces
 }
 
-/// Whether there is an edge before each strip but the first: whether the normals to its two sides differ.
+/// Returns for each strip but the first whether there is an edge before it, that is, whether the normals on its two
+/// sides differ.
 fn edges(text: &str, crease: Option<f32>, strips: usize) -> Vec<bool> {
     let mesh = with_crease(text, crease);
     let normals = |strip: usize| {
@@ -376,10 +377,10 @@ fn edges(text: &str, crease: Option<f32>, strips: usize) -> Vec<bool> {
     (1..strips).map(edge).collect()
 }
 
-/// Strips that are bent by several angles, with corners that are listed for each strip: welded by their places.
+/// Strips bent at several angles, with separate corners for each strip, are welded by position.
 #[test]
 fn edges_are_shown_beyond_the_crease_angle() {
-    // The places of two strips must be equal, not near: from whole numbers.
+    // The positions of two strips must be equal, not just near: computed from integers.
     let text = "v 0 0 0\nv 0 0 -4\nv 4 0 0\nv 4 0 -4\nv 7 3 0\nv 7 3 -4\nv 7 7 0\nv 7 7 -4\nv 6 12 0\nv 6 12 -4\n\
                 f 1 3 4 2\nf 3 5 6 4\nf 5 7 8 6\nf 7 9 10 8\n";
     // Bent by 45°, 45° and 11.3°.
@@ -395,13 +396,13 @@ fn edges_are_shown_beyond_the_crease_angle() {
     ] {
         assert_eq!(edges(text, crease, 4), due, "{crease:?}");
     }
-    // 40° by default, with a degree to either side.
+    // 40° by default, tested a degree to either side.
     assert_eq!(edges(&bent(&[(0.0, ""), (39.0, "")]), None, 2), [false]);
     assert_eq!(edges(&bent(&[(0.0, ""), (41.0, "")]), None, 2), [true]);
 }
 
-/// `s` says which faces are smooth together, however they are bent; an angle that is asked for outweighs it, and normals
-/// that are given outweigh both.
+/// `s` says which faces are smooth together, at any angle; an explicit angle overrides it, and explicit normals
+/// override both.
 #[test]
 fn smoothing_groups_are_honoured() {
     let groups = |statements: [&str; 5]| {
@@ -414,7 +415,7 @@ fn smoothing_groups_are_honoured() {
         (["s 7\n", "", "", "", ""], [false; 4]),
         (["s off\n", "", "", "", ""], [true; 4]),
         (["s 0\n", "", "s 3\n", "", "s off\n"], [true, true, false, true]),
-        // Before the first the angle decides; what is no group is left alone.
+        // Before the first the angle decides; what is in no group is left alone.
         (["", "", "", "s 1\n", "s what\n"], [true, false, true, false]),
         (["s 1\n", "s 1\n", "s 2\n", "s 1\n", "s on\n"], [false, true, true, false]),
     ] {
@@ -422,14 +423,14 @@ fn smoothing_groups_are_honoured() {
         assert_eq!(edges(&text, None, 5), due, "{statements:?}");
         assert_eq!(edges(&text, Some(40.0), 5), [true, false, true, false], "{statements:?}");
     }
-    // Between groups that meet at a point only as well.
+    // Also between groups that meet only at a point.
     let given =
         "vn 0 1 0\n".to_owned() + &groups(["s off\n", "", "", "", ""]).replace("f 1 2 3 4", "f 1//1 2//1 3//1 4//1");
     let mesh = with_crease(&given, Some(180.0));
     assert!(mesh.triangles()[..2].iter().flatten().all(|&i| mesh.normals()[i as usize] == Vec3::Y));
 }
 
-/// By the definition: two faces at a place count together if others that are within the angle of each other link them.
+/// By definition: two faces at a position count together if a chain of faces within the angle of each other links them.
 #[test]
 fn creases_are_what_the_naive_oracle_says() {
     let tried = Tried::new("creases_are_what_the_naive_oracle_says", 100);
@@ -445,7 +446,7 @@ fn creases_are_what_the_naive_oracle_says() {
             return Ok(());
         };
         if !warnings.is_empty() {
-            // Faces were mended: there are others.
+            // Faces were repaired, so there are others.
             return Ok(());
         }
         let place = |i: u32| mesh.positions()[i as usize];
@@ -485,11 +486,11 @@ fn creases_are_what_the_naive_oracle_says() {
     });
 }
 
-/// A grid of so many squares a side whose heights are random, within so much of a square's side.
+/// A grid of this many squares a side with random heights, up to this share of a square's side.
 fn rough(side: u64, height: f64, corners: &str) -> String {
     let (mut text, mut random) = (String::new(), 1_u64);
     let next = |random: &mut u64| {
-        // Knuth's generator for MMIX, and of it the upper bits.
+        // Knuth's MMIX generator, of which the upper bits are used.
         *random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*random >> 40) as f64 / 16_777_216.0
     };
@@ -504,14 +505,14 @@ fn rough(side: u64, height: f64, corners: &str) -> String {
     text
 }
 
-/// Noise bends faces by more than the crease angle here and there, which is no edge; an angle that is asked for counts.
+/// Noise bends faces by more than the crease angle here and there, which makes no edge; an explicit angle does count.
 #[test]
 fn scans_are_smooth() {
     let split = |text: &str, crease| with_crease(text, crease).positions().len();
     let text = rough(40, 0.8, "");
     assert_eq!(split(&text, None), 41 * 41);
     assert!(split(&text, Some(40.0)) > 41 * 41 + 100, "{}", split(&text, Some(40.0)));
-    // Nor do groups keep other faces from being smooth, or are made smooth by them.
+    // Nor do groups keep other faces from being smooth, or get smoothed by them.
     let half = rough(40, 0.8, "").replace("f 821 822 863\n", "s off\nf 821 822 863\n");
     assert!(half.contains("s off") && split(&half, None) > 41 * 41 + 1_000);
     // A box of 20 squares a side, made of six grids, keeps its edges.
@@ -553,8 +554,8 @@ fn a_model_of_which_nothing_can_be_drawn_says_so() {
     }
 }
 
-/// Pairs back to back are left out where a body goes on about them; leaves, with a rim of their own or of two materials,
-/// stay.
+/// Pairs back to back are removed if an object continues around them; leaves with a rim of their own, or of two
+/// materials, stay.
 #[test]
 fn only_mistaken_twins_are_left_out() {
     const BODY: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -562,7 +563,8 @@ fn only_mistaken_twins_are_left_out() {
         ("", 4, 0),
         ("f 2 3 4\nf 2 4 3\n", 4, 1),
         ("f 2 3 4\nf 2 4 3\nf 1 2 3\nf 2 1 3\n", 4, 2),
-        // A fin on an edge, of two triangles; a leaf apart; a body beside it whose faces are all there both ways.
+        // A fin on an edge, of two triangles; a separate leaf; an object beside it whose faces all exist in both
+        // directions.
         ("v 5 5 0\nv 6 5 0\nf 2 3 5\nf 3 2 5\nf 2 5 6\nf 5 2 6\n", 8, 0),
         ("v 5 5 0\nv 6 5 0\nv 7 7 0\nf 5 6 7\nf 7 6 5\n", 6, 0),
         (
@@ -570,7 +572,7 @@ fn only_mistaken_twins_are_left_out() {
             12,
             0,
         ),
-        // A roof over one face: no rim, and the body goes on about it.
+        // A roof over one face: no rim, and the object continues around it.
         ("v 3 3 3\nf 2 3 5\nf 3 2 5\nf 3 4 5\nf 4 3 5\nf 4 2 5\nf 2 4 5\n", 4, 3),
         ("usemtl a\nf 2 3 4\nusemtl b\nf 2 4 3\n", 6, 0),
     ] {
@@ -585,14 +587,14 @@ fn only_mistaken_twins_are_left_out() {
         let warnings: Vec<_> = warnings.into_iter().filter(|warning| !warning.contains("material")).collect();
         assert_eq!(warnings, Vec::from_iter(due), "{more}");
     }
-    // An open one keeps all, and knows them.
+    // An open one keeps all of them, and records them.
     let Loaded { mesh, warnings, .. } = parse(BODY.to_owned() + "f 2 3 4\nf 2 4 3\nv 9 9 9\nf 1 2 5\n").unwrap();
     assert!(warnings.is_empty() && !mesh.is_closed());
     let twins: Vec<usize> = (0..mesh.triangles().len()).filter(|&t| mesh.has_twin(t)).collect();
     assert_eq!(twins, [3, 4, 5]);
 }
 
-/// Turned round with what normals they have, if these look inward.
+/// Flipped, along with any normals, if the normals point inward.
 #[test]
 fn bodies_inside_out_are_turned_round() {
     const CORNERS: &str =
@@ -612,7 +614,8 @@ fn bodies_inside_out_are_turned_round() {
     for (text, due) in [
         (body([1, 2, 3, 4], 0, false), None),
         (body([1, 2, 3, 4], 0, true), Some(one)),
-        // A cavity; a body in a body; both wrong: the outer one is turned, and then the inner one is no cavity.
+        // A cavity; an object inside another; both wrong: the outer one is flipped, and then the inner one is no
+        // cavity.
         (body([1, 2, 3, 4], 0, false) + &body([5, 6, 7, 8], 0, true), None),
         (body([5, 6, 7, 8], 0, false) + &body([1, 2, 3, 4], 0, false), None),
         (body([5, 6, 7, 8], 0, true) + &body([1, 2, 3, 4], 0, true), Some(one)),
@@ -621,7 +624,7 @@ fn bodies_inside_out_are_turned_round() {
         assert_eq!(warnings, Vec::from_iter(due.map(str::to_owned)), "{text}");
         assert!(mesh.is_outward() && mesh.volume() > 0.0, "{text}");
     }
-    // By the face of two that looks along both given normals most.
+    // Decided by whichever of the two faces agrees most with both given normals.
     for (normal, turned) in [(1, true), (2, true)] {
         let loaded = parse(CORNERS.to_owned() + &body([1, 2, 3, 4], normal, turned)).unwrap();
         let slanted = loaded.mesh.triangles().iter().map(|t| {
@@ -656,7 +659,7 @@ fn missing_files_are_one_warning() {
     assert_eq!(warnings, ["model.obj:4: there is no material x; it is white and matt"]);
 }
 
-/// `Ns` 0, or none, is no highlight; a note says so once, if there is a `Ks`.
+/// `Ns` 0, or none, means no highlight; a note says so once if there is a `Ks`.
 #[test]
 fn without_an_exponent_there_is_no_highlight() {
     let load = |mtl: &'static str| {
@@ -672,7 +675,7 @@ fn without_an_exponent_there_is_no_highlight() {
     assert_eq!((one.warnings.len(), shiny(one)), (0, vec![true, false]));
 }
 
-/// Glass by `d` or `Tr`; what is not read makes one warning each.
+/// Glass by `d` or `Tr`; each statement that is not read gives one warning.
 #[test]
 fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
     let load = |obj: &str, mtl: &str| {
@@ -759,8 +762,8 @@ fn f1_broken_libraries() {
     tried.add(1);
 }
 
-/// A mesh of one face in the plane z = 0, against that face: n − 2 triangles, none turned over, whose
-/// areas add up, and each edge of the face in just one of them.
+/// A mesh of one face in the plane z = 0, compared with that face: n − 2 triangles, none flipped, whose areas add up,
+/// and each edge of the face in exactly one of them.
 fn check_split(mesh: &Mesh, face: &[Vec3]) {
     assert_eq!(mesh.triangles().len(), face.len() - 2);
     let double_area = |a: Vec3, b: Vec3, c: Vec3| {
@@ -830,7 +833,7 @@ fn concave_faces_in_any_plane() {
     }
 }
 
-/// Corners in the middle of a straight edge stay, or a gap would open to the neighbour.
+/// Corners in the middle of a straight edge are kept, or there would be a gap to the neighbour.
 #[test]
 fn corners_on_straight_edges_are_kept() {
     let outline = [(0, 0), (1, 0), (2, 0), (4, 0), (4, 2), (3, 2), (2, 2), (2, 3), (2, 4), (1, 4), (0, 4), (0, 1)];
@@ -841,7 +844,7 @@ fn corners_on_straight_edges_are_kept() {
     }
 }
 
-/// Ear cutting leaves out the second of two corners in one place.
+/// Ear clipping drops the second of two corners at the same position.
 #[test]
 fn concave_faces_with_a_corner_twice() {
     let outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
@@ -857,7 +860,7 @@ fn concave_faces_with_a_corner_twice() {
     }
 }
 
-/// Any face at all, tangled or in one point, gives n − 2 triangles.
+/// Any face, even a tangled one or one in a single point, gives n − 2 triangles.
 #[test]
 fn strange_faces_have_their_count() {
     for face in ["1 2 3 1 2 3", "1 1 1 1", "1 2 1 2 1 2", "1 2 3 3 3 2", "1 2 4 3", "1 4 2 3 1 4"] {
@@ -914,7 +917,7 @@ proptest! {
             Err(ModelFileError { kind: ModelFileErrorKind::NoArea, .. }) => return Ok(()),
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
         };
-        // Of what tobj does not mend.
+        // Only what tobj reads without repairs.
         prop_assume!(warnings.is_empty());
         let texcoords = ours.texcoords().unwrap();
         let corners: Vec<[f32; 8]> = ours.triangles().iter().flatten().map(|&i| {
@@ -924,7 +927,7 @@ proptest! {
         prop_assert_eq!(corners, by_tobj(&text));
     }
 
-    /// Star-shaped faces, so concave as a rule, some corners on straight edges.
+    /// Star-shaped, so usually concave faces, with some corners on straight edges.
     #[test]
     fn concave_faces_are_split(radii in prop::collection::vec(1u8..=8, 5..60), middle in any::<bool>()) {
         let n = radii.len();
@@ -943,8 +946,7 @@ proptest! {
         check_split(&mesh(face_text(&face)), &face);
     }
 
-    /// Skylines with a corner at every unit, so that most lie on straight edges and none of the ears is
-    /// sharp.
+    /// Skylines with a corner at every unit, so that most lie on straight edges and no ear is sharp.
     #[test]
     fn skylines_are_split(heights in prop::collection::vec(1u8..=6, 1..20), start in any::<prop::sample::Index>()) {
         let mut face = Vec::new();
@@ -968,7 +970,7 @@ proptest! {
     }
 }
 
-/// Whatever the file says: a sound mesh, or an error on one line.
+/// Whatever the file contains: a valid mesh, or an error on one line.
 #[test]
 fn f1_no_file_breaks_the_parser() {
     let tried = Tried::new("f1_no_file_breaks_the_parser", 256);
@@ -1002,7 +1004,7 @@ fn f1_no_bytes_break_the_parser() {
     });
 }
 
-/// Pieces of OBJ and MTL text; faces mostly of indices that there are.
+/// Pieces of OBJ and MTL text; faces mostly with valid indices.
 fn token() -> impl Strategy<Value = String> {
     let fixed = prop::sample::select(vec![
         "\n",
@@ -1060,7 +1062,7 @@ fn token() -> impl Strategy<Value = String> {
     ]
 }
 
-/// Each triangle knows the line of its face, also where faces were split, left out or turned round.
+/// Each triangle knows the line of its face, even if faces were split, left out or flipped.
 #[test]
 fn every_triangle_knows_its_line() {
     let mut tried = Tried::new("every_triangle_knows_its_line", 56);
@@ -1086,7 +1088,7 @@ fn every_triangle_knows_its_line() {
         let mesh = &loaded.mesh;
         for (i, triangle) in mesh.triangles().iter().enumerate() {
             let first = mesh.line(i).expect("a line") as usize - 1;
-            // A line that goes on counts by its beginning.
+            // A continued line counts by its start.
             let mut face = lines[first].strip_prefix("f ").expect("a face").to_string();
             if let Some(begun) = face.clone().strip_suffix('\\') {
                 face = format!("{begun} {}", lines[first + 1]);

@@ -1,4 +1,4 @@
-//! Palettes made for what is to be seen: how entries are shared out, and what is seen of a model.
+//! Palettes made for what will be visible: how entries are shared out, and what is visible of a model.
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -51,7 +51,7 @@ fn block(automatic: &Automatic) -> Option<Ramp> {
     })
 }
 
-/// The ramps, each once, in the order of their entries.
+/// The different ramps, in the order of their entries.
 fn ramps(automatic: &Automatic) -> Vec<Ramp> {
     let is_ramp = |entries: &&Entries| matches!(entries, Entries::Ramp { .. });
     let mut ramps: Vec<Ramp> = automatic.entries.iter().filter(is_ramp).map(|entries| ramp(*entries)).collect();
@@ -60,7 +60,7 @@ fn ramps(automatic: &Automatic) -> Vec<Ramp> {
     ramps
 }
 
-/// What holds of every palette that is made, whatever it was asked for.
+/// Properties of every automatic palette, whatever it was made for.
 #[track_caller]
 fn assert_sound(uses: &[Use<'_>], automatic: &Automatic) {
     let palette = &automatic.palette;
@@ -104,7 +104,7 @@ fn p2_automatic_ramps_share_no_entry() {
         }
         let automatic = share(&uses);
         assert_sound(&uses, &automatic);
-        // At least four entries, but where the card shows fewer colours between black and the ramp's last.
+        // At least four entries, unless the card shows fewer colours between black and the ramp's last.
         for ramp in ramps(&automatic).into_iter().filter(|ramp| ramp.entries() < 4) {
             let [r, g, b] = automatic.palette[ramp.last()].to_dac();
             assert!(u16::from(r.max(g).max(b)) < ramp.entries(), "{ramp:?}");
@@ -112,8 +112,8 @@ fn p2_automatic_ramps_share_no_entry() {
     }
 }
 
-/// Entry i of a matt material's ramp of n is its colour at i/(n − 1): in exact fractions to 8 bits, then to
-/// the nearest that the card shows.
+/// Entry i of a matt material's ramp of n is its colour at i/(n − 1): in exact fractions to 8 bits, then to the nearest
+/// that the card shows.
 #[test]
 fn a_ramp_runs_from_black_to_the_colour_in_full_light() {
     let mut tried = Tried::new("a_ramp_runs_from_black_to_the_colour_in_full_light", 300);
@@ -125,7 +125,7 @@ fn a_ramp_runs_from_black_to_the_colour_in_full_light() {
             let Entries::Ramp { ramp, full_light } = *entries else { panic!("{entries:?}") };
             assert_eq!(full_light, 1.0);
             let steps = u32::from(ramp.entries()) - 1;
-            // The material's colour is the nearest that the card shows, too.
+            // The material's colour is rounded to the nearest that the card shows, too.
             let full = of.color.nearest_on_dac();
             for i in 0..=steps {
                 let at = |v: u8| ((2 * u32::from(v) * i + steps) / (2 * steps)) as u8;
@@ -136,8 +136,8 @@ fn a_ramp_runs_from_black_to_the_colour_in_full_light() {
     }
 }
 
-/// The two lines of a ramp with a highlight meet in the material's own colour, at `full_light`; the steps
-/// before and behind it are equally wide.
+/// The two lines of a ramp with a highlight meet in the material's own colour, at `full_light`; the steps before and
+/// after it are equally wide.
 #[test]
 fn a_highlight_goes_on_from_the_colour_at_the_same_pace() {
     let mut tried = Tried::new("a_highlight_goes_on_from_the_colour_at_the_same_pace", 300);
@@ -150,7 +150,7 @@ fn a_highlight_goes_on_from_the_colour_at_the_same_pace() {
         let distance = |a: Rgb, b: Rgb| f64::from(a.distance_squared(b)).sqrt();
         let (up, on) = (distance(Rgb::BLACK, of.color), distance(of.color, Rgb::WHITE));
         let share = up / (up + on);
-        // Half a 255th of rounding, and each of the two lengths off by what the card rounds: 2 a channel.
+        // Half a 255th of rounding, and each of the two lengths off by what the card rounds: 2 per channel.
         let rounding = 2.0 * 3_f64.sqrt();
         assert!((f64::from(full_light) - share).abs() <= 0.5 / 255.0 + 2.0 * rounding / (up + on), "{of:?}");
         let step = (up + on) / f64::from(ramp.entries() - 1);
@@ -173,14 +173,14 @@ fn cost(uses: &[Use<'_>], entries: &[u16]) -> f64 {
     uses.iter().zip(entries).map(one).sum()
 }
 
-/// Three materials whose ramps hold more colours than there is room: no other way to share the 254
-/// entries costs less.
+/// Three materials whose ramps hold more colours than there is room for: no other way to share the 254 entries costs
+/// less.
 #[test]
 fn no_other_shares_cost_less() {
     let mut tried = Tried::new("no_other_shares_cost_less", 20);
     let mut random = Random::named("cost");
     while tried.more() {
-        // Each with 121 to 124 colours that the card can show: their channels step at different places.
+        // Each has 121 to 124 colours that the card can show, since their channels step at different places.
         let colors = [Rgb::from_dac([63, 40, 22]), Rgb::from_dac([23, 63, 41]), Rgb::from_dac([41, 22, 63])];
         let uses = colors.map(|color| Use {
             area: 1.0 + 0.4 * random.unit() as f32,
@@ -195,7 +195,7 @@ fn no_other_shares_cost_less() {
         for a in 4..=246 {
             for b in 4..=250 - a {
                 let other = cost(&uses, &[a, b, 254 - a - b]);
-                // Equal but for the rounding of a few sums.
+                // Equal up to the rounding of a few sums.
                 assert!(own <= other * (1.0 + 1e-12), "{given:?} cost {own}, {a}, {b} and the rest {other}");
             }
         }
@@ -221,7 +221,7 @@ fn more_area_or_range_is_never_fewer_entries() {
     }
 }
 
-/// A dark material has few colours on the card: what it cannot use goes to the others.
+/// A dark material has few colours on the card: entries that it cannot use go to the others.
 #[test]
 fn entries_that_would_look_alike_go_to_others() {
     let dark = matt(Rgb::from_dac([5, 0, 0]), 1000.0);
@@ -232,7 +232,7 @@ fn entries_that_would_look_alike_go_to_others() {
     colors.dedup();
     assert_eq!((given(0).entries(), colors.len()), (6, 6), "as many as it has colours");
     assert_eq!((1..4).map(|i| given(i).entries()).sum::<u16>(), 248);
-    // Alone it has all the room, as nobody else wants it.
+    // Alone it gets all the room, as nothing else competes for it.
     let alone = share(&[dark]);
     assert_eq!(ramp(alone.entries[0]).entries(), 254);
     // Black has one colour.
@@ -263,7 +263,7 @@ fn the_materials_without_a_ramp_share_the_nearest() {
         assert_sound(&uses, &automatic);
         assert_eq!(ramps(&automatic).len(), 63);
         for (of, own) in uses.iter().zip(&automatic.entries) {
-            // A matt ramp ends in the colour that it was made for.
+            // A matt ramp ends in the colour it was made for.
             let color = of.color.nearest_on_dac();
             let off = |ramp: Ramp| automatic.palette[ramp.last()].distance_squared(color);
             let least = ramps(&automatic).into_iter().map(off).min();
@@ -285,8 +285,7 @@ fn materials_of_one_colour_share_a_ramp() {
     }
 }
 
-/// A small material of a colour that nothing else has loses more without a ramp than the hundredth shade
-/// of what covers the picture.
+/// A small material with a unique colour loses more without a ramp than the hundredth shade of what covers the picture.
 #[test]
 fn a_rare_colour_is_kept() {
     let mut uses: Vec<Use<'_>> = (0..200).map(|i| matt(Rgb::new(20 + i, 140, 30), 1.0)).collect();
@@ -322,7 +321,7 @@ fn anything_may_be_asked_for() {
 
 // Textures
 
-/// The mean squared distance between texels in all lights seen and the entries that stand for them.
+/// The mean squared distance between texels in all lights that occur and the entries that represent them.
 fn off(palette: &Palette, texels: &[(Rgb, u32)], darkest: u8, brightest: u8) -> f64 {
     let search = NearestColors::of_shown(palette);
     let shown = palette.on_dac();
@@ -362,7 +361,7 @@ fn a_texture_of_few_colours_leaves_the_rest_to_the_ramps() {
     let texels = [(Rgb::from_dac([60, 20, 10]), 10)];
     let automatic = share(&[grass, Use { texels: Some(&texels), ..grass }]);
     let (ramp, block) = (ramp(automatic.entries[0]), block(&automatic).expect("a block"));
-    // No colour twice, and none that the ramp has.
+    // No duplicate colours, and none that the ramp has.
     let mut colors: Vec<Rgb> = block.range().map(|i| automatic.palette[i]).collect();
     let count = colors.len();
     colors.sort();
@@ -370,13 +369,13 @@ fn a_texture_of_few_colours_leaves_the_rest_to_the_ramps() {
     assert_eq!(colors.len(), count);
     assert!(ramp.range().all(|i| !colors.contains(&automatic.palette[i])));
     assert!(u32::from(ramp.entries()) + u32::from(block.entries()) <= 254);
-    // 16 brightnesses are looked at; all of them are there, as there is room.
+    // 16 brightnesses are considered; all of them are there, as there is room.
     assert!((12..=16).contains(&count), "{count}");
 }
 
 // What is seen
 
-/// A model that turns about its upward axis once a round, leaning towards the eye.
+/// A model that turns once around its upward axis, leaning toward the eye.
 fn turning(object: Object) -> (Scene, ObjectId) {
     let mut scene = Scene::new();
     let id = scene.add(object.centred());
@@ -396,19 +395,19 @@ fn seen_turning(mesh: Mesh, up_axis: UpAxis) -> Vec<Seen> {
     seen(&turning(object).0).expect("a mesh").remove(0)
 }
 
-/// `mesh` with `surfaces` surfaces, of which face i has number `number(i)`.
+/// `mesh` with `surfaces` surfaces, where face i has surface `number(i)`.
 fn numbered(mesh: &Mesh, surfaces: usize, number: impl Fn(usize) -> usize) -> Mesh {
     let numbers = (0..mesh.triangles().len()).map(|i| number(i) as u16).collect();
     mesh.clone().with_surfaces(vec![Surface::default(); surfaces], numbers).expect("numbers below")
 }
 
-/// Surfaces counted one by one, by one, two or three bytes of their numbers, add up to what the same faces
-/// come to when they are counted as ten surfaces.
+/// Surfaces counted by one, two or three bytes of their numbers add up to what the same faces give when counted as ten
+/// surfaces.
 #[test]
 fn any_number_of_surfaces_is_counted() {
     let mut tried = Tried::new("any_number_of_surfaces_is_counted", 250 + 260 + 1000 + 1024);
     let mesh = shapes::torus(48, 24);
-    // So many numbers, so far apart, among so many.
+    // This many numbers, this far apart, out of this many.
     for (count, apart, surfaces) in [(250, 1, 250), (260, 1, 260), (1000, 1, 1000), (1024, 64, 65_536)] {
         let of_ten = seen_turning(numbered(&mesh, 10, |i| i % count % 10), UpAxis::Y);
         let each = seen_turning(numbered(&mesh, surfaces, |i| i % count * apart + apart - 1), UpAxis::Y);
@@ -417,7 +416,7 @@ fn any_number_of_surfaces_is_counted() {
         for (i, whole) in of_ten.iter().enumerate() {
             let parts: Vec<&Seen> = one_by_one.iter().skip(i).step_by(10).collect();
             let area: f64 = parts.iter().map(|part| f64::from(part.area)).sum();
-            // Each of a hundred parts and the whole are rounded to f32.
+            // Each of a hundred parts, and the whole, is rounded to f32.
             assert!((area - f64::from(whole.area)).abs() < 1e-6, "{area}, {whole:?}");
             let in_sight = || parts.iter().filter(|part| part.area > 0.0);
             let darkest = in_sight().map(|part| part.darkest).fold(1.0, f32::min);
@@ -430,7 +429,7 @@ fn any_number_of_surfaces_is_counted() {
     }
 }
 
-/// Two meshes in one, the second with surfaces after those of the first.
+/// Two meshes in one, with the second's surfaces after those of the first.
 fn joined(a: &Mesh, b: &Mesh) -> Mesh {
     let count = a.positions().len() as u32;
     let positions = [a.positions(), b.positions()].concat();
@@ -455,11 +454,11 @@ fn what_is_hidden_is_not_seen() {
     let [outer, inner] = seen_turning(within, UpAxis::Y)[..] else { panic!("two") };
     assert_eq!((outer.area, inner.area), (1.0, 0.0));
     assert_eq!((inner.darkest, inner.brightest), (0.0, 0.0));
-    // Lit from the upper right behind the eye: the sphere has its darkest and its brightest spot in sight.
+    // Lit from the upper right behind the eye, so that the sphere's darkest and brightest spots are visible.
     assert!((0.14..0.16).contains(&outer.darkest) && outer.brightest > 0.99, "{outer:?}");
 }
 
-/// A level floor leans by 0.35 towards the eye whatever the turn: its intensity is that of its normal.
+/// A level floor leans toward the eye by 0.35 whatever the turn: its intensity is that of its normal.
 #[test]
 fn a_floor_has_one_brightness() {
     let corners = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0]];
@@ -542,7 +541,7 @@ fn the_house_has_two_ramps_and_bricks() {
     assert!(full_light < 0.6 && color(tiles, full_light).distance_squared(surfaces[2].color()) < 6 * 6);
     assert_eq!(color(tiles, 1.0), surfaces[2].highlight().expect("a highlight").nearest_on_dac());
     assert!(matches!(walls, Entries::Textures { block } if block.entries() > 64), "{walls:?}");
-    // Texels in full light: in the mean off by less than a step of the card, 4.05 a channel.
+    // Texels in full light: on average off by less than a step of the card, 4.05 per channel.
     let colors = bricks.tinted(surfaces[1].color());
     let table = mode13h::palette::Lut64K::shades(&made.palette, &colors);
     let off: u32 = bricks

@@ -171,7 +171,7 @@ fn gradients_of_odd_keys_end_well() {
     let mut colors = [Rgb::new(9, 9, 9); 256];
     fill(&mut colors, Ramp::WHOLE, &[]);
     assert_eq!(colors, [Rgb::new(9, 9, 9); 256]);
-    // Keys that stand still or go back count for nothing.
+    // Keys that repeat or go back are ignored.
     let odd = [
         Stop::new(10, 0x111111),
         Stop::new(10, 0xffffff),
@@ -202,8 +202,8 @@ fn nearest_is_the_first_of_the_nearest() {
 
 #[test]
 fn the_cube_finds_its_nearest_without_a_search() {
-    // Every 5th value of a channel, and both ends: 52³ colours. And all that are almost grey, where
-    // the mean of the three lies between two greys.
+    // Every 5th value of a channel, and both ends: 52³ colours. And all that are almost grey, where the mean of the
+    // three lies between two greys.
     let values: Vec<u8> = (0..=255).step_by(5).collect();
     let greys = (0..=255_u8).flat_map(|v| (0..27).map(move |k| [k / 9, k / 3 % 3, k % 3].map(|d| v.saturating_add(d))));
     let greys = greys.map(|[r, g, b]| Rgb::new(r, g, b));
@@ -255,7 +255,7 @@ fn every_ramp_rises_in_every_channel_from_near_black_to_near_white() {
     }
 }
 
-/// Name, ramps, and how many different colours the DAC makes of it.
+/// Name, ramps, and the number of different colours on the DAC.
 #[test]
 fn builtins_have_their_ramps_and_shades() {
     let found: Vec<_> =
@@ -279,7 +279,7 @@ fn ramps_are_found_again_in_the_colours() {
     for builtin in &builtin::ALL {
         assert_eq!(&Palette::from_colors(*builtin.palette.colors()), builtin.palette, "{}", builtin.name);
     }
-    // A short palette of dark to light, the rest black, is not one ramp.
+    // A short palette from dark to light, with the rest black, is not one ramp.
     assert_eq!(palette_of(|i| if i < 16 { Rgb::new(i, i, i) } else { Rgb::BLACK }).ramps(), 0);
     assert_eq!(palette_of(|_| Rgb::BLACK).ramps(), 0);
 }
@@ -298,8 +298,8 @@ fn palettes_folder() -> std::path::PathBuf {
     crate::support::workspace::root().join("palettes")
 }
 
-/// The constructors are the truth. `MODE13H_WRITE_PALETTES=1` writes the files from them, and fails
-/// the test that did so.
+/// The constructors are the reference. `MODE13H_WRITE_PALETTES=1` writes the files from them, and fails the test that
+/// did so.
 #[test]
 fn the_files_in_palettes_are_the_builtins() {
     let write = std::env::var_os("MODE13H_WRITE_PALETTES").is_some();
@@ -335,7 +335,7 @@ fn the_readme_of_palettes_gives_every_provenance() {
 
 // Files: round trips
 
-/// What a format gives back for a palette: itself, but for dark colours in a raw file.
+/// What a format gives back for a palette: the palette itself, except for dark colours in a raw file.
 fn expected_back(format: &Format, palette: &Palette) -> Palette {
     let dark = palette.colors().iter().all(|c| c.r < 64 && c.g < 64 && c.b < 64);
     let colors = if format.name == "vga" && dark { palette.on_dac() } else { palette.clone() };
@@ -569,7 +569,7 @@ fn p5_what_looks_like_nothing_is_said_to() {
         assert_eq!(error.to_string(), "offset 0: neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette");
         tried.add(1);
     }
-    // With a name, the message is the format's own.
+    // With a name given, the message is the format's own.
     let error: PaletteError = palette_file::parse_named("a.pal", &utf16).unwrap_err();
     assert_eq!(error.to_string(), "line 1: expected \"JASC-PAL\", found \"??J?A?S?C?-?P?A?L?\"");
     tried.add(1);
@@ -585,7 +585,7 @@ fn any_palette() -> impl Strategy<Value = Palette> {
     })
 }
 
-/// Bytes of all kinds: any; a text's characters; a good file with something changed.
+/// Random bytes; a text's characters; a valid file with something changed.
 fn any_file() -> impl Strategy<Value = Vec<u8>> {
     let any_bytes = proptest::collection::vec(any::<u8>(), 0..1000);
     let text =
@@ -616,7 +616,7 @@ proptest! {
     }
 }
 
-/// Whatever the file holds: a palette, or an error at a place in it.
+/// Whatever the file contains: a palette, or an error at a position in it.
 #[test]
 fn p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file() {
     let tried = Tried::new("p5_no_bytes_make_a_reader_panic_and_errors_lie_in_the_file", 256);
@@ -657,7 +657,7 @@ fn a_file_is_loaded_by_its_name() {
     assert!(palette_file::load(folder.path()).is_err());
 }
 
-/// A device that never ends is read as far as a palette file may be long.
+/// An endless device is read up to the greatest length of a palette file.
 #[cfg(unix)]
 #[test]
 fn a_file_without_an_end_is_an_error() {

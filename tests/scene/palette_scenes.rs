@@ -1,7 +1,7 @@
 //! Palettes made for scenes: whether what is shown has the colours that light, materials, fog and glass give it.
 //!
-//! The scenes are of walls that face the eye more or less, each with one normal, under one sun: so each has one colour,
-//! which is worked out here by the formulas alone.
+//! The scenes are walls that face the eye more or less, each with one normal, under one sun, so each has one colour,
+//! which is computed here from the formulas alone.
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -20,15 +20,15 @@ use mode13h_conformance::Random;
 
 use crate::support::tried::Tried;
 
-/// Towards the sun.
+/// Direction toward the sun.
 const SUN: [f32; 3] = [0.3, 0.5, 0.9];
 
-/// Rounding to 8 bits, and twice to the card's 6: a colour's, and an entry's.
+/// Rounding to 8 bits, and twice to the card's 6: the colour's and the entry's.
 const ROUNDING: f64 = 0.5 + 2.0 * 2.03;
 
 type Color = [f64; 3];
 
-/// Twelve walls beside each other, in these materials, turned by chance.
+/// Twelve walls side by side in these materials, at random angles.
 fn walls(random: &mut Random, mut material: impl FnMut(&mut Random) -> Material) -> Scene {
     let mut scene = Scene::new();
     scene.camera.eye = Vec3::new(0.0, 0.0, 10.0);
@@ -78,7 +78,7 @@ fn off(a: Color, b: Rgb) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max)
 }
 
-/// What is shown, and for each pixel which object it shows, if any.
+/// The colours shown, and for each pixel the object it shows, if any.
 fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
     let mut vga = Vga::new();
     Renderer::new().draw(scene, &mut vga).expect("a legal scene");
@@ -95,14 +95,15 @@ fn shown(scene: &Scene) -> (Vec<Rgb>, Vec<Option<usize>>) {
     (colors, vga.pixels().iter().map(|&number| usize::from(number).checked_sub(1)).collect())
 }
 
-/// With the palette that is made for it.
+/// Gives a scene the palette made for it.
 fn made(scene: &mut Scene) -> AutomaticPalette {
     let made = auto_palette::of_scene(scene).expect("a legal scene");
     made.apply(scene);
     made
 }
 
-/// That every pixel of object i is within `allowed(i)` of `expected(i)`. Returns how many there are, and the farthest.
+/// Checks that every pixel of object i is within `allowed(i)` of `expected(i)`. Returns the number of pixels, and the
+/// largest difference.
 #[track_caller]
 fn assert_shown(
     scene: &Scene,
@@ -120,7 +121,7 @@ fn assert_shown(
     (count, worst)
 }
 
-/// Half a step of the ramp, on the channel with the widest, and rounding.
+/// Half a step of the ramp, on the channel where steps are widest, plus rounding.
 fn half_a_step(palette: &Palette, entries: Entries) -> f64 {
     let Entries::Ramp { ramp, .. } = entries else { panic!("{entries:?}") };
     let Rgb { r, g, b } = palette[ramp.last()];
@@ -143,7 +144,7 @@ fn materials_are_shown_in_their_colours() {
     }
 }
 
-/// The model of an MTL file: no material says a colour, the surfaces do.
+/// The model of an MTL file: no material names a colour, the surfaces do.
 #[test]
 fn surfaces_are_shown_in_their_colours() {
     let mut tried = Tried::new("surfaces_are_shown_in_their_colours", 50_000);
@@ -166,7 +167,7 @@ fn surfaces_are_shown_in_their_colours() {
         let allowed = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
         tried.add(assert_shown(&scene, |i| Some(expected[i]), allowed).0);
 
-        // In a palette without ramps the nearest that it has: the cube's channels are 51 apart.
+        // In a palette without ramps, the nearest entry: the cube's channels are 51 apart.
         own.palette = Some(CUBE.clone());
         for wall in own.objects_mut() {
             wall.materials = vec![wall.materials[0].in_own_colors(&wall.mesh().surfaces()[0])];
@@ -175,7 +176,7 @@ fn surfaces_are_shown_in_their_colours() {
     }
 }
 
-/// Textures of one texel: 16 brightnesses of each of twelve have room, so each has its entry.
+/// Textures of one texel: there is room for 16 brightnesses of each of twelve, so each has an entry.
 #[test]
 fn textures_are_shown_in_their_colours() {
     let mut tried = Tried::new("textures_are_shown_in_their_colours", 20_000);
@@ -191,7 +192,7 @@ fn textures_are_shown_in_their_colours() {
         }
         let made = made(&mut scene);
         assert!(made.entries.iter().all(|own| matches!(own[..], [Entries::Textures { .. }])));
-        // A wall that has one brightness gets entries over a quarter of full light. The tint is rounded to 8 bits.
+        // A wall with a single brightness gets entries over a quarter of full light. The tint is rounded to 8 bits.
         let half_a_step = 0.25 * 255.0 / 15.0 / 2.0;
         let allowed = |_| 3.0_f64.sqrt() * (half_a_step + ROUNDING + 0.5);
         let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
@@ -200,13 +201,13 @@ fn textures_are_shown_in_their_colours() {
     }
 }
 
-/// Rounding to 8 bits and to the card's 6, of each of the parts of a mixture and of itself; the parts of a sum count in
+/// Rounding to 8 bits and to the card's 6, of each part of a mixture and of the mixture; the parts of a sum count in
 /// full.
 fn rounded(parts: u32) -> f64 {
     f64::from(parts + 1) * (0.5 + 2.03)
 }
 
-/// That the palette has each of these colours, as near as rounding lets it.
+/// Checks that the palette has each of these colours, within rounding.
 #[track_caller]
 fn assert_has(palette: &Palette, expected: &[Color], rounding: f64) {
     for &color in expected {
@@ -215,9 +216,9 @@ fn assert_has(palette: &Palette, expected: &[Color], rounding: f64) {
     }
 }
 
-/// How far a pixel may be off whose colour is mixed from others that are off by `parts`, of a palette that has the
-/// mixture but for `rounding`: the entry taken is no farther from what the parts' own entries mix to than the right one
-/// is.
+/// How far off a pixel may be whose colour is mixed from others that are off by `parts`, with a palette that has the
+/// mixture up to `rounding`: the entry chosen is no farther from the mixture of the parts' own entries than the right
+/// one is.
 fn nearest_to_mixture(parts: f64, rounding: f64) -> f64 {
     3.0_f64.sqrt() * (rounding + parts) + parts
 }
@@ -233,7 +234,7 @@ fn fog_is_shown_in_its_colours() {
         (scene.fog, scene.background_color) = (Some(fog), Some(haze));
         let mut expected = Vec::new();
         for wall in scene.objects_mut() {
-            // One distance for all of it.
+            // The same distance for all of it.
             wall.angles = [Angle::default(); 3];
             wall.position.z = (random.unit() * 9.0 - 8.0) as f32;
             let level = fog.level(10.0 - f64::from(wall.position.z));
@@ -260,7 +261,7 @@ fn what_shines_through_is_shown_in_its_colours() {
         for (i, mut pane) in walls.into_iter().enumerate() {
             scene.objects_mut()[i].angles = [Angle::default(); 3];
             let wall = &scene.objects()[i];
-            // Before the middle of the wall.
+            // In front of the middle of the wall.
             pane.angles = [Angle::default(); 3];
             (pane.scale, pane.position) = (0.4, wall.position * 0.99 + Vec3::Z * 0.1);
             let opacity = random.within(64, 192) as u8;
@@ -300,14 +301,14 @@ fn colored_light_is_shown_in_its_colours() {
             assert!(matches!(own[..], [Entries::Textures { .. }]));
             assert_eq!(wall.materials[0].ramp, RampChoice::Nearest);
         }
-        // The nearest of a box of 8 in each channel: within half of one.
+        // The nearest of a box of 8 in each channel: within half of that.
         let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), |_| nearest_to_mixture(4.0 + 1.0, rounded(0)));
         tried.add(count);
         tried.worst("off, in 255ths of a channel", worst);
     }
 }
 
-/// The sun behind the eye, mirrored into it: ambient, diffuse and specular light are all full.
+/// The sun is behind the eye and mirrored into it: ambient, diffuse and specular light are all full.
 #[test]
 fn highlights_are_shown_in_their_colours() {
     let mut tried = Tried::new("highlights_are_shown_in_their_colours", 200);
@@ -319,7 +320,7 @@ fn highlights_are_shown_in_their_colours() {
             highlight: [1.0, random.unit() as f32, random.unit() as f32],
             ..random_material(random)
         });
-        // Where it is seen, it is seen straight on.
+        // Where it is visible, it is seen straight on.
         scene.lights_mut()[0] = Light::sun([0.0, 0.0, 1.0]);
         scene.objects_mut()[0].angles = [Angle::default(); 3];
         scene.objects_mut()[0].position = Vec3::Z;
@@ -334,7 +335,7 @@ fn highlights_are_shown_in_their_colours() {
         let made = made(&mut scene);
         let (colors, objects) = shown(&scene);
         assert_eq!(objects[middle], Some(0));
-        // The pixel's centre is half a pixel away from where the light is full; by 8 times the square of that it fades.
+        // The pixel's centre is half a pixel from where the light is full; it fades by 8 times the square of that.
         let allowed = half_a_step(&made.palette, made.entries[0][0]) + 1.0;
         assert!(off(expected, colors[middle]) <= allowed, "{:?}, expected {expected:?}", colors[middle]);
         own.palette = Some(CUBE.clone());
@@ -343,7 +344,7 @@ fn highlights_are_shown_in_their_colours() {
     }
 }
 
-/// What nobody sees of a round is not measured; what is seen later in it is.
+/// What is never visible during a round is not measured; what becomes visible later in it is.
 #[test]
 fn a_round_is_seen_and_not_its_beginning() {
     let mut random = Random::named("round");
@@ -360,7 +361,7 @@ fn a_round_is_seen_and_not_its_beginning() {
     assert!((all - 1.0).abs() < 1e-5);
 }
 
-/// An image of two colours that is far away has their mean, and so has the palette that is made for it.
+/// A distant image of two colours shows their mean, and so the palette made for it contains that.
 #[test]
 fn an_automatic_palette_has_the_colours_of_mipmaps() {
     use mode13h::scene::Shared;
@@ -375,13 +376,13 @@ fn an_automatic_palette_has_the_colours_of_mipmaps() {
         let mean = Rgb::new(128, 128, 0);
         palette[palette.nearest(mean)].distance_squared(mean)
     };
-    // A level of the DAC is 4 units, of which three are off.
+    // A level of the DAC is 4 units, and three channels may be off by one level.
     assert!(farthest(&scene) <= 3 * 16, "{}", farthest(&scene));
     scene.settings.mipmaps = Some(false);
     assert!(farthest(&scene) > 3 * 64 * 64, "{}", farthest(&scene));
 }
 
-/// With a palette of a few colours and no ramps, a material that names a ramp is drawn in the nearest entries, dithered.
+/// With a palette of few colours and no ramps, a material that names a ramp is drawn in the nearest entries, dithered.
 #[test]
 fn a_palette_without_ramps_means_the_nearest_entries_dithered() {
     let mut colors = [Rgb::BLACK; 256];

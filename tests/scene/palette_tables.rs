@@ -1,4 +1,4 @@
-//! Tables made from palettes, against a search through all 256 entries and mixtures in exact fractions.
+//! Tables made from palettes, compared with a search through all 256 entries and mixtures in exact fractions.
 
 use crate::support::tried::Tried;
 use mode13h::palette::{InverseColormap, Lut64K, NearestColors, Palette, Rgb, builtin};
@@ -6,7 +6,7 @@ use mode13h_conformance::Random;
 
 // The oracle
 
-/// The first of the nearest of `colors`: the squares of the three differences, added up.
+/// The first of the nearest of `colors`, by the sum of the squared differences.
 fn naive_nearest(colors: &[Rgb], color: Rgb) -> u8 {
     let square = |a: u8, b: u8| (i32::from(a) - i32::from(b)).pow(2);
     let distance = |c: &Rgb| square(c.r, color.r) + square(c.g, color.g) + square(c.b, color.b);
@@ -14,7 +14,7 @@ fn naive_nearest(colors: &[Rgb], color: Rgb) -> u8 {
     colors.iter().position(|c| distance(c) == least).expect("found") as u8
 }
 
-/// What the card shows: the upper 6 bits, put behind themselves.
+/// What the card shows: the upper 6 bits, with the highest of them repeated below.
 fn shown(color: Rgb) -> Rgb {
     let channel = |v: u8| (v / 4 * 4) + v / 64;
     Rgb::new(channel(color.r), channel(color.g), channel(color.b))
@@ -37,14 +37,14 @@ fn naive_mix(a: Rgb, b: Rgb, share: u8) -> Rgb {
     nearest_255th([channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)])
 }
 
-// What is tried
+// Test cases
 
 fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)
 }
 
-/// The built-in palettes, and such as have little or much in them: one colour, two, twelve over and over,
-/// all of one grey but for a channel, a cluster in a corner with a few far from it, any.
+/// The built-in palettes, and extreme ones: one colour, two, twelve repeated, a single grey except for one channel, a
+/// cluster in a corner with a few far from it, random.
 fn palettes() -> Vec<(String, Palette)> {
     let mut palettes: Vec<_> =
         builtin::ALL.iter().map(|builtin| (builtin.name.to_string(), builtin.palette.clone())).collect();
@@ -70,8 +70,8 @@ fn palettes() -> Vec<(String, Palette)> {
     palettes
 }
 
-/// Every entry of `table` against `expected(high, low)`; the columns of a row with the same colours
-/// cost the oracle one search.
+/// Compares every entry of `table` with `expected(high, low)`; columns of a row that have the same colours cost the
+/// oracle one search.
 #[track_caller]
 fn assert_table(name: &str, table: &Lut64K, expected: impl Fn(u8, u8) -> u8) {
     for high in 0..=255 {
@@ -118,7 +118,7 @@ fn a_search_finds_what_looking_at_all_finds() {
     let mut random = Random::named("search");
     for (name, palette) in palettes() {
         let (colors, search) = (all_shown(&palette), NearestColors::of_shown(&palette));
-        // The corners of the search's boxes and what is beside them, then anything.
+        // The corners of the search's boxes and their neighbours, then random ones.
         let edges: Vec<u8> = (0..8).flat_map(|i| [32 * i, 32 * i + 1, 32 * i + 30, 32 * i + 31]).collect();
         let on_edges = edges.iter().flat_map(|&r| edges.iter().map(move |&g| (r, g)));
         let on_edges = on_edges.flat_map(|(r, g)| edges.iter().map(move |&b| Rgb::new(r, g, b)));
@@ -155,7 +155,7 @@ fn shaded_texels_are_the_nearest_entries() {
     let mut tried = Tried::new("shaded_texels_are_the_nearest_entries", 16);
     let mut random = Random::named("shades");
     for (name, palette) in palettes() {
-        // The same texel colour now and then, as in a texture of few colours.
+        // Repeats texel colours now and then, as in a texture of few colours.
         let few: Vec<Rgb> = (0..20).map(|_| random_color(&mut random)).collect();
         let texels: [Rgb; 256] = core::array::from_fn(|i| few[i * i % 20]);
         let shown = all_shown(&palette);
@@ -211,8 +211,7 @@ fn glass_is_the_nearest_entry_to_the_mixture_or_to_the_sum() {
     }
 }
 
-/// Where an effect has nothing to do it changes no byte, also in a palette that holds every colour many
-/// times.
+/// An effect with nothing to do changes no byte, even in a palette that holds every colour many times.
 #[test]
 fn neutral_rows_and_tables_are_the_identity() {
     for (name, palette) in palettes() {
@@ -286,9 +285,9 @@ fn the_spread_is_the_median_distance_between_neighbours() {
     assert_eq!(InverseColormap::new(builtin::by_name("cube").expect("built in").palette).spread(), 49);
 }
 
-/// Ordered dither by the 64 thresholds of an 8 × 8 matrix, in any order, moved by the spread: the mean of
-/// a block comes nearer to colours between neighbouring entries than the nearest entry does; with nine
-/// times the spread not as near. In palettes whose colours lie closer than 8/255 there is nothing to win.
+/// Ordered dither with the 64 thresholds of an 8 × 8 matrix, in any order, shifted by the spread: the mean of a block
+/// comes closer to colours between neighbouring entries than the nearest entry does; with nine times the spread it does
+/// not. In palettes whose colours are closer than 8/255 there is nothing to gain.
 #[test]
 fn dither_by_the_spread_hits_colours_between_entries() {
     let mut random = Random::named("dither");

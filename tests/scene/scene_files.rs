@@ -1,4 +1,4 @@
-//! Scene files: what they say is what is in the scene, and what is wrong in them is said with its line, column and key.
+//! Scene files: the scene contains what they say, and errors are reported with line, column and key.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,7 +19,7 @@ use crate::support::tried::Tried;
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
 
-/// The files that there are beside the scenes of these tests, in the folder `folder`.
+/// The files beside the scenes of these tests, in the folder `folder`.
 fn open(path: &FilePath) -> io::Result<Box<dyn BufRead>> {
     let files: BTreeMap<&str, &[u8]> = BTreeMap::from([
         ("folder/triangle.obj", TRIANGLE.as_bytes()),
@@ -58,10 +58,10 @@ fn scene(text: &str) -> Scene {
     }
 }
 
-/// A cube, for scenes whose objects are of no interest, in one line.
+/// A cube, for scenes whose objects do not matter, on one line.
 const CUBE: &str = "objects = [{ shape = 'cube' }]\n";
 
-/// Two models of one map, which are read about their own middles: by one pivot they stand as the map has them.
+/// Two models of one map, each read relative to its own centre: with a common pivot they stand as on the map.
 #[test]
 fn a_pivot_is_a_point_of_the_file_even_far_from_0() {
     for (scale, factors) in [("1", Vec3::ONE), ("[1, 2, 3]", Vec3::new(1.0, 2.0, 3.0))] {
@@ -273,7 +273,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog ends no farther than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry lies behind the last"),
         (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),
-        // Names of nothing.
+        // Unknown names.
         (
             list("objects = [{ shape = 'toroid' }]"),
             "1:22: key `objects[0].shape`: \"toroid\": unknown shape; there are ",
@@ -309,7 +309,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             object("materials.iron.ramp = 1"),
             "3:11: key `objects[0].materials.iron`: the object's only material has no ",
         ),
-        // Files that are missing or broken.
+        // Missing or broken files.
         (list("[[objects]]\nmodel = 'none.obj'"), "2:9: key `objects[0].model`: folder/none.obj: entity not found"),
         (
             list("[[objects]]\nmodel = 'broken.obj'"),
@@ -342,7 +342,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             list("[[objects]]\nmodel = 'triangle.obj'\nmaterial.texture = 'none.png'"),
             "3:20: key `objects[0].material.texture`: the object has no texture coordinates",
         ),
-        // What does not go together, or is missing.
+        // Contradictory or missing keys.
         (list(""), "no object: a scene needs at least one [[objects]]"),
         (list("objects = []"), "no object: a scene needs at least one [[objects]]"),
         (list("[[objects]]\nname = 'none'"), "1:1: key `objects[0]`: an object needs a `shape` or a `model`"),
@@ -386,7 +386,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         let Err(error) = loaded(&text) else { panic!("{text} is a scene") };
         let said = error.to_string();
         assert!(!said.contains(char::is_control), "{said:?}");
-        // Behind "12:9: ", or anywhere where the place is of no interest.
+        // After "12:9: ", or anywhere if the position does not matter.
         let said = said.strip_prefix("folder/scene.toml:").expect("the file's name");
         let placed = says.starts_with(|c: char| c.is_ascii_digit());
         if !(if placed { said.starts_with(says) } else { said.contains(says) }) {
@@ -415,7 +415,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     assert_eq!(error.to_string(), "folder/scene.toml: longer than a scene may be, 1 MiB");
     tried.add(1);
 
-    // The same of files.
+    // The same for files.
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("long.toml");
     fs::write(&path, &longest).expect("written");
@@ -438,7 +438,7 @@ fn f3_files_that_are_missing_or_no_files() {
     assert_eq!(said(folder), format!("{}: is a directory", folder.display()));
     tried.add(1);
 
-    // What a scene names lies beside it, wherever the program runs.
+    // Files that a scene names are relative to it, wherever the program runs.
     let path = folder.join("scene.toml");
     fs::write(folder.join("triangle.obj"), TRIANGLE).expect("written");
     fs::write(&path, "[[objects]]\nmodel = 'triangle.obj'").expect("written");
@@ -461,7 +461,7 @@ fn f3_files_that_are_missing_or_no_files() {
     }
 }
 
-/// A scene that has every key.
+/// A scene with every key.
 const EVERYTHING: &str = r##"
 name = "everything"
 duration = 8
@@ -521,7 +521,7 @@ range = 5
 path = { circle = { centre = [0, 1, 0], radius = 2, axis = "z", start = 90 }, rounds = -4 }
 "##;
 
-/// An error counts before a shading.
+/// An error takes precedence over a shading.
 #[test]
 fn accuracy_is_one_choice() {
     let of = |render: &str| scene(&format!("objects = [{{ shape = 'cube' }}]\n[render]\n{render}")).settings.accuracy;
@@ -548,7 +548,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!((camera.up, camera.near), (Vec3::new(0.0, 0.5, 0.0), 0.5));
     assert_eq!(camera.field_of_view.to_radians() as f32, std::f32::consts::FRAC_PI_2);
 
-    // An error counts before a shading.
+    // An error takes precedence over a shading.
     assert_eq!(scene.settings.accuracy, Some(Accuracy::WithinError(2.0)));
     assert_eq!(scene.settings.hidden_surfaces, Some(HiddenSurfaces::ScanLine));
     assert_eq!(scene.settings.mapping, Some(Mapping::Every16));
@@ -583,7 +583,7 @@ fn what_a_file_says_is_what_is_in_the_scene() {
     assert_eq!(range, 5.0);
 }
 
-/// A highlight that only the file asks for has an exponent of 20. One that the file or the model turns off stays off.
+/// A highlight that only the file asks for has an exponent of 20. One that the file or the model disables stays off.
 #[test]
 fn a_shininess_of_0_stays() {
     let of = |object: &str| {
@@ -603,9 +603,9 @@ fn a_shininess_of_0_stays() {
 fn things_move_as_a_file_says() {
     let mut scene = scene(EVERYTHING);
     let near = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} is not {b}");
-    // A quarter of the round of eight seconds.
+    // A quarter of the eight-second duration.
     scene.set_time(2.0);
-    // The eye goes to and fro in half a round: there it is at the far end.
+    // The eye goes back and forth in half the duration: there it is at the far end.
     near(scene.camera.eye, Vec3::new(0.0, 1.0, 5.0));
     near(scene.camera.target, Vec3::new(0.0, 3.0, 0.0));
     // Backwards from (4, 5, 6) to (1, 2, 3).
@@ -618,7 +618,7 @@ fn things_move_as_a_file_says() {
         "{x} {y} {z}"
     );
     assert!((scene.objects()[1].angles[1].to_degrees() - 180.0).abs() < 1e-9);
-    // Four rounds clockwise: after a quarter of the time it is where it began, at the top.
+    // Four rounds clockwise: after a quarter of the time it is back at the start, at the top.
     let lamp = |scene: &Scene| match scene.lights()[1] {
         Light::Lamp { position, .. } => position,
         _ => panic!("a lamp"),
@@ -626,7 +626,7 @@ fn things_move_as_a_file_says() {
     near(lamp(&scene), Vec3::new(0.0, 3.0, 0.0));
     scene.set_time(0.5);
     near(lamp(&scene), Vec3::new(2.0, 1.0, 0.0));
-    // A round later all is as it was.
+    // One round later everything is as it was.
     let (eye, angles) = (scene.camera.eye, scene.objects()[0].angles);
     scene.set_time(8.5);
     near(scene.camera.eye, eye);
@@ -648,7 +648,7 @@ fn what_is_left_out_has_a_default() {
     let torus = &scene.objects()[0];
     assert_eq!((torus.name.as_str(), torus.scale, torus.position), ("torus", 1.0, Vec3::ZERO));
     assert_eq!(scene.picture, 0.0);
-    // It fills nine tenths of the picture's height: of its front, at the depth z, the point that is seen highest.
+    // It fills nine tenths of the picture's height, measured at the highest visible point of its front, at the depth z.
     let reach =
         |p: &Vec3| p.y / ((scene.camera.eye.z - p.z) * (scene.camera.field_of_view.to_radians() as f32 / 2.0).tan());
     let highest = torus.mesh().positions().iter().map(reach).fold(0.0, f32::max);
@@ -659,21 +659,21 @@ fn what_is_left_out_has_a_default() {
 fn a_camera_without_a_place_sees_everything() {
     let text = "objects = [{ shape = 'sphere', positions = [[3, 0, 0], [-1, 0, 0]], scale = 0.5 }]\n";
     let Scene { camera, .. } = scene(text);
-    // Two spheres of radius 1/2 beside each other fill the width: an edge of the view touches the sphere about (3, 0, 0)
-    // where its slope is k, 9/10 of 4/3 of the tangent of 20°, so k · z = 2 + √(1 + k²)/2, but for the mesh's facets.
+    // Two spheres of radius 1/2 side by side fill the width: an edge of the view touches the sphere at (3, 0, 0) where
+    // its slope is k, 9/10 of 4/3 of the tangent of 20°, so k · z = 2 + √(1 + k²)/2, apart from the mesh's facets.
     let k = 1.2 * 20_f32.to_radians().tan();
     let expected = Vec3::new(1.0, 0.0, (2.0 + (1.0 + k * k).sqrt() / 2.0) / k);
     assert!((camera.eye - expected).length() < 2e-2, "{} {expected}", camera.eye);
     assert_eq!((camera.target.x, camera.target.y), (camera.eye.x, camera.eye.y));
-    // One behind the other: the nearer one fills the height.
+    // One behind the other, so the nearer one fills the height.
     let from = scene(&format!("{text}camera.from = [2, 0, 0]")).camera;
     let half = (0.9 * 20_f32.to_radians().tan()).atan();
     let expected = Vec3::new(3.0 + 0.5 / half.sin(), 0.0, 0.0);
     assert!((from.eye - expected).length() < 2e-2, "{} {expected}", from.eye);
-    // A wider view from nearer.
+    // A wider view, from closer.
     let wide = scene(&format!("{text}camera.field-of-view = 90")).camera;
     assert!(wide.eye.z > 0.5 && wide.eye.z < camera.eye.z);
-    // What moves is in the picture wherever it goes.
+    // Moving objects stay in the picture.
     let moving = "objects = [{ shape = 'sphere', path = { line = [[3, 0, 0], [-1, 0, 0]] }, scale = 0.5 }]";
     assert_eq!(scene(moving).camera, camera);
 }
@@ -736,11 +736,11 @@ fn f3_scenes_with_one_byte_changed_are_a_scene_or_one_line() {
             tried.add(1);
         }
     }
-    // In a comment or a name anything may stand.
+    // Comments and names may contain anything.
     assert!(kinds[0] > 1_000 && kinds[1] > 100, "{kinds:?}");
 }
 
-/// What holds of every outcome: an error is one line that begins with the file.
+/// Properties of every outcome: an error is one line that begins with the file's name.
 #[track_caller]
 fn check(result: &Result<Loaded, SceneError>, at: usize) {
     if let Err(error) = result {
@@ -750,7 +750,7 @@ fn check(result: &Result<Loaded, SceneError>, at: usize) {
     }
 }
 
-/// README.md of the scenes, from here on: its table of a part of a scene names every key that the part has.
+/// The scenes' README.md from here on: its table for a part of a scene names every key that the part has.
 #[test]
 fn every_key_is_documented() {
     let readme = include_str!("../../assets/scenes/README.md");
@@ -779,7 +779,7 @@ fn every_key_is_documented() {
     assert!(tried > 50, "{tried} keys");
 }
 
-/// What the documents show as a line of a scene, in a sentence or in a block, is one.
+/// Every line of a scene shown in the documents, in a sentence or in a block, is valid.
 #[test]
 fn keys_in_documents_are_keys_of_scenes() {
     let scenes = include_str!("../../assets/scenes/README.md");
@@ -793,7 +793,7 @@ fn keys_in_documents_are_keys_of_scenes() {
                 language = opened;
                 continue;
             }
-            // In a block of a scene each line; elsewhere what stands between backquotes.
+            // In a block of a scene, each line; elsewhere, what is between backquotes.
             let quoted: Vec<&str> = match language {
                 "toml" => vec![line],
                 "" => line.split('`').skip(1).step_by(2).collect(),
@@ -811,7 +811,7 @@ fn keys_in_documents_are_keys_of_scenes() {
     assert!(tried >= 5, "{tried} keys");
 }
 
-/// The shadings that the document lists are those that there are.
+/// The document lists exactly the existing shadings.
 #[test]
 fn every_shading_is_documented() {
     let row = include_str!("../../assets/scenes/README.md")
@@ -856,7 +856,7 @@ fn textures_repeat_as_often_as_a_scene_says() {
     assert_eq!(texcoords[3], mode13h::glam::Vec2::new(3.0, 0.5));
 }
 
-/// Each angle makes a mesh of its own of a model; the same one is shared.
+/// Each crease angle gives a separate mesh of a model; equal angles share one.
 #[test]
 fn models_have_the_crease_angle_that_is_asked_for() {
     let text = "objects = [{ model = 'bent.obj' }, { model = 'bent.obj', crease = 90 }, { model = 'bent.obj', crease = 89.9 }, \

@@ -1,4 +1,4 @@
-//! The scenes that are compiled in: each loads, has no seam, calls for what it is made to show, and looks as it did.
+//! The compiled-in scenes: each loads, loops seamlessly, calls for what it should show, and looks as it did.
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -42,7 +42,7 @@ impl Shown {
         Self { pixels: vga.pixels().to_vec(), colors: vga.palette().colors().to_vec() }
     }
 
-    /// Colour after colour, as a person sees it.
+    /// Pixel by pixel, the colours that a person sees.
     fn seen(&self) -> impl Iterator<Item = Rgb> {
         self.pixels.iter().map(|&pixel| self.colors[usize::from(pixel)])
     }
@@ -52,7 +52,7 @@ impl Shown {
     }
 }
 
-/// By a fresh renderer.
+/// Drawn by a fresh renderer.
 fn draw(scene: &Scene) -> (Shown, Renderer) {
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     renderer.draw(scene, &mut vga).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
@@ -82,7 +82,7 @@ fn every_scene_loads_and_says_what_it_shows() {
         assert_eq!(scene.name, shipped.name);
         assert!(shipped.text.starts_with("# ") && shipped.shows().len() > 20, "{}: {}", shipped.name, shipped.shows());
         assert!(shipped.shows().ends_with('.') && shipped.shows().len() <= 120, "{}", shipped.shows());
-        // A person who edits it sees lines that fit.
+        // Someone who edits it should see lines that fit.
         assert!(shipped.text.lines().all(|line| line.chars().count() <= 120), "{}", shipped.name);
         let row = format!("alt=\"{0}\"> | **`{0}`** ", shipped.name);
         assert_eq!(readme.matches(&row).count(), 1, "{} in the README", shipped.name);
@@ -97,8 +97,8 @@ fn a_round_has_no_seam_and_something_happens_in_it() {
         let duration = scene.duration;
         assert!(draw_at(&mut scene, duration) == begin, "{}: a seam", shipped.name);
         assert!(draw_at(&mut scene, -2.0 * duration) == begin, "{}: a seam", shipped.name);
-        // The moment before. What has moved by a millionth of its way is rounded to neighbouring shades, two steps of the
-        // DAC apart at most, and to other pixels along edges; colours that go round do so in steps.
+        // The moment before. Anything that has a millionth of its way to go is rounded to neighbouring shades, at most
+        // two steps of the DAC apart, and to other pixels along edges; cycling colours move in steps.
         scene.palette_animation = None;
         let (begin, end) = (draw_at(&mut scene, 0.0), draw_at(&mut scene, duration * (1.0 - 1e-6)));
         let is_apart = |a: Rgb, b: Rgb| a.r.abs_diff(b.r).max(a.g.abs_diff(b.g)).max(a.b.abs_diff(b.b)) > 8;
@@ -110,7 +110,7 @@ fn a_round_has_no_seam_and_something_happens_in_it() {
     }
 }
 
-/// Each scene calls for what it is made to show; of the others at least one does not.
+/// Each scene calls for what it should show; of the others at least one does not.
 #[test]
 fn scenes_call_for_what_they_show() {
     for (name, effect) in [
@@ -184,11 +184,11 @@ fn coarse_faces_lose_the_flash_and_split_ones_do_not() {
 fn a_face_between_two_lamps_shines_in_its_middle() {
     let mut scene = scene("two-lights");
     let shown = draw_at(&mut scene, 0.0);
-    // The middles and the left ends of the upper and of the lower wall.
+    // The middles and the left ends of the upper and lower walls.
     let [coarse, cut_up] = [46, 152].map(|y| (shown.at(24, y), shown.at(160, y)));
     assert!(coarse.1 * 10 > coarse.0 * 9, "above: {coarse:?}");
     assert!(cut_up.1 * 3 < cut_up.0, "below: {cut_up:?}");
-    // Right for both is what pixels are lit by.
+    // For both, right is what lighting every pixel gives.
     scene.settings.accuracy = Some(Shading::Phong.into());
     let shown = draw(&scene).0;
     assert!(shown.at(160, 46).abs_diff(shown.at(160, 152)) <= 3 && shown.at(160, 46) * 3 < shown.at(24, 46));
@@ -228,7 +228,7 @@ fn read(path: &Path) -> Shown {
     Shown { pixels, colors }
 }
 
-/// `MODE13H_PICTURES=write` writes them anew, and fails, so that no run that does so passes.
+/// `MODE13H_PICTURES=write` regenerates them and always fails, so that such a run never passes.
 #[test]
 fn the_pictures_of_the_readme_are_those_that_are_drawn() {
     let mut tried = Tried::new("the_pictures_of_the_readme_are_those_that_are_drawn", 18);

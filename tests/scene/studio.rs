@@ -1,4 +1,4 @@
-//! Light, background and framing of a model that brings none.
+//! Light, background and framing for a model that has none.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ const HEIGHT: usize = 200;
 /// The edges of nine tenths of the picture: first and last column, first and last row.
 const FRAME: [usize; 4] = [16, 303, 10, 189];
 
-/// A model in the studio in the colours that a model file gets.
+/// A model in the studio, in the colours that a model file gets.
 fn shown(object: Object, up: Option<UpAxis>) -> Scene {
     colored(studio(object, up).expect("a model"))
 }
@@ -32,13 +32,13 @@ fn colored(mut scene: Scene) -> Scene {
     scene
 }
 
-/// The mesh in one material of this Kd.
+/// The mesh in a single material with this Kd.
 fn of_color(mesh: Mesh, diffuse: [f32; 3]) -> Object {
     let faces = mesh.triangles().len();
     Object::new(mesh.with_surfaces(vec![Surface { diffuse, ..Surface::default() }], vec![0; faces]).expect("a surface"))
 }
 
-/// A square of side 2 that looks along z.
+/// A square of side 2 that faces along z.
 fn sheet() -> Mesh {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let positions = corners.iter().map(|[x, y]| Vec3::new(*x, *y, 0.0)).collect();
@@ -46,7 +46,7 @@ fn sheet() -> Mesh {
     Mesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh").with_texcoords(texcoords).expect("as many")
 }
 
-/// A box about the origin.
+/// A box around the origin.
 fn block(size: [f32; 3]) -> Mesh {
     let cube = shapes::cube();
     let reach = cube.positions().iter().fold(Vec3::ZERO, |most, p| most.max(p.abs()));
@@ -54,8 +54,8 @@ fn block(size: [f32; 3]) -> Mesh {
     Mesh::new(positions, cube.triangles().to_vec()).expect("a mesh")
 }
 
-/// The colour of each pixel of a frame; `None` where the background is seen. Drawn before two backgrounds: what shows both
-/// is not covered.
+/// The colour of each pixel of a frame; `None` where the background is visible. Drawn over two backgrounds: a pixel
+/// that shows both is not covered.
 fn pixels(scene: &Scene) -> Vec<Option<Rgb>> {
     let (mut scene, mut renderer) = (scene.clone(), Renderer::new());
     let mut draw = |background: u8| {
@@ -71,7 +71,7 @@ fn pixels(scene: &Scene) -> Vec<Option<Rgb>> {
     first.into_iter().zip(second).map(color).collect()
 }
 
-/// First and last column, first and last row that are covered.
+/// First and last covered column, first and last covered row.
 fn reach(pixels: &[Option<Rgb>]) -> [usize; 4] {
     let covered = || pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_some()).map(|(i, _)| i);
     let [columns, rows] =
@@ -87,19 +87,20 @@ fn medians(pixels: &[Option<Rgb>]) -> [f64; 3] {
     })
 }
 
-/// The light on a surface that faces the eye: 2/5 are ambient, 3/5 of a key and a fill at right angles, four to one, which
-/// add up to 1 where both fall fullest.
+/// The light on a surface that faces the eye: 2/5 is ambient, 3/5 comes from a key and a fill light at right angles,
+/// four to one, which add up to 1 where their sum is greatest.
 fn front() -> f64 {
     let unit = |[x, y, z]: [f64; 3]| z / (x * x + y * y + z * z).sqrt();
     let (key, fill) = (unit([0.4, 0.6, 1.0]), unit([-1.0, 0.0, 0.4]));
     0.4 + 0.6 * (key + 0.25 * fill) / (1.0_f64 + 0.25 * 0.25).sqrt()
 }
 
-/// A square that faces the eye is Kd in the light that falls there; with an image it is the image in that light, whatever
-/// grey Kd an exporter put beside it.
+/// A square that faces the eye is Kd times the light there; with an image it is the image in that light, whatever grey
+/// Kd an exporter put beside it.
 ///
-/// The shade is rounded down to an entry of a ramp or a level of a texture's table, and colours to the card's 64 levels,
-/// half a level each: a ramp of all 254 entries and a table of 64 levels are a step of 4 at most. That makes 4 + 2 + 2.
+/// The shade is rounded down to an entry of a ramp or a level of a texture's table, and colours to the card's 64
+/// levels, half a level each: with a ramp of all 254 entries, or a table of 64 levels, a step is at most 4. That makes
+/// 4 + 2 + 2.
 #[test]
 fn a_surface_that_faces_the_eye_shows_its_colour() {
     const OFF: f64 = 8.0;
@@ -125,13 +126,13 @@ fn a_surface_that_faces_the_eye_shows_its_colour() {
         }
         tried.add(1);
     }
-    // A ball has its colour over most of what is seen of it. From far away the median of the light over its disc is 0.81,
-    // summed up on a grid; from nearby less of the dark rim is seen.
+    // A ball shows its colour over most of its visible area. From far away the median of the light over its disc is
+    // 0.81, summed on a grid; from nearby less of the dark rim is visible.
     let [median, ..] = medians(&pixels(&shown(of_color(shapes::sphere(64, 32), [0.64; 3]), None)));
     assert!((0.81 * 0.64 * 255.0 - OFF..=0.64 * 255.0).contains(&median), "{median}");
 }
 
-/// Two images keep the proportion of their Kd, and what has no image keeps its own.
+/// Two images keep the ratio of their Kd, and objects without an image keep their own.
 #[test]
 fn images_are_exposed_together() {
     let mesh = sheet()
@@ -149,8 +150,8 @@ fn images_are_exposed_together() {
     assert!(near(full(&[None, None]), [0.32, 0.64]));
 }
 
-/// Black and white, in a palette of greys and in one that has a blue, stand out from the background at any moment: by 80
-/// in the RGB cube, but for the next of the card's 64 levels, 4 on each channel, to which a ramp may round a shade.
+/// Black and white, in a palette of greys and in one that has a blue, stand out from the background at any moment: by
+/// 80 in the RGB cube, minus the next of the card's 64 levels, 4 on each channel, to which a ramp may round a shade.
 #[test]
 fn black_and_white_stand_out_from_the_background() {
     let mut tried = Tried::new("black_and_white_stand_out_from_the_background", 5 * 12);
@@ -182,11 +183,11 @@ fn black_and_white_stand_out_from_the_background() {
     }
 }
 
-/// A sheet that looks along z, as terrain does with z up, lies on its back, and is seen at any moment of its turn.
+/// A sheet that faces along z, like terrain with z up, is laid on its back, and is visible at any moment of its turn.
 ///
-/// A piece dA of a plane at the distance n from the eye covers f·dA·n / z³ of the picture, f being the product of both focal
-/// lengths and z its depth: at least the square's area times that at its far corner. Pixel centres miss half a pixel along
-/// the outline, which is at most as long as the picture's.
+/// A piece dA of a plane at distance n from the eye covers f·dA·n / z³ of the picture, where f is the product of both
+/// focal lengths and z its depth: at least the square's area times that at its far corner. Pixel centres miss half a
+/// pixel along the outline, which is at most as long as the picture's.
 #[test]
 fn a_sheet_on_its_back_is_seen_from_all_sides() {
     for mesh in [sheet(), flipped(sheet())] {
@@ -206,7 +207,7 @@ fn a_sheet_on_its_back_is_seen_from_all_sides() {
             assert!(covered >= least, "{step}: {covered} of {least}");
         }
     }
-    // What is closed, or looks elsewhere, stays upright; and what was asked for is done.
+    // A closed model, or one that faces elsewhere, stays upright; and explicit requests are honoured.
     for mesh in [block([2.0, 2.0, 0.1]), shapes::wall(1, 1), shapes::teapot(4)] {
         let is_sheet = mesh.triangles().len() == 2;
         let up = studio(Object::new(mesh), None).expect("a model").objects()[0].up_axis;
@@ -215,17 +216,17 @@ fn a_sheet_on_its_back_is_seen_from_all_sides() {
     assert_eq!(shown(of_color(sheet(), [0.8; 3]), Some(UpAxis::Y)).objects()[0].up_axis, UpAxis::Y);
 }
 
-/// A sheet that looks along x shows its front at first, and is not seen edge on.
+/// A sheet that faces along x shows its front first, and is not seen edge-on.
 #[test]
 fn a_sheet_that_looks_sideways_shows_its_front() {
-    // A turn of the axes, so the front stays the front: it looks along x.
+    // A permutation of the axes, so the front stays the front: it faces along x.
     let sheet = sheet();
     let positions = sheet.positions().iter().map(|p| Vec3::new(p.z, p.x, p.y)).collect();
     let sideways = Mesh::new(positions, sheet.triangles().to_vec()).expect("a mesh");
     for (mesh, front) in [(sideways.clone(), Vec3::X), (flipped(sideways), -Vec3::X)] {
         let scene = studio(Object::new(mesh), None).expect("a model");
         let object = &scene.objects()[0];
-        // But for the tilt it looks towards the eye.
+        // Apart from the tilt it faces the eye.
         let Vec3 { x, z, .. } = object.rotation() * front;
         assert!(x.abs() < 1e-6 && z > 0.0, "{front}: {x} {z}");
         let covered = pixels(&scene).iter().flatten().count();
@@ -233,18 +234,18 @@ fn a_sheet_that_looks_sideways_shows_its_front() {
     }
 }
 
-/// The other side out.
+/// The mesh with its other side out.
 fn flipped(mesh: Mesh) -> Mesh {
     let triangles = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
     Mesh::new(mesh.positions().to_vec(), triangles).expect("a mesh")
 }
 
-/// Over a turn a model comes up to the frame of nine tenths on both sides, or above and below, and never beyond it; a low
+/// Over a turn a model reaches the frame of nine tenths on both sides, or above and below, and never exceeds it; a low
 /// one on both sides. A still one does so in its picture.
 ///
-/// The hull at 72 angles may stay short of its farthest by 1 − cos(π / 72) of 144 pixels, 0.14; a pixel is covered where
-/// its centre is. So the outermost column is the frame's or the next one inward. Where the frame runs through a centre, by
-/// rounding in f32, it may be the next one outward.
+/// The hull at 72 angles may fall short of its farthest by 1 − cos(π / 72) of 144 pixels, 0.14; a pixel is covered
+/// where its centre is. So the outermost column is the frame's or the next one inward. If the frame runs through a
+/// centre, f32 rounding may make it the next one outward.
 #[test]
 fn a_model_fills_the_picture_and_is_in_its_middle() {
     let mut tried = Tried::new("a_model_fills_the_picture_and_is_in_its_middle", 6 * 72);

@@ -1,4 +1,4 @@
-//! Textures: from pictures of any size, from files, and those that are compiled in.
+//! Textures: from pictures of any size, from files, and the compiled-in ones.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ fn random_color(random: &mut Random) -> Rgb {
     Rgb::from(random.next_u64() as u32)
 }
 
-/// The colours of a texture as a picture has them: from the top row down.
+/// The colours of a texture in the order of a picture: from the top row down.
 fn picture(texture: &Texture) -> Vec<Rgb> {
     (0..texture.height()).rev().flat_map(|y| (0..texture.width()).map(move |x| texture[(x, y)])).collect()
 }
@@ -30,8 +30,8 @@ fn used_colors(texture: &Texture) -> BTreeSet<Rgb> {
     texture.texels().iter().map(|&texel| texture.colors()[usize::from(texel)]).collect()
 }
 
-/// An image that begins any whole number of images away from where it is drawn looks the same: coordinates are brought back
-/// before they leave what 16.16 holds.
+/// An image shifted by any whole number of images looks the same: coordinates are reduced before they exceed what 16.16
+/// can hold.
 #[test]
 fn images_far_from_their_corner_are_brought_back() {
     let offsets = [1.0, 100.0, 250.0, 257.0, 300.0, 511.0, 513.0, 520.0, 600.0, 1_000.0, 15_000.0];
@@ -71,13 +71,13 @@ fn naive_side(side: u32) -> u32 {
     (0..=8).map(|bits| 1 << bits).min_by(|a, b| ratio(*a).total_cmp(&ratio(*b))).expect("nine powers")
 }
 
-/// How much of texel `i` of `to` lies in pixel `pixel` of `from`, where both rows are from·to long.
+/// How much of texel `i` of `to` lies in pixel `pixel` of `from`, if both rows are from·to long.
 fn overlap(i: u64, to: u64, pixel: u64, from: u64) -> u64 {
     let (start, end) = ((i * from).max(pixel * to), ((i + 1) * from).min((pixel + 1) * to));
     end.saturating_sub(start)
 }
 
-/// The mean over the area of a texel, every pixel of the picture being asked for its part.
+/// The mean over the area of a texel, asking every pixel of the picture for its share.
 fn naive_average(
     pixels: &[Rgb],
     (width, height): (u64, u64),
@@ -110,7 +110,7 @@ fn sides_become_the_nearest_power_of_two() {
     }
 }
 
-/// So small that no colour is left out: what comes out is the mean over each texel's area.
+/// Small enough that no colour is dropped, so the result is the mean over each texel's area.
 #[test]
 fn texels_are_means_over_their_areas() {
     let mut tried = Tried::new("texels_are_means_over_their_areas", 400);
@@ -184,7 +184,7 @@ fn more_colours_are_reduced_and_each_texel_has_the_nearest() {
     assert_eq!(used_colors(&whole.with_colors(0)).len(), 1);
 }
 
-/// The more colours the less error; each is the mean of a part, so one colour is the mean of all.
+/// More colours mean less error; each is the mean of a part, so a single colour is the mean of all.
 #[test]
 fn one_colour_is_the_mean_and_more_are_nearer() {
     let crate_ = "crate".parse::<Texture>().expect("built in");
@@ -242,8 +242,7 @@ fn every_name_has_a_texture_of_its_own() {
     assert!("marble".parse::<Texture>().is_err());
 }
 
-/// Side by side, a wall goes on: over the seam its colours change no more than at the most abrupt line
-/// within.
+/// A wall repeats seamlessly: across the seam its colours change no more than at the most abrupt line within.
 #[test]
 fn walls_repeat_without_a_seam() {
     for name in ["checker", "bricks"] {
@@ -258,7 +257,7 @@ fn walls_repeat_without_a_seam() {
     }
 }
 
-/// What a mirror that faces up a little sees is bright, down a little dark: the horizon.
+/// A mirror that faces up a little shows bright colours, one that faces down dark ones: the horizon.
 #[test]
 fn the_sky_has_a_bright_horizon_over_dark_ground() {
     let sky = "sky".parse::<Texture>().expect("built in");
@@ -267,12 +266,12 @@ fn the_sky_has_a_bright_horizon_over_dark_ground() {
         let (above, below) = (sky[(x, half)], sky[(x, half - 1)]);
         assert!(above.brightness() > 230_000 && below.brightness() < 64_000, "{x}: {above:?} over {below:?}");
     }
-    // Straight up, half way to the top, it is bluest.
+    // Straight up, halfway to the top, it is bluest.
     let up = sky[(sky.width() / 2, half + sky.height() * 45 / 128)];
     assert!(u32::from(up.b) > 2 * u32::from(up.r), "{up:?}");
 }
 
-/// A plain texture leaves a surface as it was: shade s shows what the colour is at s.
+/// A plain texture leaves a surface unchanged: shade s shows the colour at s.
 #[test]
 fn a_plain_texture_has_one_colour() {
     let plain = Texture::plain(Rgb::new(200, 100, 0));
@@ -287,7 +286,7 @@ fn a_plain_texture_has_one_colour() {
 
 // Mipmaps
 
-/// The mean colour of the texels that texel (x, y) of a level stands for, every texel of level 0 being looked at.
+/// The mean colour of the texels that texel (x, y) of a level represents, visiting every texel of level 0.
 fn naive_mean(texture: &Texture, level: u32, (x, y): (u32, u32)) -> Rgb {
     let is_part = |at: u32, side: u32, of: u32| at >> level.min(side.ilog2()) == of;
     let (width, height) = (texture.width(), texture.height());
@@ -301,8 +300,8 @@ fn naive_mean(texture: &Texture, level: u32, (x, y): (u32, u32)) -> Rgb {
     Rgb::new(mean(|c| c.r), mean(|c| c.g), mean(|c| c.b))
 }
 
-/// Every texel of every level has, of all colours that texels have, one that is nearest to the mean; the mean itself
-/// where there is room for all means. Level 0 keeps its texels and their colours.
+/// Every texel of every level has the texel colour nearest to the mean, or the mean itself if there is room for all
+/// means. Level 0 keeps its texels and their colours.
 #[test]
 fn levels_are_means_of_colours() {
     let mut tried = Tried::new("levels_are_means_of_colours", 120);
@@ -351,7 +350,7 @@ fn levels_are_means_of_colours() {
     assert!(exact > 1_000 && matched > 1_000, "{exact} means shown, {matched} matched");
 }
 
-/// A third of a square texture's texels, whatever its size, and no level of one texel.
+/// A third of a square texture's texels, whatever its size, and no level for one texel.
 #[test]
 fn levels_take_a_third_of_the_texels() {
     for bits in 0..=8 {
@@ -404,7 +403,7 @@ mod files {
     #[test]
     fn pngs_of_every_kind_are_read() {
         let directory = tempfile::tempdir().expect("a directory");
-        // What the file is called makes no difference.
+        // The file's name does not matter.
         let path = directory.path().join("texture.jpg");
         let (red, dark) = (Rgb::new(255, 0, 0), Rgb::new(1, 2, 3));
         let grey = [Rgb::new(9, 9, 9), Rgb::new(200, 200, 200)];
@@ -423,8 +422,8 @@ mod files {
         }
     }
 
-    /// Sides of powers of two up to 256: nothing is averaged, and two entries of one colour stay two. Palette animation
-    /// tells them apart.
+    /// Sides of powers of two up to 256: nothing is averaged, and two entries with the same colour stay separate.
+    /// Palette animation distinguishes them.
     #[test]
     fn an_indexed_png_keeps_its_indices_and_a_palette_of_its_own_shows_them() {
         let directory = tempfile::tempdir().expect("a directory");
@@ -439,7 +438,7 @@ mod files {
         own[..4].copy_from_slice(&colors);
         let table = Lut64K::shades(&Palette::from_colors(own), texture.colors());
         assert_eq!([0, 1, 2, 3].map(|texel| table.get(255, texel)), [0, 1, 2, 3]);
-        // Another palette has its nearest, and other sides are averaged.
+        // Another palette gives its nearest entries, and other sides are averaged.
         own.swap(1, 9);
         assert_eq!(Lut64K::shades(&Palette::from_colors(own), texture.colors()).get(255, 1), 3);
         write_png(&path, (3, 1), ColorType::Indexed, BitDepth::Eight, &plte, &[1, 3, 2]);
@@ -470,7 +469,7 @@ mod files {
         for name in ["text.png", "empty.png", "head.png"] {
             fails(name, &|kind| matches!(kind, LoadErrorKind::Picture(_)));
         }
-        // Cut short anywhere it is refused, or read as far as it goes; never a panic.
+        // Truncated anywhere it is refused, or read as far as it goes; never a panic.
         let noise: Vec<u8> = (0..32 * 32 * 3).map(|i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
         write_png(&path("whole.png"), (32, 32), ColorType::Rgb, BitDepth::Eight, &[], &noise);
         let whole = fs::read(path("whole.png")).expect("read");
@@ -482,14 +481,14 @@ mod files {
     }
 }
 
-/// The same picture in every kind of file is the same texture; JPEG is near to it. None is told by a name.
+/// The same picture in every file format is the same texture; JPEG is close to it. No format is detected by name.
 #[test]
 fn every_kind_of_picture_is_read() {
     use std::io::Cursor;
 
     use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, WebP};
 
-    // Few colours, which GIF holds exactly, in large blocks, which JPEG holds nearly.
+    // Few colours, which GIF holds exactly, in large blocks, which JPEG holds almost exactly.
     let picture = image::RgbImage::from_fn(64, 32, |x, y| {
         image::Rgb([if x < 32 { 200 } else { 40 }, if y < 16 { 180 } else { 60 }, if x < 16 { 220 } else { 30 }])
     });
@@ -503,12 +502,12 @@ fn every_kind_of_picture_is_read() {
         assert_eq!(decoded(format), right, "{format:?}");
     }
     let color = |texture: &Texture, i: usize| texture.colors()[usize::from(texture.texels()[i])];
-    // A GIF keeps its own indices, so only its colours are the same.
+    // A GIF has its own indices, so only its colours are the same.
     let gif = decoded(Gif);
     assert!((0..64 * 32).all(|i| color(&gif, i) == color(&right, i)), "Gif");
     let near = decoded(Jpeg);
     let off = (0..64 * 32).map(|i| color(&near, i).distance_squared(color(&right, i))).collect::<Vec<_>>();
-    // Half of the colours' resolution is lost at the blocks' edges, and little elsewhere.
+    // Half of the colour resolution is lost at the blocks' edges, and little elsewhere.
     let share = off.iter().filter(|off| **off > 3 * 12 * 12).count() as f64 / off.len() as f64;
     assert!(share < 0.1, "{share} of the texels are off");
     for broken in [&b"GIF89a"[..], b"\xFF\xD8\xFF\xE0", b"RIFF....WEBP", b"BM", b"nothing", b"", &[0; 18]] {
@@ -517,7 +516,7 @@ fn every_kind_of_picture_is_read() {
     }
 }
 
-/// No picture is decoded to find that it is too large.
+/// No picture is decoded just to find that it is too large.
 #[test]
 fn a_picture_too_large_is_refused_by_its_head() {
     use std::io::Cursor;
@@ -539,7 +538,7 @@ fn a_picture_too_large_is_refused_by_its_head() {
     }
 }
 
-/// What is wrong with a picture is one sentence, whatever its decoder says.
+/// What is wrong with a picture is reported in one sentence, whatever its decoder says.
 #[test]
 fn what_is_wrong_with_a_picture_is_one_sentence() {
     use std::io::Cursor;
@@ -558,7 +557,7 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
             if i % 3 == 0 {
                 bytes.truncate(random.within(0, whole.len() as i64 - 1) as usize);
             } else {
-                // Most faults are told from the head.
+                // Most faults are detected from the header.
                 let most = if i % 3 == 1 { 64.min(whole.len()) } else { whole.len() };
                 bytes[random.within(0, most as i64 - 1) as usize] = random.next_u64() as u8;
             }

@@ -1,8 +1,8 @@
 //! Hard case S7: what a span kernel may do to the machine it runs on, and what the assembly is.
 //!
-//! A trampoline calls the kernel as checkasm does: every register that a callee has to keep holds a
-//! value of its own, every other one rubbish, and so do the upper halves of the arguments' registers.
-//! Kernels that are wrong on purpose show that each fault would be seen.
+//! A trampoline calls the kernel as checkasm does: every callee-saved register holds a distinct value, all others hold
+//! rubbish, and so do the upper halves of the argument registers. Deliberately wrong kernels show that each violation
+//! would be detected.
 
 use crate::support::tried::Tried;
 use iced_x86::{Decoder, DecoderOptions, Formatter, IntelFormatter, Mnemonic};
@@ -24,24 +24,24 @@ mod machine;
 #[path = "abi/i686.rs"]
 mod machine;
 
-/// What the trampoline found when the kernel had returned.
+/// What the trampoline found after the kernel returned.
 #[repr(C)]
 #[derive(Default)]
 pub(crate) struct Seen {
-    /// What the registers hold that a callee has to keep, in the order of [`machine::KEPT`].
+    /// Contents of the callee-saved registers, in the order of [`machine::KEPT`].
     kept: [usize; 6],
     flags: usize,
-    /// How far the stack pointer is from where it was.
+    /// Difference of the stack pointer from before.
     stack_error: usize,
-    /// The words above the arguments, each different from what was put there in some bit.
+    /// Bits in which any of the words above the arguments differs from what was put there.
     stack_guard: usize,
-    /// MXCSR: rounding and exceptions of floating point, whose control bits a callee has to keep.
+    /// MXCSR: rounding and exceptions of floating point, whose control bits a callee must preserve.
     mxcsr_before: u32,
     mxcsr_after: u32,
 }
 
 impl Seen {
-    /// What rule was broken.
+    /// Which rule was broken.
     fn rules(&self) -> Result<(), String> {
         for (i, name) in machine::KEPT.iter().enumerate() {
             if self.kept[i] != kept_value(i) {
@@ -64,7 +64,7 @@ impl Seen {
     }
 }
 
-/// The value with which the trampoline fills the register number `i` of those to keep.
+/// The value with which the trampoline fills callee-saved register number `i`.
 fn kept_value(i: usize) -> usize {
     (0x1357_9BDF_u32 as usize).wrapping_mul(0x0101_0101).wrapping_add(i * 0x1111)
 }
@@ -73,7 +73,7 @@ const DIRECTION_FLAG: usize = 1 << 10;
 const MXCSR_CONTROL: u32 = 0xFFC0;
 const GUARD: usize = 64;
 
-/// Calls `kernel` for one span through the trampoline, `rubbish` in all that it must not read.
+/// Calls `kernel` for one span through the trampoline, with `rubbish` in everything that it must not read.
 fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u64) -> Result<(), String> {
     let mut canvas = vec![0xA5; length + 2 * GUARD];
     let mut seen = Seen::default();
@@ -91,7 +91,7 @@ fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u
 }
 
 #[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
-/// Runs `action` through the trampoline, `rubbish` in all that it must not read.
+/// Runs `action` through the trampoline, with `rubbish` in everything that it must not read.
 fn ran(mut action: impl FnMut(), rubbish: u64) -> Result<(), String> {
     let mut action: &mut dyn FnMut() = &mut action;
     let mut seen = Seen::default();
@@ -107,7 +107,7 @@ fn keeps_the_rules(name: &str, kernel: entry::Entry, shortest: usize) {
         let length = shortest + (random.next_u64() % 321) as usize;
         let bits = random.next_u64();
         let (shade, step) = (bits as u16, (bits >> 16) as u16);
-        // Ones, zeros and noise: each a way to show that an upper half is read.
+        // Ones, zeros and noise, each of which can reveal that an upper half is read.
         let rubbish = [u64::MAX, 0, random.next_u64()][i % 3];
         if let Err(fault) = called(kernel, length, shade, step, rubbish) {
             panic!("{name}: {fault} (shade {shade:#06x} step {step:#06x} length {length} rubbish {rubbish:#x})");
@@ -120,10 +120,10 @@ fn keeps_the_rules(name: &str, kernel: entry::Entry, shortest: usize) {
 /// An instruction of a kernel.
 #[derive(Debug)]
 pub(crate) struct Line {
-    /// From the function's first byte.
+    /// Offset from the function's first byte.
     offset: u64,
     text: String,
-    /// Where it jumps, 0 if it does not.
+    /// Jump target, 0 if it does not jump.
     target: u64,
 }
 
@@ -156,7 +156,7 @@ fn s7_the_unrolled_loop_keeps_the_rules() {
     keeps_the_rules("unrolled", entry::mode13h_span_unrolled_x86_64, 1);
 }
 
-/// The kernels in Rust by way of a shim, which shows what their assembly does not own up to.
+/// The Rust kernels, through a shim that reveals what their assembly does not declare.
 #[test]
 fn s7_every_kernel_keeps_the_rules() {
     #[rustfmt::skip]
@@ -170,8 +170,8 @@ fn s7_every_kernel_keeps_the_rules() {
     }
 }
 
-/// Rows that begin or end with a page whose neighbour may not be touched: guard bytes would not show a
-/// kernel that reads beyond, or writes back what it read there. A fault ends the test program.
+/// Rows that begin or end at a page whose neighbour must not be touched: guard bytes would not reveal a kernel that
+/// reads beyond, or writes back what it read there. A fault ends the test program.
 #[cfg(target_os = "linux")]
 #[test]
 fn s7_no_byte_beside_is_touched() {
@@ -193,7 +193,7 @@ fn s7_no_byte_beside_is_touched() {
     tried.done();
 }
 
-/// Kernels that are wrong in one respect each are caught, for that.
+/// Kernels that are wrong in one respect each are caught for exactly that.
 #[test]
 fn s7_wrong_kernels_are_caught() {
     let mut tried = Tried::new("s7_wrong_kernels_are_caught", machine::WRONG.len() as u64);
@@ -223,7 +223,7 @@ fn s7_the_loop_is_five_instructions() {
     tried.add(four.len() as u64 + 1);
 }
 
-/// The unrolled loop writes eight pixels between two jumps, by the same two instructions.
+/// The unrolled loop writes eight pixels per jump, with the same two instructions.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn s7_the_unrolled_loop_is_the_same_eight_times() {

@@ -9,8 +9,8 @@ const PIXELS: usize = SIDE * SIDE;
 /// Distance to a pixel along each axis beyond which its weight is 0.
 const REACH: usize = 10;
 
-/// Weights of neighbours by the square of their distance: e^(−d² / 2σ²) with σ = 1.5 in units of 2⁻³², by
-/// multiplications of integers, so that every machine has the same.
+/// Weights of neighbours by squared distance: e^(−d² / 2σ²) with σ = 1.5 in units of 2⁻³², computed by integer
+/// multiplications so that every machine gets the same.
 fn weights() -> Vec<u64> {
     // 2³² · e^(−1 / 4.5), rounded.
     const FACTOR: u64 = 3_439_140_958;
@@ -19,11 +19,11 @@ fn weights() -> Vec<u64> {
         .collect()
 }
 
-/// Some pixels of a torus, and how crowded it is about every pixel.
+/// Some pixels of a torus, and how crowded it is around every pixel.
 #[derive(Clone)]
 struct Crowd {
     is_in: Vec<bool>,
-    /// For each pixel the weights of those in the crowd, added up.
+    /// For each pixel the sum of the weights of those in the crowd.
     density: Vec<u64>,
     weights: Vec<u64>,
 }
@@ -59,10 +59,10 @@ impl Crowd {
     }
 }
 
-/// The void-and-cluster method: ranks of all pixels.
+/// Ranks of all pixels by the void-and-cluster method.
 ///
-/// Its third phase, which fills the densest clusters of those that are left, is the second one here: on a torus the
-/// densities of a crowd and of all others add up to the same sum at every pixel.
+/// Its third phase, which fills the densest clusters of the remaining pixels, is the second one here: on a torus the
+/// densities of a crowd and of all other pixels add up to the same sum at every pixel.
 fn void_and_cluster() -> Vec<usize> {
     let mut random = Random::seeded(13, "blue noise");
     let mut crowd = Crowd::new();
@@ -101,7 +101,7 @@ fn mask(pattern: DitherPattern) -> Vec<u8> {
     (0..PIXELS).map(|pixel| pattern.thresholds().row(pixel / SIDE).at(pixel % SIDE)).collect()
 }
 
-/// With `MODE13H_UPDATE=1` the file is written, and the test fails on purpose.
+/// With `MODE13H_UPDATE=1` the file is written, and the test always fails.
 #[test]
 fn the_mask_is_void_and_cluster() {
     // 4,096 ranks on 256 thresholds.
@@ -121,7 +121,7 @@ fn every_threshold_comes_as_often() {
     }
 }
 
-/// The variance of the means over all blocks of `side` × `side`, which wrap around.
+/// The variance of the means of all blocks of `side` × `side`, which wrap around.
 fn variance_of_blocks(values: &[f64], side: usize) -> f64 {
     let mean = values.iter().sum::<f64>() / PIXELS as f64;
     let block = |pixel: usize| {
@@ -133,8 +133,8 @@ fn variance_of_blocks(values: &[f64], side: usize) -> f64 {
     (0..PIXELS).map(|pixel| block(pixel).powi(2)).sum::<f64>() / PIXELS as f64
 }
 
-/// Low frequencies are what a mean over 4 × 4 or 8 × 8 pixels keeps. The mask has less of them than the same thresholds in
-/// any of ten random orders, and so have the pixels below any one threshold.
+/// Low frequencies are what remains in a mean over 4 × 4 or 8 × 8 pixels. The mask has less of them than the same
+/// thresholds in any of ten random orders, and the same holds for the pixels below any one threshold.
 #[test]
 fn its_low_frequencies_are_below_those_of_white_noise() {
     let mask = mask(DitherPattern::BlueNoise);
@@ -161,7 +161,7 @@ fn its_low_frequencies_are_below_those_of_white_noise() {
     }
 }
 
-/// Ordered dither repeats after 8 pixels, blue noise does not: shifted by 8 it has nothing in common with itself.
+/// Ordered dither repeats after 8 pixels, blue noise does not: shifted by 8 it is uncorrelated with itself.
 #[test]
 fn it_has_no_period_of_eight() {
     let correlation = |pattern| {

@@ -1,5 +1,5 @@
-//! Every loop over pixels in every form that this machine has, by the checks of the conformance crate; and for each loop
-//! wrong ones, made on purpose, which the same check has to find out.
+//! Every pixel loop in every form that this machine has, through the checks of the conformance crate; and for each loop
+//! deliberately wrong ones, which the same check must catch.
 
 use crate::support::tried::Tried;
 use mode13h::internals::lanes::LANES;
@@ -25,7 +25,7 @@ use mode13h_conformance::loops::texels::{check_affine, check_lookup, check_persp
 use mode13h_conformance::loops::{self, Cases, Checked};
 use mode13h_conformance::random::seed;
 
-/// All cases there are.
+/// All cases.
 fn full() -> Cases {
     Cases::full(seed())
 }
@@ -40,7 +40,7 @@ fn every_loop_is_its_definition() {
     }
 }
 
-/// A loop that is wrong is found out, by a line that names a pixel, a byte, a cell or a count.
+/// A wrong loop is caught, with a message that names a pixel, a byte, a cell or a count.
 #[track_caller]
 fn assert_caught(fault: &str, checked: Checked) {
     match checked {
@@ -89,7 +89,8 @@ fn wrong_spans_in_16_16_are_caught() {
     assert_caught("the last byte of 255", check_16_16(full(), last));
 }
 
-/// Numerators one beside a multiple of the divisor, where f64 cannot tell the quotient from the whole number, among them.
+/// Including numerators next to a multiple of the divisor, where f64 cannot distinguish the quotient from the whole
+/// number.
 #[test]
 fn c5_quotients_beside_whole_numbers() {
     let mut tried = Tried::new("c5_quotients_beside_whole_numbers", 20_000);
@@ -149,7 +150,7 @@ fn wrong_dithered_spans_are_caught() {
 
 #[test]
 fn the_matrix_is_bayers() {
-    // Each matrix is made of the next smaller: four times its ranks, and 0, 2, 3, 1 more.
+    // Each matrix is made from the next smaller: four times its ranks, plus 0, 2, 3 and 1.
     let mut ranks = vec![vec![0_u32]];
     while ranks.len() < 8 {
         let half = ranks.len();
@@ -195,8 +196,8 @@ fn the_thresholds_are_spread_evenly() {
     }
     let steps: Vec<_> = thresholds.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert_eq!((steps.iter().filter(|step| **step == 4).count(), steps[31]), (62, 3));
-    // Of 8 × 8 pixels as many take the upper byte as the fraction says. The thresholds lie at the middles of
-    // 64 equal parts, or within half a unit, so the share is off by half a part of 4 units at most.
+    // Of 8 × 8 pixels as many take the upper byte as the fraction says. The thresholds are in the middles of 64 equal
+    // parts, or within half a unit, so the share is off by at most half a part of 4 units.
     for fraction in 0..256_u16 {
         let mut upper = 0;
         for y in 0..8 {
@@ -244,7 +245,7 @@ fn only_textures_are_taken() {
     assert_eq!(said, "a texture of 2^9 × 2^1 texels; at most 256 × 256 are possible");
 }
 
-/// Draws with coordinates made by `quotient`.
+/// Draws with coordinates computed by `quotient`.
 fn fill_by(
     quotient: impl Fn(i128, i128) -> i128,
     row: &mut [u8],
@@ -269,7 +270,7 @@ fn wrong_perspective_texels_are_caught() {
         fill_by(|n, d| (n as f64 / d as f64).floor() as i128, row, t, n, dn, d, dd);
     };
     assert_caught("floors of estimates", check_perspective(full(), estimated));
-    // What is right for quotients that are not negative: toward zero, then one correction.
+    // Correct for non-negative quotients: toward zero, then one correction.
     let corrected: Fill = |row, t, n, dn, d, dd| {
         let floor = |n: i128, d: i128| {
             let near = (n as f64 / d as f64) as i128;
@@ -324,7 +325,7 @@ fn wrong_mixtures_are_caught() {
     assert_caught("half the spread is rounded up", check_nearest(full(), up));
 }
 
-/// Every value of a channel at every threshold, beside two others that do not move.
+/// Every value of a channel at every threshold, with two other channels held constant.
 #[test]
 fn every_value_at_every_threshold() {
     let mut tried = Tried::new("every_value_at_every_threshold", 2 * 65_536 * 3);
@@ -352,7 +353,7 @@ fn every_value_at_every_threshold() {
     tried.done();
 }
 
-/// At 128 the nearest mixture; at 127 too, but a value half-way between two levels goes up.
+/// At 128 the nearest mixture; at 127 too, except that a value halfway between two levels goes up.
 #[test]
 fn in_the_middle_it_is_the_nearest_level() {
     let values: Vec<u8> = (0..=255).collect();
@@ -370,7 +371,7 @@ fn in_the_middle_it_is_the_nearest_level() {
         }
     }
     assert_eq!(half_way, [26, 229]); // of 0 and 52, of 203 and 255
-    // And all mixtures, a few million of them in the colours of one plane at a time.
+    // And all mixtures, a few million of them, one plane of colours at a time.
     let mut tried = Tried::new("in_the_middle_it_is_the_nearest_level", 256 * 256);
     for red in 0..=255 {
         let mut row = [0; 256];

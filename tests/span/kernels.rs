@@ -16,12 +16,12 @@ use mode13h_conformance::loops::spans::{check_span, naive_span};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// Bytes before and behind the row that have to stay as they were.
+/// Bytes before and after the row that must not change.
 const GUARD: usize = 64;
-/// Three blocks of 64 less one: at least two of the widest blocks, and every tail.
+/// Three blocks of 64 minus one: at least two of the widest blocks, and every tail.
 const EXHAUSTIVE_LENGTH: usize = 191;
 
-/// A span at an address that lies `alignment` bytes beyond a multiple of 64.
+/// A span whose address is `alignment` bytes after a multiple of 64.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     length: usize,
@@ -31,7 +31,7 @@ struct Case {
 }
 
 impl Case {
-    /// The property: the row's bytes are the definition's, and no other byte has changed.
+    /// The property: the row's bytes match the definition, and no other byte has changed.
     fn check(self, canvas: &mut Canvas, kernel: Kernel) -> Result<(), String> {
         let Self { length, alignment, shade, step } = self;
         check_span(canvas, Shape { length, alignment }, (shade, step), |row, shade, step| kernel.fill(row, shade, step))
@@ -39,11 +39,11 @@ impl Case {
     }
 }
 
-/// Shades and steps at which something changes its sign, carries or is as large as can be.
+/// Shades and steps around which a sign changes or a carry occurs, and the largest ones.
 const EDGES: [u16; 16] =
     [0, 1, 2, 0x7F, 0x80, 0xFF, 0x100, 0x101, 0x7FFF, 0x8000, 0x8001, 0xFEFF, 0xFF00, 0xFF01, 0xFFFE, 0xFFFF];
 
-/// Tries every case on `kernel` and counts them under `test`.
+/// Runs every case on `kernel` and counts them under `test`.
 fn try_all(test: &str, kernel: Kernel, cases: impl Iterator<Item = Case>) {
     let mut tried = Tried::new(format!("{test} {}", kernel.name()), 1);
     let mut canvas = Canvas::new(131_073);
@@ -83,7 +83,7 @@ fn s2_one_pixel(kernel: Kernel) {
     tried.done();
 }
 
-/// S3: from any whole shade to any other within two pixels; 0 to 255 and back among them.
+/// S3: from any whole shade to any other within two pixels, including 0 to 255 and back.
 fn s3_two_pixels(kernel: Kernel) {
     let mut tried = Tried::new(format!("s3_two_pixels {}", kernel.name()), 65_536);
     let mut canvas = Canvas::new(2);
@@ -103,7 +103,7 @@ fn s3_two_pixels(kernel: Kernel) {
     tried.done();
 }
 
-/// S4 in small: starts and steps at random and at the edges, at the length of the long run.
+/// S4 in small: random and extreme starts and steps, at the length of the long run.
 fn s4_starts_and_steps(kernel: Kernel) {
     let mut random = Random::new(4);
     let edges = EDGES.into_iter().flat_map(|shade| EDGES.into_iter().map(move |step| (shade, step)));
@@ -126,14 +126,13 @@ fn s5_lengths_and_alignments(kernel: Kernel) {
 
 /// S6: a row of 320 whose exact slope is just short of a step, rising and falling.
 ///
-/// Unit of all sums: 1/256 shade. With a start rounded toward where the shades come from, and a step
-/// rounded toward zero, a sum lags behind the exact value by less than 1 for the start and less than
-/// 1 for each step: after 319 steps less than 320, which is 1.25 shades; started anew after every 64
-/// pixels, less than 64, which is ¼.
+/// All sums are in units of 1/256 shade. With a start rounded toward where the shades come from, and a step rounded
+/// toward zero, a sum lags behind the exact value by less than 1 for the start and less than 1 for each step: after 319
+/// steps less than 320, which is 1.25 shades; reseeded every 64 pixels, less than 64, which is ¼.
 fn s6_drift(kernel: Kernel) {
     let mut tried = Tried::new(format!("s6_drift {}", kernel.name()), 6 * 6 * 2 * 2 * 320);
     let mut random = Random::new(6);
-    // Slopes numerator/denominator: steps of 0 and ±1, with all the drift that truncation leaves and with none.
+    // Slopes numerator/denominator: steps of 0 and ±1, with the most drift that truncation can cause and with none.
     for denominator in [1_i64, 2, 3, 320, 65_521, (random.next_u64() % 10_000 + 2) as i64] {
         for numerator in [0, 1, denominator - 1, denominator, denominator + 1, 2 * denominator - 1] {
             for direction in [1, -1] {
@@ -172,9 +171,9 @@ fn s6_drift(kernel: Kernel) {
 
 /// S6: rows of shades I and of shades 255 − I add up to 255, pixel by pixel.
 ///
-/// Their sums in 1/256 shade, s and 65,280 − s, do so exactly, since truncation toward zero treats a
-/// slope and its negative alike. The bytes (s + 128) >> 8 then add up to 255, but to 256 where s lies half-way
-/// between two shades, as both are rounded up there.
+/// Their sums in 1/256 shade, s and 65,280 − s, do so exactly, since truncation toward zero treats a slope and its
+/// negative the same way. The bytes (s + 128) >> 8 then add up to 255, or to 256 where s is halfway between two shades,
+/// as both are rounded up there.
 fn s6_complement(kernel: Kernel) {
     let mut tried = Tried::new(format!("s6_complement {}", kernel.name()), 100_000);
     let mut random = Random::new(66);
@@ -202,7 +201,7 @@ fn s6_complement(kernel: Kernel) {
     tried.done();
 }
 
-/// The property on anything, shrunk when it fails.
+/// The property on random spans, shrunk when it fails.
 fn any_span(kernel: Kernel) {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&mode13h_conformance::random::seed().to_le_bytes());
@@ -224,7 +223,7 @@ fn any_span(kernel: Kernel) {
     tried.done();
 }
 
-/// Stamps the tests onto a kernel. One that the machine lacks says so and is done.
+/// Stamps the tests onto a kernel. A kernel that the machine lacks is reported and skipped.
 macro_rules! stamp {
     ($($module:ident: $name:literal,)*) => {
         const STAMPED: &[&str] = &[$($name),*];
@@ -257,7 +256,7 @@ stamp! {
     simd_avx512: "simd-avx512",
 }
 
-/// Every kernel that there is has its tests, and the kernels that must be here are.
+/// Every kernel has its tests, and the kernels that must be available are.
 #[test]
 fn every_kernel_is_tested() {
     let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
@@ -345,11 +344,11 @@ mod long {
     use std::thread;
     use std::time::Instant;
 
-    /// What a thread has found.
+    /// One thread's findings.
     #[derive(Default)]
     struct Found {
         cases: u64,
-        /// Rows that are not as they should be, and the first of them.
+        /// Number of wrong rows, and the first of them.
         wrong: u64,
         first: Option<String>,
     }
@@ -402,7 +401,7 @@ mod long {
         let started = Instant::now();
         on_all_threads(&mut tried, |thread, threads| {
             let mut found = Found::default();
-            // Bytes, so that the compiler sees that no sum below can overflow, and works on many at once.
+            // Bytes, so that the compiler sees that no sum below can overflow, and vectorizes.
             let places: [u8; EXHAUSTIVE_LENGTH] = std::array::from_fn(|k| k as u8);
             let mut definition = [0; EXHAUSTIVE_LENGTH];
             let mut portable = [0; EXHAUSTIVE_LENGTH];
@@ -477,7 +476,7 @@ mod long {
     }
 }
 
-/// Levels that this machine lacks are tried by no test; the line of `.ci/not_tried` names them.
+/// Levels that this machine lacks are not tested; the line of `.ci/not_tried` names them.
 #[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
 #[test]
 fn levels_that_are_missing_are_said() {

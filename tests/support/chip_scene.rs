@@ -1,5 +1,5 @@
-//! A scene for a chip: a cube over a floor that runs under the eye, drawn in bands of rows by the
-//! integer vertex path. The same file draws it on the host, so that the two can be compared.
+//! A scene for a chip: a cube over a floor that extends under the eye, drawn in bands of rows through the integer
+//! vertex path. The same file draws it on the host, so that the two can be compared.
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
@@ -12,7 +12,7 @@ use mode13h::settings::Shading;
 
 pub(crate) const WIDTH: usize = 320;
 pub(crate) const HEIGHT: usize = 200;
-/// Rows that are in memory at a time: 1,280 bytes, and four times that of depths.
+/// Rows in memory at a time: 1,280 bytes, and four times that of depths.
 const BAND: usize = 4;
 
 const fn at(x: i16, y: i16, z: i16) -> Vector {

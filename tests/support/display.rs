@@ -1,5 +1,5 @@
-//! A display for tests that a person can read: triangles are drawn into it with the raster, each
-//! pixel of it may be drawn once only, and what it shows is compared with a picture of characters.
+//! A display for readable tests: triangles are drawn into it with the raster, each of its pixels may be drawn only
+//! once, and what it shows is compared with a picture made of characters.
 
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
@@ -15,8 +15,8 @@ impl Display {
         Self { width, height, marks: vec!['.'; (width * height) as usize] }
     }
 
-    /// Draws a triangle whose corners are in pixels, in the given mark. Fails on a pixel that is
-    /// already drawn, and if the raster's count differs from what it wrote.
+    /// Draws a triangle with corners in pixels, using the given mark. Fails on a pixel that is already drawn, or if the
+    /// raster's count differs from what it wrote.
     #[track_caller]
     pub fn draw(&mut self, mark: char, corners: [(f64, f64); 3]) -> &mut Self {
         let vertices = corners.map(|(x, y)| {

@@ -1,9 +1,9 @@
-//! GIF films as a decoder reads them, put together without a thought for speed.
+//! GIF films as a decoder reads them, put together without regard to speed.
 
 use gif::{ColorOutput, DecodeOptions, DisposalMethod, Repeat};
 use mode13h::palette::Rgb;
 
-/// One image of the file: where it lies, what is to be seen once it is drawn, and for how long.
+/// One image of the file: its rectangle, what is visible once it is drawn, and for how long.
 pub struct Image {
     pub left: usize,
     pub top: usize,
@@ -12,7 +12,7 @@ pub struct Image {
     /// In 1/100 s.
     pub delay: u64,
     pub has_palette: bool,
-    /// How many pixels are left as they were.
+    /// Number of pixels left unchanged.
     pub transparent: usize,
     pub indices: Vec<u8>,
     pub shown: Vec<Rgb>,
@@ -30,7 +30,7 @@ fn colors_of(table: &[u8]) -> Vec<Rgb> {
     table.chunks_exact(3).map(|color| Rgb::new(color[0], color[1], color[2])).collect()
 }
 
-/// Reads a film that goes round for ever, whose images stay.
+/// Reads a film that repeats forever, and whose images stay.
 pub fn decode(file: &[u8]) -> Decoded {
     assert!(file.starts_with(b"GIF89a") && file.ends_with(&[0x3B]));
     let mut options = DecodeOptions::new();

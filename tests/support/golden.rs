@@ -29,8 +29,8 @@ impl Indexed {
     }
 }
 
-/// Compares the frame that each kernel draws with the golden one, `tests/golden/<name>.png`. Returns the
-/// pictures to look at: of frames that differ, or that were written anew.
+/// Compares the frame that each kernel draws with the golden one, `tests/golden/<name>.png`. Returns the pictures to
+/// look at, of frames that differ or were regenerated.
 pub fn check(name: &str, tried: &mut Tried, mut frame: impl FnMut(Kernel) -> Indexed) -> Vec<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("{name}.png"));
     if std::env::var_os("MODE13H_WRITE_GOLDEN").is_some() {

@@ -7,14 +7,14 @@ use mode13h::settings::HiddenSurfaces;
 
 use mode13h_conformance::oracle;
 
-/// A frame, the triangles that the raster got for it, and how often each pixel is covered by them.
+/// A frame, the triangles that the raster got for it, and how often they cover each pixel.
 pub struct Judged {
     pub triangles: Vec<([Vertex; 3], Interpolation)>,
     pub counts: Vec<u32>,
     pub stats: Stats,
 }
 
-/// Draws a scene, and compares its bytes with what the oracle makes of the triangles that the raster got.
+/// Draws a scene, and compares its bytes with the oracle's for the triangles that the raster got.
 pub fn judged(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Judged {
     let mut triangles = Vec::new();
     let stats = renderer

@@ -1,16 +1,16 @@
-//! Faces that the near plane cuts, and the shades of their cuts.
+//! Faces cut by the near plane, and the shades of the cuts.
 
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
 
-/// A normal that a sun along z lights with `intensity`.
+/// A normal that gets `intensity` from a sun along z.
 pub fn normal(intensity: f64) -> Vec3 {
     Vec3::new(f64::sqrt(1.0 - intensity * intensity) as f32, 0.0, intensity as f32)
 }
 
-/// The same scene under a sun along z, on a background of its own.
+/// The same scene under a sun along z, with a separate background.
 pub fn lit(mut scene: Scene) -> Scene {
     scene.objects_mut()[0].materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::default() }];
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));
@@ -18,9 +18,10 @@ pub fn lit(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Every corner of what is drawn that lies on the near plane is a corner of the face, or the point where one of its edges
-/// meets the plane, with the shade that is linear along that edge, to so many of its 256ths. The eye is at the origin and
-/// looks along −z, 1 radian high, the near plane at ¼. Returns how many are such points.
+/// Checks that every corner drawn on the near plane is a corner of the face, or the point where one of its edges meets
+/// the plane, with the shade that is linear along that edge, to this many of its 256ths. The eye is at the origin and
+/// looks along −z, with a field of view of 1 radian vertically and the near plane at ¼. Returns the number of such
+/// points.
 pub fn cuts_on_the_near_plane(
     renderer: &mut Renderer,
     scene: &Scene,
@@ -31,7 +32,7 @@ pub fn cuts_on_the_near_plane(
     let fy = 100.0 / f64::tan(0.5);
     let fx = fy * 6.0 / 5.0;
     let near = f64::from(0.25_f32);
-    // x, y and shade of what may lie on the near plane.
+    // x, y and shade of what may be on the near plane.
     let mut points = Vec::new();
     for i in 0..3 {
         let [a, b] = [corners[i], corners[(i + 1) % 3]].map(|p| p.to_array().map(f64::from));
@@ -50,7 +51,7 @@ pub fn cuts_on_the_near_plane(
     let is_dark = parts.iter().all(|v| v.shade().to_bits() == 0);
     for v in parts.iter().filter(|v| v.depth() == 1 << 30 && !is_dark) {
         let (x, y) = (f64::from(v.x().to_bits()) / 256.0, f64::from(v.y().to_bits()) / 256.0);
-        // Rounded to half of 1/256 pixel; what coordinates of up to 2 units are off by is less than that, on either path.
+        // Rounded to half of 1/256 pixel; the error of coordinates of up to 2 units is less than that, on either path.
         let is_there = |&(px, py, shade): &(f64, f64, f64)| {
             (px - x).abs() <= 0.01
                 && (py - y).abs() <= 0.01

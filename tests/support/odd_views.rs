@@ -12,8 +12,8 @@ use super::scenes::framed;
 use super::tried::Tried;
 use mode13h_conformance::Random;
 
-/// C4: fields of view from 1° to 179°, the eye inside a torus, on a vertex or a face of it, or anywhere near; in one light
-/// to three, of any direction and strength, on screens of any size.
+/// C4: fields of view from 1° to 179°, the eye inside a torus, on one of its vertices or faces, or anywhere near; with
+/// one to three lights of any direction and strength, on screens of any size.
 pub fn odd_views(mut tried: Tried, path: VertexPath) {
     let mut random = Random::named("c4");
     let mesh = shapes::torus(16, 8);
@@ -32,7 +32,7 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
         scene.clear_lights();
         for toward in &toward[..random.within(1, 3) as usize] {
             let strength = random.one_of(&[-0.5, 0.3, 1.0, 3.0]);
-            // Integers know no lamps.
+            // The integer path has no lamps.
             scene.add_light(match path == VertexPath::Float && random.below(2) == 0 {
                 true => Light::lamp(*toward, 0.2 + 3.0 * random.unit() as f32).with_intensity(strength),
                 false => Light::sun(*toward).with_intensity(strength),

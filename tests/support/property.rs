@@ -1,5 +1,4 @@
-//! Properties over random values, shrunk by proptest, with the cases counted and the seed that of all
-//! other tests.
+//! Properties over random values, shrunk by proptest, with the cases counted and the same seed as all other tests.
 
 use std::cell::Cell;
 
@@ -9,7 +8,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRu
 use super::tried::Tried;
 use mode13h_conformance::random::seed;
 
-/// Tries `property` on values of `strategy`: as many as `tried` states, or proptest's number of cases
+/// Tests `property` on values of `strategy`: as many as `tried` states, or proptest's number of cases
 /// (`PROPTEST_CASES`, 256) if that is more.
 pub fn property<S: Strategy>(mut tried: Tried, strategy: S, property: impl Fn(S::Value) -> Result<(), TestCaseError>) {
     let mut bytes = [0; 32];

@@ -1,4 +1,4 @@
-//! Small scenes, each of which calls for something.
+//! Small scenes, each of which calls for some effect.
 
 use std::sync::LazyLock;
 
@@ -13,8 +13,8 @@ use mode13h::texture::Texture;
 
 use mode13h_conformance::Random;
 
-/// A mesh that does not turn, in the middle, seen straight on by a camera that frames its sphere, under one sun: however
-/// it is turned it is in the picture.
+/// A still mesh in the centre, seen straight on by a camera that frames its bounding sphere, under one sun: it is in
+/// the picture however it is rotated.
 pub fn framed(mesh: impl Into<Shared<Mesh>>) -> Scene {
     let object = Object::new(mesh).centred();
     let mut scene = Scene::new();
@@ -24,7 +24,7 @@ pub fn framed(mesh: impl Into<Shared<Mesh>>) -> Scene {
     scene
 }
 
-/// A scene with one shape, turned a little.
+/// A scene with one shape, rotated a little.
 pub fn showing(shape: &str) -> Scene {
     let mut scene = framed(shapes::by_name(shape).expect("listed"));
     scene.name = shape.to_string();
@@ -41,7 +41,7 @@ fn material(scene: &mut Scene, object: usize) -> &mut Material {
     &mut scene.objects_mut()[object].materials[0]
 }
 
-/// A floor that goes far away, on which an image is repeated so many times each way.
+/// A floor that extends far away, with an image repeated this many times each way.
 pub fn floor(image: &str, times: f32) -> Scene {
     let wall = shapes::wall(12, 12);
     let repeated = wall.texcoords().expect("a wall has some").iter().map(|uv| *uv * times).collect();
@@ -56,7 +56,7 @@ pub fn floor(image: &str, times: f32) -> Scene {
     scene
 }
 
-/// A wall close to the eye with a lamp before it.
+/// A wall close to the eye with a lamp in front of it.
 fn lamp_on_wall(slices: u32) -> Scene {
     let mut scene = Scene::new();
     scene.add(Object::new(shapes::wall(slices, slices)).named("wall"));
@@ -65,7 +65,7 @@ fn lamp_on_wall(slices: u32) -> Scene {
     scene
 }
 
-/// A scene of a few bodies, some of which may reach behind the eye, under lights of both kinds.
+/// A scene of a few objects, some of which may extend behind the eye, under both kinds of lights.
 pub fn random(random: &mut Random) -> Scene {
     let mut scene = Scene::new();
     let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
@@ -95,8 +95,8 @@ pub fn random(random: &mut Random) -> Scene {
     scene
 }
 
-/// Objects that hang from each other; a child of an object that was removed; and hidden ones before the rest, one by itself
-/// and one by its parent. Not among [`all`], as 16.16 knows no parents.
+/// Objects with parents; a child of an object that was removed; and hidden ones before the rest, one by itself and one
+/// through its parent. Not in [`all`], as 16.16 does not support parents.
 pub fn parents() -> Scene {
     let mut scene = showing("torus");
     let torus = scene.object_ids()[0];
@@ -117,7 +117,7 @@ pub fn parents() -> Scene {
     scene
 }
 
-/// Every scene under its name, those that are shipped too; together they call for every effect. They are loaded once.
+/// Every scene with its name, including the shipped ones; together they call for every effect. They are loaded once.
 pub fn all() -> Vec<(String, Scene)> {
     static ALL: LazyLock<Vec<(String, Scene)>> = LazyLock::new(|| {
         small().into_iter().map(|(name, scene)| (name.to_string(), scene)).chain(super::shipped::scenes()).collect()

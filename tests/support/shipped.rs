@@ -1,10 +1,10 @@
-//! The scenes that are compiled in.
+//! The compiled-in scenes.
 
 use mode13h::scene::Scene;
 use mode13h_assets::auto_palette;
 use mode13h_assets::shipped;
 
-/// Every shipped scene under its name, with its palette, at two fifths of its time.
+/// Every shipped scene with its name and palette, at two fifths of its duration.
 pub fn scenes() -> impl Iterator<Item = (String, Scene)> {
     shipped::ALL.iter().map(|shipped| {
         let mut scene = shipped.load().expect("a scene that loads").scene;

@@ -15,12 +15,12 @@ pub fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
     .expect("inside the guard band")
 }
 
-/// The ends of an edge along (dx, dy), or a whole part of it, that passes a point as closely as an edge can: the point and
-/// the two span twice the area `side`, in square units, 1 or −1.
+/// The ends of an edge along (dx, dy), or a whole fraction of it, that passes a point as closely as an edge can: the
+/// point and the two ends span twice the area `side`, in square units, 1 or −1.
 pub fn edge_beside((x, y): (i64, i64), (dx, dy): (i64, i64), side: i64) -> [(i64, i64); 2] {
     let (divisor, v, u) = euclid(dx, dy);
     let (dx, dy) = (dx / divisor, dy / divisor);
-    // dx·v − dy·u = `side`, also of what is a whole edge further on.
+    // dx·v − dy·u = `side`, also for points a whole edge further on.
     let (u, v) = (-u * side, v * side);
     let (u, v) = if v * dy.signum() < 0 { (u + dx, v + dy) } else { (u, v) };
     let a = (x - u, y - v);
@@ -57,7 +57,7 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     };
     let (a, mut b, mut c) = (place(), place(), place());
     if (3..6).contains(&kind) {
-        // A sliver: c lies on a–b but for a few units.
+        // A sliver: c is within a few units of a–b.
         let t = random.unit();
         c = (a.0 + ((b.0 - a.0) as f64 * t) as i64, a.1 + ((b.1 - a.1) as f64 * t) as i64);
         c.0 = (c.0 + random.within(-3, 3)).clamp(-BAND, BAND);

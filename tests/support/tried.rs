@@ -1,8 +1,8 @@
-//! The table of how many cases each test tried, and the worst that it saw: no case, or fewer than stated,
-//! is a failure.
+//! The table of how many cases each test tried, and the worst values it saw: no cases, or fewer than stated, is a
+//! failure.
 //!
-//! A test's row is printed, and kept in the target directory as `tmp/tried/<test>`, so that
-//! `cat target/tmp/tried/*` is the table of all of them; `.ci/tried_table` makes Markdown of it.
+//! A test's row is printed, and stored in the target directory as `tmp/tried/<test>`, so that `cat target/tmp/tried/*`
+//! is the table of all of them; `.ci/tried_table` turns it into Markdown.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ pub struct Tried {
     test: String,
     stated: u64,
     cases: u64,
-    /// What was measured, and the greatest value.
+    /// Measures, each with its greatest value.
     worst: Vec<(&'static str, f64)>,
 }
 
@@ -33,19 +33,19 @@ impl Tried {
         self.cases
     }
 
-    /// `cases` more have been tried.
+    /// Counts `cases` more.
     pub fn add(&mut self, cases: u64) {
         self.cases += cases;
     }
 
-    /// Whether there are stated cases left to try; counts the next one if so.
+    /// Returns whether there are stated cases left to try; counts the next one if so.
     pub fn more(&mut self) -> bool {
         let more = self.cases < self.stated;
         self.cases += u64::from(more);
         more
     }
 
-    /// `measure` came to `value` in a case: the report says the greatest of its values.
+    /// Records a value of `measure`: the report gives the greatest.
     pub fn worst(&mut self, measure: &'static str, value: f64) {
         assert!(!value.is_nan(), "{}: {measure} is not a number", self.test);
         match self.worst.iter_mut().find(|(name, _)| *name == measure) {
@@ -59,7 +59,7 @@ impl Tried {
 }
 
 impl Drop for Tried {
-    /// Prints and keeps the row; that of a test that fails says so.
+    /// Prints and stores the row; for a test that fails, it says so.
     ///
     /// # Panics
     /// If no case was tried, or fewer than stated.
@@ -87,8 +87,8 @@ impl Drop for Tried {
     }
 }
 
-/// Whether a level or a tool is there, as the caller has found out. What is not is named in the line of `.ci/not_tried`: a
-/// test that then leaves something out is not silent.
+/// Returns whether a level or a tool is available, as determined by the caller. Missing ones are named in the line of
+/// `.ci/not_tried`, so that a test that skips something is not silent.
 pub fn is_here(what: &str, here: bool) -> bool {
     let missing = Path::new(env!("CARGO_TARGET_TMPDIR")).join("not_tried");
     let file = missing.join(what);

@@ -1,4 +1,4 @@
-//! Where the files of the project are.
+//! Where the project's files are.
 
 use std::path::Path;
 

@@ -37,7 +37,8 @@ fn draw(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Vec<u8> {
     vga.pixels().to_vec()
 }
 
-/// No pixel is beyond, beside what the rounding of vertices explains. Returns the greatest error as a ratio to its budget.
+/// Checks that no pixel exceeds the budget, apart from what vertex rounding explains. Returns the greatest error as a
+/// ratio to its budget.
 fn check(tried: &mut Tried, name: &str, scene: &Scene, budgets: &[f32]) -> f64 {
     let worst = worst(scene, SCREEN, budgets);
     assert!(worst.beyond <= 0.0, "{name}: {worst}");
@@ -57,7 +58,7 @@ fn every_scene_is_within_its_budget() {
     check(&mut tried, "parents", &scenes::parents(), &BUDGETS);
 }
 
-/// Bodies that reach behind the eye, lamps inside of them, and whatever else comes.
+/// Objects that extend behind the eye, lamps inside them, and more.
 #[test]
 fn random_scenes_are_within_their_budgets() {
     let mut tried = Tried::new("random_scenes_are_within_their_budgets", 500_000);
@@ -68,8 +69,8 @@ fn random_scenes_are_within_their_budgets() {
     }
 }
 
-/// Light beyond what the palette shows is cut off, within faces too: on a wall in glaring light of a lamp, along a circle.
-/// That is bounded for every pixel.
+/// Light beyond what the palette can show is clamped, within faces too: here along a circle, on a wall in the glare of
+/// a lamp. The bound covers that at every pixel.
 #[test]
 fn what_is_cut_off_within_a_face_is_within_the_budget() {
     let mut tried = Tried::new("what_is_cut_off_within_a_face_is_within_the_budget", 200_000);
@@ -85,7 +86,8 @@ fn what_is_cut_off_within_a_face_is_within_the_budget() {
     }
 }
 
-/// Matt bodies in one sun: what is said of faces that lie partly in the dark is a bound, too, and holds for every pixel.
+/// Matt objects under one sun: the statement about faces that lie partly in the dark is a bound, too, and holds for
+/// every pixel.
 #[test]
 fn in_one_sun_no_pixel_is_beyond() {
     let mut tried = Tried::new("in_one_sun_no_pixel_is_beyond", 1_000_000);
@@ -105,8 +107,8 @@ fn in_one_sun_no_pixel_is_beyond() {
     }
 }
 
-/// A sun that takes light away from what is lit evenly: where it begins shades bend as where one gives light, and below
-/// the first shade they are cut off.
+/// A sun with negative light on an evenly lit scene: where it begins, shades bend as they do where one adds light, and
+/// below the first shade they are clamped.
 #[test]
 fn light_that_is_taken_away_is_within_the_budget() {
     let mut tried = Tried::new("light_that_is_taken_away_is_within_the_budget", 3_000_000);
@@ -135,8 +137,8 @@ fn light_that_is_taken_away_is_within_the_budget() {
     }
 }
 
-/// A body of few, large faces near the eye, in one light or two, some with highlights, some in colour: most lie partly in the dark or are
-/// seen at a slant.
+/// An object with few, large faces near the eye, under one or two lights, some with highlights, some in colour: most
+/// faces lie partly in the dark or are seen at a slant.
 fn large_faces(random: &mut Random) -> Scene {
     let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
     let slices = between(3.0, 14.0) as u32;
@@ -171,7 +173,8 @@ fn large_faces(random: &mut Random) -> Scene {
     scene
 }
 
-/// Where light is quadratic on the screen no pixel at all is beyond: what is said of a face is a bound.
+/// Where light is quadratic on the screen not a single pixel exceeds the budget: what is stated about a face is a
+/// bound.
 #[test]
 fn faces_that_are_quadratic_are_within() {
     let mut tried = Tried::new("faces_that_are_quadratic_are_within", 1_000_000);
@@ -195,7 +198,7 @@ fn faces_that_are_quadratic_are_within() {
             let errors = ErrorMap::new(&truth, &look(within(max_error), &scene)).expect("of one size");
             let here = errors.errors().zip(lit.errors()).enumerate();
             let pairs = here.filter_map(|(place, (error, lit))| Some((place, error?, lit?)));
-            // At a corner seen edge on, where light at the pixel itself is off as vertices are rounded, nothing is said.
+            // Nothing is promised at a corner seen edge-on, where vertex rounding shifts the light at the pixel itself.
             let (sure, not): (Vec<_>, Vec<_>) = pairs.partition(|(.., lit)| *lit <= 1.0);
             assert!(not.len() <= 5, "scene {i}: {not:?}: {scene:?}");
             for (place, error, _) in sure {
@@ -210,7 +213,7 @@ fn faces_that_are_quadratic_are_within() {
     println!("{quadratic} of 240 have such faces");
 }
 
-/// Whether each pixel is drawn, found out on two backgrounds, and how often any is covered.
+/// Which pixels are drawn, found by drawing over two backgrounds, and the drawing's statistics.
 fn cover(mut renderer: Renderer, scene: &Scene) -> (Vec<bool>, Stats) {
     let mut on = |background: u8| {
         let mut scene = scene.clone();
@@ -223,8 +226,8 @@ fn cover(mut renderer: Renderer, scene: &Scene) -> (Vec<bool>, Stats) {
     (one.iter().zip(&other).map(|(one, other)| one == other).collect(), stats)
 }
 
-/// Faces that are shaded by different shadings meet as those of one: on the very frame in which they are mixed each pixel is
-/// drawn that is drawn without a budget, and no other, each is covered as often, and shows the same face.
+/// Faces with different shadings join as neatly as faces with the same one: in the very frame that mixes them, exactly
+/// the pixels are drawn that are drawn without a budget, each is covered as often, and shows the same face.
 #[test]
 fn r12_neighbours_on_different_shadings_leave_no_crack() {
     let mut tried = Tried::new("r12_neighbours_on_different_shadings_leave_no_crack", 60);
@@ -259,7 +262,7 @@ fn r12_neighbours_on_different_shadings_leave_no_crack() {
     assert!(mixed > 20 && pixels > 100_000 && transparent < 5, "{mixed} frames of several shadings, {pixels} pixels");
 }
 
-/// Every triangle that is drawn got a shading; of an object without light, and where there is one shading, its own.
+/// Every triangle drawn was counted under a shading: under its own if the object is unlit or the shading is fixed.
 #[test]
 fn shares_are_of_all_triangles() {
     for (name, scene) in scenes::all() {
@@ -275,7 +278,7 @@ fn shares_are_of_all_triangles() {
     }
 }
 
-/// A renderer that has drawn gives the frames of a new one, whatever changes in between.
+/// A renderer that has drawn before gives the frames of a new one, whatever changes in between.
 #[test]
 fn a_kept_renderer_decides_as_a_fresh_one() {
     let mut tried = Tried::new("a_kept_renderer_decides_as_a_fresh_one", 200);
@@ -291,7 +294,7 @@ fn a_kept_renderer_decides_as_a_fresh_one() {
             if change == 4 {
                 scene.objects_mut()[0].rotate_y(Angle::from_radians(0.3));
             }
-            // The eye alone moves: what bodies are off by is known still.
+            // Only the eye moves, so the objects' error bounds remain known.
             if change > 5 {
                 scene.camera.eye += 0.2;
             }
@@ -306,7 +309,7 @@ fn a_kept_renderer_decides_as_a_fresh_one() {
     }
 }
 
-/// Wider budgets never take more pixels that are lit each for itself.
+/// Wider budgets never light more pixels individually.
 #[test]
 fn a_wider_budget_lights_fewer_pixels() {
     for (name, scene) in scenes::all() {
@@ -331,7 +334,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(3.0));
     assert_eq!(renderer.settings.accuracy.replace(Accuracy::WithinError(5.0)), None);
     assert_eq!(drawn_by(&renderer), Accuracy::WithinError(5.0));
-    // A shading comes in the place of a budget, and is told so.
+    // A fixed shading replaces a budget, and is reported as such.
     assert_eq!(renderer.settings.accuracy.replace(Shading::Phong.into()), Some(Accuracy::WithinError(5.0)));
     assert_eq!(drawn_by(&renderer), Accuracy::Shading(Shading::Phong));
     let stats = renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
@@ -342,7 +345,7 @@ fn the_budget_is_the_renderers_or_the_scenes() {
     }
 }
 
-/// A pace chooses the errors by the times that it is told, and nothing else: a frame has the bytes of its error.
+/// A pace chooses the errors only by the times it is told: a frame has the bytes of its error.
 #[test]
 fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
     let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
@@ -371,7 +374,7 @@ fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
     let mixed = errors_of(&mut scene, None, |error| if error < 4.0 { 9_000 } else { 2_000 });
     assert_eq!(mixed[59], (4.0, true));
     assert_eq!(errors_of(&mut scene, Some(3.0), |_| 9_000)[59], (3.0, false));
-    // Frames that stay as they were are told apart: a picture that stands still is refined.
+    // Unchanged frames are recognized: a still picture is refined.
     let (mut renderer, mut vga, mut drawn) = (Renderer::new(), Vga::new(), 0);
     let mut pace = Pace::new(Duration::from_millis(5));
     for _ in 0..60 {
@@ -384,7 +387,7 @@ fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
     assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));
 }
 
-/// An error that no renderer accepts is refused when a frame is drawn, and nothing panics before.
+/// An error that no renderer accepts is rejected when a frame is drawn, and nothing panics before that.
 #[test]
 fn a_pace_of_odd_numbers_never_panics() {
     let scene = crate::support::scenes::framed(shapes::cube());
@@ -416,7 +419,7 @@ fn integers_know_no_budget() {
     assert_eq!(renderer.plan().objects()[0].max_error(), None);
 }
 
-/// Each approximation of light at every pixel is counted under a name of its own, and the plan says it once.
+/// Each approximation of light at every pixel is counted under its own name, and the plan mentions it once.
 #[test]
 fn approximations_are_counted_apart() {
     let mut counts = FaceShading::ALL.map(|shading| (shading, 0));
@@ -438,7 +441,7 @@ fn approximations_are_counted_apart() {
     assert!(SampleSpacing::ALL.into_iter().any(|spacing| drawn(FaceShading::PhongEvery(spacing))), "{counts:?}");
 }
 
-/// The plan names the budget and what came of it.
+/// The plan names the budget and its outcome.
 #[test]
 fn the_plan_says_who_got_what() {
     let scene = crate::support::scenes::framed(shapes::torus(24, 12));

@@ -1,7 +1,7 @@
-//! The error budget's promise, for every pixel: random legal scenes, each built like a hole that a bound once had.
+//! The error budget's promise, for every pixel: random valid scenes, each kind built like a gap that a bound once had.
 //!
-//! A pixel is beyond if it is farther than E from the truth in f64 (or than what rounding to a byte takes, if that is more),
-//! beside what the rounding of vertices explains ([`Truth::rounding_shift`]).
+//! A pixel exceeds the budget E if it is farther than E from the f64 truth (or farther than rounding to a byte takes,
+//! if that is more), apart from what vertex rounding explains ([`Truth::rounding_shift`]).
 
 use core::f64::consts::FRAC_PI_2;
 use core::fmt;
@@ -23,23 +23,23 @@ use mode13h_lab::truth::{ErrorMap, Screen, Shown, Standard, Truth};
 
 const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.75];
 
-/// Error of light at the pixel itself: a half, 1/512 of the vertices' shades, and 1/100 of f32.
+/// Rounding error of light at the pixel itself: half a shade, 1/512 from the vertices' shades, and 1/100 from f32.
 const LIT: f64 = 0.52;
 
-/// The kinds of scenes: one for each hole, and one that mixes all.
+/// The kinds of scenes: one for each gap, and one that mixes all.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Kind {
-    /// A lamp that is close to a face compared with the face's edge.
+    /// A lamp whose distance from a face is small compared with the face's edges.
     CloseLamp,
-    /// Light that is cut off at 1 inside of a face whose corners are dim.
+    /// Light that is clamped at 1 inside a face with dim corners.
     CutInside,
     /// An eye that is nearer to the inside of a face than to its corners, and a highlight.
     CloseEye,
-    /// Coloured light that gives and takes away.
+    /// Coloured lights, some of them negative.
     Colors,
-    /// A highlight of a shininess from 1 to 2 whose edge crosses faces.
+    /// A highlight with a shininess from 1 to 2 whose edge crosses faces.
     BroadHighlight,
-    /// A dim lamp whose whole effect lies between the corners, and between samples.
+    /// A dim lamp whose entire effect lies between the corners, and between samples.
     DimLamp,
     /// Small highlights of near lamps, seen from afar.
     Telephoto,
@@ -49,7 +49,7 @@ enum Kind {
     SpotEdge,
     /// Everything.
     Mixed,
-    /// Everything, moved, turned and grown as one, on a body that hangs from another.
+    /// Everything, moved, rotated and scaled together, on an object with a parent.
     Placed,
 }
 
@@ -69,7 +69,7 @@ impl Kind {
     ];
 }
 
-/// The numbers that a scene is made of, 0 to 1 each: what a search may change one by one.
+/// The numbers that a scene is built from, each 0 to 1, which a search may change one by one.
 #[derive(Clone, Debug)]
 struct Genes {
     values: Vec<f64>,
@@ -92,7 +92,7 @@ impl Genes {
         low + (high - low) * self.unit()
     }
 
-    /// Each power of ten as likely as any other.
+    /// A number whose logarithm is uniform.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.unit())
     }
@@ -105,7 +105,7 @@ impl Genes {
         self.unit() < share
     }
 
-    /// Some of the numbers drawn again, or changed a little.
+    /// A copy with some numbers redrawn or changed slightly.
     fn mutated(&self, random: &mut Random) -> Self {
         let mut genes = Self { values: self.values.clone(), next: 0 };
         for _ in 0..random.within(1, 4) {
@@ -119,7 +119,7 @@ impl Genes {
     }
 }
 
-/// A triangle with any normals on the side that faces +z.
+/// A triangle with random normals on the side that faces +z.
 fn patch(genes: &mut Genes) -> Mesh {
     let positions: Vec<Vec3> = (0..3).map(|_| genes.vector() * Vec3::new(1.0, 1.0, 0.1)).collect();
     let spread = genes.log(0.01, 2.0) as f32;
@@ -129,7 +129,7 @@ fn patch(genes: &mut Genes) -> Mesh {
     Mesh::with_normals(positions, normals, vec![triangle]).unwrap_or_else(|_| shapes::wall(1, 1))
 }
 
-/// A mesh of 1 to some 5,000 faces, and the length of its edges, about.
+/// A mesh of 1 to about 5,000 faces, and the approximate length of its edges.
 fn mesh(genes: &mut Genes, flat: bool) -> (Mesh, f32) {
     let (kind, fine) = (genes.unit(), genes.log(1.0, 50.0) as u32);
     if flat || kind < 0.35 {
@@ -146,7 +146,7 @@ fn mesh(genes: &mut Genes, flat: bool) -> (Mesh, f32) {
     }
 }
 
-/// A point of the mesh's surface, in the middle of a face or anywhere on one, and the normal there.
+/// A point on the mesh's surface, in the middle of a face or anywhere on one, with its normal.
 fn place_on(mesh: &Mesh, genes: &mut Genes) -> (Vec3, Vec3) {
     let triangle = mesh.triangles()[(genes.unit() * mesh.triangles().len() as f64) as usize];
     let corners = triangle.map(|i| mesh.positions()[i as usize]);
@@ -162,7 +162,7 @@ fn colored(genes: &mut Genes, low: f64) -> [f32; 3] {
     [0.0; 3].map(|_| genes.between(low, 1.0) as f32)
 }
 
-/// The object's faces on two materials or three, in patches that part clusters or leave them whole.
+/// The object's faces on two or three materials, in patches that split clusters or leave them whole.
 fn with_materials(object: &Object, genes: &mut Genes) -> Object {
     let (count, length) = (genes.between(2.0, 4.0) as usize, genes.log(1.0, 40.0) as usize);
     let of_face = |face: usize| (face / length % count) as u16;
@@ -223,7 +223,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
         _ => genes.log(1e-2, 100.0).max(if mixed { 0.0 } else { 0.3 }),
     } as f32
         * edge;
-    // The picture holds from a part of an edge to some edges.
+    // The picture shows from part of an edge to several edges.
     let seen = if is(Kind::BroadHighlight) { 2.2 } else { genes.log(0.3, 6.0) * f64::from(edge) };
     let angle = 2.0 * (seen / 2.0 / f64::from(distance)).atan();
     let to_eye = (normal + genes.vector() * 0.5).normalize_or(Vec3::Z);
@@ -231,7 +231,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     scene.camera.eye = at + to_eye * distance;
     scene.camera.near = distance / 64.0;
     scene.camera.field_of_view = Angle::from_degrees(angle.to_degrees().clamp(1.0, 120.0));
-    // From there light is mirrored into the eye.
+    // Direction from which light is mirrored into the eye.
     let mirrored = normal * (2.0 * normal.dot(to_eye)) - to_eye;
     let lights = match kind {
         Kind::Several | Kind::Colors | Kind::Telephoto => genes.between(2.0, 5.0) as usize,
@@ -258,7 +258,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
             let towards = if shiny && i == 0 { mirrored } else { on.1 };
             let (from, range) = (on.0 + towards * height, genes.log(0.3, 30.0) as f32 * edge.max(height));
             if is(Kind::SpotEdge) || (mixed && genes.chance(0.5)) {
-                // Its edge is near the point, whatever its angles.
+                // Its edge passes near the point, whatever its angles.
                 let aside = towards.cross(genes.vector()).normalize_or(Vec3::X);
                 let angle = genes.log(0.3, 89.0).to_radians();
                 let direction = aside * angle.sin() as f32 - towards * angle.cos() as f32;
@@ -283,7 +283,7 @@ fn scene(kind: Kind, genes: &mut Genes) -> Scene {
     if is(Kind::Placed) { placed(&scene, edge, genes) } else { scene }
 }
 
-/// The scene moved, turned and grown as one: its body hangs from another, which gives it its turn and place.
+/// The scene moved, rotated and scaled as a whole: its object gets a parent, which provides the rotation and position.
 fn placed(scene: &Scene, edge: f32, genes: &mut Genes) -> Scene {
     let angles = [0.0; 3].map(|_| genes.between(0.0, core::f64::consts::TAU));
     let [x, y, z] = angles.map(|angle| angle as f32);
@@ -323,11 +323,11 @@ fn look(renderer: Renderer, scene: &Scene, screen: Screen) -> Shown {
     Probe::new(renderer).look(scene, screen).expect("a legal scene")
 }
 
-/// The pixel that is farthest beyond any of the budgets: by how much, the budget and the place.
+/// The pixel that exceeds any of the budgets most: by how much, the budget and the position.
 #[derive(Clone, Copy)]
 pub(crate) struct Worst {
     pub(crate) beyond: f64,
-    /// The greatest error of any pixel as a ratio to its budget.
+    /// The greatest ratio of a pixel's error to its budget.
     pub(crate) ratio: f64,
     budget: f32,
     place: (u32, u32),
@@ -358,7 +358,7 @@ pub(crate) fn worst(scene: &Scene, screen: Screen, budgets: &[f32]) -> Worst {
             worst.pixels += 1;
             let place = (place as u32 % screen.width, place as u32 / screen.width);
             let allowed = f64::from(budget).max(LIT);
-            // It takes long, and matters only where it could change one of the two.
+            // Slow, and relevant only where it could change one of the two.
             let shift = if error - allowed > worst.beyond || error > allowed * worst.ratio {
                 truth.rounding_shift(right.face, place.0, place.1).unwrap_or_default()
             } else {
@@ -379,7 +379,7 @@ fn screen(random: &mut Random) -> Screen {
     Screen { width, height, ..Screen::MODE_13H }
 }
 
-/// Checks a number of scenes of a kind: no pixel is beyond its budget.
+/// Checks a number of scenes of one kind: no pixel exceeds its budget.
 fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
     let mut broken = 0;
     let mut first = None;
@@ -433,7 +433,7 @@ holes! {
     no_pixel_is_beyond_wherever_a_scene_is_placed: Placed, 60;
 }
 
-/// Near planes as near as the plan says that they may be, and up to 16 times as far: the promise holds from there on.
+/// Near planes as close as the plan allows, and up to 16 times as far: the promise holds from there on.
 #[test]
 fn no_pixel_is_beyond_from_the_nearest_near_plane_on() {
     let count = std::env::var("MODE13H_SCENES").map_or(90, |count| count.parse().expect("a number"));
@@ -462,7 +462,7 @@ fn no_pixel_is_beyond_from_the_nearest_near_plane_on() {
     assert!(broken.is_empty(), "{} of {count} scenes: {broken:#?}", broken.len());
 }
 
-/// Climbs from random scenes towards the worst pixel.
+/// Climbs from random scenes toward the worst pixel.
 #[test]
 #[ignore = "the long run: 100,000 scenes"]
 fn climbing_towards_the_worst_finds_no_pixel_beyond() {
@@ -499,7 +499,7 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
     }
 }
 
-/// The shipped scenes, all round, at sizes that nobody has. What does not move is seen from all sides.
+/// The shipped scenes over their whole duration, at unusual sizes. Still scenes are viewed from all sides.
 #[test]
 #[ignore = "the long run: 18 scenes, 12 poses, two sizes"]
 fn no_pixel_of_a_turn_is_beyond() {
@@ -523,8 +523,8 @@ fn no_pixel_of_a_turn_is_beyond() {
     }
 }
 
-/// A lamp so far away that the square of its distance is no f32, and scenes whose coordinates have no squares in f32, too
-/// great or too small.
+/// A lamp so far away that its squared distance overflows f32, and scenes whose coordinates are too large or too small
+/// for their squares to fit f32.
 #[test]
 fn no_pixel_is_beyond_at_any_size() {
     let mut tried = Tried::new("no_pixel_is_beyond_at_any_size", 10_000);
@@ -549,8 +549,9 @@ fn no_pixel_is_beyond_at_any_size() {
     }
 }
 
-/// Two frames that searches found: a sliver at the silhouette of the teapot, whose linear shade rounded vertices move by
-/// half a shade, and a sphere in a broad highlight. Both are beyond within one shade by no more than that.
+/// Two frames that searches found: a sliver at the silhouette of the teapot, whose linear shade is shifted by half a
+/// shade by vertex rounding, and a sphere in a broad highlight. With a budget of one shade both exceed it by no more
+/// than that.
 #[test]
 fn what_is_beyond_is_what_rounded_vertices_move() {
     let (_, mut teapot) = shipped::scenes().find(|(name, _)| name == "scene teapot").expect("shipped");

@@ -1,4 +1,4 @@
-//! The account of a pixel against the frame that it is of, and against the definitions.
+//! The explanation of a pixel compared with its frame, and with the definitions.
 
 use crate::support::scenes;
 use crate::support::triangles;
@@ -32,7 +32,7 @@ fn explain(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> Pixel {
     explain::pixel(renderer, scene, SCREEN, x, y).expect("a pixel of a legal scene")
 }
 
-/// Pixels worth asking for: some anywhere, and some with a face, found in a frame.
+/// Pixels worth asking about: some anywhere, and some that show a face in the frame.
 fn some_pixels(bytes: &[u8], background: u8, count: usize, random: &mut Random) -> Vec<(u32, u32)> {
     let covered: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] != background).collect();
     (0..count)
@@ -47,7 +47,7 @@ fn some_pixels(bytes: &[u8], background: u8, count: usize, random: &mut Random) 
         .collect()
 }
 
-/// That what the account says of the front face is what the definitions say. Returns whether there was anything to say.
+/// Checks that the explanation of the front face matches the definitions. Returns whether there was anything to check.
 fn check_front(pixel: &Pixel, what: &str) -> bool {
     let Some((face, seen)) = pixel.front() else {
         assert_eq!(pixel.byte, pixel.background, "{what}");
@@ -85,7 +85,7 @@ fn check_front(pixel: &Pixel, what: &str) -> bool {
     true
 }
 
-/// A fraction in its lowest terms.
+/// A fraction in lowest terms.
 fn reduced(n: i128, d: i128) -> (i128, i128) {
     let (mut a, mut b) = (n.abs(), d);
     while b != 0 {
@@ -94,7 +94,7 @@ fn reduced(n: i128, d: i128) -> (i128, i128) {
     (n / a, d / a)
 }
 
-/// An account of shades from corners against the definition of the shading.
+/// Checks an explanation of shades from corners against the definition of the shading.
 fn check_account(shade_trace: &ShadeTrace, face: &explain::FaceHere, exact_cover: bool, x: i32, y: i32, what: &str) {
     let shades = Shades::of_vertices(&face.corners, face.interpolation);
     let byte = if exact_cover {
@@ -121,7 +121,7 @@ fn check_account(shade_trace: &ShadeTrace, face: &explain::FaceHere, exact_cover
     }
 }
 
-/// What an account ends with is the frame's byte: every scene by every shading, pixels here and there.
+/// An explanation ends with the frame's byte: every scene with every shading, at scattered pixels.
 #[test]
 fn an_account_ends_with_the_byte_of_the_frame() {
     let mut random = Random::new(0x5EED);
@@ -148,7 +148,7 @@ fn an_account_ends_with_the_byte_of_the_frame() {
     assert!(all > scenes::all().len() * 50 && with_face * 2 > all, "{with_face} of {all}");
 }
 
-/// The same for every way to hidden surfaces and both vertex paths.
+/// The same for every hidden-surface method and both vertex paths.
 #[test]
 fn an_account_follows_the_way_to_hidden_surfaces() {
     let mut random = Random::new(0x5EED);
@@ -179,11 +179,11 @@ fn an_account_follows_the_way_to_hidden_surfaces() {
             }
         }
     }
-    // The shipped scenes, which are files, have most of the overlaps.
+    // The shipped scenes, which are files, provide most of the overlaps.
     assert!(losers > 300, "{losers}");
 }
 
-/// The frames after an account are those without it.
+/// Frames drawn after an explanation are those drawn without it.
 #[test]
 fn an_account_leaves_the_renderer_as_it_was() {
     let mut scene = scenes::showing("torus");
@@ -196,8 +196,8 @@ fn an_account_leaves_the_renderer_as_it_was() {
     }
 }
 
-/// A square of two triangles, its corners on these pixels, seen straight on from a distance at which a unit is a pixel down
-/// and 6/5 of one across.
+/// A square of two triangles with its corners on these pixels, seen straight on from a distance at which a unit is one
+/// pixel down and 6/5 pixel across.
 fn square(x: [f32; 2], y: [f32; 2]) -> Scene {
     let at = |x: f32, y: f32| Vec3::new((x - 160.0) / 1.2, 100.0 - y, 0.0);
     let corners = vec![at(x[0], y[0]), at(x[0], y[1]), at(x[1], y[1]), at(x[1], y[0])];
@@ -210,8 +210,8 @@ fn square(x: [f32; 2], y: [f32; 2]) -> Scene {
     scene
 }
 
-/// Corners on whole pixels, so that the diagonal runs through centres: those are the right triangle's, whose left edge it
-/// is, and the other says that they are not its own. Every value by hand.
+/// Corners on whole pixels, so that the diagonal runs through centres: those belong to the right triangle, whose left
+/// edge it is, and the other one reports that they are not its own. Every value is computed by hand.
 #[test]
 fn a_tie_on_a_shared_edge_is_the_left_edges() {
     let scene = square([100.0, 132.0], [60.0, 92.0]);
@@ -222,7 +222,7 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
         let (lower, upper) = (&pixel.faces[0], &pixel.faces[1]);
         assert_eq!((lower.triangle, lower.fate), (Some(0), Fate::NotItsEdge), "{pixel}");
         assert_eq!((upper.triangle, upper.fate), (Some(1), Fate::Seen), "{pixel}");
-        // Clockwise from the upper left corner: to the right, down, and back along the diagonal.
+        // Clockwise from the upper left corner: right, down, and back along the diagonal.
         let corners = upper.corners.map(|corner| (corner.x().to_bits(), corner.y().to_bits()));
         assert_eq!(corners, [(100, 60), (132, 60), (132, 92)].map(|(x, y)| (x * 256, y * 256)));
         let edges = upper.edges(pixel.x, pixel.y);
@@ -235,11 +235,11 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
         // Full light on the default ramp.
         assert_eq!(pixel.byte, 255, "{pixel}");
     }
-    // Just outside on each side, by the upper edge and the left one, which are the square's, and just inside.
+    // Just outside each side, where the upper and the left edge belong to the square, and just inside.
     for (x, y, is_in) in [(99, 70, false), (100, 70, true), (110, 59, false), (110, 60, true), (132, 70, false)] {
         assert_eq!(!explain(renderer, &scene, x, y).seen.is_empty(), is_in, "({x}, {y})");
     }
-    // With corners on centres a row and a column are the square's, and one of each is not.
+    // With corners on centres, one row and one column belong to the square, and the opposite ones do not.
     let scene = square([100.5, 132.5], [60.5, 92.5]);
     for (x, y, is_in) in [(100, 60, true), (110, 60, true), (100, 70, true), (132, 70, false), (110, 92, false)] {
         let pixel = explain(renderer, &scene, x, y);
@@ -249,7 +249,8 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
     }
 }
 
-/// Within a budget a face is named by what shaded it: light at the pixel, between pixels of its row, or at six points.
+/// Within a budget a face is described by what shaded it: light at the pixel, between pixels of its row, or at six
+/// points.
 #[test]
 fn faces_within_a_budget_are_named_by_what_shaded_them() {
     let mut named = [0; 3];
@@ -274,7 +275,7 @@ fn faces_within_a_budget_are_named_by_what_shaded_them() {
     assert!(named[0] > 0 && named[2] > 0, "{named:?}");
 }
 
-/// Faces with the same corners are named each by its own number, whichever of them is seen.
+/// Faces with the same corners are each named by their own number, whichever of them is visible.
 #[test]
 fn faces_with_the_same_corners_keep_their_own_numbers() {
     let scene = square([100.0, 132.0], [60.0, 92.0]);
@@ -300,8 +301,8 @@ fn faces_with_the_same_corners_keep_their_own_numbers() {
     }
 }
 
-/// Every pixel of a long row, in which spans are reseeded, by every shading; and of two bodies in one place, whose depths
-/// are equal everywhere, by every hidden-surface method.
+/// Every pixel of a long row, in which spans are reseeded, with every shading; and of two coincident objects, whose
+/// depths are equal everywhere, with every hidden-surface method.
 #[test]
 fn every_pixel_of_a_long_row_and_of_equal_depths() {
     let mut scene = square([8.0, 312.0], [40.0, 160.0]);
@@ -340,7 +341,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
     }
 }
 
-/// The triangle that is named is the one that truth finds, and the shade as far from it as the shading may be.
+/// The triangle named is the one that the truth finds, and the shade is as close to it as the shading promises.
 #[test]
 fn the_face_and_the_errors_are_those_against_the_truth() {
     let mut random = Random::named("explain truth");
@@ -354,13 +355,13 @@ fn the_face_and_the_errors_are_those_against_the_truth() {
             let pixel = explain(&mut renderer, &scene, x, y);
             let (Some((face, seen)), Some(right)) = (pixel.front(), truth.at(x, y)) else { continue };
             if (Some(right.face.triangle), right.face.object) != (face.triangle, face.object) {
-                // Two that meet in depth at an edge, at most.
+                // At most two that meet in depth at an edge.
                 assert!(pixel.faces.iter().any(|other| other.triangle == Some(right.face.triangle)), "{pixel}");
                 continue;
             }
             let gouraud = seen.against.iter().find(|a| a.standard == Standard::Gouraud).expect("a ramp of 256");
             assert_eq!(gouraud.shades[0], 255.0 * right.intensity[0]);
-            // What the shading promises, a rounding of each corner's shade, and f32 before it.
+            // The shading's promise, the rounding of each corner's shade, and f32 before that.
             assert!(gouraud.error.abs() <= bound + 1.0 / 512.0 + 0.01, "{pixel}");
             compared += 1;
         }
@@ -368,7 +369,7 @@ fn the_face_and_the_errors_are_those_against_the_truth() {
     }
 }
 
-/// A row of the frame is what single pixels say.
+/// A row of the frame agrees with the explanations of its pixels.
 #[test]
 fn a_row_is_its_pixels() {
     let scene = scenes::showing("cone");
@@ -387,13 +388,13 @@ fn a_row_is_its_pixels() {
         assert_eq!(column.drawn.map(|shade| PixelStage::Shade(shade as u8)), Some(seen.stages[0]));
         for against in &seen.against {
             let shades = if against.standard == Standard::Lit { column.lit } else { column.gouraud };
-            // The mean of three alike, and 255 times it, in another order: some roundings of f64.
+            // The mean of three equal values, and 255 times it, in another order: a few roundings of f64.
             let mean = against.shades.iter().sum::<f64>() / 3.0;
             assert!((shades.expect("the same face") - mean).abs() < 1e-12 * 255.0);
         }
     }
     assert!(with_face > 50);
-    // The slope of 10, 30, 40, nothing.
+    // The slope of 10, 30, 40 and nothing.
     let columns = [10.0, 30.0, 40.0].map(|drawn| Column { drawn: Some(drawn), ..Column::default() });
     let row = explain::Row { y: 0, columns: [columns.as_slice(), &[Column::default()]].concat() };
     assert_eq!(row.slope(|column| column.drawn), [None, Some(15.0), None, None]);
@@ -405,7 +406,7 @@ fn the_short_form_fits_beside_a_picture() {
     let scene = square([100.0, 132.0], [60.0, 92.0]);
     let pixel = explain(&mut Renderer::new(), &scene, 110, 65);
     let lines = ["(110, 65) byte 255 #ffffff", "square, triangle 1", "gouraud-8.8-reseeded"];
-    // The sun is straight on, so that all shades are 255.0, with the half 0xff80. The row begins on the diagonal.
+    // The sun is straight ahead, so all shades are 255.0, or 0xff80 with the half. The row begins on the diagonal.
     let sums = ["ff80 at 105 + 5 x +0.000 = ff80", "off gouraud +0.00, lit +0.00"];
     assert_eq!(pixel.lines(40), [lines.as_slice(), sums.as_slice()].concat());
     assert_eq!(pixel.lines(6)[1], "square");
@@ -429,7 +430,7 @@ fn what_is_not_in_the_frame_is_refused() {
     assert_eq!(explain::pixel(&mut Renderer::new(), &scene, none, 0, 0).expect_err("none"), ExplainError::Screen);
 }
 
-/// The shadings whose loop keeps a sum, and how many bits of it are its fraction.
+/// The shadings whose loop has a running sum, and the number of fraction bits in it.
 const LOOPS: [(Interpolation, u32); 4] = [
     (Interpolation::Gouraud, 8),
     (Interpolation::GouraudReseeded, 8),
@@ -437,8 +438,8 @@ const LOOPS: [(Interpolation, u32); 4] = [
     (Interpolation::GouraudVintage, 8),
 ];
 
-/// Walks over a triangle as the loop would: what it writes, by its registers alone. Every stretch of it begins with what
-/// the walk says and goes on by additions.
+/// Walks over a triangle as the loop would, writing from its registers alone. Every stretch starts with what the walk
+/// says and continues by addition.
 fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
     let mask = if bits == 8 { 0xFFFF } else { 0xFF_FFFF };
     let mut left = None;
@@ -454,7 +455,7 @@ fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
                 let sums = [registers.edi, registers.eax & mask, registers.ebx & mask, registers.cx];
                 assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
             }
-            // The loop begins: in a new row, or 64 pixels on.
+            // The loop starts: in a new row, or 64 pixels on.
             None => assert!(step.x == step.start && (step.column == 0 || step.column.is_multiple_of(64)), "{what}"),
         }
         at = (registers.edi, registers.eax, registers.ebx);
@@ -475,7 +476,7 @@ fn a_walk_writes_what_the_raster_does() {
         let triangle = triangles::triangle(&mut random, 320, 200);
         for ((interpolation, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
             let what = format!("triangle {i} by {interpolation:?}: {triangle:?}");
-            // Whatever a byte is, one of the two frames shows that it was written.
+            // Whatever the byte, one of the two frames shows that it was written.
             let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, interpolation, 320, 200, None, empty));
             let walk = Walk::new(&triangle, interpolation, interpolation.has_exact_cover(), SCREEN);
             let mut walked = vec![None; 64_000];
@@ -531,8 +532,8 @@ fn what_keeps_no_sum_has_no_registers() {
     }
 }
 
-/// The level of a texel is the one that is chosen: taken from far and near rows of a floor, it rises with the distance, and
-/// of an image without levels there is none.
+/// The level of a texel is the one that was chosen: over far and near rows of a floor it rises with distance, and an
+/// image without levels has none.
 #[test]
 fn the_level_of_a_texel_is_named() {
     let scene = scenes::floor("bricks", 24.0);

@@ -1,7 +1,7 @@
-//! Hard case F5 in the normal run: all corpora, and every crash a fuzzer found, through the properties that the fuzz
-//! targets check; the same with each file cut short, repeated and damaged.
+//! Hard case F5 in the normal run: all corpora, and every crash that a fuzzer found, through the properties that the
+//! fuzz targets check; the same with each file truncated, repeated and damaged.
 //!
-//! The fuzzers themselves are run by `.ci/fuzz`.
+//! `.ci/fuzz` runs the fuzzers themselves.
 
 mod counted;
 #[expect(unreachable_pub, reason = "the fuzz package shares it")]
@@ -27,7 +27,7 @@ fn corpus(property: &str) -> Vec<(PathBuf, Vec<u8>)> {
     paths.into_iter().map(|path| (path.clone(), fs::read(path).expect("a file"))).collect()
 }
 
-/// Checks, and on a failure says of which bytes.
+/// Runs a check, and on failure says on which bytes.
 fn check(check: fn(&[u8]), of: &Path, bytes: &[u8]) {
     if let Err(panic) = catch_unwind(AssertUnwindSafe(|| check(bytes))) {
         println!("{}:\n{:?}\n{bytes:?}", of.display(), String::from_utf8_lossy(bytes));
@@ -48,13 +48,13 @@ fn f5_every_file_of_every_corpus() {
     }
 }
 
-/// A file that breaks off anywhere, as one does whose copying was interrupted.
+/// Files truncated anywhere, as after an interrupted copy.
 #[test]
 fn f5_files_cut_short_at_every_byte() {
     let mut tried = Tried::new("f5_files_cut_short_at_every_byte", 4_500);
     for (name, property) in PROPERTIES {
         for (path, bytes) in corpus(name) {
-            // Of a long file every byte at its end and some before it.
+            // In a long file, every byte at the end and some before it.
             let step = bytes.len() / 200 + 1;
             let lengths = (0..bytes.len()).filter(|at| at % step == 0 || at + 20 > bytes.len());
             for length in lengths {
@@ -65,7 +65,7 @@ fn f5_files_cut_short_at_every_byte() {
     }
 }
 
-/// A few random changes: bytes, numbers, pieces of other files, pieces left out, pieces repeated.
+/// A few random changes: bytes, numbers, pieces of other files, pieces removed, pieces repeated.
 #[test]
 fn f5_damaged_files() {
     let mut tried = Tried::new("f5_damaged_files", 10_000);
@@ -114,14 +114,14 @@ fn damage(bytes: &mut Vec<u8>, files: &[(PathBuf, Vec<u8>)], random: &mut Random
     }
 }
 
-/// The most bytes that may be in memory at once while a model is read, for each byte of it. A face of corners that are
-/// all ` 1` makes a triangle of every two bytes, and a triangle takes 200 (tests/files.rs, F2).
+/// The most memory that reading a model may hold at once, in bytes per byte of the file. A face whose corners are all `
+/// 1` makes a triangle of every two bytes, and a triangle takes 200 (tests/files.rs, F2).
 const BYTES_PER_BYTE: usize = 100;
 
 /// The reader's buffers, messages, and tables that are never empty.
 const BYTES_FOR_NOTHING: usize = 16 << 10;
 
-/// Memory is in proportion to the file, whatever numbers and names stand in it.
+/// Memory is proportional to the file's size, whatever numbers and names it contains.
 #[test]
 fn f5_no_file_takes_memory_out_of_proportion() {
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());

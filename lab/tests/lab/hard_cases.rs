@@ -1,4 +1,4 @@
-//! The pictures of hard cases: the right side is the engine's and the oracle's, the wrong side differs, and the
+//! The pictures of hard cases: the right side agrees with the engine and the oracle, the wrong side differs, and the
 //! program writes what the library draws.
 
 use std::io::Cursor;
@@ -9,7 +9,7 @@ use mode13h::raster::{Frame, Raster, Vertex};
 use mode13h_conformance::oracle;
 use mode13h_lab::hard_cases::{CASES, Case, Comparison, Mark, Panel, by_id};
 
-/// What the raster's own calls draw of the triangles that a case says it was given.
+/// Draws the triangles that a case reports, with the raster's own calls.
 fn by_the_raster(comparison: &Comparison) -> Vec<u8> {
     let (width, height) = (comparison.right.width(), comparison.right.height());
     let mut bytes = vec![0; width * height];
@@ -30,7 +30,7 @@ fn by_the_raster(comparison: &Comparison) -> Vec<u8> {
     bytes
 }
 
-/// What the oracle says of them: the bytes, and how many triangles own each pixel.
+/// The oracle's result for them: the bytes, and how many triangles own each pixel.
 fn by_the_oracle(comparison: &Comparison) -> (Vec<u8>, Vec<u8>) {
     let (width, height) = (comparison.right.width(), comparison.right.height());
     let (mut bytes, mut owners) = (vec![0; width * height], vec![0; width * height]);
@@ -48,7 +48,7 @@ fn by_the_oracle(comparison: &Comparison) -> (Vec<u8>, Vec<u8>) {
     (bytes, owners)
 }
 
-/// Whether a panel's marks say of every pixel what its bytes and writes are against the other's.
+/// Checks that a panel's marks describe how every pixel's byte and writes differ from the other panel's.
 fn assert_marks_tell_the_truth(case: &Case, fault: &Panel, right: &Panel) {
     for (at, mark) in fault.marks().iter().enumerate() {
         let (drawn, due) = (fault.writes()[at], right.writes()[at]);
@@ -64,7 +64,7 @@ fn assert_marks_tell_the_truth(case: &Case, fault: &Panel, right: &Panel) {
     }
 }
 
-/// Cases whose panels are measured against themselves, turned, moved or in another order.
+/// Cases whose panels are compared with themselves, rotated, moved or in another order.
 const AGAINST_THEMSELVES: [&str; 3] = ["R6", "R11", "N8"];
 
 #[test]
@@ -116,7 +116,7 @@ fn show_shades_stay_in_the_range_of_their_triangle_on_the_right_alone() {
             drawn.filter(|(byte, _)| !(least..=most).contains(*byte)).count()
         };
         assert_eq!(beyond(&right), 0, "{id}");
-        // 0 to 255 is all there is: what wraps there lies outside the triangle as well.
+        // Bytes only span 0 to 255, so what wraps there is also outside the triangle.
         assert!(beyond(&fault) > 5 || fault.count(Mark::Outside) > 5, "{id}: {}", beyond(&fault));
         tried.add(1);
     }
@@ -137,7 +137,7 @@ fn show_ids_are_known_once_and_in_any_letters() {
         assert_eq!(by_id(&case.id.to_lowercase()).map(|case| case.id), Some(case.id));
         for words in [case.title, case.sentence, case.wrong, case.right] {
             assert!(!words.is_empty() && !words.contains('\n'), "{}: {words}", case.id);
-            // The pictures' letters.
+            // The characters that the pictures' font has.
             assert!(words.chars().all(|c| (' '..='~').contains(&c)), "{}: {words}", case.id);
         }
         tried.add(1);
@@ -147,7 +147,7 @@ fn show_ids_are_known_once_and_in_any_letters() {
     }
 }
 
-/// Size and indices of an indexed PNG, with its colours.
+/// Size, indices and colours of an indexed PNG.
 fn decode(bytes: &[u8]) -> (u32, u32, Vec<u8>, Vec<u8>) {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("a PNG");
     let (width, height) = reader.info().size();
@@ -208,12 +208,12 @@ fn show_pixels_are_16_times_enlarged_and_have_their_colour() {
     };
     let left = width as usize - 16 - right.width() * 16;
     let empty = [0x1B, 0x25, 0x47];
-    // The panel's top: the first row of cells there is.
+    // The panel's top: the first row of cells.
     let top = (0..height as usize).find(|y| at(left + 3, y + 3) == empty).expect("a panel") + 3 - 1;
     let mut seen = 0;
     for y in 0..right.height() {
         for x in 0..right.width() {
-            // Beside the dot and off the corner; a line may run there, on pixels of an edge.
+            // Beside the dot and away from the corner; a line may cross there, on pixels of an edge.
             let colors: Vec<[u8; 3]> = [(3, 3), (12, 3), (3, 12), (12, 12), (5, 11)]
                 .map(|(dx, dy)| at(left + 16 * x + dx, top + 16 * y + dy))
                 .to_vec();

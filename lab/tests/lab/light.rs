@@ -1,4 +1,4 @@
-//! N4, N5: light from anywhere, in any number and strength, stays an intensity.
+//! N4, N5: lights of any direction, number and strength still give a valid intensity.
 
 mod floats;
 
@@ -51,7 +51,7 @@ fn n4_a_light_in_the_plane_or_behind_adds_nothing() {
         let alone = shade(Vec3::Z, material(0.25, 0.75), 1.0, &[]);
         assert_eq!(alone, U8F8::from_bits(16_320), "a quarter of 65,280");
         let lit = shade(Vec3::Z, material(0.25, 0.75), 1.0, &[Light::sun([x, y, z])]);
-        // The same sum in f64; the unit vectors of f32 are within 2⁻²² of it, of 48,960 units less than 1.
+        // The same sum in f64; the f32 unit vectors are within 2⁻²² of it, which is less than 1 of 48,960 units.
         let cosine =
             (f64::from(z) / f64::sqrt(f64::from(x).powi(2) + f64::from(y).powi(2) + f64::from(z).powi(2))).max(0.0);
         let expected = (0.25 + 0.75 * cosine) * 65_280.0;
@@ -82,12 +82,12 @@ fn n5_a_thousand_lights_of_any_strength_are_clamped_once() {
             })
             .sum();
         let lit = shade(Vec3::Z, material(0.0, f32::MAX), 0.0, &lights);
-        // f64 sums in the same order, and the factor is positive: the sign is the sum's, and any sum
-        // but 0 is far beyond 1 or below 0.
+        // f64 sums in the same order, and the factor is positive, so the sign is the sum's, and any nonzero sum is far
+        // above 1 or below 0.
         let expected = if sum > 0.0 { 0xFF00 } else { 0 };
         assert_eq!(lit.to_bits(), expected, "{sum:e}");
     }
-    // Clamped after the sum, not before: 3 − 2.5 is a half.
+    // Clamped after summing, not before: 3 − 2.5 is a half.
     let three = [3.0, -2.5].map(|strength| Light::sun([0.0, 0.0, 1.0]).with_intensity(strength));
     assert_eq!(shade(Vec3::Z, material(0.0, 1.0), 0.0, &three), U8F8::from_bits(32_640));
     assert_eq!(shade(Vec3::Z, material(f32::MAX, 1.0), f32::MAX, &[]), U8F8::MAX_VERTEX);
@@ -108,14 +108,14 @@ fn dot(a: Wide, b: Wide) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Of length 1; `None` of the zero vector.
+/// The unit vector; `None` for the zero vector.
 fn unit(v: Wide) -> Option<Wide> {
     let length = dot(v, v).sqrt();
     (length > 0.0).then(|| v.map(|c| c / length))
 }
 
-/// What a point shows, by the letter of the model, not clamped: ka·Ia + Σ (kd·n·l + ks·max(0, r·v)^s) · Id · fall-off over the
-/// lights before it. A lamp at the point lights no side of it.
+/// The unclamped intensity of a point, following the model to the letter: ka·Ia + Σ (kd·n·l + ks·max(0, r·v)^s) · Id ·
+/// fall-off over the lights that n faces. A lamp exactly at the point lights no side of it.
 fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 {
     let mut sum = f64::from(material.ambient) * f64::from(scene.ambient);
     let to_eye = unit(sub(wide(scene.camera.eye), at));
@@ -146,7 +146,7 @@ fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 
         }
         let mirrored = sub(normal.map(|c| 2.0 * cosine * c), towards);
         let along = to_eye.map_or(0.0, |to_eye| dot(mirrored, to_eye).max(0.0));
-        // A shininess of 0 is no highlight.
+        // A shininess of 0 means no highlight.
         let highlight =
             if along > 0.0 && material.shininess > 0.0 { along.powf(f64::from(material.shininess)) } else { 0.0 };
         sum += strength * (f64::from(material.diffuse) * cosine + f64::from(material.specular) * highlight);
@@ -154,15 +154,15 @@ fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 
     sum
 }
 
-/// Lamps at a corner, on the face, in its plane, behind it, at the eye, and a hair before the face: every corner has the
-/// model's shade, 0 to 1, and is shaded so by every shading that is linear between corners.
+/// Lamps at a corner, on the face, in its plane, behind it, at the eye, and just in front of the face: every corner has
+/// the model's shade, 0 to 1, and every shading that is linear between corners uses it.
 #[test]
 fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
     let mut tried = Tried::new("n4_lamps_on_a_surface_at_a_vertex_at_the_eye", 3 * 2_000);
     let mut random = Random::named("n4 lamps");
     let mut lit = 0;
     for _ in 0..2_000 {
-        // Quarters, so that what is to lie in the plane does.
+        // Quarters, so that what should lie in the plane does.
         let quarter = |random: &mut Random, most: i64| random.within(-most, most) as f32 / 4.0;
         let corners = [0; 3].map(|_| Vec3::new(quarter(&mut random, 8), quarter(&mut random, 8), 0.0));
         let normal = Vec3::new(quarter(&mut random, 2), quarter(&mut random, 2), 1.0 + quarter(&mut random, 2).abs());
@@ -200,8 +200,8 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
         for (corner, vertex) in drawn.iter().enumerate().filter(|_| is_front) {
             let normal = unit(wide(normal)).expect("a normal");
             let expected = model(&scene, &material, (wide(corners[corner % 3]), normal)).clamp(0.0, 1.0);
-            // A shade is rounded to half a unit. The normal is f32: off by a few of 2⁻²⁴, which a highlight's power takes as
-            // many times, and lights are up to three times 3.
+            // A shade is rounded to half a unit. The normal is f32, off by a few 2⁻²⁴, which a highlight multiplies by
+            // its exponent, and lights reach three times 3.
             let off = (f64::from(vertex.shade().to_bits()) - expected * 65_280.0).abs();
             let allowed = 0.5 + 65_280.0 * 9.0 * f64::powi(2.0, -22) * (1.0 + f64::from(shininess));
             assert!(
@@ -217,7 +217,7 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
     assert!(lit > 500, "{lit} corners are lit");
 }
 
-/// Shininess 0 is no highlight, whatever the other materials of the object are; below 0 it is refused.
+/// Shininess 0 means no highlight, whatever the object's other materials are; negative values are rejected.
 #[test]
 fn without_shininess_there_is_no_highlight() {
     let frame = |specular: f32, shininess: f32, other: f32| {
@@ -241,8 +241,8 @@ fn without_shininess_there_is_no_highlight() {
     }
 }
 
-/// A light whose strength on a channel is more than f32 holds is refused: as infinity it would leave no number beside one
-/// of the other sign.
+/// A light whose strength on a channel overflows f32 is rejected: as infinity, together with one of the opposite sign,
+/// it would give NaN.
 #[test]
 fn n5_a_light_stronger_than_f32_holds_is_refused() {
     let mut tried = Tried::new("n5_a_light_stronger_than_f32_holds_is_refused", 24);
@@ -261,7 +261,7 @@ fn n5_a_light_stronger_than_f32_holds_is_refused() {
     }
 }
 
-/// Any direction, three channels, any strength: the sum that f64 gives, clamped once.
+/// Any direction, three channels, any strength: the f64 sum, clamped once.
 #[test]
 fn n5_lights_from_any_direction_on_three_channels() {
     let mut tried = Tried::new("n5_lights_from_any_direction_on_three_channels", 40 * 2);
@@ -288,7 +288,7 @@ fn n5_lights_from_any_direction_on_three_channels() {
         }
         let n = unit(wide(normal)).expect("a normal");
         let between = [0, 1, 2].map(|i| {
-            // The sum, and how far it may be off: cosines in f32 by some 2⁻²², strengths by as much.
+            // The sum, and how far it may be off: cosines in f32 by about 2⁻²², strengths by as much.
             let (mut sum, mut reach) = (0.0_f64, 0.0_f64);
             for light in scene.lights() {
                 let Light::Sun { direction, intensity, color } = light else { panic!("a sun") };

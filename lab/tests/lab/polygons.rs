@@ -1,5 +1,5 @@
-//! Convex polygons by the table of rows, against an oracle that says the same in i128; and why faces
-//! are split into triangles instead (N8).
+//! Convex polygons by the table of rows, against an i128 oracle of the same definition; and why faces are split into
+//! triangles instead (N8).
 
 use crate::support::triangles::vertex;
 use crate::support::tried::Tried;
@@ -25,7 +25,7 @@ impl Sheet {
     fn draw(&self, vertices: &[Vertex], interpolation: Interpolation) -> Result<(Vec<u8>, DrawStats), PolygonError> {
         let pitch = WIDTH as usize + 3;
         let mut bytes = vec![self.empty; pitch * HEIGHT as usize];
-        // Rubbish of the polygon before makes no difference.
+        // Leftovers from the previous polygon do not matter.
         let rubbish = vertex(-999_999, 999_999, 0xFF00, 0);
         let rubbish = TableRow {
             left_x: rubbish.x(),
@@ -43,7 +43,7 @@ impl Sheet {
     }
 }
 
-/// What the Hungarian tutorial's table says of a row, in i128: the crossings, left first, as (x, shade) in 1/256.
+/// A row by the Hungarian tutorial's table, in i128: the crossings, left first, as (x, shade) in 1/256.
 fn crossings(vertices: &[Vertex], y: i32) -> Vec<(i128, i128)> {
     let (_, yc) = oracle::centre(0, y);
     let mut found = Vec::new();
@@ -59,12 +59,12 @@ fn crossings(vertices: &[Vertex], y: i32) -> Vec<(i128, i128)> {
         let nearest = Ratio { n: 2 * shade.n + shade.d, d: 2 * shade.d }.floor();
         found.push((between(ax, bx), nearest));
     }
-    // By the exact x; where they meet there is no pixel between them.
+    // Sorted by exact x; where they meet there is no pixel between them.
     found.sort_by(|(a, _), (b, _)| (a.n * b.d).cmp(&(b.n * a.d)));
     found.into_iter().map(|(x, shade)| (x.ceil(), shade)).collect()
 }
 
-/// The bytes of a convex polygon: `None` where it does not draw.
+/// The bytes of a convex polygon; `None` where it draws nothing.
 fn expected(vertices: &[Vertex], reseed: i32) -> Vec<Option<u8>> {
     let outline: Vec<Point> = vertices.iter().map(oracle::point).collect();
     let mut bytes = Vec::new();
@@ -91,7 +91,7 @@ fn expected(vertices: &[Vertex], reseed: i32) -> Vec<Option<u8>> {
     bytes
 }
 
-/// Cover, bytes and range of a convex polygon. Returns the pixels covered.
+/// Checks cover, bytes and range of a convex polygon. Returns the number of pixels covered.
 fn check(vertices: &[Vertex]) -> u32 {
     let shades = || vertices.iter().map(|v| v.shade().to_bits());
     let (low, high) = (shades().min().unwrap_or(0), shades().max().unwrap_or(0));
@@ -122,8 +122,8 @@ fn cross(a: (i64, i64), b: (i64, i64), c: (i64, i64)) -> i64 {
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
-/// The convex hull of random points (Andrew's monotone chain), sometimes with points left on its
-/// edges; any count.
+/// The convex hull of random points (Andrew's monotone chain), sometimes with points left on its edges; any number of
+/// corners.
 fn convex(random: &mut Random) -> Vec<(i64, i64)> {
     let reach = random.one_of(&[300, 3_000, 20_000, 20_000, 100_000, BAND]);
     let snap = random.one_of(&[1, 1, 16, 128, 256]);
@@ -184,7 +184,7 @@ fn the_table_is_s4s_and_cover_is_exact() {
         let mut vertices = shaded(&mut random, &hull);
         pixels += check(&vertices);
         corners = corners.max(vertices.len());
-        // Neither the first vertex, nor the winding, nor one that is there twice makes a difference.
+        // Neither the first vertex, nor the winding, nor a repeated vertex matters.
         let first = Sheet::WHOLE.draw(&vertices, Interpolation::default());
         let turn = random.within(0, vertices.len() as i64 - 1) as usize;
         vertices.rotate_left(turn);
@@ -224,7 +224,7 @@ fn r8_polygons_clipped_and_in_bands() {
     }
 }
 
-/// A convex polygon parted by chords into polygons and triangles: each pixel inside once, none outside.
+/// A convex polygon divided by chords into polygons and triangles draws each pixel inside once, and none outside.
 #[test]
 fn r5_polygons_that_share_edges() {
     let mut tried = Tried::new("r5_polygons_that_share_edges", 400);
@@ -268,7 +268,7 @@ fn r5_polygons_that_share_edges() {
     }
 }
 
-/// Any list of points at all: refused, or drawn as the even-odd rule has it; what is convex is not refused.
+/// Any list of points is either rejected or drawn by the even-odd rule; convex ones are not rejected.
 #[test]
 fn r7_any_list_of_points_is_quiet() {
     let mut tried = Tried::new("r7_any_list_of_points_is_quiet", 60_000);
@@ -289,15 +289,15 @@ fn r7_any_list_of_points_is_quiet() {
                     let centre = oracle::centre(place as i32 % WIDTH as i32, place as i32 / WIDTH as i32);
                     assert_eq!(*byte, u8::from(oracle::polygon_covers(&outline, centre)), "{corners:?}");
                 }
-                // Gouraud must be as quiet.
+                // Gouraud must not panic either.
                 Sheet::WHOLE.draw(&vertices, Interpolation::default()).expect("convex, as before");
             }
             Err(error) => {
                 refused += 1;
                 assert_eq!(error, PolygonError::NotConvex);
                 assert!(corners.len() > 3, "a triangle is convex: {corners:?}");
-                // Convex means: no corner lies to the left of an edge in one of the two windings. A list
-                // that passes this and was refused goes round twice or back along a line.
+                // Convex means that no corner lies to the left of an edge in one of the two windings. A list that
+                // passes this and was rejected goes around twice, or back along a line.
                 let n = corners.len();
                 let side = |sign: i64| {
                     (0..n).all(|i| corners.iter().all(|c| sign * cross(corners[i], corners[(i + 1) % n], *c) >= 0))
@@ -322,21 +322,21 @@ fn a_short_table_is_refused() {
     let clip = frame.bounds();
     let refused = polygon::draw(&mut frame, clip, &vertices, Interpolation::Flat(1), &mut table);
     assert_eq!(refused, Err(PolygonError::Table { given: 19, needed: 20 }));
-    // For a band its own rows are enough.
+    // A band needs only its own rows.
     for mut band in frame.bands(7) {
         polygon::draw(&mut band, clip, &vertices, Interpolation::Flat(1), &mut table[..7]).expect("seven rows at most");
     }
     assert_eq!(bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>(), 100);
 }
 
-/// The bytes of a square frame, turned a quarter clockwise.
+/// The bytes of a square frame, rotated a quarter turn clockwise.
 fn turned(bytes: &[Option<u8>], side: usize) -> Vec<Option<u8>> {
-    // What is at (x, y) goes to (side − 1 − y, x).
+    // The pixel at (x, y) moves to (side − 1 − y, x).
     (0..side * side).map(|place| bytes[(side - 1 - place % side) * side + place / side]).collect()
 }
 
-/// N8: a quad turned on the screen. The Russian article and the Russian textbook say that Gouraud depends on
-/// orientation: true of four vertices, false of three (slip 6).
+/// N8: a quad rotated on the screen. The Russian article and the Russian textbook say that Gouraud depends on
+/// orientation: true for four vertices, false for three (slip 6).
 #[test]
 fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     const SIDE: usize = 64;
@@ -376,7 +376,7 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     };
     let mut greatest = 0;
     while tried.more() {
-        // A diamond, a corner near each side of the frame, light and dark in turn.
+        // A diamond with a corner near each side of the frame, alternately light and dark.
         let mut near = || random.within(0, 2000);
         let (far, middle) = (SIDE as i64 * 256, SIDE as i64 * 128);
         let corners = [
@@ -388,12 +388,13 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
         let shades = [near(), 0xFF00 - near(), near(), 0xFF00 - near()];
         let quad: Vec<Vertex> = corners.iter().zip(shades).map(|(&(x, y), shade)| vertex(x, y, shade, 0)).collect();
         let quad_turned = quarter(&quad);
-        // Each is within three quarters of a shade of the same exact plane, so they are within one of each other.
+        // Each is within three quarters of a shade of the same exact plane, so they are within one of each other after
+        // rounding.
         assert!(most(&turned(&as_triangles(&quad), SIDE), &as_triangles(&quad_turned)) <= 1, "{quad:?}");
         greatest = greatest.max(most(&turned(&as_table(&quad), SIDE), &as_table(&quad_turned)));
-        // Of a triangle the table's shades are those of the plane, so they turn with it too. Its height over
-        // any side is 16 pixels at least, so it has no more than 16 shades a pixel, and a crossing that is
-        // rounded by 1/256 pixel moves a shade by 1/16: with three quarters each still less than two.
+        // In a triangle the table's shades are those of the plane, so they rotate with it too. Its height over any side
+        // is at least 16 pixels, so shades change by at most 16 per pixel, and rounding a crossing by 1/256 pixel moves
+        // a shade by 1/16: with three quarters each still less than two.
         let half = &quad[..3];
         assert!(most(&turned(&as_table(half), SIDE), &as_table(&quarter(half))) <= 1, "{half:?}");
     }

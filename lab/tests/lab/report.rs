@@ -1,4 +1,4 @@
-//! The report of a study that was measured.
+//! The report of a real study.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h_lab::cost::{Settings, Subject, measure, report};
 
-/// Also a report to be looked at: `report.html` among the test's files.
+/// Also writes a report to look at: `report.html` among the test's files.
 #[test]
 fn what_was_measured_is_reported() {
     let frames = [Scene::showing(shapes::torus(24, 12))];
@@ -25,7 +25,7 @@ fn what_was_measured_is_reported() {
     for row in &study.shadings {
         assert!(page.contains(&format!("frame of {}", row.shading)), "{}", row.shading);
     }
-    // Each shading's picture and its error, and the first screen's two pictures.
+    // Each shading's picture and error map, and the first screen's two pictures.
     assert_eq!(page.matches("data:image/png;base64,").count(), 2 * study.shadings.len() + 2);
     assert_eq!(
         (page.matches("<svg").count(), page.matches("data-points").count()),

@@ -1,4 +1,4 @@
-//! T1, T2: rotation from absolute angles, and E1 (`time/kept.rs`): nothing of a frame stays behind in the next.
+//! T1, T2: rotation from absolute angles, and E1 (`time/kept.rs`): no frame leaves traces in the next.
 
 mod changes;
 mod kept;
@@ -22,11 +22,11 @@ fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     vga.pixels().to_vec()
 }
 
-/// The steps of a frame about x and y, in radians. f64 adds them without rounding, a million times and
-/// more: after n frames the angles are n times the steps, to the bit.
+/// The steps per frame about x and y, in radians. f64 adds them without rounding, a million times and more, so after n
+/// frames the angles are exactly n times the steps.
 const STEPS: [f64; 2] = [5.0 / 1024.0, 7.0 / 512.0];
 
-/// The farthest that an entry of M·Mᵀ is from that of the unit matrix.
+/// Largest difference between an entry of M·Mᵀ and the identity matrix.
 fn from_orthonormal(matrix: Mat3) -> f32 {
     let product = (matrix * matrix.transpose()).to_cols_array();
     product
@@ -35,15 +35,14 @@ fn from_orthonormal(matrix: Mat3) -> f32 {
         .fold(0.0, |most, (is, should)| (is - should).abs().max(most))
 }
 
-/// The matrix of the integer path, whose angles are the nearest 65,536ths of a turn. A number of 16.16
-/// up to 1 is an f32.
+/// The matrix of the integer path, whose angles are rounded to 65,536ths of a turn. A 16.16 number up to 1 fits an f32.
 fn turn_in_16_16(angles: [f64; 3]) -> Mat3 {
     let steps = angles.map(|angle| BinaryAngle::from(((angle / TAU).rem_euclid(1.0) * 65_536.0).round() as u32 as u16));
     Mat3::from_cols_array_2d(&integer::turn(steps).map(|row| row.map(|c| c.to_bits() as f32 / 65_536.0)))
 }
 
-/// Frames of a mesh that is turned on by steps, drawn one after another by one renderer; and each of
-/// them at once: by a renderer, from a scene and over bytes that have seen no other frame.
+/// Frames of a mesh rotated step by step, drawn in sequence by one renderer; and each of them drawn directly, with a
+/// renderer, a scene and bytes that have seen no other frame.
 fn rotation(tried: &mut Tried, path: VertexPath) {
     const WIDTH: u32 = 64;
     const HEIGHT: u32 = 40;
@@ -59,7 +58,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
     let mesh = Shared::new(shapes::torus(8, 6));
     let (mut renderer, mut scene) = (fresh(), crate::support::scenes::framed(mesh.clone()));
     let mut bytes = [0; (WIDTH * HEIGHT) as usize];
-    // A step as any other: its sums are rounded.
+    // An ordinary step, whose sums are rounded.
     let step = 0.013_7;
     let mut drifting = Object::new(shapes::cube());
     let (mut n, mut moved) = (0_u32, 0_u32);
@@ -124,10 +123,10 @@ fn t1_long_a_million_frames_on_the_integer_path() {
     rotation(&mut tried, VertexPath::Integer);
 }
 
-/// A step of any size turns by what is left of it without its whole turns, and the same step backwards turns back.
+/// A step of any size rotates by what remains after whole turns, and the same step backwards rotates back.
 #[test]
 fn t2_any_step_is_defined() {
-    // At 90° a second: 900 whole turns.
+    // At 90° per second: 900 whole turns.
     let hour = 3600.0 * std::f64::consts::FRAC_PI_2;
     let sizes = [0.0, f64::MIN_POSITIVE, 1e-300, 0.3, 1.0, 7.0, 3600.0, hour, 1e9, 1e15, 1e300, f64::MAX];
     let mut tried = Tried::new("t2_any_step_is_defined", 2 * sizes.len() as u64);
@@ -140,7 +139,7 @@ fn t2_any_step_is_defined() {
     let first = turned(&[]);
     for step in sizes.into_iter().flat_map(|size| [size, -size]) {
         let there = turned(&[step]);
-        // Sine and cosine leave out whole turns, to the last bit of an angle of any size.
+        // Sine and cosine discard whole turns, exact to the last bit of an angle of any size.
         let left = step.sin().atan2(step.cos());
         assert!(there == turned(&[left]), "{step:e} is {left}");
         assert_eq!(there == first, left.abs() < 1e-9, "{step:e} is seen");

@@ -1,5 +1,4 @@
-//! The truth against pencil and paper: the eye at the origin looks along −z, and a unit at the distance w is 32 / w
-//! pixels.
+//! The truth against pencil and paper: the eye at the origin looks along −z, and a unit at distance w is 32 / w pixels.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -27,7 +26,7 @@ fn camera(side: u32) -> Camera {
     }
 }
 
-/// A scene of one mesh, before that camera, on which ambient light is not thrown back.
+/// A scene with one mesh in front of that camera that does not reflect ambient light.
 fn scene(side: u32, mesh: Mesh) -> Scene {
     let mut scene = Scene::new();
     scene.camera = camera(side);
@@ -36,7 +35,7 @@ fn scene(side: u32, mesh: Mesh) -> Scene {
     scene
 }
 
-/// The square of side 2 at a distance, which looks at the eye.
+/// A square of side 2 at a distance, facing the eye.
 fn square(w: f32) -> Mesh {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     mesh(corners.map(|[x, y]| ([x, y, -w], [0.0, 0.0, 1.0])).to_vec(), vec![[0, 1, 2], [0, 2, 3]])
@@ -55,7 +54,7 @@ fn at(frame: &TruthFrame, x: u32, y: u32) -> TruePixel {
     *frame.at(x, y).unwrap_or_else(|| panic!("nothing at ({x}, {y})"))
 }
 
-/// Numbers come from f32 of seven digits.
+/// Numbers come from f32, which has seven digits.
 #[track_caller]
 fn assert_close(actual: f64, expected: f64) {
     assert!((actual - expected).abs() < 1e-5, "{actual}, by hand {expected}");
@@ -64,7 +63,7 @@ fn assert_close(actual: f64, expected: f64) {
 #[test]
 fn a_square_straight_before_the_eye() {
     let mut scene = scene(64, square(4.0));
-    // Its edges are 8 pixels from the middle.
+    // Its edges are 8 pixels from the centre.
     scene.add_light(Light::sun([0.0, 3.0, 4.0]).with_intensity(0.5));
     scene.objects_mut()[0].materials[0].ambient = 0.1;
     for standard in Standard::ALL {
@@ -90,7 +89,7 @@ fn a_square_straight_before_the_eye() {
 
 #[test]
 fn centres_on_edges_belong_to_top_and_left_edges() {
-    // 65 pixels: the middle is a pixel's centre, and so are the corners, 8 pixels from it.
+    // With 65 pixels the centre is a pixel's centre, and so are the corners, 8 pixels from it.
     let frame = draw(&scene(65, square(4.0)), 65, Standard::Gouraud);
     for y in 0..65 {
         for x in 0..65 {
@@ -102,7 +101,7 @@ fn centres_on_edges_belong_to_top_and_left_edges() {
 
 #[test]
 fn vertices_are_rounded_to_the_nearest_unit() {
-    // 8.0008 and 8.0024 pixels from the middle: 2,048.2 and 2,048.6 units.
+    // 8.0008 and 8.0024 pixels from the centre: 2,048.2 and 2,048.6 units.
     for (x, units) in [(1.0, 2_048), (1.0001, 2_048), (1.0003, 2_049)] {
         let corners = [[-x, -1.0, -4.0], [x, -1.0, -4.0], [0.0, x, -4.0]];
         let scene = scene(64, mesh(corners.map(|p| (p, [0.0, 0.0, 1.0])).to_vec(), vec![[0, 1, 2]]));
@@ -122,7 +121,7 @@ fn a_lamp_falls_off_and_shines_aslant() {
     scene.add_light(Light::lamp([0.0, 0.0, -2.0], 4.0));
     // Below the lamp, at half its range: (1 − 4/16)².
     assert_close(at(&draw(&scene, 65, Standard::Lit), 32, 32).intensity[0], 0.5625);
-    // At 1 to the right the distance squared is 5, and the light comes in at a cosine of 2/√5.
+    // One unit to the right the distance squared is 5, and the cosine is 2/√5.
     let right =
         Truth::new(&scene, screen(65)).expect("a legal scene").sampling(Face { object: 0, triangle: 0 }, 40.4999, 32.5);
     assert_close(right.expect("it is met").intensity[0], 2.0 / f64::sqrt(5.0) * (11.0 / 16.0) * (11.0 / 16.0));
@@ -131,7 +130,7 @@ fn a_lamp_falls_off_and_shines_aslant() {
     for standard in [Standard::Gouraud, Standard::GouraudPerspective, Standard::GouraudUnrounded] {
         assert_close(at(&draw(&scene, 65, standard), 32, 32).intensity[0], corner);
     }
-    // Out of range, behind the square, and in its plane it lights nothing.
+    // Out of range, behind the square, and in its plane, it lights nothing.
     for place in [[0.0, 0.0, 0.0], [0.0, 0.0, -5.0], [0.0, 0.0, -4.0]] {
         scene.lights_mut()[0] = Light::lamp(place, 4.0);
         assert_close(at(&draw(&scene, 65, Standard::Lit), 32, 32).intensity[0], 0.0);
@@ -144,7 +143,7 @@ fn a_highlight_straight_ahead() {
     scene.add_light(Light::sun([0.0, 0.0, 2.0]));
     let shiny = Material { ambient: 0.0, diffuse: 0.0, specular: 0.5, shininess: 4.0, ..Material::default() };
     scene.objects_mut()[0].materials[0] = shiny;
-    // The ray through the pixel right and below of the middle is at ±1/16, and its cosine to the normal squared
+    // The ray through the pixel to the right of and below the centre is at ±1/16, and its squared cosine to the normal
     // is 16 / (16 + 2/256).
     let squared = 2048.0 / 2049.0;
     assert_close(at(&draw(&scene, 64, Standard::Lit), 32, 32).intensity[0], 0.5 * squared * squared);
@@ -157,14 +156,14 @@ fn a_highlight_straight_ahead() {
     let truth = Truth::new(&scene, screen(64)).expect("a legal scene");
     let top = truth.sampling(Face { object: 0, triangle: 1 }, 31.9999, 24.0001).expect("it is met");
     assert!((top.intensity[0] - 0.5 * along.powi(4)).abs() < 1e-4, "{top:?}");
-    // With a shininess of 0 there is none, and with next to none it is full wherever there is any.
+    // A shininess of 0 gives no highlight, and one just above 0 gives full strength wherever there is any.
     for (shininess, expected) in [(0.0, 0.0), (1e-30, 0.5)] {
         scene.objects_mut()[0].materials[0].shininess = shininess;
         assert_close(at(&draw(&scene, 64, Standard::Lit), 32, 32).intensity[0], expected);
     }
 }
 
-/// A wall from w = 2 at the left to w = 6 at the right, 32 pixels wide, whose light falls in at 0.28 and 0.6.
+/// A wall from w = 2 at the left to w = 6 at the right, 32 pixels wide, with cosines of 0.28 and 0.6.
 fn tilted() -> Scene {
     let (left, right) = ([0.96, 0.0, 0.28], [0.8, 0.0, 0.6]);
     let corners = vec![
@@ -195,7 +194,7 @@ fn the_middle_of_a_tilted_wall() {
     }
 }
 
-/// A floor 1 below the eye, from w = 4, where it is lit fully, to w = −4, where it is lit at 0.6.
+/// A floor 1 below the eye, from w = 4, where it is fully lit, to w = −4, where it is lit at 0.6.
 fn floor() -> Scene {
     let corners = vec![
         ([-4.0, -1.0, -4.0], [0.0, 1.0, 0.0]),
@@ -218,10 +217,10 @@ fn a_face_that_runs_under_the_eye() {
     for row in [40, 51, 63] {
         let down = f64::from(row) + 0.5 - 32.0;
         let w = 32.0 / down;
-        // From w = 4 to w = −4; cut at w = 1, which is 3/8 of the way.
+        // From w = 4 to w = −4, clipped at w = 1, which is 3/8 of the way.
         let on_face = 1.0 - 0.4 * (4.0 - w) / 8.0;
         let cut = 1.0 - 0.4 * 3.0 / 8.0;
-        // From 8 rows below the middle to 32.
+        // From 8 rows below the centre to 32.
         let on_screen = 1.0 + (cut - 1.0) * (down - 8.0) / 24.0;
         let t = (4.0 - w) / 8.0;
         let normal = [1.0 - 0.4 * t, 0.8 * t];
@@ -249,7 +248,7 @@ fn the_nearest_face_is_seen_and_of_equal_ones_the_first() {
 #[test]
 fn backs_of_open_meshes_are_seen_from_their_side() {
     for standard in Standard::ALL {
-        // Turned about y by half a turn, about the middle of the square.
+        // Rotated by half a turn about y through the centre of the square.
         let mut scene = scene(64, square(4.0));
         scene.objects_mut()[0].pivot = Vec3::new(0.0, 0.0, -4.0);
         scene.objects_mut()[0].position = Vec3::new(0.0, 0.0, -4.0);
@@ -258,7 +257,7 @@ fn backs_of_open_meshes_are_seen_from_their_side() {
         assert_close(at(&draw(&scene, 64, standard), 30, 30).intensity[0], 0.8);
         scene.lights_mut()[0] = Light::sun([0.0, 3.0, -4.0]);
         assert_close(at(&draw(&scene, 64, standard), 30, 30).intensity[0], 0.0);
-        // A closed body has no backs: from inside there is nothing to see.
+        // A closed mesh has no visible backs, so nothing is seen from inside.
         let mut scene = self::scene(64, shapes::sphere(12, 6));
         scene.objects_mut()[0].scale = 50.0;
         assert!(draw(&scene, 64, standard).pixels.iter().all(Option::is_none));
@@ -267,7 +266,7 @@ fn backs_of_open_meshes_are_seen_from_their_side() {
 
 #[test]
 fn turns_and_axes() {
-    // Where the corner (1, 2, 3) of a triangle goes.
+    // Position of a triangle's corner (1, 2, 3) after a change.
     let corner = |change: fn(&mut Object)| {
         let points = [[0.3, -0.7, 0.2], [1.0, 0.5, -1.5], [1.0, 2.0, 3.0]].map(|p| (p, [0.0, 0.0, 1.0]));
         let mut scene = scene(64, mesh(points.to_vec(), vec![[0, 1, 2]]));
@@ -276,7 +275,7 @@ fn turns_and_axes() {
         let truth = Truth::new(&scene, screen(64)).expect("a legal scene");
         truth.rounded_triangles(Face { object: 0, triangle: 0 })[0][2]
     };
-    // 32 pixels and a unit of 256 for each, at w.
+    // 32 pixels per unit at w = 1, and 256 units per pixel.
     let units = |x: f64, y: f64, z: f64| [x, -y].map(|c| (256.0 * (32.0 + 32.0 * c / (16.0 - z))).round() as i64);
     assert_eq!(corner(|_| ()), units(1.0, 2.0, 3.0));
     assert_eq!(corner(|object| object.scale = 2.0), units(2.0, 4.0, 6.0));
@@ -301,7 +300,7 @@ fn channels_and_the_one_channel() {
         assert_close(green, 0.4 + 0.25 * 0.8);
         assert_close(blue, 0.25 * 0.8);
     }
-    // A coloured light that is out leaves one channel, on which a grey material's own colour does not count. The sum is
+    // A coloured light that is off leaves one channel, on which a grey material's own colour does not count. The sum is
     // clamped, not its parts: 3 − 2.5.
     scene.objects_mut()[0].materials[0].color = [0.5; 3];
     scene.lights_mut()[0] = Light::sun([0.0, 0.0, 1.0]).with_color([1.0, 0.5, 0.0]).with_intensity(0.0);

@@ -1,4 +1,4 @@
-//! The engine against the truth: every shading that claims something, on every scene.
+//! The engine against the truth: every shading that claims a bound, on every scene.
 
 use std::sync::LazyLock;
 
@@ -42,7 +42,7 @@ fn compare(frame: &TruthFrame, shown: &Shown) -> ErrorMap {
     ErrorMap::new(frame, shown).expect("of one size")
 }
 
-/// Every scene, those that are shipped at two more moments of their round. They are loaded once.
+/// Every scene, the shipped ones at two more moments of their duration. They are loaded once.
 fn all() -> Vec<(String, Scene)> {
     static ALL: LazyLock<Vec<(String, Scene)>> = LazyLock::new(load);
     ALL.clone()
@@ -58,23 +58,23 @@ fn load() -> Vec<(String, Scene)> {
             all.push((format!("scene {} at {part}", shipped.name), scene));
         }
     }
-    // What is split is another mesh, of which this one's vertices say little.
+    // A split mesh is a different one, about which this one's vertices say little.
     all.iter_mut().for_each(|(_, scene)| scene.settings.tessellation = None);
     all
 }
 
-/// How far a vertex on the screen may be from where it should be, in pixels: half of 1/256 for rounding, and what
-/// f32 makes: 2⁻²⁴ of what a coordinate's terms reach, some 2¹¹ pixels, a few times over.
+/// How far a vertex on the screen may be from its true position, in pixels: half of 1/256 for rounding, and the error
+/// of f32: 2⁻²⁴ of the largest terms of a coordinate, about 2¹¹ pixels, several times over.
 const VERTEX: f64 = 0.5 / 256.0 + 0.001;
 
-/// Places about a pixel's centre, as far as a vertex may be off, and between.
+/// Points around a pixel's centre, as far away as a vertex may be off, and in between.
 fn about(x: usize, y: usize) -> impl Iterator<Item = (f64, f64)> {
     let at = |i: i32| VERTEX * f64::from(i) / 4.0;
     (-4..=4).flat_map(move |i| (-4..=4).map(move |j| (x as f64 + 0.5 + at(i), y as f64 + 0.5 + at(j))))
 }
 
-/// Whether it takes no more than vertices moved by so little, or depths rounded to 30 bits, that `shown` is seen at a
-/// pixel in place of `right`.
+/// Returns whether vertices moved by that little, or depths rounded to 30 bits, suffice for `shown` to be seen at a
+/// pixel instead of `right`.
 fn may_be_taken_for(
     truth: &Truth,
     near: f32,
@@ -85,17 +85,17 @@ fn may_be_taken_for(
     about(x, y).any(|(x, y)| {
         let met = |face: Option<Face>| face.and_then(|face| truth.sampling(face, x, y)).map(|pixel| 1.0 / pixel.w);
         match (met(right), met(shown)) {
-            // An edge of the right face lies here.
+            // An edge of the right face passes here.
             (None, None) => shown.is_none() && right.is_some(),
             (None, Some(_)) => true,
-            // At the same depth: both rounded, and interpolated to within a unit.
+            // At the same depth: both are rounded, and interpolated to within a unit.
             (Some(right), Some(shown)) => (right - shown) * f64::from(near) <= 4.0 / 1_073_741_824.0,
             (Some(_), None) => false,
         }
     })
 }
 
-/// Fails at pixels that show another face than they should without reason. Returns how many show another.
+/// Fails at pixels that show the wrong face without reason. Returns how many show another one with reason.
 fn check_cover(name: &str, scene: &Scene, truth: &Truth, frame: &TruthFrame, shown: &Shown) -> usize {
     let mut others = 0;
     for (place, (right, &shown)) in frame.pixels.iter().zip(&shown.faces).enumerate() {
@@ -112,13 +112,13 @@ fn check_cover(name: &str, scene: &Scene, truth: &Truth, frame: &TruthFrame, sho
     others
 }
 
-/// Intensities in f32, before they are rounded to 1/256 shade: a few parts in 2²⁴ of 255 shades, and of a highlight some
-/// dozens.
+/// Intensities in f32, before they are rounded to 1/256 shade: a few parts in 2²⁴ of 255 shades, and a few dozen parts
+/// for a highlight.
 const F32: f64 = 0.01;
 
-/// What is right at each pixel changes by so much over 1/256 pixel across and down, in shades: from its neighbours of the same
-/// face, a pixel away, and a quarter more for what bends between. `None` where a face has no other pixel in the row or in the
-/// column: it is a pixel wide there, and what its shades change by is not known.
+/// By how many shades the true value at a pixel changes over 1/256 pixel across and down: estimated from neighbours on
+/// the same face, a pixel away, plus a quarter for curvature. `None` where a face has no other pixel in the row or the
+/// column: it is one pixel wide there, and the change of its shades is unknown.
 fn over_a_unit(frame: &TruthFrame, place: usize) -> Option<f64> {
     let (x, y) = (place % 320, place / 320);
     let here = frame.pixels[place]?;
@@ -133,13 +133,14 @@ fn over_a_unit(frame: &TruthFrame, place: usize) -> Option<f64> {
     Some(1.25 * 255.0 * (across + down) / 256.0)
 }
 
-/// Pixels that are farther off than the bound, by what exempts them from it.
+/// Pixels beyond the bound, by what exempts them from it.
 #[derive(Default)]
 struct Exempt {
-    /// A coordinate was rounded to the unit beside the right one: of a hundred one is, as the engine's come from f32, and a
-    /// face that is clipped has new corners, which are rounded too. Either moves shades by no more than a unit.
+    /// A coordinate was rounded to the unit next to the right one, as happens to one in a hundred because the engine's
+    /// come from f32; or the face is clipped and has new corners, which are rounded too. Either moves shades by no more
+    /// than a unit.
     moved: u64,
-    /// The same of a face a pixel wide, where nothing says what its shades change by.
+    /// The same on a face one pixel wide, where nothing says how its shades change.
     narrow: u64,
 }
 
@@ -177,10 +178,10 @@ fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) -> Exempt {
         let frame = &right[usize::from(standard == Standard::GouraudPerspective)];
         let errors = compare(frame, &shown);
         let figures = errors.figures();
-        // A pixel of a face that is moved: what is left to a whole shade, or to two.
+        // Any pixel, exempt or not, must be within the bound rounded up to whole shades.
         assert!(figures.max <= shades.ceil(), "{name}, {shading}: {:.3} shades from {standard}", figures.max);
         let exempt = beyond(&format!("{name}, {shading}"), frame, &errors, shades + F32);
-        // Whatever exempts them, few are.
+        // Whatever exempts them, they are few.
         let (Exempt { moved, narrow }, all) = (exempt, figures.count);
         assert!((moved + narrow) * 1_000 <= all, "{name}, {shading}: {moved} and {narrow} of {all} beyond {shades:.4}");
         (all_exempt.moved, all_exempt.narrow) = (all_exempt.moved + moved, all_exempt.narrow + narrow);
@@ -189,13 +190,13 @@ fn check_linear(tried: &mut Tried, name: &str, scene: &Scene) -> Exempt {
         let others = check_cover(name, scene, &truth, frame, &shown);
         tried.worst("pixels of another face", others as f64);
         assert_eq!(others, errors.cover_errors());
-        // Rounded alike, they differ in one pixel of thousands.
+        // With the same rounding they differ in one pixel of thousands.
         assert!(others <= 5, "{name}, {shading}: {others} pixels show another face");
     }
     all_exempt
 }
 
-/// Checks them on all of these, and reports what was exempt.
+/// Checks them on all of these scenes, and reports what was exempt.
 fn check_all_linear(mut tried: Tried, scenes: impl Iterator<Item = (String, Scene)>) {
     let mut sum = Exempt::default();
     for (name, scene) in scenes {
@@ -206,7 +207,7 @@ fn check_all_linear(mut tried: Tried, scenes: impl Iterator<Item = (String, Scen
     tried.worst("as faces are a pixel wide", sum.narrow as f64);
 }
 
-/// How many pixels are compared at least: the shipped scenes are files.
+/// The least number of pixels to compare; the shipped scenes are files.
 fn stated() -> u64 {
     1_000_000
 }
@@ -223,9 +224,9 @@ fn linear_shadings_keep_their_bounds_on_random_scenes() {
     check_all_linear(Tried::new("linear_shadings_keep_their_bounds_on_random_scenes", 200_000), scenes);
 }
 
-/// Light at every pixel is right except for the rounding of a shade to 1/256 and to a byte, and of vertices. That
-/// moves the point of a face that is seen at a pixel p: with the weights λ of its corners there, which are moved by δ
-/// each, it is the point that should be seen at p − Σ λδ, no farther from p than a vertex is moved.
+/// Light at every pixel is right except for rounding a shade to 1/256 and to a byte, and for rounding vertices. The
+/// latter moves the point of a face seen at a pixel p: with the weights λ of its corners there, each moved by δ, it is
+/// the point that should be seen at p − Σ λδ, no farther from p than a vertex is moved.
 fn check_lit(tried: &mut Tried, name: &str, scene: &Scene) {
     let (truth, shown) = (truth(scene), look(scene, Shading::Phong));
     let frame = truth.draw(Standard::Lit);
@@ -262,7 +263,7 @@ fn phong_is_lit_at_every_pixel_on_every_scene() {
     }
 }
 
-/// A body gives back its own colour, its highlight has another: white, where nothing is said.
+/// An object reflects its own colour, and its highlight has another one: white by default.
 #[test]
 fn phong_is_lit_at_every_pixel_where_body_and_highlight_differ_in_color() {
     let mut tried = Tried::new("phong_is_lit_at_every_pixel_where_body_and_highlight_differ_in_color", 20_000);
@@ -289,7 +290,8 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
     }
 }
 
-/// The same bodies with each face's own normal at its corners; and with each face in three that meet in its middle.
+/// The same objects with each face's own normal at its corners; and with each face divided into three that meet in its
+/// middle.
 fn flattened(scene: &Scene) -> [Scene; 2] {
     let [mut flat, mut parted] = [scene.clone(), scene.clone()];
     for (i, object) in scene.objects().iter().enumerate() {
@@ -311,8 +313,8 @@ fn flattened(scene: &Scene) -> [Scene; 2] {
     [flat, parted]
 }
 
-/// Where a face's middle lies on the screen, in pixels: the corner that its three parts have in common. `None` where
-/// it is clipped, or rounding leaves a part no area.
+/// Position of a face's middle on the screen, in pixels: the corner that its three parts share. `None` if it is
+/// clipped, or rounding leaves a part without area.
 fn middle(parted: &Truth, face: Face) -> Option<[f64; 2]> {
     let parts = [0, 1, 2].map(|part| parted.rounded_triangles(Face { triangle: 3 * face.triangle + part, ..face }));
     let [[a], [b], [c]] = parts.each_ref().map(Vec::as_slice) else { return None };
@@ -321,8 +323,8 @@ fn middle(parted: &Truth, face: Face) -> Option<[f64; 2]> {
     Some([*x as f64 / 256.0, *y as f64 / 256.0])
 }
 
-/// A flat face has the model's shade at its middle, by its own normal: ½ for the byte, 1/512 for the shade, f32,
-/// and what light changes by where the middle may be instead.
+/// A flat face has the model's shade at its middle, with its own normal: ½ for the byte, 1/512 for the shade, f32, and
+/// the change of the light within the distance that the middle may be off.
 #[test]
 fn flat_faces_have_the_light_at_their_middle() {
     let mut tried = Tried::new("flat_faces_have_the_light_at_their_middle", stated() / 4);
@@ -353,7 +355,7 @@ fn flat_faces_have_the_light_at_their_middle() {
     }
 }
 
-/// Shadings that claim no bound are measured as all others; and splitting brings linear shades nearer to `lit`.
+/// Shadings that claim no bound are measured like all others, and splitting brings linear shades nearer to `lit`.
 #[test]
 fn shadings_without_a_bound_are_measured() {
     let mut tried = Tried::new("shadings_without_a_bound_are_measured", 8 * stated() / 10);
@@ -371,7 +373,7 @@ fn shadings_without_a_bound_are_measured() {
             let (rms, count) = rms(shading);
             tried.add(count);
             if shading == Shading::GouraudTessellated {
-                // The split faces' corners are rounded again, and a byte has its half.
+                // The split faces' corners are rounded again, and a byte adds half a shade.
                 assert!(rms <= reseeded + 0.5, "{name}: {rms} split, {reseeded} not");
                 (split, linear) = (split + rms, linear + reseeded);
             }
@@ -389,7 +391,7 @@ fn the_probe_shows_what_is_drawn() {
         let (drawn, in_color) = {
             let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
             let mut scene = scene.clone();
-            // As the probe sees it: grey, 256 shades, nothing over them.
+            // As the probe sees it: grey, 256 shades, nothing applied to them.
             scene.palette = Some(builtin::GREY.clone());
             scene.fog = None;
             scene.settings.dither = None;
@@ -410,15 +412,15 @@ fn the_probe_shows_what_is_drawn() {
     }
 }
 
-/// Channels are mixed to the colour that is drawn.
+/// Channels are mixed into the colour that is drawn.
 #[test]
 fn the_probe_shows_the_channels_that_are_mixed() {
     let mut scene = crate::support::scenes::framed(shapes::sphere(24, 12));
     scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
     scene.add_light(Light::sun([-1.0, 0.5, 0.5]).with_color([1.0, 0.4, 0.2]));
-    // A body without colour beside one that has one: both are on channels, as the light is coloured.
+    // A colourless object beside a coloured one: both use three channels, as the light is coloured.
     scene.add(Object::new(shapes::cube()));
-    // The palette has no ramps: what names one would be dithered.
+    // The palette has no ramps, so materials that name one would be dithered.
     for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
         material.ramp = RampChoice::Nearest;
     }
@@ -430,7 +432,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
         let mut seen = 0;
         for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(vga.pixels()) {
             if face.is_some() {
-                // Shades of 0 to 255.
+                // Shades from 0 to 255.
                 let [r, g, b] = shades.map(|shade| shade as u8);
                 let mut mixed = [0];
                 mix_cube(&mut mixed, &[r], &[g], &[b], &ThresholdRow::new(&[128]), 0);
@@ -440,7 +442,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
         }
         assert!(seen > 10_000);
     }
-    // What the renderer drew through the probe is no longer there.
+    // What the renderer drew before, through the probe, leaves no traces.
     let mut probe = probe(Shading::Phong);
     probe.look(&scene, SCREEN).expect("a legal scene");
     let (mut by_probe, mut fresh) = (Vga::new(), Vga::new());
@@ -451,8 +453,8 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     assert!(by_probe.pixels() == fresh.pixels());
 }
 
-/// What hides from the comparison is not judged. Faces are found wherever objects stand, whatever they hang from and
-/// whether they are seen: what is left are edges, moved by rounded vertices.
+/// Pixels that are not compared could hide errors, so they must be few. Faces are found wherever objects are, whatever
+/// their parents and whether they are visible: all that remains are edges moved by rounded vertices.
 #[test]
 fn nearly_every_covered_pixel_is_compared() {
     for (name, scene) in all() {
@@ -464,7 +466,7 @@ fn nearly_every_covered_pixel_is_compared() {
     }
 }
 
-/// Numbers of three digits, and the 16.16 path.
+/// Face numbers of three digits, and the 16.16 path.
 #[test]
 fn the_probe_numbers_any_triangle() {
     let mut scene = Scene::new();
@@ -479,7 +481,7 @@ fn the_probe_numbers_any_triangle() {
     let errors = compare(&frame, &shown);
     let numbers: Vec<usize> = shown.faces.iter().flatten().map(|face| face.triangle).collect();
     assert!(numbers.iter().max() > Some(&65_536) && numbers.iter().min() < Some(&256));
-    // Triangles of a pixel's size: one in four of them has no pixel, and half of all pixels lie near an edge.
+    // Pixel-sized triangles: one in four has no pixel, and half of all pixels lie near an edge.
     assert_eq!(check_cover("many", &scene, &truth, &frame, &shown), errors.cover_errors());
     assert!(errors.cover_errors() * 100 < errors.figures().count as usize, "{}", errors.cover_errors());
     assert!(errors.figures().max <= 1.0, "{:?}", errors.figures());
@@ -490,7 +492,7 @@ fn the_probe_numbers_any_triangle() {
     probe.renderer().settings.vertex_path = Some(VertexPath::Integer);
     let shown = probe.look(&torus, SCREEN).expect("a legal scene");
     let errors = compare(&self::truth(&torus).draw(Standard::Gouraud), &shown);
-    // Angles of 16 bits, a table sine and normals of 16 bits are off by less than 1/1,000 of what a shade takes.
+    // 16-bit angles, a tabulated sine and 16-bit normals are off by less than 1/1,000 of what a shade takes.
     assert!(errors.figures().mean() < 0.5 && errors.cover_errors() < 300, "{errors:?}");
 }
 
@@ -510,14 +512,14 @@ fn the_probe_refuses_what_cannot_be_drawn() {
 
 // Hard cases
 
-/// The eye at the origin looks along −z. What a unit at w = 1 is in pixels, across and down.
+/// An eye at the origin looking along −z. Returns the size in pixels of a unit at w = 1, across and down.
 fn eye(scene: &mut Scene, near: f32) -> [f64; 2] {
     scene.camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, near, ..Camera::default() };
     let down = 100.0 / f64::tan(Camera::FIELD_OF_VIEW.to_radians() / 2.0);
     [1.2 * down, down]
 }
 
-/// A triangle whose corners are at these places on the screen and distances, lit at these intensities.
+/// A triangle with corners at these screen positions and distances, lit at these intensities.
 fn triangle(corners: [([f64; 2], f64, f64); 3], near: f32) -> Scene {
     let mut scene = Scene::new();
     let [fx, fy] = eye(&mut scene, near);
@@ -532,7 +534,7 @@ fn triangle(corners: [([f64; 2], f64, f64); 3], near: f32) -> Scene {
     scene
 }
 
-/// How far a shading is from a standard on a scene; no pixel is without a reason another face's.
+/// How far a shading is from a standard on a scene; no pixel shows the wrong face without a reason.
 fn figures(name: &str, scene: &Scene, shading: Shading, standard: Standard) -> mode13h_lab::truth::Figures {
     let (truth, shown) = (truth(scene), look(scene, shading));
     let frame = truth.draw(standard);
@@ -572,9 +574,9 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
     for angle in [0.0, 0.05, 0.1, 0.15] {
         scene[wall].angles = [0.5 * angle, angle, 2.0 * angle].map(Angle::from_radians);
         for (shading, most) in [
-            // The loop at every pixel: a half, and vertices.
+            // Light at every pixel: half a shade, and vertices.
             (Shading::Phong, 1.0),
-            // Split until an edge is within a shade; a face inside of three edges by as much again.
+            // Split until an edge is within a shade; the inside of a face may be off by as much again.
             (Shading::GouraudTessellated, 2.5),
         ] {
             let figures = figures("wall", &scene, shading, Standard::Lit);
@@ -590,14 +592,14 @@ fn n7_a_highlight_inside_a_face_against_the_truth() {
     }
 }
 
-/// That tiles show what the whole frame does, pixel by pixel and bit by bit, and nothing beside it.
+/// Checks that tiles show exactly what the whole frame does, pixel by pixel, and nothing else.
 fn check_tiles(name: &str, scene: &Scene) {
     let truth = truth(scene);
     let whole = truth.draw(Standard::Lit);
     let mut tiles = truth.tiles();
     for (step, first) in [(1, 0), (4, 2), (7, 3)] {
         let mut frame = tiles.empty_frame();
-        // In whatever order.
+        // In any order.
         (0..tiles.count()).rev().for_each(|tile| tiles.draw(tile, step, &mut frame));
         for (place, (pixel, right)) in frame.pixels.iter().zip(&whole.pixels).enumerate() {
             let (x, y) = (place as u32 % whole.width, place as u32 / whole.width);
@@ -621,16 +623,16 @@ fn tiles_are_parts_of_the_whole_truth() {
     for i in 0..10 {
         check_tiles(&format!("random scene {i}"), &scenes::random(&mut random));
     }
-    // An eye within the body: faces reach behind it, and are clipped.
+    // An eye inside the mesh: faces extend behind it, and are clipped.
     let mut within = Scene::showing(shapes::torus(24, 12));
     within.camera.eye = Vec3::new(0.7, 0.0, 0.05);
     within.camera.target = Vec3::new(0.0, 0.7, 0.0);
     check_tiles("within", &within);
 }
 
-// Models as scanners and exporters make them.
+// Models as scanners and exporters produce them.
 
-/// A closed body of some thousand faces, as OBJ text: positions and faces, from 1.
+/// A closed mesh of a few thousand faces as OBJ text: positions and faces, counted from 1.
 #[derive(Clone)]
 struct Written {
     positions: Vec<Vec3>,
@@ -638,10 +640,10 @@ struct Written {
 }
 
 impl Written {
-    /// A sphere whose vertices lie a little too high or too low.
+    /// A sphere whose vertices are slightly displaced in or out.
     fn scan(random: &mut Random, radius: f32, centre: Vec3, stacks: u32) -> Self {
         let sphere = shapes::sphere(2 * stacks, stacks);
-        // Its seam and its poles are listed several times.
+        // Vertices on its seam and at its poles are listed several times.
         let mut positions: Vec<Vec3> = Vec::new();
         let mut number = Vec::new();
         let mut written = Vec::new();
@@ -681,7 +683,7 @@ impl Written {
         self.faces.extend([[a, b, c], [b, a, c]]);
     }
 
-    /// In any order, so that of two faces at one depth either may come first.
+    /// Shuffled, so that of two faces at the same depth either may come first.
     fn load(mut self, random: &mut Random) -> mode13h_assets::model_file::Loaded {
         for i in (1..self.faces.len()).rev() {
             self.faces.swap(i, random.within(0, i as i64) as usize);
@@ -694,7 +696,7 @@ impl Written {
     }
 }
 
-/// The faults, one by one and together: their name, the model, and the end of each warning that is due.
+/// The faults, separately and together: name, model, and the end of each expected warning.
 fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)> {
     let body = Written::scan(random, 1.0, Vec3::ZERO, 30);
     let count = body.faces.len();
@@ -703,9 +705,9 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
     };
     let (doubled, ribs, fins, cut, lines) = (some(60), some(20), some(8), some(25), some(30));
 
-    // Once more, and once the other way round.
+    // Once more, and once with the opposite winding.
     let twice = |w: &mut Written| doubled.iter().for_each(|&face| w.both_ways(face));
-    // Faces that stand on edges, as one sheet of both sides.
+    // Faces that stand on edges as a two-sided sheet.
     let stand = |w: &mut Written| {
         for &[a, b, _] in &ribs {
             let tip = w.push((w.at(a) + w.at(b)) * 0.53);
@@ -722,7 +724,7 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
             }
         }
     };
-    // An edge cut on one side only, closed by a face without area.
+    // An edge split on one side only, closed by a face without area.
     let filled = |w: &mut Written| {
         for &[a, b, c] in &cut {
             let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
@@ -731,7 +733,7 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
             w.faces.extend([[middle, b, c], [a, b, middle]]);
         }
     };
-    // The same, left open.
+    // The same, but left open.
     let open = |w: &mut Written| {
         for &[a, b, c] in &cut {
             let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
@@ -789,12 +791,12 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
     ]
 }
 
-/// A closed spindle whose outline is an 8: one half of it is inside out, whichever way it is turned.
+/// A closed spindle with a figure-8 outline: one half is inside out, however it is turned.
 fn eight() -> Written {
     let (around, along) = (16, 48);
     let mut positions = Vec::new();
     for i in 0..along {
-        // Its radius has both signs, so that the surface passes through itself.
+        // Its radius changes sign, so that the surface passes through itself.
         let t = std::f32::consts::PI * i as f32 / (along - 1) as f32;
         let (x, radius) = (-t.cos(), 0.6 * (2.0 * t).sin());
         let radius = if i == 0 || i == along - 1 { 0.0 } else { radius + 0.001 };
@@ -814,7 +816,7 @@ fn eight() -> Written {
     Written { positions, faces }
 }
 
-/// Which faces look toward an eye.
+/// Which faces are turned toward an eye.
 fn look_toward(mesh: &Mesh, eye: Vec3) -> Vec<bool> {
     let wide = |p: Vec3| p.to_array().map(f64::from);
     let toward = |triangle: &[u32; 3]| {
@@ -827,8 +829,9 @@ fn look_toward(mesh: &Mesh, eye: Vec3) -> Vec<bool> {
     mesh.triangles().iter().map(toward).collect()
 }
 
-/// The scene with both sides of all faces, whatever is closed, and of faces back to back the one that looks toward the eye;
-/// and for each of its faces the number that it has in the scene. A stray face that no picture shows leaves the mesh open.
+/// The scene with both sides of all faces, even of closed meshes, but of two faces back to back only the one turned
+/// toward the eye; and each face's index in the original scene. A stray face that no picture shows leaves the mesh
+/// open.
 fn two_sided(scene: &Scene) -> (Scene, Vec<usize>) {
     let mesh = scene.objects()[0].mesh();
     let toward = look_toward(mesh, scene.camera.eye);
@@ -860,8 +863,8 @@ fn two_sided(scene: &Scene) -> (Scene, Vec<usize>) {
     (both, kept)
 }
 
-/// Pixels that are not what they should be: that show a face that is not in front, or the back of one where another
-/// looks toward the eye, or that are far darker than everything about them should be.
+/// Wrong pixels: those that show a face that is not in front, or the back of one where another is turned toward the
+/// eye, or that are far darker than everything around them should be.
 fn specks(scene: &Scene, probe: &mut Probe) -> Vec<(usize, usize)> {
     let (right, kept) = two_sided(scene);
     let truth = truth(&right);
@@ -880,7 +883,7 @@ fn specks(scene: &Scene, probe: &mut Probe) -> Vec<(usize, usize)> {
         let Some(seen) = shown.faces[place] else {
             return face.is_some() && !may_be_taken_for(&truth, right.camera.near, face, None, (x, y));
         };
-        // A face that is left out of what is right lies back to back with one that is not.
+        // A face left out of the reference lies back to back with one that is in it.
         let Some(seen_right) = in_right(seen) else { return true };
         let is_other = Some(seen_right) != face;
         let behind = is_other && !may_be_taken_for(&truth, right.camera.near, face, Some(seen_right), (x, y));
@@ -912,7 +915,7 @@ fn n2_models_with_faults_have_no_specks() {
         for (i, eye) in eyes().into_iter().enumerate() {
             scene.camera = Camera { eye, target: Vec3::ZERO, near: 0.1, ..Camera::default() };
             let mut probe = probe(Shading::Gouraud88Reseeded);
-            // The others are right for what is convex and far to near.
+            // The other methods are right only for convex objects and for objects sorted far to near.
             let way = if i == 1 { HiddenSurfaces::ScanLine } else { HiddenSurfaces::DepthBuffer };
             probe.renderer().settings.hidden_surfaces = Some(way);
             let specks = specks(&scene, &mut probe);
@@ -926,13 +929,14 @@ fn n2_models_with_faults_have_no_specks() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// Of two faces back to back the one that looks toward the eye is drawn, by every way to hidden surfaces, in floats and in
-/// 16.16, on every shading and within a budget, whichever comes first, and where the near plane cuts them.
+/// Of two faces back to back the one turned toward the eye is drawn: with every hidden-surface method, in floating
+/// point and in 16.16, with every shading and within a budget, whichever comes first, and where the near plane clips
+/// them.
 #[test]
 fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
     let mut tried = Tried::new("d3_of_faces_back_to_back_the_one_in_front_is_seen", 2 * 2 * 3 * 4 * 12);
     let leaf = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.2), Vec3::Y];
-    // A face apart, so that the mesh is open and both sides of its faces may be seen.
+    // A separate face, so that the mesh is open and both sides of its faces may be seen.
     let positions: Vec<Vec3> = leaf.into_iter().chain([Vec3::NEG_X, Vec3::NEG_Y, Vec3::new(-1.0, -1.0, 0.3)]).collect();
     for swapped in [false, true] {
         let mut triangles = vec![[0, 1, 2], [0, 2, 3], [2, 1, 0], [3, 2, 0], [4, 5, 6]];
@@ -942,7 +946,7 @@ fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
         let mesh = Mesh::new(positions.clone(), triangles).expect("legal");
         assert!(!mesh.is_closed() && (0..5).filter(|&t| mesh.has_twin(t)).count() == 4);
         for side in [1.0, -1.0] {
-            // From afar, and so near that the near plane cuts the leaf.
+            // From afar, and so near that the near plane clips the leaf.
             for (eye, target) in [
                 (Vec3::new(0.4, 0.3, 3.0 * side), Vec3::ZERO),
                 (Vec3::new(-0.3, 0.2, 0.4 * side), Vec3::new(1.0, 0.9, 0.0)),

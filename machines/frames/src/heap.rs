@@ -1,15 +1,15 @@
-//! An allocator in a fixed block of memory: a list of free pieces in the order of their addresses, first fit.
+//! An allocator in a fixed block of memory: a list of free blocks in address order, first fit.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::cell::UnsafeCell;
 use core::ptr;
 
-/// Bytes: a frame with a depth buffer of u32 and all tables of the engine needs about 10 MB.
+/// Size in bytes: a frame with a u32 depth buffer and all tables of the engine needs about 10 MB.
 #[cfg(target_os = "none")]
 const SIZE: usize = 14 << 20;
 #[cfg(not(target_os = "none"))]
 const SIZE: usize = 64 << 20;
-/// Every piece begins and ends at a multiple of this: room for the head of a free one.
+/// Every block starts and ends at a multiple of this, which leaves room for the header of a free one.
 const GRAIN: usize = 16;
 
 #[repr(align(16))]
@@ -20,13 +20,13 @@ unsafe impl Sync for Memory {}
 
 static MEMORY: Memory = Memory(UnsafeCell::new([0; SIZE]));
 
-/// The head of a free piece, in the piece.
+/// Header of a free block, stored in the block.
 struct Free {
     size: usize,
     next: *mut Free,
 }
 
-/// The first free piece; `None` before the first call.
+/// The first free block; `None` before the first call.
 struct Heap(UnsafeCell<Option<*mut Free>>);
 
 // SAFETY: the program has one thread.
@@ -39,11 +39,11 @@ fn grains(layout: Layout) -> usize {
     layout.size().max(1).next_multiple_of(GRAIN)
 }
 
-// SAFETY: a piece that is handed out is taken off the list, and lies in `MEMORY`, which nothing else uses.
+// SAFETY: a block handed out is removed from the list, and lies in `MEMORY`, which nothing else uses.
 unsafe impl GlobalAlloc for Heap {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let size = grains(layout);
-        // SAFETY: one thread; the list's heads lie in free pieces of `MEMORY`, each of its `size`.
+        // SAFETY: one thread; the list's headers lie in free blocks of `MEMORY`, each of its `size`.
         unsafe {
             let first = (*self.0.get()).get_or_insert_with(|| {
                 let first = MEMORY.0.get().cast::<Free>();
@@ -79,7 +79,7 @@ unsafe impl GlobalAlloc for Heap {
     unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
         let size = grains(layout);
         let piece: *mut Free = place.cast();
-        // SAFETY: one thread; the piece was handed out with this layout, so it is on no list.
+        // SAFETY: one thread; the block was handed out with this layout, so it is on no list.
         unsafe {
             let Some(first) = &mut *self.0.get() else { return };
             let (mut before, mut after) = (ptr::null_mut::<Free>(), *first);
@@ -98,9 +98,9 @@ unsafe impl GlobalAlloc for Heap {
     }
 }
 
-/// Makes one of a free piece and the next, if they touch.
+/// Merges a free block with the next, if they touch.
 unsafe fn join(piece: *mut Free) {
-    // SAFETY: the caller has a free piece, whose `next` is one or null.
+    // SAFETY: the caller has a free block, whose `next` is one or null.
     unsafe {
         let next = (*piece).next;
         if !next.is_null() && piece.cast::<u8>().add((*piece).size) == next.cast() {

@@ -1,12 +1,13 @@
-//! Draws the conformance frames with every kernel that the machine has, and prints a line for each kernel: how many, one
-//! hash for all, and the names of those that are not as on every other machine. The arguments are words:
+//! Draws the conformance frames with every kernel that the machine supports, and prints a line for each kernel: the
+//! number of frames, one hash for all, and the names of those that differ from every other machine. It takes these
+//! arguments:
 //!
-//! | word | what |
+//! | argument | what |
 //! |---|---|
 //! | `step=N` | draws every N-th frame, for slow machines |
-//! | `kernel=NAME` | draws with this kernel alone |
+//! | `kernel=NAME` | draws with this kernel only |
 //! | `frame=NAME` | prints the pixels of one frame, a line of hexadecimal digits for each row |
-//! | `loops` | checks every loop over pixels against its definition, and draws no frame |
+//! | `loops` | checks every pixel loop against its definition, and draws no frame |
 //!
 //! The status is 1 if a frame or a loop is wrong.
 #![cfg_attr(not(feature = "std"), no_std, no_main)]
@@ -26,14 +27,14 @@ use mode13h_conformance::frames::{self, Frame};
 use mode13h_conformance::hash::START;
 use mode13h_conformance::loops::{self, Cases};
 
-/// The number that the cases of loops are made from, as `mode13h verify` has it.
+/// The seed of the loops' cases, the same as in `mode13h verify`.
 const SEED: u64 = 13;
-/// No more wrong frames of a kernel are named: one fault shows in many.
+/// The most wrong frames named per kernel, since one fault shows in many.
 const MOST_NAMED: usize = 8;
 
-/// Does what the words say. Returns whether nothing is wrong.
+/// Runs what the arguments ask for. Returns whether nothing is wrong.
 fn run(words: &str) -> bool {
-    // `simd` is one of the levels that follow it, under another name: they are drawn with once.
+    // `simd` is one of the following levels under another name, so they are drawn with once.
     let kernels = Kernel::available().filter(|kernel| kernel.name() != "simd");
     let (mut step, mut kernels, mut name) = (1, kernels.collect::<Vec<_>>(), None);
     for word in words.split_ascii_whitespace() {
@@ -64,14 +65,14 @@ fn run(words: &str) -> bool {
     drawn.fold(true, |passed, right| passed & right)
 }
 
-/// Draws frames with a kernel. Returns whether all are those of every machine.
+/// Draws frames with a kernel. Returns whether all match those of every machine.
 fn draw<'a>(kernel: Kernel, frames: impl Iterator<Item = &'a Frame>) -> bool {
-    // What one renderer keeps from frame to frame must not show.
+    // What a renderer caches between frames must not show.
     let (mut renderer, mut count, mut hash, mut wrong) = (Renderer::new(), 0_usize, START, Vec::new());
     for frame in frames {
         count += 1;
         if cfg!(target_os = "none") {
-            // A chip has no room for what it keeps.
+            // A chip has no room for the cache.
             renderer = Renderer::new();
         }
         let drawn = frame.draw_by(&mut renderer, kernel);

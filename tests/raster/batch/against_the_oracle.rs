@@ -64,14 +64,14 @@ impl Place {
         }
     }
 
-    /// Before anything is drawn.
+    /// The picture before anything is drawn.
     fn empty(&self) -> Picture {
         let cells = if self.cells == Cells::None { 0 } else { self.width as usize * self.height as usize };
         let bytes = vec![self.background; self.pitch * self.height as usize];
         Picture { bytes, depths: vec![0; cells], covered: 0, tested: 0, pixels: 0 }
     }
 
-    /// Draws one more triangle by the oracle, and says how many pixels it covers.
+    /// Draws one more triangle with the oracle, and returns the number of pixels it covers.
     fn draw_by_oracle(&self, (vertices, interpolation): &Triangle, picture: &mut Picture) -> u32 {
         let before = picture.covered;
         let pixels = oracle::pixels(vertices, *interpolation, self.width as i32, self.height as i32);
@@ -90,7 +90,7 @@ impl Place {
             if let Some(depth) = depth {
                 picture.tested += 1;
                 let nearest = &mut picture.depths[(y * self.width + x) as usize];
-                // Of equal depths the first submitted wins.
+                // With equal depths the first submitted wins.
                 if depth <= *nearest {
                     continue;
                 }
@@ -102,7 +102,7 @@ impl Place {
         picture.covered - before
     }
 
-    /// By the oracle, triangle by triangle.
+    /// Drawn by the oracle, triangle by triangle.
     fn expected(&self, triangles: &[Triangle]) -> Picture {
         let mut picture = self.empty();
         for triangle in triangles {
@@ -111,7 +111,7 @@ impl Place {
         picture
     }
 
-    /// By the raster.
+    /// Drawn by the raster.
     fn drawn(&self, triangles: &[Triangle], kernel: Kernel) -> Picture {
         let mut batch = Batch::new();
         assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
@@ -138,7 +138,7 @@ impl Place {
         (depths.into_iter().map(Into::into).collect(), drawn)
     }
 
-    /// The fewest triangles of these, in their order, that differ still.
+    /// The fewest of these triangles, in order, that still differ.
     fn shrunk(&self, mut triangles: Vec<Triangle>, kernel: Kernel) -> Vec<Triangle> {
         let mut at = 0;
         while at < triangles.len() {
@@ -154,12 +154,13 @@ impl Place {
     }
 }
 
-/// Tries batches until `tried` has as many triangles as it states, each counted for every kernel.
+/// Tests batches until `tried` has as many triangles as it states, each counted for every kernel.
 pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
     let mut random = Random::named("r4 batches");
     let kernels: Vec<Kernel> = Kernel::available().collect();
     let each = tried.stated() / kernels.len() as u64;
-    // Triangles of each class, those that cover a pixel, and pixels that had to give way to nearer ones or came too late.
+    // Triangles of each class, those that cover a pixel, and pixels that were overwritten by nearer ones or came too
+    // late.
     let (mut of_class, mut covering, mut hidden) = ([0_u64; 3], [0_u64; 3], 0);
     while of_class.iter().sum::<u64>() < each {
         let place = Place::random(&mut random);
@@ -168,7 +169,7 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
         let least = |of_class: &[u64; 3]| (0..3).min_by_key(|&i| of_class[i]).expect("three");
         let first = least(&of_class);
         let mut interpolation = interpolations(&mut random);
-        // Until the frame is full, so that not much of what is drawn is drawn over.
+        // Until the frame is full, so that little of what is drawn gets overdrawn.
         while expected.covered < place.width * place.height && triangles.len() < Batch::CAPACITY {
             let class = if is_mixed { least(&of_class) } else { first };
             for vertices in shape(&mut random, CLASSES[class], (place.width.into(), place.height.into())) {
@@ -193,7 +194,7 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
     tried.worst("kernels", kernels.len() as f64);
     for (class, measure) in ["slivers", "reaching the guard band", "with shared edges"].into_iter().enumerate() {
         tried.worst(measure, of_class[class] as f64);
-        // Not all are in sight.
+        // Not all are visible.
         assert!(of_class[class] >= each / 4, "{measure}: {} of {each}", of_class[class]);
         assert!(covering[class] > each / 30, "{measure}: {} of {each} cover a pixel", covering[class]);
     }

@@ -9,14 +9,14 @@ use mode13h_conformance::Random;
 
 const BAND: i64 = Vertex::GUARD_BAND as i64;
 
-/// What a triangle is one of.
+/// Class of a triangle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Class {
     /// At most a few units wide.
     Sliver,
-    /// With a corner on the guard band, or beside it.
+    /// With a corner on or next to the guard band's edge.
     Far,
-    /// One of a fan or a strip, whose neighbours have its edges.
+    /// Part of a fan or a strip, whose neighbours share its edges.
     Shared,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn shape(random: &mut Random, class: Class, (width, height): (i64, i6
         }
         Class::Shared => shared(random, (width, height)),
     };
-    // Anywhere, on sixteenths, on centres of pixels, a unit beside them: edges through centres are what the fill rule
+    // Anywhere, on sixteenths, on pixel centres, or one unit beside them: edges through centres are what the fill rule
     // decides.
     let (snap, beside) = if is_beside { (1, 0) } else { random.one_of(&[(1, 0), (1, 0), (16, 0), (256, 0), (256, 1)]) };
     let snapped = |c: i64, random: &mut Random| {
@@ -49,7 +49,7 @@ pub(crate) fn shape(random: &mut Random, class: Class, (width, height): (i64, i6
         c.clamp(-BAND, BAND)
     };
     let depths = depths(random);
-    // One in three of one shade, on the border of two bytes.
+    // One in three has a single shade, on the border between two bytes.
     let level = random.one_of(&[None, None, Some(())]).map(|()| border(random));
     let corner = |(x, y): Point, random: &mut Random| {
         let shade = level.unwrap_or_else(|| shade(random));
@@ -58,7 +58,7 @@ pub(crate) fn shape(random: &mut Random, class: Class, (width, height): (i64, i6
     points.into_iter().map(|three| three.map(|point| corner(point, random))).collect()
 }
 
-/// A depth for each corner: all alike or not, and some beside multiples of 2¹⁴, where those of 16 bits change.
+/// A depth for each corner: equal or not, some next to multiples of 2¹⁴, where 16-bit depths change.
 fn depths(random: &mut Random) -> impl Fn(&mut Random) -> i64 + use<> {
     let level = (random.within(0, 3) << 14) + random.within(-1, 1);
     let level = random.one_of(&[None, None, Some(9), Some(level.max(0))]);
@@ -66,35 +66,35 @@ fn depths(random: &mut Random) -> impl Fn(&mut Random) -> i64 + use<> {
     move |random| level.unwrap_or_else(|| random.log_uniform(bits) as i64)
 }
 
-/// A shade: 0, 255, on the border of two bytes, or any.
+/// A shade: 0, 255, on the border between two bytes, or random.
 fn shade(random: &mut Random) -> i64 {
     let any = random.within(0, 0xFF00);
     let border = border(random);
     random.one_of(&[0, 0xFF00, border, any, any, any])
 }
 
-/// A shade beside the border of two bytes.
+/// A shade next to the border between two bytes.
 fn border(random: &mut Random) -> i64 {
     (random.within(0, 0xFE) << 8) + random.within(127, 128)
 }
 
-/// A length in units: a quarter of a pixel to 256 pixels, mostly of a few.
+/// A length in units: from a quarter of a pixel to 256 pixels, mostly a few pixels.
 fn reach(random: &mut Random) -> i64 {
     let octaves = random.one_of(&[6, 6, 10]);
     (random.log_uniform(octaves) << 6) as i64 + random.within(0, 63)
 }
 
-/// A point in the frame or a few pixels beside it.
+/// A point in the frame or a few pixels outside it.
 fn near(random: &mut Random, (width, height): Point) -> Point {
     (random.within(-600, width * 256 + 600), random.within(-600, height * 256 + 600))
 }
 
-/// A triangle through the centre of a pixel, at most two units across.
+/// A triangle through a pixel's centre, at most two units across.
 fn sliver(random: &mut Random, (width, height): Point) -> [Point; 3] {
     let (x, y) = (random.within(0, width - 1) * 256 + 128, random.within(0, height - 1) * 256 + 128);
     let length = reach(random) as f64;
     let turn = random.unit() * TAU;
-    // One in four level or upright.
+    // One in four horizontal or vertical.
     let turn = random.one_of(&[turn, turn, turn, (turn * 4.0 / TAU).floor() * FRAC_PI_2]);
     let along = |t: f64| (x + (turn.cos() * length * t).round() as i64, y + (turn.sin() * length * t).round() as i64);
     let back = random.unit();
@@ -102,7 +102,7 @@ fn sliver(random: &mut Random, (width, height): Point) -> [Point; 3] {
     [a, (middle.0 + random.within(-2, 2), middle.1 + random.within(-2, 2)), b]
 }
 
-/// An edge that passes the centre of a pixel as closely as an edge can.
+/// An edge that passes a pixel's centre as closely as an edge can without touching it.
 fn beside_a_centre(random: &mut Random, (width, height): Point) -> [Point; 2] {
     let centre = (random.within(0, width - 1) * 256 + 128, random.within(0, height - 1) * 256 + 128);
     let along = (reach(random) * random.one_of(&[-1, 1]), reach(random));
@@ -110,12 +110,12 @@ fn beside_a_centre(random: &mut Random, (width, height): Point) -> [Point; 2] {
     edge_beside(centre, along, side)
 }
 
-/// A triangle with a corner on the guard band or just inside it.
+/// A triangle with a corner on the guard band's edge or just inside it.
 fn far(random: &mut Random, frame: Point) -> [Point; 3] {
     let away = |random: &mut Random| {
         let less = random.log_uniform(12) as i64 - 1;
         let (edge, along) = (random.one_of(&[-1, 1]) * (BAND - less), random.within(-BAND, BAND));
-        // One in four close to the frame's own rows or columns, so that what is long is also thin.
+        // One in four close to the frame's own rows or columns, so that long ones are also thin.
         let close = random.within(-2_000, 20_000);
         let along = random.one_of(&[along, along, along, close]);
         if random.within(0, 1) == 0 { (edge, along) } else { (along, edge) }
@@ -124,7 +124,7 @@ fn far(random: &mut Random, frame: Point) -> [Point; 3] {
     [away(random), b, c]
 }
 
-/// A fan round a point, or a strip.
+/// A fan around a point, or a strip.
 fn shared(random: &mut Random, (width, height): Point) -> Vec<[Point; 3]> {
     let centre = near(random, (width, height));
     let count = random.within(2, 12);
@@ -149,12 +149,12 @@ fn shared(random: &mut Random, (width, height): Point) -> Vec<[Point; 3]> {
     zigzag.windows(3).map(|three| [three[0], three[1], three[2]]).collect()
 }
 
-/// A triangle as large as a batch draws, and up to twice as wide and as high, whose rows begin at centres of pixels at
-/// shades that are whole numbers and on the border of two bytes: the least error of a start shows. It lies in the frame's
-/// first `SIDE` columns and rows.
+/// A triangle as large as a batch draws, and up to twice as wide and as high, whose rows begin at pixel centres with
+/// shades that are whole numbers on the border between two bytes, so that the slightest error in a start shows. It lies
+/// in the frame's first `SIDE` columns and rows.
 pub(crate) fn with_exact_starts(random: &mut Random) -> [Vertex; 3] {
     let rows = random.within(SIDE * 3 / 8, SIDE - 2);
-    // Shades change by whole units a row, so much that some lie on the border.
+    // Shades change by whole units per row, by so much that some lie on the border.
     let per_row = random.one_of(&[1, 2, 4, 8, 16, 32, 48, 64, 85, 128]).min(0xFE00 / rows);
     let high = border(random).max(per_row * rows + 1);
     let low = high - per_row * rows;
@@ -165,13 +165,13 @@ pub(crate) fn with_exact_starts(random: &mut Random) -> [Vertex; 3] {
     let at = |(x, y): Point, shade: i64, random: &mut Random| vertex(x, y, shade, random.log_uniform(30) as i64);
     let (top, bottom) = (128, 128 + rows * 256);
     if random.within(0, 1) == 0 {
-        // An upright edge at the left.
+        // A vertical edge on the left.
         let across = random.within(128, bottom);
         return [at((128, top), upper, random), at((128, bottom), lower, random), at((right, across), third, random)];
     }
-    // A diagonal, above and left of which the plane goes on to twice the shades that there are.
+    // A diagonal, above and left of which the plane extends to twice the range of shades.
     [at((bottom, top), upper, random), at((128, bottom), lower, random), at((bottom, bottom), third, random)]
 }
 
-/// The sides of the largest square of `with_exact_starts`, in pixels.
+/// Side of the largest square of `with_exact_starts`, in pixels.
 pub(crate) const SIDE: i64 = 1_024;

@@ -15,13 +15,13 @@ const WIDTH: u32 = 20;
 const HEIGHT: u32 = 12;
 const SCREEN: Screen = Screen { width: WIDTH, height: HEIGHT, pixel_aspect: (5, 6) };
 
-/// A coordinate of any size, as likely small as large.
+/// A coordinate of any magnitude, small and large equally likely.
 fn coordinate(random: &mut Random) -> f32 {
     let size = f64::powf(2.0, random.unit() * 140.0 - 12.0).min(f64::from(f32::MAX)) as f32;
     random.one_of(&[size, -size, size, -size, f32::MAX, f32::MIN, 0.0])
 }
 
-/// Faces anywhere: bytes are those of the clipped triangles, no part of a face covers what another does, shades are in range.
+/// Faces anywhere: bytes are those of the clipped triangles, no two parts of a face overlap, shades are in range.
 pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
     let mut random = Random::named("r7 greatest");
     let shadings = [
@@ -35,7 +35,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
     while tried.more() {
         let corners = [0; 3].map(|_| {
             let p = [0; 3].map(|_| coordinate(&mut random));
-            // Half of them before the eye.
+            // Half of them are in front of the eye.
             Vec3::new(p[0], p[1], if random.within(0, 1) == 0 { -p[2].abs() } else { p[2] })
         });
         let intensities = [0; 3].map(|_| random.unit());
@@ -48,7 +48,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
         assert!(judged.counts.iter().all(|&times| times <= 1), "parts of {corners:?} overlap");
         let shades = judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|v| f64::from(v.shade().to_bits())));
         let (low, high) = intensities.iter().fold((f64::MAX, 0.0), |(low, high), &i| (i.min(low), i.max(high)));
-        // In f32 the normal is off by a few of 2⁻²⁴, and the shade is rounded; from behind a face is dark.
+        // In f32 the normal is off by a few 2⁻²⁴, and the shade is rounded; from behind a face is dark.
         for shade in shades {
             let in_range = (low * 65_280.0 - 1.0..=high * 65_280.0 + 1.0).contains(&shade);
             assert!(in_range || shade == 0.0, "{shade} of {intensities:?}, {corners:?}");
@@ -64,7 +64,8 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
     assert!(seen * 4 > stated && clipped * 4 > stated && covered > 10 * stated, "{seen}, {clipped}, {covered}");
 }
 
-/// A floor one below the eye or a ceiling one above it, of rectangles of any size: what a ray meets of it is covered once.
+/// A floor one below the eye or a ceiling one above it, of rectangles of any size: wherever a ray hits it, it is
+/// covered once.
 pub(crate) fn floors_up_to_the_greatest_number(mut tried: Tried) {
     let mut random = Random::named("r7 floors");
     let fy = f64::from(HEIGHT) / 2.0 / f64::tan(0.5);
@@ -95,7 +96,7 @@ pub(crate) fn floors_up_to_the_greatest_number(mut tried: Tried) {
             judged(&mut Renderer::new(), &lit(scene(Mesh::new(positions, triangles).expect("a mesh"))), SCREEN);
         let is_hit = |x: f64, y_pixel: f64| {
             let ray = [(x - f64::from(WIDTH) / 2.0) / fx, -(y_pixel - f64::from(HEIGHT) / 2.0) / fy];
-            // How far along the view the floor is met.
+            // The distance along the view at which the floor is hit.
             let along = f64::from(y) / ray[1];
             let within = |lines: &[f32], at: f64| f64::from(lines[0]) < at && at < f64::from(lines[lines.len() - 1]);
             along > 0.25 && within(&xs, along * ray[0]) && within(&zs, -along)

@@ -11,7 +11,7 @@ unsafe extern "C" {
     fn munmap(address: *mut c_void, size: usize) -> c_int;
 }
 
-/// `SIZE` bytes of zero with nothing readable or writable on either side.
+/// `SIZE` zero bytes with nothing readable or writable on either side.
 pub(crate) struct Edge {
     mapped: *mut c_void,
 }

@@ -1,7 +1,8 @@
-//! Every function with vectors or assembly behind it under the rules of the machine: lists of spans, batches, and whole frames,
-//! whose vertices, culling, light and budgets are the rest.
+//! Every function that uses vectors or assembly, under the rules of the machine: lists of spans, batches, and whole
+//! frames, whose vertices, culling, light and budgets cover the rest.
 //!
-//! Each runs through the trampoline, and all arrays that are there meanwhile, the caller's and the engine's own, lie at an
+//! Each runs through the trampoline, with all arrays allocated meanwhile, the caller's and the engine's own, at one end
+//! of their pages and nothing readable or writable beside them. A fault ends the test program.
 //! end of their pages, with nothing readable or writable beside them. A fault ends the test program.
 
 use mode13h::glam::Vec3;
@@ -26,7 +27,8 @@ use mode13h_conformance::Random;
 
 const SIDES: [Side; 2] = [Side::Behind, Side::Before];
 
-/// What `draw` gives with each kernel, through the trampoline with guarded arrays, has to be what it gives with the first.
+/// Checks that `draw` gives the same with each kernel, through the trampoline and with guarded arrays, as with the
+/// first.
 fn try_kernels<T: PartialEq>(what: &str, random: &mut Random, tried: &mut Tried, draw: impl Fn(Kernel) -> T) {
     let expected = draw(Kernel::PORTABLE);
     for kernel in Kernel::available() {
@@ -43,13 +45,13 @@ fn try_kernels<T: PartialEq>(what: &str, random: &mut Random, tried: &mut Tried,
     }
 }
 
-/// The same numbers in an array of their own, guarded if others are.
+/// The same numbers in a separate array, guarded if others are.
 fn own<T: Clone>(numbers: &[T]) -> Box<[T]> {
     numbers.to_vec().into_boxed_slice()
 }
 
-/// Spans within so many pixels, the first and the last of them among their ends; of one half of the lists each has the offset
-/// of its cells.
+/// Spans within this many pixels, including the first and last pixels; in half of the lists each has the offset of its
+/// cells.
 fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
     let (count, is_shared) = (random.within(1, 40), random.below(2) == 0);
     (0..count)
@@ -125,7 +127,7 @@ fn s7_rows_keep_the_rules() {
     }
 }
 
-/// Triangles of a batch: some in or near a frame, of one size or of many, and what `support` has.
+/// Triangles of a batch: some in or near a frame, of one size or many, plus those of `support`.
 fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 3], Interpolation)> {
     let some = random.within(1, Batch::CAPACITY as i64);
     let reach = random.one_of(&[None, Some(200), Some(500), Some(1_500), Some(8_000)]);
@@ -191,7 +193,7 @@ fn s7_batches_keep_the_rules() {
     assert!(pixels > 5_000, "{pixels} triangles");
 }
 
-/// A mesh of any number of vertices and faces, so that its arrays end anywhere in a vector.
+/// A mesh with any number of vertices and faces, so that its arrays end anywhere in a vector.
 fn soup(random: &mut Random) -> Mesh {
     let vertices = random.within(3, 70);
     let positions: Vec<Vec3> =
@@ -230,7 +232,7 @@ fn s7_frames_keep_the_rules() {
             } else if let Some(shading) = shading {
                 renderer.settings.accuracy = Some(shading.into());
             }
-            // Of its own, so that the mesh and all that belongs to it is guarded as well.
+            // Its own copy, so that the mesh and everything that belongs to it is guarded as well.
             let scene = own_scene(&scene);
             let mut bytes = own(&vec![0; (width * height) as usize]);
             let frame = Frame::new(&mut bytes, width, height, width as usize).expect("legal");
@@ -243,7 +245,7 @@ fn s7_frames_keep_the_rules() {
     assert!(arrays > 10_000, "{arrays} arrays guarded");
 }
 
-/// The same scene with meshes of its own.
+/// The same scene with its own copies of the meshes.
 fn own_scene(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for object in scene.objects_mut() {

@@ -1,4 +1,4 @@
-//! An allocator that can give every array pages of its own, with nothing readable or writable beside them.
+//! An allocator that can give every array its own pages, with nothing readable or writable beside them.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const PAGE: usize = 4096;
-/// Addresses, of which most are never backed by memory.
+/// Addresses, most of which are never backed by memory.
 const ARENA: usize = 1 << 36;
 
 unsafe extern "C" {
@@ -36,7 +36,7 @@ thread_local! {
     static GUARDED: Cell<Option<Side>> = const { Cell::new(None) };
 }
 
-/// Runs `action` with every array that it allocates guarded at this side.
+/// Runs `action` with every array that it allocates guarded on this side.
 pub(crate) fn guarded<T>(side: Side, action: impl FnOnce() -> T) -> T {
     GUARDED.set(Some(side));
     let result = action();
@@ -50,7 +50,7 @@ pub(crate) fn arrays() -> usize {
 }
 
 static ARRAYS: AtomicUsize = AtomicUsize::new(0);
-/// Bytes of the arena that have been given out. None is given out twice, so that what is freed stays out of bounds.
+/// Bytes of the arena already used. None is reused, so freed memory stays out of bounds.
 static USED: AtomicUsize = AtomicUsize::new(PAGE);
 static START: OnceLock<usize> = OnceLock::new();
 
@@ -72,8 +72,8 @@ struct Guarding;
 #[global_allocator]
 static ALLOCATOR: Guarding = Guarding;
 
-// SAFETY: what is given out lies in pages that are given out once, are writable, and stay so until it is freed; all else is the
-// system's.
+// SAFETY: blocks handed out lie in pages that are handed out once, are writable, and stay so until freed; everything
+// else is the system's.
 unsafe impl GlobalAlloc for Guarding {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let side = GUARDED.try_with(Cell::get).ok().flatten();
@@ -82,13 +82,13 @@ unsafe impl GlobalAlloc for Guarding {
             return unsafe { System.alloc(layout) };
         };
         let size = pages(layout.size());
-        // A page that nobody gets behind each.
+        // An unused page after each.
         let offset = USED.fetch_add(size + PAGE, Ordering::Relaxed);
         if offset + size + PAGE > ARENA {
             return ptr::null_mut();
         }
         let start: *mut u8 = ptr::with_exposed_provenance_mut(arena() + offset);
-        // SAFETY: pages of the arena that nobody has.
+        // SAFETY: pages of the arena that are not in use.
         if unsafe { mprotect(start.cast(), size, READ_WRITE) } != 0 {
             return ptr::null_mut();
         }
@@ -108,7 +108,7 @@ unsafe impl GlobalAlloc for Guarding {
             return unsafe { System.dealloc(array, layout) };
         };
         let (size, before) = (pages(layout.size()), offset % PAGE);
-        // SAFETY: the pages that `alloc` gave it: it begins in the first of them.
+        // SAFETY: the pages that `alloc` gave it, as it begins in the first of them.
         unsafe {
             let start: *mut c_void = array.sub(before).cast();
             madvise(start, size, DONT_NEED);

@@ -1,4 +1,4 @@
-//! The trampoline for 32-bit x86, cdecl, and kernels that are wrong on purpose.
+//! The trampoline for 32-bit x86, cdecl, and deliberately wrong kernels.
 
 use super::{Kernel, Seen, entry, kept_value};
 use std::arch::naked_asm;
@@ -41,13 +41,13 @@ pub(crate) fn call(
         rubbish,
     };
     seen.kept = call.kept;
-    // SAFETY: `row` is valid for `length` bytes, which is all that a right kernel writes; the wrong ones
-    // here keep to it, but for the guards beside it. The trampoline keeps its own caller's registers.
+    // SAFETY: `row` is valid for `length` bytes, which is all that a correct kernel writes; the wrong ones here stay
+    // within it, except for the guards beside it. The trampoline preserves its own caller's registers.
     unsafe { trampoline(&call, seen) }
 }
 
-/// Keeps what it needs to come back in a block at a multiple of 256, found again from whatever the
-/// stack pointer is when the kernel returns; 64 bytes below it are guarded, then come the arguments.
+/// Saves what it needs to return in a block at a multiple of 256, found again from whatever the stack pointer is when
+/// the kernel returns; 64 bytes below it are guarded, then come the arguments.
 #[unsafe(naked)]
 unsafe extern "cdecl" fn trampoline(call: &Call, seen: &mut Seen) {
     naked_asm!(
@@ -158,7 +158,7 @@ macro_rules! wrong {
         unsafe extern "cdecl" fn $name(_row: *mut u8, _count: u16, _shade: u16, _step: u16) {
             sound_loop!($($before,)* ; $($after),*)
         })*
-        /// Each with what has to be said of it.
+        /// Each with the message it must give.
         pub(crate) const WRONG: &[(entry::Entry, &str)] = &[$(($name, $fault)),*];
     };
 }

@@ -1,4 +1,4 @@
-//! The trampoline for x86-64, System V convention, and kernels that are wrong on purpose.
+//! The trampoline for x86-64, System V convention, and deliberately wrong kernels.
 
 use super::{Kernel, Seen, entry, kept_value};
 use std::arch::naked_asm;
@@ -38,13 +38,13 @@ pub(crate) fn call(
         kept: std::array::from_fn(kept_value),
         rubbish,
     };
-    // SAFETY: `row` is valid for `length` bytes, which is all that a right kernel writes; the wrong ones
-    // here keep to it, but for the guards beside it. The trampoline keeps its own caller's registers.
+    // SAFETY: `row` is valid for `length` bytes, which is all that a correct kernel writes; the wrong ones here stay
+    // within it, except for the guards beside it. The trampoline preserves its own caller's registers.
     unsafe { trampoline(&call, seen) }
 }
 
-/// Keeps what it needs to come back in a block at a multiple of 256, found again from whatever the
-/// stack pointer is when the kernel returns; 64 bytes below it are guarded.
+/// Saves what it needs to return in a block at a multiple of 256, found again from whatever the stack pointer is when
+/// the kernel returns; 64 bytes below it are guarded.
 #[unsafe(naked)]
 unsafe extern "sysv64" fn trampoline(call: &Call, seen: &mut Seen) {
     naked_asm!(
@@ -133,14 +133,14 @@ pub(crate) unsafe extern "sysv64" fn shim<const I: usize>(row: *mut u8, count: u
     kernel.fill(unsafe { std::slice::from_raw_parts_mut(row, count as usize) }, shade, step);
 }
 
-/// Anything: `row` is the place of a `&mut dyn FnMut()`, which it calls.
+/// Runs any code: `row` is the address of a `&mut dyn FnMut()`, which it calls.
 pub(crate) unsafe extern "sysv64" fn run(row: *mut u8, _count: u32, _shade: u16, _step: u16) {
-    // SAFETY: the caller's promise, and nobody else has it meanwhile.
+    // SAFETY: the caller's promise, and nobody else uses it meanwhile.
     let action = unsafe { &mut *row.cast::<&mut dyn FnMut()>() };
     action();
 }
 
-/// A loop with r8d for the step, so that it touches no register that has to be kept.
+/// A loop with the step in r8d, so that it touches no callee-saved register.
 macro_rules! sound_loop {
     ($($before:literal,)* ; $($after:literal),*) => {
         naked_asm!(
@@ -161,7 +161,7 @@ macro_rules! wrong {
         unsafe extern "sysv64" fn $name(_row: *mut u8, _count: u32, _shade: u16, _step: u16) {
             sound_loop!($($before,)* ; $($after),*)
         })*
-        /// Each with what has to be said of it.
+        /// Each with the message it must give.
         pub(crate) const WRONG: &[(entry::Entry, &str)] = &[$(($name, $fault)),*];
     };
 }

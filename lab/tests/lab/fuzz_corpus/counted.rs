@@ -1,10 +1,10 @@
-//! How much memory a piece of work has at once: an allocator that counts, thread by thread.
+//! An allocator that counts, thread by thread, how much memory a piece of work holds at once.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    /// Bytes that this thread has allocated and not freed, and the most that it had at once. Signed: a thread may free
+    /// Bytes that this thread has allocated and not freed, and the maximum of that. Signed, since a thread may free
     /// what another allocated.
     static COUNTS: Cell<(isize, isize)> = const { Cell::new((0, 0)) };
 }
@@ -15,18 +15,19 @@ struct Counted;
 static COUNTED: Counted = Counted;
 
 fn count(bytes: isize) {
-    // At the end of a thread there may be no counts any more.
+    // When a thread ends, its counts may already be gone.
     let _ = COUNTS.try_with(|counts| {
         let (now, peak) = counts.get();
         counts.set((now + bytes, peak.max(now + bytes)));
     });
 }
 
-// SAFETY: all is left to the system's allocator; counting allocates nothing, as the counts need no destructor.
+// SAFETY: everything is delegated to the system's allocator; counting allocates nothing, as the counts need no
+// destructor.
 unsafe impl GlobalAlloc for Counted {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
-        // SAFETY: what the caller owes to this is what this owes to the system's.
+        // SAFETY: the caller's obligations are those of the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -43,7 +44,7 @@ unsafe impl GlobalAlloc for Counted {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // Old and new may be there at once.
+        // The old and the new block may exist at once.
         count(size as isize);
         count(-(layout.size() as isize));
         // SAFETY: as above.
@@ -51,7 +52,7 @@ unsafe impl GlobalAlloc for Counted {
     }
 }
 
-/// The most bytes that `work` has in memory at once, beyond what was there before.
+/// The most bytes that `work` holds in memory at once, beyond what was there before.
 pub(crate) fn peak(work: impl FnOnce()) -> usize {
     let before = COUNTS.with(|counts| {
         let (now, _) = counts.get();

@@ -1,5 +1,5 @@
-//! What holds of every parser, whatever it is given. One function a parser, for the fuzzer
-//! (`fuzz/fuzz_targets`) and for the corpora (`tests/fuzz_corpus.rs`) alike; each panics where it does not hold.
+//! Properties that hold for every parser, whatever its input. There is one function per parser, shared by the fuzzer
+//! (`fuzz/fuzz_targets`) and the corpora (`tests/fuzz_corpus.rs`); each panics if its property fails.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -26,7 +26,7 @@ use mode13h_assets::palette_file::{self, FORMATS, Format, PaletteError, Place};
 use mode13h_assets::scene_file::{MAX_TRIANGLES, SceneErrorKind};
 use mode13h_assets::texture;
 
-/// A parser's property: its name, which is that of its corpus and of its fuzz target, and the check.
+/// A parser's property: its name, which its corpus and its fuzz target share, and the check.
 pub type Property = (&'static str, fn(&[u8]));
 
 pub const PROPERTIES: [Property; 13] = [
@@ -45,10 +45,10 @@ pub const PROPERTIES: [Property; 13] = [
     ("gif", gif),
 ];
 
-/// Stands alone on a line between an OBJ file and the MTL file that it names, in one input.
+/// Separates an OBJ file from its MTL file within one input, on a line of its own.
 const MATERIALS: &[u8] = b"\n---\n";
 
-/// An OBJ file, and what stands behind a line of `---` as the MTL file `a.mtl`. Every other MTL file is missing.
+/// An OBJ file; anything after a line of `---` is the MTL file `a.mtl`. Every other MTL file is missing.
 pub fn obj(bytes: &[u8]) {
     let (model, materials) = match bytes.windows(MATERIALS.len()).position(|window| window == MATERIALS) {
         Some(at) => (&bytes[..=at], Some(&bytes[at + MATERIALS.len()..])),
@@ -61,10 +61,10 @@ pub fn obj(bytes: &[u8]) {
     let result = obj::parse(model, "model.obj", library);
     check_obj(&result, model, materials.unwrap_or_default());
 
-    // However the reader hands the bytes out.
+    // However the reader delivers the bytes.
     let dribbled = obj::parse(BufReader::with_capacity(1, model), "model.obj", library);
     assert_eq!(outcome(&dribbled), outcome(&result), "read byte by byte");
-    // Whatever ends the lines.
+    // Whatever the line endings.
     if !model.contains(&b'\r') {
         for end in ["\r\n", "\r"] {
             let ended = model.split(|&byte| byte == b'\n').collect::<Vec<_>>().join(end.as_bytes());
@@ -77,20 +77,20 @@ pub fn obj(bytes: &[u8]) {
     }
 }
 
-/// An MTL file, of a model that uses the first materials it names.
+/// An MTL file, for a model that uses the first materials it names.
 pub fn mtl(bytes: &[u8]) {
     let mut model = String::from("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
     let mut names = Vec::new();
     for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
         let Some(name) = line.trim_ascii().strip_prefix(b"newmtl ") else { continue };
         let Ok(name) = str::from_utf8(name.trim_ascii()) else { continue };
-        // A name that ends in a backslash goes on in the next line.
+        // A name that ends in a backslash continues on the next line.
         if names.len() < 8 && !name.contains('\\') && !names.contains(&name) {
             names.push(name);
             writeln!(model, "usemtl {name}\nf 1 2 3").expect("a string takes all");
         }
     }
-    // One that there is not, unless the fuzzer thought of its name too.
+    // One that does not exist, unless the fuzzer came up with its name too.
     if !names.contains(&"none of them") {
         names.push("none of them");
         model.push_str("usemtl none of them\nf 3 2 1\n");
@@ -107,7 +107,7 @@ pub fn mtl(bytes: &[u8]) {
     }
 }
 
-/// What two ways of reading the same must agree in.
+/// What two ways of reading the same input must agree on.
 fn outcome(result: &Result<Loaded, ModelFileError>) -> Result<&Loaded, String> {
     result.as_ref().map_err(ToString::to_string)
 }
@@ -136,7 +136,7 @@ fn check_obj(result: &Result<Loaded, ModelFileError>, model: &[u8], materials: &
     }
 }
 
-/// A model's error names a line or a byte of its file, or the byte behind the last. An empty file has a line, too.
+/// A model's error names a line or a byte of its file, or the byte after the last. An empty file has one line, too.
 fn check_place(error: &ModelFileError, bytes: &[u8]) {
     match error.place {
         Some(model_file::Place::Line(line)) => {
@@ -163,7 +163,7 @@ pub fn gltf(bytes: &[u8]) {
     model(bytes, "model.glb");
 }
 
-/// A model's file of this name, beside which there is none.
+/// A model file with this name and no files beside it.
 fn model(bytes: &[u8], name: &str) {
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     match model_file::parse(bytes, name, none, &Options::default()) {
@@ -198,7 +198,7 @@ fn model(bytes: &[u8], name: &str) {
             assert!(said.len() < 400, "{said:?}");
         }
     }
-    // Whatever it is by its contents.
+    // Whichever format its contents suggest.
     let _ = model_file::parse(bytes, "standard input", none, &Options::default());
 }
 
@@ -226,7 +226,7 @@ fn lines_in(text: &[u8]) -> usize {
     lines
 }
 
-/// What holds of every mesh that a file gives.
+/// Properties of every mesh read from a file.
 fn check_mesh(mesh: &Mesh) {
     let (positions, normals) = (mesh.positions(), mesh.normals());
     assert!(!mesh.triangles().is_empty());
@@ -235,7 +235,7 @@ fn check_mesh(mesh: &Mesh) {
     for normal in normals {
         let squares = normal.to_array().map(|x| f64::from(x) * f64::from(x));
         let length = (squares[0] + squares[1] + squares[2]).sqrt();
-        // Each component is rounded once, by 2⁻²⁵ of a number up to 1: √3 · 2⁻²⁵ at most.
+        // Each component is rounded once, by 2⁻²⁵ for a number up to 1: √3 · 2⁻²⁵ at most.
         assert!((length - 1.0).abs() < 2f64.powi(-23), "a normal of length {length}");
     }
     let mut used = vec![false; positions.len()];
@@ -259,7 +259,7 @@ fn check_mesh(mesh: &Mesh) {
     assert!(!mesh.is_convex() || mesh.is_closed());
 }
 
-/// A mesh written as OBJ, with all that it has, and read again: the same corners, in the same order.
+/// A mesh written as OBJ with all its data and read again has the same corners in the same order.
 fn check_written_again(mesh: &Mesh) {
     let mut text = String::new();
     for p in mesh.positions() {
@@ -291,7 +291,7 @@ fn check_written_again(mesh: &Mesh) {
             assert_eq!(bits(mesh.positions()[old as usize]), bits(again.positions()[new as usize]));
             assert_eq!(texcoord(mesh, old), texcoord(&again, new));
             let (old, new) = (mesh.normals()[old as usize], again.normals()[new as usize]);
-            // Each was made unit once more: a length off by 2⁻²⁴, and a rounding of 2⁻²⁵, in each component.
+            // Each was normalized once more: a length off by 2⁻²⁴, and a rounding of 2⁻²⁵, in each component.
             assert!((old - new).abs().max_element() <= 2f32.powi(-23), "{old} {new}");
         }
         let surface = again.triangle_surfaces()[t];
@@ -316,7 +316,7 @@ pub fn palette_binary(bytes: &[u8]) {
     palette(bytes, &["vga", "act", "act-772"], &["a.vga", "a.raw", "a.col", "a.lmp", "a.act", "a.pal"]);
 }
 
-/// A palette file, read as these formats, under these names, and under none.
+/// A palette file, read as these formats, under these names, and without a name.
 fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
     let mut results: Vec<Result<Palette, PaletteError>> = Vec::new();
     for name in formats {
@@ -330,7 +330,7 @@ fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
     assert_eq!(results[results.len() - 1], results[results.len() - 2], "an extension that is missing says nothing");
     for (i, result) in results.iter().enumerate() {
         match result {
-            // Most are the same.
+            // Most outcomes are equal.
             Ok(_) if results[..i].contains(result) => {}
             Ok(palette) => check_palette(palette),
             Err(error) => check_palette_error(error, bytes),
@@ -338,7 +338,7 @@ fn palette(bytes: &[u8], formats: &[&str], names: &[&str]) {
     }
 }
 
-/// Written in any format and read again it is the same.
+/// Written in any format and read again, a palette is the same.
 fn check_palette(palette: &Palette) {
     for format in &FORMATS {
         let written = format.write(palette, "a name\nof two lines");
@@ -349,7 +349,7 @@ fn check_palette(palette: &Palette) {
         assert_eq!(format.write(&read, "a name\nof two lines"), written, "{}", format.name);
         let recognized = Format::of_bytes(&written).map(|format| format.name);
         match format.name {
-            // The bytes do not say what they are; and the colours of a binary file may spell a text.
+            // The bytes do not identify the format, and the colours of a binary file may look like text.
             "act" => {}
             "vga" | "act-772" if matches!(recognized, Some("jasc" | "gimp" | "hex")) => {}
             name => {
@@ -362,10 +362,10 @@ fn check_palette(palette: &Palette) {
     }
 }
 
-/// A raw file of colours below 64 that the DAC does not have is rounded down to six bits; nothing else is.
+/// Colours below 64 in a raw file that the DAC does not have are rounded down to six bits; nothing else is.
 fn as_written(format: &Format, palette: &Palette) -> Palette {
     let dark = palette.colors().iter().all(|c| c.r.max(c.g).max(c.b) < 64);
-    // A file says nothing of ramps: they are looked for when it is read.
+    // A file says nothing about ramps: they are detected when it is read.
     Palette::from_colors(if format.name == "vga" && dark { *palette.on_dac().colors() } else { *palette.colors() })
 }
 
@@ -373,7 +373,7 @@ fn check_palette_error(error: &PaletteError, bytes: &[u8]) {
     match error.place {
         Place::Line(line) => {
             let lines = lines_in(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes));
-            // One more where a line is missing.
+            // One more if a line is missing.
             assert!((1..=lines + 1).contains(&line), "{error}: of {lines} lines");
         }
         Place::Offset(offset) => assert!(offset <= bytes.len(), "{error}: of {} bytes", bytes.len()),
@@ -382,9 +382,9 @@ fn check_palette_error(error: &PaletteError, bytes: &[u8]) {
     assert!(said.is_ascii() && !said.contains(char::is_control) && said.len() < 150, "{said:?}");
 }
 
-/// A scene file. Beside it lie a model, a palette and a texture.
+/// A scene file, with a model, a palette and a texture beside it.
 pub fn scene(bytes: &[u8]) {
-    // A texture of one black texel, as PNG.
+    // A PNG texture of one black texel.
     const TEXEL: &[u8] = &[
         0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
         0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00,
@@ -414,7 +414,7 @@ pub fn scene(bytes: &[u8]) {
             if let Some(place) = error.place {
                 let text = String::from_utf8_lossy(bytes);
                 let line = text.split('\n').nth(place.line - 1).expect("a line of the file");
-                // One more than there are: at the end of the line.
+                // One more than there are, for the end of the line.
                 assert!((1..=line.chars().count() + 1).contains(&place.column), "{said}");
             }
             if matches!(*error.kind, SceneErrorKind::UnknownKey { .. } | SceneErrorKind::MissingKey) {
@@ -424,22 +424,22 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
-/// What holds of every scene that a file gives: its numbers are legal, at any time, so that it can be drawn.
+/// Every scene read from a file has valid numbers at any time, so it can be drawn.
 fn check_scene(mut scene: Scene) {
     assert!(!scene.objects().is_empty() && scene.duration > 0.0 && scene.duration <= 3600.0);
     let triangles: usize = scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
     assert!(triangles as u64 <= MAX_TRIANGLES + 2 * scene.objects().len() as u64);
     for seconds in [0.0, 0.3 * scene.duration, 1e9, -1.0] {
         scene.set_time(seconds);
-        // What is still too large for f32, a camera that comes to its target, or a sun to zero, is refused when it is
-        // drawn. Great scenes take long.
+        // What is still too large for f32, a camera that reaches its target, or a sun that becomes zero, is rejected
+        // when drawn. Large scenes take long.
         if triangles < 500 && scene.objects().len() < 20 && scene.settings.tessellation.is_none() {
             let _ = Renderer::new().draw(&scene, &mut Vga::new());
         }
     }
 }
 
-/// Words of the command line that the library reads.
+/// Command-line arguments that the library parses.
 pub fn words(bytes: &[u8]) {
     let words = String::from_utf8_lossy(bytes);
     match Scale::from_str(&words) {
@@ -483,8 +483,8 @@ pub fn texture(bytes: &[u8]) {
     }
 }
 
-/// A film made of the bytes: its size, its rate, and frame by frame one of four palettes and the pixels. Read again, it shows
-/// the colours that were given, each as long as its rate says.
+/// A film made from the bytes: its size, its rate, and for each frame one of four palettes and the pixels. Decoded, it
+/// shows the given colours, each for as long as the rate says.
 pub fn gif(bytes: &[u8]) {
     let [width, height, rate, pixels @ ..] = bytes else { return };
     let [width, height] = [width, height].map(|side| 1 + usize::from(*side) % 12);
@@ -492,7 +492,7 @@ pub fn gif(bytes: &[u8]) {
     let colors = |number: u8| -> [Rgb; 256] {
         core::array::from_fn(|i| {
             let i = i as u8;
-            // In two of them neighbours have one colour.
+            // In two of them neighbouring entries have the same colour.
             let i = if number.is_multiple_of(2) { i } else { i & !1 };
             Rgb::new(i.wrapping_mul(number | 1), i.rotate_left(u32::from(number)), i)
         })
@@ -512,7 +512,7 @@ pub fn gif(bytes: &[u8]) {
         film.add(&picture).expect("a legal picture");
     }
     let (file, _) = film.finish().expect("a vector takes all");
-    // What is to be seen, and until when, in hundredths of a second; what stays is one.
+    // What is visible, and until when, in hundredths of a second; unchanged pictures are merged.
     let mut expected: Vec<(Vec<Rgb>, u64)> = Vec::new();
     for (number, (palette, pixels)) in frames.iter().enumerate() {
         let ends = (100.0 * (number + 1) as f64 / rate.frames_per_second()).ceil() as u64;

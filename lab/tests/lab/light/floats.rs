@@ -1,4 +1,4 @@
-//! R9: every float that a public structure of a scene has, from one list, which is compared with the sources.
+//! R9: every float in a public structure of a scene, from one list, which is compared with the sources.
 
 use std::fs;
 use std::path::PathBuf;
@@ -16,10 +16,10 @@ use mode13h::vga::Vga;
 use crate::support::scenes::framed;
 use crate::support::tried::Tried;
 
-/// Puts a number into a scene, as the component with this index.
+/// Sets a component, by its index, to a number.
 type Put = fn(&mut Scene, f32, usize);
 
-/// A field, its number of components, how a number comes into it, and with what the refusal begins, or [`BEGINS`].
+/// A field, its number of components, how to set one, and how the rejection begins, or [`BEGINS`].
 type Row = (&'static str, usize, Put, &'static str);
 
 fn lamp(scene: &mut Scene) -> (&mut Vec3, &mut f32, &mut f32, &mut [f32; 3]) {
@@ -29,7 +29,7 @@ fn lamp(scene: &mut Scene) -> (&mut Vec3, &mut f32, &mut f32, &mut [f32; 3]) {
     }
 }
 
-/// The lamp made a spot light.
+/// Changes the cone of the lamp, which is turned into a spot light.
 fn spot(scene: &mut Scene, change: impl FnOnce(&mut Cone)) {
     let (inner, outer) = (Angle::from_degrees(10.0), Angle::from_degrees(20.0));
     let mut new = Cone { direction: Vec3::X, inner, outer };
@@ -78,7 +78,7 @@ fn one(bad: f32, i: usize) -> [f64; 3] {
     [0, 1, 2].map(|k| if k == i { f64::from(bad) } else { 0.5 })
 }
 
-/// A scene of a mesh with this surface.
+/// Changes the surface of a scene's mesh.
 fn surface(scene: &mut Scene, change: impl FnOnce(&mut Surface)) {
     let mut surface = Surface::default();
     change(&mut surface);
@@ -86,7 +86,7 @@ fn surface(scene: &mut Scene, change: impl FnOnce(&mut Surface)) {
     scene.objects_mut()[0] = Object::new(mesh.with_surfaces(vec![surface], vec![0]).expect("a surface"));
 }
 
-/// The note on motions: they stay where they begin, as with 0 in place of the number.
+/// The note on motions: they stay at their start, as if the number were 0.
 const BEGINS: &str = "is drawn as it begins";
 
 const FLOATS: &[Row] = &[
@@ -147,11 +147,11 @@ const FLOATS: &[Row] = &[
     ("Settings.tessellation", 1, |s, bad, _| s.settings.tessellation = Some(bad), "settings"),
 ];
 
-/// Minus zero, and the least numbers that f32 has, with and without all of their bits.
+/// Minus zero, and f32's smallest numbers, subnormal and normal.
 pub(crate) const NEXT_TO_ZERO: [f32; 5] =
     [-0.0, f32::MIN_POSITIVE, -f32::MIN_POSITIVE, f32::from_bits(1), -f32::from_bits(1)];
 
-/// Those that no frame is made from, and where they are tried.
+/// Floats that no frame depends on, and where they are tested.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("Bounds.centre", "worked out from positions"),
     ("Bounds.max", "worked out from positions"),
@@ -173,8 +173,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Scene.time", "in what it has moved"),
 ];
 
-/// The sources whose fields are listed. Scenes as text, and models, which are in folders below, have numbers of their own
-/// kinds, which are checked where they are read.
+/// The sources whose fields are listed. Scene files and models, in subfolders, have numbers of their own, which are
+/// checked where they are read.
 fn sources() -> Vec<PathBuf> {
     let root = crate::support::workspace::root().join("src");
     let mut files = vec![root.join("settings/options.rs")];
@@ -185,7 +185,7 @@ fn sources() -> Vec<PathBuf> {
     files
 }
 
-/// The fields of public structures and enums whose types have floats in them.
+/// Fields of public structures and enums whose types contain floats.
 fn floats() -> Vec<String> {
     let mut fields = Vec::new();
     for path in sources() {
@@ -248,7 +248,7 @@ pub(crate) fn every_float_is_refused(mut tried: Tried) {
     }
 }
 
-/// Every component of every float of the list.
+/// Every component of every float in the list.
 fn components() -> impl Iterator<Item = (&'static str, usize, Put, &'static str)> {
     FLOATS.iter().flat_map(|(name, components, put, what)| (0..*components).map(move |i| (*name, i, *put, *what)))
 }
@@ -259,12 +259,12 @@ fn with_a_lamp() -> Scene {
     scene
 }
 
-/// Floats for which anything above 0 is another thing than 0, and why.
+/// Floats for which any positive value differs from 0, and why.
 const NOT_ZERO: [(&str, &str); 2] =
     [("Camera.up", "a direction of any length"), ("Surface.opacity", "without any it is opaque, as files have it")];
 
-/// Every float treats a tiny number as 0: the same picture in the same colours. It is refused where it is negative,
-/// and 0 is refused where a number must be above it.
+/// Every float treats a tiny number as 0: the same picture in the same colours. A negative one may be rejected for
+/// its sign, and 0 where a number must be positive.
 pub(crate) fn every_float_near_zero_is_zero(tried: &mut Tried) {
     for (name, i, put, _) in components() {
         let shown = |value: f32| {

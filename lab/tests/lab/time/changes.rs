@@ -1,4 +1,4 @@
-//! What a caller may change between two frames: one list, held to what the sources have.
+//! What a caller may change between two frames: one list, compared with the sources.
 
 use std::fs;
 use std::ops::Range;
@@ -22,19 +22,19 @@ use mode13h_lab::explain;
 
 use mode13h_conformance::Random;
 
-/// A scene, the renderer that is kept, and the machines that it draws on: the first is drawn on next.
+/// A scene, the renderer that is reused, and the machines that it draws on, of which the first is next.
 pub(super) struct World {
     pub(super) scene: Scene,
     pub(super) settings: Settings,
     pub(super) kernel: Kernel,
-    /// Effects for one object or for every object, in the order in which they were forced.
+    /// Effects forced for one object or for all objects, in the order they were forced.
     pub(super) forced: Vec<(Option<usize>, Effect, Option<bool>)>,
     pub(super) kept: Renderer,
     pub(super) machines: [Box<Vga>; 2],
 }
 
 impl World {
-    /// A fresh renderer that is set as the one that is kept.
+    /// A fresh renderer with the settings of the reused one.
     pub(super) fn fresh(&self) -> Renderer {
         let mut renderer = Renderer::new();
         (renderer.settings, renderer.kernel) = (self.settings, self.kernel);
@@ -50,9 +50,9 @@ impl World {
 
 /// One thing that a caller may do between two frames.
 pub(super) struct Change {
-    /// The field, variant or method, as [`in_the_sources`] names it; or, of the caller's own doing, what it is.
+    /// The field, variant or method as [`in_the_sources`] names it, or a description of what the caller does.
     pub(super) name: &'static str,
-    /// Whether it is to be seen in some frame.
+    /// Whether some frame must show it.
     pub(super) is_seen: bool,
     pub(super) apply: fn(&mut World, &mut Random),
 }
@@ -65,10 +65,10 @@ const fn unseen(name: &'static str, apply: fn(&mut World, &mut Random)) -> Chang
     Change { name, is_seen: false, apply }
 }
 
-/// What no frame depends on, and what is no state of a scene.
+/// Names that no frame depends on, or that are not state of a scene.
 pub(super) const EXEMPT: [(&str, &str); 1] = [("Renderer.settings", "its fields are changed one by one")];
 
-/// All of them.
+/// All changes.
 pub(super) const CHANGES: &[Change] = &[
     // Scene
     unseen("Scene.name", |w, r| w.scene.name = text(r)),
@@ -81,7 +81,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
     seen("Scene.settings", |w, _| w.scene.settings = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
-    // When a picture is taken of it, which the program asks for.
+    // When a picture is taken of it, which only the program uses.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
     unseen("Scene.duration", |w, r| w.scene.duration = 1.0 + r.unit()),
     seen("Scene::add", |w, r| {
@@ -99,7 +99,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene::objects_mut", |w, r| *one_object(w, r) = object(r)),
     seen("Scene::lights_mut", |w, r| {
         let lights = w.scene.lights_mut();
-        // The order of their sum.
+        // The order in which they are summed.
         if r.within(0, 1) == 0 { lights.reverse() } else { lights.iter_mut().for_each(|at| *at = light(r)) }
     }),
     seen("Scene::clear_lights", |w, _| w.scene.clear_lights()),
@@ -181,7 +181,7 @@ pub(super) const CHANGES: &[Change] = &[
         w.scene.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
     }),
     seen("Scene.settings.tessellation", |w, r| {
-        // By a lamp near a large face, which is split otherwise then.
+        // With a lamp near a large face, which is then split differently.
         if r.within(0, 1) == 1 {
             let mut wall = Object::new(shapes::wall(1, 1));
             wall.angles = [0.0, 0.2, 0.0].map(Angle::from_radians);
@@ -272,7 +272,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("UpAxis::Z", |w, r| one_object(w, r).up_axis = UpAxis::Z),
     seen("Object.visible", |w, r| one_object(w, r).visible ^= true),
     seen("Object.parent", |w, r| {
-        // Only what stands before it in the scene, so that there is no circle.
+        // Only objects before it in the scene, so that there is no cycle.
         let ids = w.scene.object_ids().to_vec();
         let below = r.within(0, ids.len() as i64 - 1) as usize;
         let parent = one_of_few(&ids[..below], r).copied();
@@ -316,7 +316,7 @@ pub(super) const CHANGES: &[Change] = &[
         let (before, after) = (channels(r), channels(r));
         let last = w.scene.objects().len() as i64 - 1;
         let which = r.within(0, last) as usize;
-        // Its colour is mixed from channels before, too.
+        // Its colour is mixed from channels before the change, too.
         let material = &mut w.scene.objects_mut()[which].materials[0];
         (material.ramp, material.color) = (RampChoice::Nearest, before);
         drawn(w);
@@ -350,7 +350,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Cone.outer", |w, r| cone(w, r, |r, cone| cone.outer = Angle::from_degrees(between(r, 40.0, 90.0).into()))),
     // The renderer
     seen("Settings.accuracy", |w, r| {
-        // Half the time two shadings that take the same vertices and stages.
+        // Half the time two shadings with the same vertices and stages.
         let linear = [Shading::GouraudVintage, Shading::Gouraud88, Shading::Gouraud1616];
         let accuracy = match r.within(0, 2) {
             0 => {
@@ -368,7 +368,7 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.settings.accuracy = accuracy;
     }),
     seen("Settings.mapping", |w, r| {
-        // The plan's decision is the same for two of them, and the object's vertices are.
+        // For two of the mappings the plan's decision and the object's vertices are the same.
         let (before, after) = two_mappings(r);
         w.kept.settings.mapping = before;
         textured(w, r);
@@ -405,7 +405,7 @@ pub(super) const CHANGES: &[Change] = &[
         w.kept.kernel = w.kernel;
     }),
     seen("Settings.hidden_surfaces", |w, r| {
-        // Two bodies that pass through each other, so that each way shows them otherwise.
+        // Two interpenetrating objects, so that each method shows them differently.
         if r.within(0, 1) == 1 {
             let mut through = Object::new(shapes::torus(9, 6));
             through.angles = angles(r).map(Angle::from_radians);
@@ -433,7 +433,7 @@ pub(super) const CHANGES: &[Change] = &[
         let screen = r.one_of(&[Screen::MODE_13H, Screen { width: 200, height: 320, pixel_aspect: (1, 1) }]);
         w.kept.make_plan(&w.scene, screen).expect("a legal scene");
     }),
-    // Another picture on the same machine by the same renderer.
+    // Another picture on the same machine with the same renderer.
     unseen("Renderer::draw", |w, r| {
         let scene = start(r);
         w.kept.draw(&scene, &mut w.machines[0]).map(drop).unwrap_or_default();
@@ -457,7 +457,7 @@ pub(super) const CHANGES: &[Change] = &[
         let rows: Range<usize> = 320 * r.within(0, 99) as usize..320 * r.within(100, 200) as usize;
         w.machines[0].pixels_mut()[rows].fill(byte(r));
     }),
-    // Without a palette of the scene's the picture is made for what the machine shows.
+    // Without a palette in the scene the picture is made for the colours that the machine shows.
     seen("Vga::write_port", |w, r| {
         w.scene.palette = None;
         let port = r.one_of(&[0x3C6, 0x3C7, 0x3C8, 0x3C9, 0x3C9, 0x3C9]);
@@ -479,7 +479,7 @@ pub(super) const CHANGES: &[Change] = &[
         w.scene.palette = None;
         w.machines[0].cycle(1..=255, r.within(1, 200) as i32);
     }),
-    // The caller's own doing
+    // Things that only the caller does
     seen("another scene", |w, r| w.scene = start(r)),
     seen("another mesh for the same object", |w, r| {
         let mesh = mesh(r);
@@ -515,7 +515,7 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     unseen("an account of a pixel", |w, r| {
         let (x, y) = (r.within(0, 319) as u32, r.within(0, 199) as u32);
-        // There is none on the 16.16 path.
+        // The 16.16 path has none.
         explain::pixel(&mut w.kept, &w.scene, Screen::MODE_13H, x, y).map(drop).unwrap_or_default();
     }),
     unseen("a scene that is refused", |w, r| {
@@ -537,16 +537,16 @@ pub(super) const CHANGES: &[Change] = &[
     }),
 ];
 
-/// A scene to begin with: of each kind that the engine draws in a way of its own.
+/// A scene to start from: one of each kind that the engine draws in its own way.
 pub(super) fn start(random: &mut Random) -> Scene {
     let mut scene = Scene::new();
     scene.camera.eye = eye(random);
     scene.camera.near = 0.1;
     scene.add_light(Light::sun([0.4, 0.6, 1.0]).with_intensity(0.8));
     match random.within(0, 3) {
-        // A matt body in one sun.
+        // A matt object under one sun.
         0 => drop(scene.add(Object::new(mesh(random)))),
-        // Matt bodies that need a depth buffer.
+        // Matt objects that need a depth buffer.
         1 => {
             for _ in 0..3 {
                 let mut object = Object::new(mesh(random));
@@ -588,7 +588,7 @@ fn text(random: &mut Random) -> String {
     random.next_u64().to_string()
 }
 
-/// Two times of three.
+/// Two times out of three.
 fn sometimes<T>(random: &mut Random, value: impl FnOnce(&mut Random) -> T) -> Option<T> {
     (random.within(0, 2) > 0).then(|| value(random))
 }
@@ -597,7 +597,7 @@ fn place(random: &mut Random, far: f64) -> Vec3 {
     Vec3::new(between(random, -far, far), between(random, -far, far), between(random, -far, far))
 }
 
-/// Before the bodies, or among them.
+/// In front of the objects or among them.
 fn eye(random: &mut Random) -> Vec3 {
     let away = random.one_of(&[0.7, 2.5, 3.0, 4.0]);
     Vec3::new(between(random, -0.5, 0.5), between(random, -0.5, 0.5), away)
@@ -648,7 +648,7 @@ fn round(centre: Vec3, from: Vec3, towards: Vec3, period: f64) -> Path {
     Path::Circle { centre, from, towards, period }
 }
 
-/// Of few faces: a frame takes some microseconds.
+/// Few faces, so that a frame takes microseconds.
 fn mesh(random: &mut Random) -> Mesh {
     match random.within(0, 4) {
         0 => shapes::cube(),
@@ -688,11 +688,11 @@ static TEXTURES: LazyLock<Vec<Shared<Texture>>> = LazyLock::new(|| {
         Texture::new(1 << bits, 1 << bits, texels, colors).expect("powers of two")
     };
     let plain = Texture::plain(Rgb::new(200, 100, 30));
-    // The last is large beside what it covers on the screen.
+    // The last is large for what it covers on the screen.
     [small(2), small(5), plain, small(8)].into_iter().map(Shared::new).collect()
 });
 
-/// One of three, or one that looks like it at another address.
+/// One of three, or a copy of one at another address.
 fn texture(random: &mut Random) -> Shared<Texture> {
     let texture = &TEXTURES[random.within(0, TEXTURES.len() as i64 - 1) as usize];
     if random.within(0, 5) == 0 { Shared::new((**texture).clone()) } else { Shared::clone(texture) }
@@ -705,7 +705,7 @@ fn light(random: &mut Random) -> Light {
     }
 }
 
-/// An effect switched on, off, or left to the plan; vertices are not kept by force, which is to draw what is old.
+/// An effect switched on, off, or left to the plan; keeping vertices is never forced, as that draws outdated ones.
 fn forced(random: &mut Random) -> (Effect, Option<bool>) {
     let on = random.one_of(&[None, Some(false), Some(true)]);
     match random.one_of(&Effect::ALL) {
@@ -714,9 +714,9 @@ fn forced(random: &mut Random) -> (Effect, Option<bool>) {
     }
 }
 
-// Where things are
+// Positions
 
-/// One of a list, if it has any.
+/// A random element of a list, unless it is empty.
 fn one_of_few<'a, T>(list: &'a [T], random: &mut Random) -> Option<&'a T> {
     let last = list.len().checked_sub(1)?;
     list.get(random.within(0, last as i64) as usize)
@@ -724,7 +724,7 @@ fn one_of_few<'a, T>(list: &'a [T], random: &mut Random) -> Option<&'a T> {
 
 type DrawFrame = fn(&mut Renderer, &Scene, Frame<'_>, (u32, u32)) -> Result<Stats, RenderError>;
 
-/// A frame of another size or a band of one, by the renderer that is kept and by a new one: the same bytes.
+/// A frame of another size, or a band of one, with the reused renderer and with a new one: the same bytes.
 fn a_frame(w: &mut World, r: &mut Random, draw: DrawFrame) {
     let screen = (r.within(1, 90) as u32, r.within(1, 60) as u32);
     let first = r.within(0, i64::from(screen.1) - 1) as u32;
@@ -759,12 +759,12 @@ fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material))
     change(&mut world.scene.objects_mut()[which].materials[0]);
 }
 
-/// Draws a frame, so that the next one differs from it by nothing but what is changed now.
+/// Draws a frame, so that the next one differs from it only by the coming change.
 fn drawn(world: &mut World) {
     world.kept.draw(&world.scene, &mut world.machines[0]).map(drop).unwrap_or_default();
 }
 
-/// Gives a material one image, draws, and gives it another one, or none.
+/// Gives a material an image, draws, and gives it another one, or none.
 fn two_images(world: &mut World, random: &mut Random, change: impl Fn(&mut Material, Option<Shared<Texture>>)) {
     let last = world.scene.objects().len() as i64 - 1;
     let which = random.within(0, last) as usize;
@@ -778,7 +778,7 @@ fn two_images(world: &mut World, random: &mut Random, change: impl Fn(&mut Mater
     change(&mut world.scene.objects_mut()[which].materials[0], image);
 }
 
-/// A mapping and another one; half the time the two by which the plan's effects are the same.
+/// A mapping and another one; half the time two for which the plan's effects are the same.
 fn two_mappings(random: &mut Random) -> (Option<Mapping>, Option<Mapping>) {
     let any = |random: &mut Random| sometimes(random, |random| random.one_of(&Mapping::ALL));
     match random.within(0, 3) {
@@ -813,7 +813,7 @@ fn one_fog<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Fog {
 fn animate(world: &mut World, random: &mut Random, animation: impl FnOnce(&mut Random) -> PaletteAnimation) {
     world.scene.palette.get_or_insert_with(|| named_palette("grey"));
     world.scene.palette_animation = Some(animation(random));
-    // Motions have their own.
+    // Only the animation advances; motions have changes of their own.
     let motions = std::mem::take(&mut world.scene.motions);
     world.scene.set_time(0.3);
     world.scene.motions = motions;
@@ -833,13 +833,13 @@ fn spin(world: &mut World, random: &mut Random, start: [f64; 3], turns: [f64; 3]
     fewer_objects(world);
 }
 
-/// The target goes along a path.
+/// Moves the target along a path.
 fn along(world: &mut World, random: &mut Random, path: impl FnOnce(&mut Random) -> Path) {
     with_motion(world, random, |random| Motion::Path { what: Moving::Target, path: path(random) });
     world.scene.set_time(1.3);
 }
 
-/// The object with another mesh, all else as it was.
+/// The object with another mesh, otherwise unchanged.
 fn replace_mesh(object: &mut Object, mesh: Mesh) {
     let mut new = Object::new(mesh);
     new.angles = object.angles;
@@ -848,7 +848,7 @@ fn replace_mesh(object: &mut Object, mesh: Mesh) {
     (object.position, object.scale, object.up_axis) = (old.position, old.scale, old.up_axis);
 }
 
-/// A scene gives no object back: one of many starts again with the last three.
+/// Objects cannot be removed, so a large scene starts again with the last three.
 fn fewer_objects(world: &mut World) {
     let objects = world.scene.objects().to_vec();
     if objects.len() <= 5 {
@@ -862,14 +862,14 @@ fn fewer_objects(world: &mut World) {
         scene.add_light(light);
     }
     for mut object in objects.into_iter().rev().take(3) {
-        // Ids are another scene's.
+        // Ids belong to another scene.
         object.parent = None;
         scene.add(object);
     }
     world.scene = scene;
 }
 
-/// Changes one sun: its direction, intensity and colour. Where there is none, one is put in.
+/// Changes the direction, intensity and colour of one sun; adds a sun if there is none.
 fn sun(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut Vec3, &mut f32, &mut [f32; 3])) {
     if !world.scene.lights().iter().any(|light| matches!(light, Light::Sun { .. })) {
         world.scene.add_light(Light::sun([0.1, 0.2, 1.0]));
@@ -884,7 +884,7 @@ fn sun(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut
 
 type ChangeLamp = fn(&mut Random, &mut Vec3, &mut f32, &mut f32, &mut [f32; 3]);
 
-/// The same with a lamp: its position, intensity, range and colour.
+/// Changes a lamp: its position, intensity, range and colour.
 fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
     if !world.scene.lights().iter().any(|light| matches!(light, Light::Lamp { .. })) {
         world.scene.add_light(Light::lamp([0.4, 0.5, 1.3], 3.0));
@@ -897,7 +897,7 @@ fn lamp(world: &mut World, random: &mut Random, change: ChangeLamp) {
     }
 }
 
-/// Changes the cone of a spot light, which one of the lamps becomes.
+/// Changes the cone of a spot light, which one of the lamps is turned into.
 fn cone(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mut Cone)) {
     lamp(world, random, |_, _, _, _, _| {});
     for light in world.scene.lights_mut() {
@@ -908,7 +908,7 @@ fn cone(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mu
     }
 }
 
-// What the sources have
+// What the sources contain
 
 /// Every public field of a struct (`Fog.start`), every variant of an enum with its fields (`Blend::Mix`,
 /// `Light::Sun.color`) and every public method that takes `&mut self` (`Scene::add`), of the modules that hold what a
@@ -918,14 +918,14 @@ pub(super) fn in_the_sources() -> Vec<String> {
     let mut paths = vec![root.join("render/mod.rs"), root.join("vga/mod.rs")];
     for folder in ["scene", "light"] {
         let entries = fs::read_dir(root.join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());
-        // Framing makes cameras, which are listed.
+        // Framing creates cameras, which are listed.
         paths.extend(
             entries.filter(|path| path.extension().is_some_and(|is| is == "rs") && !path.ends_with("framing.rs")),
         );
     }
     let mut names: Vec<String> =
         paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
-    // Of a renderer and of a scene.
+    // The settings of a renderer and of a scene.
     let settings = names_in(&fs::read_to_string(root.join("settings/options.rs")).expect("a file"));
     let fields: Vec<String> = settings.into_iter().filter(|name| name.starts_with("Settings.")).collect();
     names.extend(fields.iter().map(|name| format!("Scene.{}", name.replacen('S', "s", 1))));
@@ -934,7 +934,7 @@ pub(super) fn in_the_sources() -> Vec<String> {
     names
 }
 
-/// The same of one file, laid out as rustfmt does it.
+/// The names in one file, formatted by rustfmt.
 pub(super) fn names_in(source: &str) -> Vec<String> {
     let word = |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
     let mut names = Vec::new();
@@ -945,7 +945,7 @@ pub(super) fn names_in(source: &str) -> Vec<String> {
             _ => continue,
         };
         let of = word(rest);
-        // Of a trait, or of a type with parameters.
+        // An impl of a trait, or for a type with parameters.
         if rest != format!("{of} {{") {
             continue;
         }

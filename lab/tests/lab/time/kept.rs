@@ -1,8 +1,8 @@
-//! E1 as a state machine: whatever a caller does between frames, in any order, a renderer that is kept draws what a
-//! fresh one draws, and shows it in the same colours.
+//! E1 as a state machine: whatever a caller does between frames, in any order, a reused renderer draws what a fresh one
+//! draws, and shows it in the same colours.
 //!
-//! A run begins with a scene and makes one change after the other, each with a frame behind it. A run that fails is
-//! shrunk to the fewest changes that still fail, and printed.
+//! A run starts with a scene and makes one change after another, each followed by a frame. A failing run is shrunk to
+//! the fewest changes that still fail, and printed.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,14 +19,14 @@ use mode13h_conformance::Random;
 /// Changes in a run.
 const STEPS: usize = 40;
 
-/// One change: its place in the list, and the number that its values come from.
+/// One change: its index in the list, and the seed of its values.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     change: usize,
     values: u64,
 }
 
-/// A run: the number that its first scene comes from, and its changes.
+/// A run: the seed of its first scene, and its changes.
 #[derive(Clone, Debug)]
 struct Run {
     first: u64,
@@ -43,7 +43,8 @@ impl World {
         Self { scene, settings: kept.settings, kernel: kept.kernel, forced: Vec::new(), kept, machines }
     }
 
-    /// Draws by the kept renderer and by a fresh one, over other bytes; what both show, or how they differ.
+    /// Draws with the reused renderer and with a fresh one, over different bytes. Returns what both show, or how they
+    /// differ.
     fn draw(&mut self) -> Result<Shown, String> {
         let mut fresh = self.fresh();
         let vga = &mut self.machines[0];
@@ -74,7 +75,7 @@ impl World {
     }
 }
 
-/// Makes a run. `seen` is told of each change whether the picture became another one.
+/// Plays a run. `seen` is told for each change whether the picture changed.
 fn play(run: &Run, mut seen: impl FnMut(usize, bool)) -> Result<(), String> {
     let mut world = World::new(start(&mut Random::again(run.first)));
     let mut last = world.draw().map_err(|what| format!("at first: {what}"))?;
@@ -100,7 +101,7 @@ fn said(panic: &dyn std::any::Any) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default()
 }
 
-/// The fewest changes of a run that still fail, and how: pieces are left out as long as it fails without them.
+/// The fewest changes of a run that still fail, and how: pieces are removed as long as it fails without them.
 fn shrunk(mut run: Run, mut reason: String) -> (Run, String) {
     let mut piece = run.steps.len();
     while piece > 0 {
@@ -118,11 +119,11 @@ fn shrunk(mut run: Run, mut reason: String) -> (Run, String) {
     (run, reason)
 }
 
-/// Frames by which every change that can be seen was seen.
+/// Number of frames by which every visible change must have been seen.
 const MOST: u64 = 500 * STEPS as u64;
 
-/// Tries runs until as many frames as stated were compared, and each change that a picture can show was seen to make another
-/// picture: one that is never seen tests nothing. Changes are dealt as cards are, so that each comes as often as any other.
+/// Plays runs until the stated number of frames was compared, and each visible change was seen to change the picture:
+/// one that is never seen tests nothing. Changes are dealt like cards, so that each occurs equally often.
 fn run_all(mut tried: Tried) {
     let mut random = Random::named("e1 kept");
     let mut counts: BTreeMap<&'static str, (u64, u64)> = BTreeMap::new();
@@ -170,7 +171,7 @@ fn e1_long_any_change_in_any_order() {
     run_all(Tried::new("e1_long_any_change_in_any_order", MOST));
 }
 
-/// What can be changed is what is changed.
+/// Everything that can be changed is in the list.
 #[test]
 fn e1_every_public_field_is_changed() {
     let mut tried = Tried::new("e1_every_public_field_is_changed", 90);

@@ -1,4 +1,4 @@
-//! The PC: ports, video memory, and DOS and the BIOS by the stub's service.
+//! The PC: ports, video memory, and DOS and the BIOS through the stub's service.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::asm;
@@ -42,7 +42,7 @@ impl Machine {
     /// The video mode of DOS.
     pub(crate) const TEXT: u8 = 0x03;
 
-    /// The machine, the film and the words of the command line.
+    /// The machine, the film and the command-line arguments.
     ///
     /// # Safety
     /// The table is the stub's, and this is called once.
@@ -77,7 +77,7 @@ impl Machine {
         self.interrupt(0x10, [mode.into(), 0, 0, 0], None);
     }
 
-    /// Prints text where the program's output goes.
+    /// Prints text to the program's standard output.
     pub(crate) fn print(&mut self, text: &str) {
         for line in text.split_inclusive('\n') {
             let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\r\n"));
@@ -95,7 +95,7 @@ impl Machine {
         is_done && written as usize == bytes.len()
     }
 
-    /// Returns whether Esc was pressed; other keys are forgotten.
+    /// Returns whether Esc was pressed; other keys are discarded.
     pub(crate) fn is_escaped(&mut self) -> bool {
         loop {
             let (_, _, is_empty) = self.interrupt(0x16, [0x0100, 0, 0, 0], None);
@@ -126,7 +126,7 @@ impl Machine {
         while input(0x3DA) & 8 == 0 {}
     }
 
-    /// Loads the DAC with `level` 64ths of the colours.
+    /// Loads the DAC with the colours scaled by `level`/64.
     pub(crate) fn set_dac(&mut self, colors: &[u8], level: u8) {
         output(0x3C8, 0);
         for &part in colors {
@@ -135,7 +135,7 @@ impl Machine {
         }
     }
 
-    /// From black to the colours, or back, in a second: a step in each retrace.
+    /// Fades from black to the colours, or back, in a second: one step per retrace.
     pub(crate) fn fade(&mut self, colors: &[u8], out: bool) {
         for level in 0..=64 {
             self.wait_for_retrace();
@@ -143,7 +143,7 @@ impl Machine {
         }
     }
 
-    /// The seconds of the battery's clock, 0 to 59.
+    /// The seconds of the real-time clock, 0 to 59.
     pub(crate) fn seconds(&mut self) -> u32 {
         loop {
             output(0x70, 0x0A);
@@ -156,23 +156,23 @@ impl Machine {
         }
     }
 
-    /// Ticks of the timer in a second.
+    /// Timer ticks per second.
     pub(crate) const TICKS: u32 = 1_193_182;
 
-    /// Has the timer count down from 65,536, one at a tick.
+    /// Makes the timer count down from 65,536, one per tick.
     pub(crate) fn start_timer(&mut self) {
         output(0x43, 0x34);
         output(0x40, 0);
         output(0x40, 0);
     }
 
-    /// Returns whether the clock has begun another second since this was last asked.
+    /// Returns whether the clock has started another second since the last call.
     pub(crate) fn is_second_over(&mut self) -> bool {
         output(0x70, 0x0C);
         input(0x71) & 0x10 != 0
     }
 
-    /// Waits until the clock begins a second; returns the ticks of the timer that took.
+    /// Waits until the clock starts a second; returns the number of timer ticks that took.
     pub(crate) fn rest_of_second(&mut self) -> u32 {
         let count = || {
             output(0x43, 0);
@@ -187,7 +187,7 @@ impl Machine {
         ticks
     }
 
-    /// Writes what the card holds into SCREEN.BIN: the bytes of video memory, then the DAC.
+    /// Writes the card's contents to SCREEN.BIN: the bytes of video memory, then the DAC.
     pub(crate) fn write_screen(&mut self) -> bool {
         const NAME: &[u8] = b"SCREEN.BIN\0";
         // SAFETY: the table is the stub's, and its buffer has room.
@@ -218,7 +218,7 @@ fn input(port: u16) -> u8 {
     value
 }
 
-/// Start and end of what is left of the extended memory; nothing is given back.
+/// Start and end of the remaining extended memory; nothing is ever freed.
 struct Heap(UnsafeCell<(usize, usize)>);
 /// The stub's table, for a panic.
 struct Table(UnsafeCell<*mut Parameters>);
@@ -233,12 +233,12 @@ static PARAMETERS: Table = Table(UnsafeCell::new(ptr::null_mut()));
 #[global_allocator]
 static HEAP: Heap = Heap(UnsafeCell::new((0, 0)));
 
-// SAFETY: each piece is given out once, and lies in the block that the stub has from the driver.
+// SAFETY: each block is handed out once, and lies in the block that the stub got from the driver.
 unsafe impl GlobalAlloc for Heap {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: one thread.
         let (next, end) = unsafe { &mut *self.0.get() };
-        // Distances, because the block may lie across the top of the segment.
+        // Distances, because the block may wrap around the end of the segment.
         let start = next.wrapping_add(layout.align() - 1) & !(layout.align() - 1);
         let room = end.wrapping_sub(start);
         if room > isize::MAX as usize || layout.size() > room {
@@ -257,7 +257,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     let mut machine = Machine { parameters: unsafe { *PARAMETERS.0.get() } };
     machine.set_mode(Machine::TEXT);
     machine.print("There is too little memory for this scene, or the program is at fault.\n");
-    // DOS ends the program; the block of extended memory stays taken.
+    // DOS ends the program; the block of extended memory stays allocated.
     machine.interrupt(0x21, [0x4C01, 0, 0, 0], None);
     loop {}
 }

@@ -1,13 +1,13 @@
-//! Plays a film of projected scenes in the mode 13h of a real VGA, on a 386 without a floating point unit. `stub.asm` has
-//! entered protected mode and calls [`play`].
+//! Plays a film of projected scenes in the mode 13h of a real VGA, on a 386 without a floating-point unit. `stub.asm`
+//! has entered protected mode and calls [`play`].
 //!
-//! | word | what |
+//! | argument | what |
 //! |---|---|
-//! | none | the scene, round after round, until Esc |
+//! | none | the scene, repeated until Esc |
 //! | `/H` | draws all frames once, and prints their hash |
-//! | `/B` | does so, then draws as many as it can in ten seconds, and prints how many a second |
-//! | `/T` | draws all frames once, and prints the time of a frame by the timer |
-//! | `/W n` | shows frame n, and writes what the card then holds into SCREEN.BIN: 64,000 bytes and 768 of the DAC |
+//! | `/B` | does the same, then draws as many frames as it can in ten seconds, and prints the number per second |
+//! | `/T` | draws all frames once, and prints the time per frame by the timer |
+//! | `/W n` | shows frame n, and writes the card's contents to SCREEN.BIN: 64,000 bytes, and 768 of the DAC |
 #![no_std]
 #![no_main]
 
@@ -29,10 +29,10 @@ use machine::{Machine, Parameters};
 use mode13h::span::Kernel;
 use unpack::unpack;
 
-/// Called by the stub, which stands before it; returns the status of the program.
+/// Called by the stub that precedes it; returns the program's exit status.
 ///
 /// # Safety
-/// The stub gives its own table.
+/// The stub passes its own table.
 #[unsafe(link_section = ".entry")]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn play(parameters: *mut Parameters) -> u32 {
@@ -90,7 +90,7 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
                 machine.print(&format!("{said}\n"));
                 return Ok(());
             }
-            // From one change of the clock's second to another, ten seconds later or more.
+            // From one change of the clock's second to another, at least ten seconds later.
             let (mut frames, mut seconds) = (0_u32, 0);
             let mut last = machine.seconds();
             while last == machine.seconds() {}
@@ -119,7 +119,7 @@ fn run(machine: &mut Machine, bytes: &[u8], words: &[u8]) -> Result<(), &'static
                 if machine.is_second_over() {
                     return Err("A frame takes more than a second.\n");
                 }
-                // A second less what is left of it.
+                // A second minus what is left of it.
                 ticks += Machine::TICKS - machine.rest_of_second().min(Machine::TICKS);
             }
             machine.set_mode(Machine::TEXT);

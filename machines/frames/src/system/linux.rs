@@ -16,7 +16,7 @@ global_asm!(
     "call {entry}",
     entry = sym entry
 );
-// A section of its own: machines/avx512 has it begin the image.
+// A section of its own, so that machines/avx512 can place it at the start of the image.
 #[cfg(target_arch = "x86_64")]
 global_asm!(
     ".section .text._start, \"ax\"",
@@ -57,10 +57,10 @@ global_asm!(
     entry = sym entry
 );
 
-/// Where the program goes on from its start; the first argument is its name.
+/// Where the program continues after its start; the first argument is its name.
 unsafe extern "C" fn entry(stack: *const usize) -> ! {
     let mut words = String::new();
-    // SAFETY: the kernel put the number of arguments there, and behind it that many addresses of strings.
+    // SAFETY: the kernel put the number of arguments there, followed by that many addresses of strings.
     unsafe {
         for i in 1..*stack {
             let argument = CStr::from_ptr(*stack.add(1 + i) as *const c_char);
@@ -86,7 +86,7 @@ pub(crate) fn print(text: &str) {
 
 pub(crate) fn exit(passed: bool) -> ! {
     loop {
-        // SAFETY: exit(status) takes no memory.
+        // SAFETY: exit(status) accesses no memory.
         unsafe { call(EXIT, usize::from(!passed), 0, 0) };
     }
 }
@@ -107,7 +107,7 @@ const EXIT: usize = 1;
 /// A system call with three arguments.
 unsafe fn call(number: usize, a: usize, b: usize, c: usize) -> usize {
     let result;
-    // SAFETY: the caller sees to what the call reads; it changes what is named here.
+    // SAFETY: the caller ensures that what the call reads is valid; it changes only what is named here.
     unsafe {
         #[cfg(target_arch = "x86")]
         asm!("int 0x80", inout("eax") number => result, in("ebx") a, in("ecx") b, in("edx") c);

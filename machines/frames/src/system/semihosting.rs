@@ -1,4 +1,4 @@
-//! A bare chip under QEMU: it talks by semihosting, Arm's way to talk to a debugger, which RISC-V took over.
+//! A bare chip under QEMU: it communicates by semihosting, Arm's debugger interface, which RISC-V adopted.
 
 use alloc::string::String;
 use alloc::vec;
@@ -15,7 +15,7 @@ core::arch::global_asm!(".section .reset, \"ax\"", ".globl _start", "_start:", "
 
 extern "C" fn start() -> ! {
     #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
-    // SAFETY: CPACR of a Cortex-M4: coprocessors 10 and 11, the floating point unit, are switched on.
+    // SAFETY: CPACR of a Cortex-M4: enables coprocessors 10 and 11, the floating-point unit.
     unsafe {
         let cpacr = 0xE000_ED88 as *mut u32;
         cpacr.write_volatile(cpacr.read_volatile() | 0xF << 20);
@@ -23,7 +23,7 @@ extern "C" fn start() -> ! {
     }
     let mut words = vec![0_u8; 1_000];
     let mut block = [words.as_mut_ptr() as usize, words.len()];
-    // SYS_GET_CMDLINE writes the words and their length; the first is the program's name.
+    // SYS_GET_CMDLINE writes the command line and its length; the first word is the program's name.
     semihosting(0x15, block.as_mut_ptr() as usize);
     words.truncate(block[1]);
     let words = String::from_utf8_lossy(&words);
@@ -45,7 +45,7 @@ pub(crate) fn exit(passed: bool) -> ! {
 }
 
 fn semihosting(operation: usize, argument: usize) {
-    // SAFETY: the debugger reads and writes what the calls above give it, and changes the first register alone.
+    // SAFETY: the debugger reads and writes what the calls above pass to it, and changes only the first register.
     unsafe {
         #[cfg(target_arch = "arm")]
         asm!("bkpt 0xab", inout("r0") operation => _, in("r1") argument);

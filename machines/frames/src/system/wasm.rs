@@ -1,4 +1,4 @@
-//! WebAssembly: the page or node gives the words and takes the text.
+//! WebAssembly: the page or node provides the arguments and takes the text.
 
 use alloc::string::String;
 use alloc::vec;
@@ -8,7 +8,7 @@ unsafe extern "C" {
     /// Takes `length` bytes of text.
     #[link_name = "print"]
     fn print_bytes(text: *const u8, length: usize);
-    /// Writes the words, at most `room` bytes, and returns how many.
+    /// Writes the arguments, at most `room` bytes, and returns how many.
     fn words(to: *mut u8, room: usize) -> usize;
 }
 
@@ -23,7 +23,7 @@ extern "C" fn start() -> i32 {
 }
 
 pub(crate) fn print(text: &str) {
-    // SAFETY: the bytes are read, and no longer than the call lasts.
+    // SAFETY: the bytes are only read, and only during the call.
     unsafe { print_bytes(text.as_ptr(), text.len()) }
 }
 

@@ -16,11 +16,12 @@ unsafe extern "system" {
 /// Standard output, -11.
 const OUTPUT: u32 = 0xFFFF_FFF5;
 
-/// The linker wants it where a program has floats.
+/// The linker requires it if a program uses floats.
 #[unsafe(no_mangle)]
 static _fltused: i32 = 0;
 
-// Touches each page of a frame that is larger than one, from the top, so that the guard page grows the stack. RAX bytes.
+// Touches each page of a stack frame larger than one page, from the top, so that the guard page grows the stack. RAX
+// bytes.
 global_asm!(
     ".globl __chkstk",
     "__chkstk:",
@@ -44,10 +45,10 @@ global_asm!(
 
 #[unsafe(no_mangle)]
 extern "system" fn mainCRTStartup() -> ! {
-    // SAFETY: the command line is a string that stays.
+    // SAFETY: the command line is a string that stays valid.
     let line = unsafe { CStr::from_ptr(GetCommandLineA()) };
     let line = String::from_utf8_lossy(line.to_bytes());
-    // The program's name has quotes if it has spaces.
+    // The program's name is quoted if it contains spaces.
     let words = match line.strip_prefix('"') {
         Some(quoted) => quoted.split_once('"'),
         None => line.split_once(' '),
@@ -59,7 +60,7 @@ pub(crate) fn print(text: &str) {
     let mut rest = text.as_bytes();
     while !rest.is_empty() {
         let mut written = 0;
-        // SAFETY: the file reads these bytes, fewer than 2³², and writes their number.
+        // SAFETY: writes these bytes, fewer than 2³², to the file, and stores their number.
         let is_done = unsafe {
             WriteFile(GetStdHandle(OUTPUT), rest.as_ptr(), rest.len() as u32, &raw mut written, ptr::null_mut())
         };
