@@ -164,8 +164,8 @@ mod tests {
                 };
                 let (at_first, picture) = draw(&stage.scene, &mut renderer);
                 let mut was = (at_first, picture.clone());
-                // Off and on twice; dither has two patterns.
-                for turn in 0..if switch == Switch::Dither { 6 } else { 4 } {
+                // Through all states twice.
+                for turn in 0..2 * if switch == Switch::Dither { Switch::MAX_STATES } else { 2 } {
                     switch.turn(&mut stage, &mut renderer).expect("a legal scene");
                     let is = draw(&stage.scene, &mut renderer);
                     if (name, switch) == ("phong-table", Switch::Dither) {

@@ -285,6 +285,13 @@ pub(super) const CHANGES: &[Change] = &[
         let [x, y, z] = angles(r).map(|angle| angle as f32);
         one_object(w, r).set_rotation(Mat3::from_euler(EulerRot::XYZ, x, y, z));
     }),
+    seen("Object::set_mesh", |w, r| {
+        let object = one_object(w, r);
+        let (mesh, share) = (object.mesh(), between(r, 0.5, 0.9));
+        let positions = mesh.positions().iter().map(|position| *position * share).collect();
+        let pose = mesh.with_vertices(positions, mesh.normals().to_vec()).expect("as many vertices");
+        object.set_mesh(pose);
+    }),
     seen("Object.angles", |w, r| one_object(w, r).angles = angles(r).map(Angle::from_radians)),
     // Material
     unseen("Material.name", |w, r| one_material(w, r).name = text(r)),
