@@ -76,8 +76,8 @@ say_and_end:
         mov ax, 4C01h
         int 21h
 
-; Clears the carry flag on a 386. Bits 12 to 15 of the flags: all set on an 8086, all clear on a 286, what was written on
-; a 386.
+; Clears the carry flag on a 386. Bits 12 to 15 of the flags: all set on an 8086, all clear on a 286, what was written
+; on a 386.
 is_386: pushf
         pop ax
         and ah, 0Fh

@@ -216,7 +216,7 @@ fn a_whole_palette_goes_through_the_ports() {
     assert_eq!(vga.read_port(WRITE), 0, "once around");
 }
 
-/// The same card, written as the register descriptions read: an address, a count, a latch and an array of entries.
+/// A second card, written as the register descriptions read: an address, a count, a latch and an array of entries.
 struct NaiveDac {
     entries: [[u8; 3]; 256],
     address: usize,

@@ -122,8 +122,8 @@ fn r12_walls_that_are_split_are_closed() {
     assert!(split > 75 && clipped > 10, "{split} were split, {clipped} clipped");
 }
 
-/// The same for a mesh with creases, whose faces have separate vertices there: each edge is split in one place, or not
-/// at all, whichever face is asked.
+/// Neighbours are closed in a mesh with creases, too, whose faces have separate vertices there: each edge is split in
+/// one place, or not at all, whichever face is asked.
 #[test]
 fn r12_creases_are_split_alike_from_both_sides() {
     let mut tried = Tried::new("r12_creases_are_split_alike_from_both_sides", 60);

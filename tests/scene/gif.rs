@@ -66,7 +66,7 @@ fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
     film.finish().expect("finished")
 }
 
-/// The same, with each frame prepared before the ones that precede it.
+/// Writes the same film, with each frame prepared before the ones that precede it.
 fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> {
     let ready = (0..frames.len()).rev().map(|i| {
         let picture = frames[i].picture();

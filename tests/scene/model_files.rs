@@ -95,7 +95,7 @@ impl Faces {
         bytes
     }
 
-    /// As `ascii`, `binary_little_endian` or `binary_big_endian`, with an extra element and extra properties.
+    /// PLY as `ascii`, `binary_little_endian` or `binary_big_endian`, with an extra element and extra properties.
     fn ply(&self, encoding: &str) -> Vec<u8> {
         let mut bytes = format!(
             "ply\nformat {encoding} 1.0\ncomment of no use\nobj_info either\nelement noise 2\nproperty list uint short a\n\

@@ -481,7 +481,7 @@ mod files {
     }
 }
 
-/// The same picture in every file format is the same texture; JPEG is close to it. No format is detected by name.
+/// One picture in every file format gives the same texture; JPEG is close to it. No format is detected by name.
 #[test]
 fn every_kind_of_picture_is_read() {
     use std::io::Cursor;

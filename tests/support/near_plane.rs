@@ -10,7 +10,7 @@ pub fn normal(intensity: f64) -> Vec3 {
     Vec3::new(f64::sqrt(1.0 - intensity * intensity) as f32, 0.0, intensity as f32)
 }
 
-/// The same scene under a sun along z, with a separate background.
+/// Puts the scene under a sun along z, on a separate background.
 pub fn lit(mut scene: Scene) -> Scene {
     scene.objects_mut()[0].materials = vec![Material { ambient: 0.0, diffuse: 1.0, ..Material::default() }];
     scene.add_light(Light::sun([0.0, 0.0, 1.0]));

@@ -8,7 +8,7 @@ use crate::drawing::{Drawing, Material};
 use crate::ours::{Batches, Effects, OneByOne};
 use crate::retrofire::Retrofire;
 
-/// Those of our kernels that the machine supports; one column each.
+/// Our kernels that the machine supports; one column each.
 pub fn kernels() -> Vec<Kernel> {
     let named = ["portable", "simd-sse2", "simd-avx2", "simd-avx512"].map(str::parse::<Kernel>);
     named.into_iter().flatten().collect()

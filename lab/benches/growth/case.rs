@@ -76,7 +76,7 @@ impl Sphere {
         Self { faces: mesh.triangles().len() as u64, mesh, bytes }
     }
 
-    /// Of the mesh, while it was built, of an object with it, and of a renderer that has drawn it.
+    /// Bytes per face: of the mesh, while it was built, of an object with it, and of a renderer that has drawn it.
     pub(crate) fn bytes_a_face(&self) -> [f64; 4] {
         self.bytes.map(|bytes| bytes as f64 / self.faces as f64)
     }
@@ -125,7 +125,7 @@ pub(crate) fn faces(spheres: &[Sphere]) -> Vec<Case> {
     spheres.iter().map(of).collect()
 }
 
-/// The same on square frames that are the larger the more faces there are, so that one that is drawn has four pixels.
+/// Cases on square frames whose size grows with the number of faces, so that each face drawn has four pixels.
 pub(crate) fn faces_of_equal_size(spheres: &[Sphere]) -> Vec<Case> {
     const PIXELS: f64 = 4.0;
     let draw = |side: usize, bytes: &mut [u8], renderer: &mut Renderer, scene: &mut Scene| {

@@ -29,7 +29,7 @@ const TOLERANCE: f64 = 1.05;
 /// Draws a frame within the error that the pace chooses, reports the time to the pace, and returns it in milliseconds.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
+/// See [`Renderer::draw`].
 pub fn time_frame(
     (renderer, pace): (&mut Renderer, &mut Pace),
     scene: &Scene,
@@ -47,7 +47,7 @@ pub fn time_frame(
 /// Draws a frame as often as it takes to try every error, so that the pace is ready for the next frame.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
+/// See [`Renderer::draw`].
 pub fn calibrate(
     (renderer, pace): (&mut Renderer, &mut Pace),
     scene: &Scene,

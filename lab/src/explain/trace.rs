@@ -67,7 +67,7 @@ pub(super) struct Trace {
 /// each, and the stages of the visible ones.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
+/// See [`Renderer::draw`].
 pub(super) fn trace(
     renderer: &mut Renderer,
     scene: &Scene,

@@ -148,7 +148,7 @@ fn an_account_ends_with_the_byte_of_the_frame() {
     assert!(all > scenes::all().len() * 50 && with_face * 2 > all, "{with_face} of {all}");
 }
 
-/// The same for every hidden-surface method and both vertex paths.
+/// Explanations end with the frame's byte for every hidden-surface method and both vertex paths, too.
 #[test]
 fn an_account_follows_the_way_to_hidden_surfaces() {
     let mut random = Random::new(0x5EED);

@@ -140,7 +140,7 @@ struct Exempt {
     /// come from f32; or the face is clipped and has new corners, which are rounded too. Either moves shades by no more
     /// than a unit.
     moved: u64,
-    /// The same on a face one pixel wide, where nothing says how its shades change.
+    /// Beyond the bound on a face one pixel wide, where nothing says how its shades change.
     narrow: u64,
 }
 
@@ -290,8 +290,8 @@ fn phong_is_lit_at_every_pixel_on_random_scenes() {
     }
 }
 
-/// The same objects with each face's own normal at its corners; and with each face divided into three that meet in its
-/// middle.
+/// Copies of the objects with each face's own normal at its corners; and with each face divided into three that meet in
+/// its middle.
 fn flattened(scene: &Scene) -> [Scene; 2] {
     let [mut flat, mut parted] = [scene.clone(), scene.clone()];
     for (i, object) in scene.objects().iter().enumerate() {
@@ -929,9 +929,9 @@ fn n2_models_with_faults_have_no_specks() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// Of two faces back to back the one turned toward the eye is drawn: with every hidden-surface method, in floating
-/// point and in 16.16, with every shading and within a budget, whichever comes first, and where the near plane clips
-/// them.
+/// When two faces lie back to back, the one turned toward the eye is drawn: with every hidden-surface method, in
+/// floating point and in 16.16, with every shading and within a budget, whichever comes first, and where the near plane
+/// clips them.
 #[test]
 fn d3_of_faces_back_to_back_the_one_in_front_is_seen() {
     let mut tried = Tried::new("d3_of_faces_back_to_back_the_one_in_front_is_seen", 2 * 2 * 3 * 4 * 12);

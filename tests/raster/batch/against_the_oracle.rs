@@ -202,7 +202,7 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
     assert!(hidden > each / 10, "{hidden} pixels hidden");
 }
 
-/// The same triangles with their corners in other orders give the same bytes, depths and counts.
+/// Triangles with their corners in other orders give the same bytes, depths and counts.
 pub(crate) fn orders_and_windings(mut tried: Tried) {
     let mut random = Random::named("r6 batches");
     while tried.more() {

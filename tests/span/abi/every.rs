@@ -45,7 +45,7 @@ fn try_kernels<T: PartialEq>(what: &str, random: &mut Random, tried: &mut Tried,
     }
 }
 
-/// The same numbers in a separate array, guarded if others are.
+/// Copies the numbers to a separate array, guarded if others are.
 fn own<T: Clone>(numbers: &[T]) -> Box<[T]> {
     numbers.to_vec().into_boxed_slice()
 }
@@ -245,7 +245,7 @@ fn s7_frames_keep_the_rules() {
     assert!(arrays > 10_000, "{arrays} arrays guarded");
 }
 
-/// The same scene with its own copies of the meshes.
+/// Copies the scene, with its own copies of the meshes.
 fn own_scene(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     for object in scene.objects_mut() {
