@@ -2,7 +2,7 @@
 //!
 //! A vertex hangs on one transform or is a blend of several (linear blend skinning: N. Magnenat-Thalmann, R. Laperrière,
 //! D. Thalmann, "Joint-Dependent Local Deformations", 1988). All is computed in f64 and rounded once.
-#![cfg_attr(not(feature = "gltf"), expect(dead_code, reason = "of the formats only glTF has nodes"))]
+#![cfg_attr(not(feature = "gltf"), expect(dead_code, unused_imports, reason = "of the formats only glTF has nodes"))]
 
 mod clip;
 pub(crate) mod place;
