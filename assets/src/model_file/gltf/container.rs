@@ -57,6 +57,13 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
         // Properties of extensions.
         animation.channels.retain(|channel| matches!(channel.target.path, json::validation::Checked::Valid(_)));
     }
+    // Nor whether an image has bytes. Their type is seen in the bytes themselves.
+    for (i, image) in root.images.iter_mut().enumerate() {
+        if image.buffer_view.is_none() && image.uri.is_none() {
+            return Err(fault(format!("images[{i}]: has neither a uri nor a bufferView")));
+        }
+        image.mime_type.get_or_insert_with(|| json::image::MimeType(String::new()));
+    }
     // Whatever else is required, the rest can be drawn.
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {
