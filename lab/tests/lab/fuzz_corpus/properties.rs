@@ -189,7 +189,10 @@ fn model(bytes: &[u8], name: &str) {
                 let is_own = texture.starts_with(&format!("{name}#"));
                 assert!(!is_own || textures.contains_key(texture), "{texture} is missing");
             }
-            check_written_again(&mesh);
+            // A model that moves is as its file has it; an OBJ is repaired, and moved if it lies far from 0.
+            if rig.is_none() {
+                check_written_again(&mesh);
+            }
         }
         Err(error) => {
             check_place(&error, bytes);
