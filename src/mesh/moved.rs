@@ -7,11 +7,11 @@ use glam::Vec3;
 use super::{Mesh, MeshError};
 
 impl Mesh {
-    /// Copies the mesh with its vertices at other positions, and with other normals, one of each for each vertex. Triangles,
-    /// surfaces and texture coordinates stay. Normals are made unit.
+    /// Copies the mesh with new positions and normals, one of each per vertex. Triangles, surfaces and texture coordinates
+    /// stay, and normals are normalized.
     ///
-    /// Whether the copy is closed, looks outward and is convex is found out anew, as a bend may change all of it. That takes
-    /// most of the time.
+    /// Whether the copy is closed, faces outward and is convex is determined again, because a bend may change all of it.
+    /// That takes most of the time.
     ///
     /// ```
     /// use mode13h::glam::Vec3;

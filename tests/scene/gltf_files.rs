@@ -291,6 +291,30 @@ fn textures_lie_as_the_file_says() {
     }
 }
 
+/// An image whose type is not said is seen by its bytes; one without any is refused, by its place.
+#[test]
+fn images_need_bytes_and_no_type() {
+    let file = |of_image: &dyn Fn(usize) -> String| {
+        let mut file = Gltf::default();
+        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        let pairs = file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]);
+        let view = file.view(&picture(), None);
+        file.add("images", of_image(view));
+        file.add("textures", "{\"source\":0}");
+        file.add("materials", "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}");
+        file.mesh(&format!("\"POSITION\":{positions},\"TEXCOORD_0\":{pairs}"), ",\"material\":0");
+        file.add("nodes", "{\"mesh\":0}");
+        file.glb()
+    };
+    let Loaded { mesh, textures, .. } = loaded(&file(&|view| format!("{{\"bufferView\":{view}}}")), "a.glb");
+    let name = mesh.surfaces()[0].texture.as_ref().unwrap();
+    assert_eq!(textures[name][(0, 0)], Rgb::new(0, 0, 255));
+    let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+    let bytes = file(&|_| "{\"name\":\"nothing\"}".into());
+    let error = model_file::parse(&bytes[..], "a.glb", none, &model_file::Options::default()).unwrap_err();
+    assert!(error.to_string().ends_with("images[0]: has neither a uri nor a bufferView"), "{error}");
+}
+
 /// The rule, implemented once more.
 #[test]
 fn materials_follow_the_rule() {
