@@ -22,7 +22,7 @@
 //! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 //! | `triangle` | one triangle from vertices to bytes: [`Raster::triangle`] |
 //! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
-//! | `triangles` | many triangles given as vertices: [`Raster::triangles`] |
+//! | `triangles` | many triangles given as vertices, [`Raster::triangles`], or by index, [`Raster::indexed`] |
 //! | `scan_line` | a whole frame of triangles, each pixel written once |
 //!
 //! ```
@@ -75,4 +75,5 @@ pub use error::RasterError;
 pub use frame::{Frame, Rect};
 pub use interpolation::Interpolation;
 pub use triangle::Raster;
+pub use triangles::VertexTable;
 pub use vertex::Vertex;

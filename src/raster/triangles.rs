@@ -8,8 +8,8 @@ use super::interpolation::Interpolation;
 use super::pick::CHUNK;
 use super::triangle::Raster;
 use super::vertex::{Vertex, misses_centres};
-use crate::fixed::U8F8;
-use crate::lanes::LANES;
+use crate::fixed::{I24F8, U8F8};
+use crate::lanes::{LANES, three};
 
 /// The corners of all triangles of a batch.
 const CORNERS: usize = 3 * Batch::CAPACITY;
@@ -115,6 +115,48 @@ impl Batch {
     }
 }
 
+/// Vertices that triangles share and name by index, at most `N`, for [`Raster::indexed`].
+#[derive(Clone, Debug)]
+pub struct VertexTable<const N: usize> {
+    at: [ScreenPos; N],
+    depth: [u32; N],
+    shade: [[U8F8; 2]; N],
+}
+
+impl<const N: usize> VertexTable<N> {
+    /// Every vertex lies at (0, 0), with a shade and a depth of 0.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { at: [ScreenPos::new(0, 0); N], depth: [0; N], shade: [[U8F8::from_bits(0); 2]; N] }
+    }
+
+    /// Puts a vertex at `index`. Returns `false`, and changes nothing, if that is `N` or more.
+    #[inline]
+    pub fn set(&mut self, index: usize, vertex: &Vertex) -> bool {
+        if index >= N {
+            return false;
+        }
+        self.at[index] = ScreenPos::of(vertex);
+        self.depth[index] = vertex.depth();
+        self.shade[index] = [vertex.shade(); 2];
+        true
+    }
+
+    /// The vertex at `index`; `None` if that is `N` or more.
+    #[must_use]
+    #[inline]
+    pub fn get(&self, index: usize) -> Option<Vertex> {
+        let (at, depth, [shade, _]) = (self.at.get(index)?, self.depth.get(index)?, self.shade.get(index)?);
+        Some(Vertex::of_projected(I24F8::from_bits(at.x()), I24F8::from_bits(at.y()), *shade, *depth))
+    }
+}
+
+impl<const N: usize> Default for VertexTable<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// A corner's shade. A flat triangle has equal corners: the byte nearest to a whole shade is that shade.
 #[inline]
 fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
@@ -176,6 +218,73 @@ impl<D: Cell> Raster<'_, D> {
             }
         }
         drawn += self.batch(&batch);
+        drawn
+    }
+
+    /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are those of
+    /// [`triangle`](Self::triangle) called for each. Shared vertices are not copied, so this is faster than
+    /// [`triangles`](Self::triangles). A triangle with an index of `N` or more is left out.
+    ///
+    /// ```
+    /// use mode13h::fixed::{I24F8, U8F8};
+    /// use mode13h::raster::{Frame, Interpolation, Raster, Vertex, VertexTable};
+    ///
+    /// let mut table = VertexTable::<4>::new();
+    /// for (i, (x, y)) in [(0, 0), (8, 0), (8, 4), (0, 4)].into_iter().enumerate() {
+    ///     table.set(i, &Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(9), 0)?);
+    /// }
+    /// let mut bytes = [0_u8; 8 * 4];
+    /// let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
+    /// let drawn = raster.indexed(&table, &[[0, 1, 2], [0, 2, 3]], Interpolation::Gouraud);
+    /// assert_eq!(drawn.pixels, 32);
+    /// assert_eq!(bytes, [9; 32]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn indexed<const N: usize>(
+        &mut self,
+        vertices: &VertexTable<N>,
+        triangles: &[[u32; 3]],
+        interpolation: Interpolation,
+    ) -> DrawStats {
+        let columns = Columns {
+            at: &vertices.at,
+            depth: &vertices.depth,
+            shade: &vertices.shade,
+            #[cfg(feature = "alloc")]
+            effects: Default::default(),
+        };
+        self.of_columns(columns, triangles, interpolation)
+    }
+
+    /// Draws triangles of columns that have one length.
+    fn of_columns(&mut self, columns: Columns<'_>, triangles: &[[u32; 3]], interpolation: Interpolation) -> DrawStats {
+        let (mut drawn, count) = (DrawStats::default(), columns.at.len());
+        let is_there = |corners: &[u32; 3]| corners.iter().all(|i| (*i as usize) < count);
+        let most = triangles.as_flattened().iter().fold(0, |most, i| (*i).max(most));
+        if !Batch::takes(interpolation) || most as usize >= count {
+            for corners in triangles.iter().filter(|corners| is_there(corners)) {
+                let vertices = three(*corners, |i| columns.vertex(i as usize, 0, None));
+                drawn += self.triangle(&vertices, interpolation);
+            }
+            return drawn;
+        }
+        let one_shade = match interpolation {
+            Interpolation::Flat(shade) => Some([[U8F8::from(shade); 3]; Batch::CAPACITY]),
+            _ => None,
+        };
+        let level = self.kernel.simd_level();
+        for of_list in triangles.chunks(Batch::CAPACITY) {
+            let mut list = PickList::<{ Batch::CAPACITY + LANES }>::new();
+            for (number, chunk) in of_list.chunks(CHUNK).enumerate() {
+                let masks = cull(level, columns.at, chunk, self.clip, false);
+                // Below 128.
+                pick(level, &mut list, (CHUNK * number) as u32, &masks, masks.covers);
+            }
+            let picks = list.as_slice();
+            let flat = one_shade.as_ref().map_or(&[][..], |shades| &shades[..picks.len()]);
+            let triangles = Triangles { columns, indices: of_list };
+            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation));
+        }
         drawn
     }
 
@@ -241,7 +350,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::fixed::I24F8;
     use crate::raster::depth::DepthBuffer;
     use crate::raster::frame::{Frame, Rect};
     use crate::span::Kernel;
@@ -312,6 +420,50 @@ mod tests {
         let of_one = [2_usize, 4, 3].map(|n| n.pow(3)).iter().sum::<usize>();
         let of_all = coordinates.len().pow(3);
         assert_eq!(left_out, 2 * of_one * of_all - of_one * of_one);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        /// [`Raster::indexed`] gives the bytes, depths and counts of [`Raster::triangle`] for each, and leaves out what names a
+        /// vertex that is not there.
+        #[test]
+        fn indexed_triangles_are_those_of_their_vertices(
+            vertices in [vertex(), vertex(), vertex(), vertex(), vertex(), vertex()],
+            indices in prop::collection::vec([0..6_u32, 0..6_u32, 0..6_u32], 0..300),
+            beyond in prop::option::of(6..=u32::MAX),
+            which in 0..Interpolation::INTERPOLATED.len() + 1,
+            has_depth: bool,
+        ) {
+            let interpolation = Interpolation::INTERPOLATED.get(which).copied().unwrap_or(Interpolation::Flat(77));
+            let mut table = VertexTable::<6>::new();
+            for (i, vertex) in vertices.iter().enumerate() {
+                prop_assert!(table.set(i, vertex));
+                prop_assert_eq!(table.get(i), Some(*vertex));
+            }
+            prop_assert!(!table.set(6, &vertices[0]) && table.get(6).is_none());
+            let mut named = indices.clone();
+            if let Some(index) = beyond {
+                named.insert(indices.len() / 2, [0, index, 1]);
+            }
+            let draw = |is_indexed: bool| {
+                let (mut bytes, mut cells) = (vec![9; 90 * PITCH], vec![0_u32; 90 * WIDTH as usize]);
+                let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, PITCH).expect("a legal frame");
+                let depth = DepthBuffer::new(&mut cells, &frame).expect("as long as the frame");
+                let depth = has_depth.then_some(depth);
+                let mut raster = Raster { clip: frame.bounds(), frame, depth, kernel: Kernel::default() };
+                let mut drawn = DrawStats::default();
+                if is_indexed {
+                    drawn = raster.indexed(&table, &named, interpolation);
+                } else {
+                    for corners in &indices {
+                        drawn += raster.triangle(&corners.map(|i| vertices[i as usize]), interpolation);
+                    }
+                }
+                (drawn, bytes, cells)
+            };
+            prop_assert!(draw(true) == draw(false));
+        }
     }
 
     proptest! {
