@@ -25,6 +25,21 @@ pub(crate) const HAS_F64: bool = cfg!(any(
 pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0;
 const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 
+/// Whether this is a build for size (`capi/build`), for machines with little memory: fewer loops draw the same bytes, and
+/// long functions are not inlined. It lacks the shadings [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and
+/// [`Float`](crate::raster::Interpolation::Float), which draw as `Gouraud` does.
+pub(crate) const IS_SMALL: bool = cfg!(mode13h_small);
+
+internal! {
+/// The floor of n / d for a positive d, modulo 2⁶⁴.
+#[must_use]
+#[cfg_attr(mode13h_small, inline(never))]
+#[cfg_attr(not(mode13h_small), inline(always))]
+fn floor_of_wide(n: i128, d: i128) -> i64 {
+    n.div_euclid(d) as i64
+}
+}
+
 /// The integer nearest to a value within ±2⁵¹, ties to even; for other values the result is arbitrary.
 ///
 /// Use only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the cost of two

@@ -305,15 +305,28 @@ impl Door for Fixed {
         let (a, b, inside, outside) = (i128::from(a), i128::from(b), i128::from(inside), i128::from(outside));
         let whole = inside - outside;
         let point = match by {
-            None => (2 * (b * inside - a * outside) + whole).div_euclid(2 * whole),
+            None => floor_of(2 * (b * inside - a * outside) + whole, 2 * whole),
             Some([of, to]) => {
                 // 2³⁰ parts, so that products stay small.
-                let part = (((inside * i128::from(of)) << 30) / whole / i128::from(to)).clamp(0, 1 << 30);
+                let part = floor_of((inside * i128::from(of)) << 30, whole);
+                let part = floor_of(part, to.into()).clamp(0, 1 << 30);
                 a + (((b - a) * part) >> 30)
             }
         };
         point.clamp(a.min(b), a.max(b)) as i64
     }
+}
+
+/// The floor of n / d for a positive d, which is within i64.
+#[cfg(feature = "effects")]
+fn floor_of(n: i128, d: i128) -> i128 {
+    // On 32 bits it is long, so there is one.
+    mode13h::fixed::floor_of_wide(n, d).into()
+}
+#[cfg(not(feature = "effects"))]
+#[inline(never)]
+fn floor_of(n: i128, d: i128) -> i128 {
+    n.div_euclid(d)
 }
 
 /// A mesh whose arrays have been checked.
@@ -414,6 +427,11 @@ impl Source {
         if most.is_some_and(|most| most >= u64::from(vertex_count)) { Err(Refusal::Index) } else { Ok(()) }
     }
 
+    /// The near plane of a mesh that has w; it has been checked.
+    pub(crate) fn near<D: Door>(&self) -> Option<D::Wide> {
+        if self.mesh.homogeneous == 1 { D::near(&self.mesh).ok() } else { None }
+    }
+
     /// Returns whether vertices are named by indices, so that several triangles may share one.
     pub(crate) fn is_indexed(&self) -> bool {
         !self.mesh.indices.is_null()
@@ -492,6 +510,18 @@ impl Source {
         *to = K::new(vertex, attributes);
         *and_to = K::new(vertex, attributes);
         true
+    }
+
+    /// Vertex `i` as the raster takes it without effects; `None` if it must be clipped, or has a number that is none or out
+    /// of range.
+    ///
+    /// # Safety
+    /// It is below the number of vertices, and the mesh holds as many as it says.
+    #[inline(always)]
+    pub(crate) unsafe fn vertex<D: Door>(&self, i: u32, near: Option<D::Wide>) -> Option<Vertex> {
+        // SAFETY: by the caller.
+        let (numbers, _) = unsafe { self.numbers::<D>(i, near.is_some()) }?;
+        D::vertex(numbers, near)
     }
 
     /// Vertex `i`, to be clipped; `None` if it has a number that is none or out of range.

@@ -2,7 +2,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use mode13h::raster::{DrawStats, Interpolation, Raster};
+use mode13h::raster::{DrawStats, Interpolation, Raster, Vertex as Projected, VertexTable};
 
 use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal, Sized32, Stats, Target, Vertex, VertexX, code, read};
 use crate::clip::{Progress, clip, doubled_area};
@@ -46,6 +46,177 @@ fn interpolation(material: &Material) -> Outcome<Interpolation> {
         4 => Interpolation::GouraudHyperbolic,
         _ => return Err(Refusal::Value),
     })
+}
+
+/// A corner of a list without effects. A build for size uses one type for both kinds of list.
+#[cfg(all(feature = "effects", mode13h_small))]
+type Plain = Ready;
+#[cfg(not(all(feature = "effects", mode13h_small)))]
+type Plain = Projected;
+
+/// A raster, whatever the width of its depth cells.
+trait Draws {
+    /// Draws triangles of vertices in slots.
+    fn indexed(&mut self, vertices: &Slots, triangles: &[[u32; 3]], by: Interpolation) -> DrawStats;
+    /// Draws one triangle.
+    fn one(&mut self, corners: &[Projected; 3], by: Interpolation) -> DrawStats;
+}
+
+type Slots = VertexTable<MANY_REMEMBERED>;
+
+macro_rules! draws {
+    ($($cell:ty)*) => {$(
+        impl Draws for Raster<'_, $cell> {
+            fn indexed(&mut self, vertices: &Slots, triangles: &[[u32; 3]], by: Interpolation) -> DrawStats {
+                Raster::indexed(self, vertices, triangles, by)
+            }
+
+            fn one(&mut self, corners: &[Projected; 3], by: Interpolation) -> DrawStats {
+                self.triangle(corners, by)
+            }
+        }
+    )*};
+}
+
+draws! { u16 u32 }
+
+/// A batch of pending triangles, whose vertices are cached in slots by their index modulo the number of slots.
+struct Indexed<'r> {
+    raster: &'r mut dyn Draws,
+    interpolation: Interpolation,
+    cull: u32,
+    vertices: Slots,
+    /// The index of each slot's vertex, or `u32::MAX`, which no index reaches: all are below a count of 32 bits.
+    names: [u32; MANY_REMEMBERED],
+    /// The last batch that used each slot. A vertex stays until its batch is drawn.
+    used: [u32; MANY_REMEMBERED],
+    turn: u32,
+    triangles: [[u32; 3]; MANY_TOGETHER],
+    count: usize,
+    handed_on: u32,
+    drawn: DrawStats,
+}
+
+impl Indexed<'_> {
+    /// Returns whether a triangle of these corners is culled.
+    #[inline(always)]
+    fn is_culled(&self, corners: &[Projected; 3]) -> bool {
+        let area = doubled_area(corners);
+        (self.cull == 1 && area <= 0) || (self.cull == 2 && area >= 0)
+    }
+
+    /// Appends the triangle of three slots, unless it is culled.
+    #[inline(always)]
+    fn take(&mut self, slots: [usize; 3]) {
+        let [a, b, c] = slots;
+        if self.cull > 0 {
+            let at = |slot| self.vertices.get(slot).unwrap_or_default();
+            if self.is_culled(&[at(a), at(b), at(c)]) {
+                return;
+            }
+        }
+        self.handed_on = self.handed_on.wrapping_add(1);
+        (self.used[a], self.used[b], self.used[c]) = (self.turn, self.turn, self.turn);
+        // Slots are below 512, the count below 128.
+        self.triangles[self.count % MANY_TOGETHER] = [a as u32, b as u32, c as u32];
+        self.count += 1;
+        if self.count == MANY_TOGETHER {
+            self.flush();
+        }
+    }
+
+    #[inline(never)]
+    fn flush(&mut self) {
+        let waiting = &self.triangles[..self.count.min(MANY_TOGETHER)];
+        self.drawn += self.raster.indexed(&self.vertices, waiting, self.interpolation);
+        (self.count, self.turn) = (0, self.turn.wrapping_add(1));
+    }
+
+    /// Draws the pending triangles, and then this one.
+    fn draw(&mut self, corners: &[Projected; 3]) {
+        if self.cull > 0 && self.is_culled(corners) {
+            return;
+        }
+        self.handed_on = self.handed_on.wrapping_add(1);
+        self.flush();
+        self.drawn += self.raster.one(corners, self.interpolation);
+    }
+
+    /// Puts the vertices `named` into their slots. Returns false if one must be clipped or is not a number, or if two
+    /// share a slot.
+    ///
+    /// # Safety
+    /// Indices have been checked.
+    #[inline(never)]
+    unsafe fn make<D: Door>(&mut self, source: &Source, named: [u32; 3], near: Option<D::Wide>) -> bool {
+        let slots = named.map(|index| index as usize % MANY_REMEMBERED);
+        for (index, slot) in named.into_iter().zip(slots) {
+            if self.names[slot] == index {
+                continue;
+            }
+            if self.used[slot] == self.turn {
+                self.flush();
+            }
+            // SAFETY: by the caller.
+            let Some(vertex) = (unsafe { source.vertex::<D>(index, near) }) else { return false };
+            self.vertices.set(slot, &vertex);
+            self.names[slot] = index;
+        }
+        named.iter().zip(slots).all(|(index, slot)| self.names[slot] == *index)
+    }
+}
+
+/// Draws a list of triangles that need no effects.
+///
+/// # Safety
+/// The mesh holds what it says, and its indices have been checked.
+unsafe fn draw_indexed<D: Door>(
+    source: &Source,
+    progress: Progress,
+    cull: u32,
+    raster: &mut dyn Draws,
+    interpolation: Interpolation,
+) -> [u32; 5] {
+    let near = source.near::<D>();
+    let mut list = Indexed {
+        raster,
+        interpolation,
+        cull,
+        vertices: VertexTable::new(),
+        names: [u32::MAX; MANY_REMEMBERED],
+        used: [0; MANY_REMEMBERED],
+        turn: 1,
+        triangles: [[0; 3]; MANY_TOGETHER],
+        count: 0,
+        handed_on: 0,
+        drawn: DrawStats::default(),
+    };
+    let mut refused = 0;
+    for i in 0..source.triangles() {
+        // SAFETY: below the number of triangles.
+        let named = unsafe { source.indices(i) };
+        let [a, b, c] = named;
+        let slots = [a as usize % MANY_REMEMBERED, b as usize % MANY_REMEMBERED, c as usize % MANY_REMEMBERED];
+        let are_there = (list.names[slots[0]] == a) & (list.names[slots[1]] == b) & (list.names[slots[2]] == c);
+        // SAFETY: indices have been checked.
+        if are_there || unsafe { list.make::<D>(source, named, near) } {
+            list.take(slots);
+            continue;
+        }
+        // SAFETY: as above.
+        let alone = named.map(|index| unsafe { source.vertex::<D>(index, near) });
+        if let [Some(a), Some(b), Some(c)] = alone {
+            // Two of them have one slot.
+            list.draw(&[a, b, c]);
+            continue;
+        }
+        // SAFETY: as above.
+        let is_drawn = unsafe { clipped::<D, Projected>(source, i, near, progress, &mut |part| list.draw(&part)) };
+        refused += u32::from(!is_drawn);
+    }
+    list.flush();
+    let DrawStats { spans, covered, pixels, .. } = list.drawn;
+    [list.handed_on, refused, spans, covered, pixels]
 }
 
 /// What triangles are handed to when there are enough.
@@ -99,11 +270,11 @@ impl<K: Kept, const TOGETHER: usize> Waiting<'_, K, TOGETHER> {
 /// That of `gather`.
 unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: usize>(
     source: &Source,
-    near: Option<D::Wide>,
     progress: Progress,
     cull: u32,
     flush: &mut Flush<'_, K>,
 ) -> [u32; 5] {
+    let near = source.near::<D>();
     let mut waiting =
         Waiting { triangles: [[K::default(); 3]; TOGETHER], count: 0, cull, handed_on: 0, drawn: [0; 3], flush };
     // Vertices that were made, by their index. No index is the greatest u32, as all are below a count of 32 bits.
@@ -133,7 +304,8 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
             waiting.take();
         } else {
             // SAFETY: as above.
-            refused += u32::from(!unsafe { clipped::<D, K, TOGETHER>(source, i, near, progress, &mut waiting) });
+            let is_drawn = unsafe { clipped::<D, K>(source, i, near, progress, &mut |part| waiting.push(&part)) };
+            refused += u32::from(!is_drawn);
         }
     }
     waiting.flush();
@@ -141,13 +313,13 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
     [waiting.handed_on, refused, spans, covered, pixels]
 }
 
-/// Reads, clips and culls the triangles of a list, and hands them on.
+/// Reads, clips and culls the triangles of a list with effects, and hands them on.
 ///
 /// # Safety
 /// The mesh holds what it says, and its indices have been checked.
+#[cfg(feature = "effects")]
 unsafe fn gather<D: Door, K: Kept>(
     source: &Source,
-    near: Option<D::Wide>,
     progress: Progress,
     cull: u32,
     flush: &mut Flush<'_, K>,
@@ -155,9 +327,9 @@ unsafe fn gather<D: Door, K: Kept>(
     // SAFETY: by the caller.
     unsafe {
         if IS_BATCHED && source.triangles() >= FEW {
-            gather_by::<D, K, MANY_TOGETHER, MANY_REMEMBERED>(source, near, progress, cull, flush)
+            gather_by::<D, K, MANY_TOGETHER, MANY_REMEMBERED>(source, progress, cull, flush)
         } else {
-            gather_by::<D, K, FEW_TOGETHER, FEW_REMEMBERED>(source, near, progress, cull, flush)
+            gather_by::<D, K, FEW_TOGETHER, FEW_REMEMBERED>(source, progress, cull, flush)
         }
     }
 }
@@ -168,19 +340,19 @@ unsafe fn gather<D: Door, K: Kept>(
 /// Its indices have been checked.
 #[cold]
 #[inline(never)]
-unsafe fn clipped<D: Door, K: Kept, const TOGETHER: usize>(
+unsafe fn clipped<D: Door, K: Kept>(
     source: &Source,
     i: u32,
     near: Option<D::Wide>,
     progress: Progress,
-    waiting: &mut Waiting<'_, K, TOGETHER>,
+    part: &mut dyn FnMut([K; 3]),
 ) -> bool {
     // SAFETY: by the caller.
     let corners = unsafe { source.indices(i).map(|index| source.wide::<D, K>(index, near)) };
     let [Some(a), Some(b), Some(c)] = corners else {
         return false;
     };
-    clip::<D, K>([a, b, c], near, progress, &mut |part| waiting.push(&part));
+    clip::<D, K>([a, b, c], near, progress, part);
     true
 }
 
@@ -206,11 +378,53 @@ macro_rules! with_raster {
     }};
 }
 
+/// Reads, clips and culls a list with few copies: straight into a table of vertices.
+type DrawMany = unsafe fn(&Source, Progress, u32, &mut dyn Draws, Interpolation) -> [u32; 5];
+
+/// A door's functions that read, clip and cull a list. They are pointers so that [`draw_by`] is compiled only once.
+struct Readers {
+    /// Checks that the near plane is a number that can be used.
+    near: fn(&Mesh) -> Outcome,
+    few: unsafe fn(&Source, Progress, u32, &mut Flush<'_, Plain>) -> [u32; 5],
+    /// For long lists, in builds that draw them in batches.
+    many: Option<DrawMany>,
+    #[cfg(feature = "effects")]
+    effects: unsafe fn(&Source, Progress, u32, &mut Flush<'_, Ready>) -> [u32; 5],
+}
+
+impl Readers {
+    const fn of<D: Door>() -> Self {
+        Self {
+            near: |mesh| D::near(mesh).map(|_| ()),
+            few: gather_by::<D, Plain, FEW_TOGETHER, FEW_REMEMBERED>,
+            many: if IS_BATCHED { Some(draw_indexed::<D>) } else { None },
+            #[cfg(feature = "effects")]
+            effects: gather::<D, Ready>,
+        }
+    }
+}
+
 /// Draws a list.
 ///
 /// # Safety
 /// Each pointer is null or what the header says.
 unsafe fn draw<D: Door>(
+    target: *const Target,
+    mesh: *const Mesh,
+    material: *const Material,
+    context: *mut Context,
+    stats: *mut Stats,
+) -> Outcome {
+    // SAFETY: by the caller.
+    unsafe { draw_by(&const { Readers::of::<D>() }, target, mesh, material, context, stats) }
+}
+
+/// Draws a list that a door's functions read.
+///
+/// # Safety
+/// That of [`draw`].
+unsafe fn draw_by(
+    readers: &Readers,
     target: *const Target,
     mesh: *const Mesh,
     material: *const Material,
@@ -237,7 +451,9 @@ unsafe fn draw<D: Door>(
             checked.apart_from(Bytes::new(pointer, length)?)?;
         }
     }
-    let near = if mesh.homogeneous == 1 { Some(D::near(&mesh)?) } else { None };
+    if mesh.homogeneous == 1 {
+        (readers.near)(&mesh)?;
+    }
     // SAFETY: the bytes of the indices are there.
     unsafe { source.check_indices() }?;
     let progress = Progress { shades_on_face: material.shading == 4, texture_on_face: material.mapping != 0 };
@@ -251,25 +467,30 @@ unsafe fn draw<D: Door>(
             with_raster!(checked, |raster| {
                 // SAFETY: the bytes of vertices and indices are there, and indices have been checked.
                 unsafe {
-                    gather::<D, Ready>(&source, near, progress, material.cull, &mut |all| {
-                        effects.draw(&mut raster, all)
-                    })
+                    (readers.effects)(&source, progress, material.cull, &mut |all| effects.draw(&mut raster, all))
                 }
             })
         }
     } else {
         with_raster!(checked, |raster| {
-            let mut flush = |all: &[[mode13h::raster::Vertex; 3]]| {
-                let mut drawn = DrawStats::default();
-                if IS_BATCHED && all.len() > FEW_TOGETHER {
-                    drawn = raster.triangles(all.iter().map(|corners| (corners, interpolation)));
-                } else {
-                    all.iter().for_each(|corners| drawn += raster.triangle(corners, interpolation));
-                }
-                [drawn.spans, drawn.covered, drawn.pixels]
-            };
-            // SAFETY: as above.
-            unsafe { gather::<D, _>(&source, near, progress, material.cull, &mut flush) }
+            // Asked again, so that the compiler knows.
+            if IS_BATCHED
+                && let Some(many) = readers.many
+                && source.triangles() >= FEW
+            {
+                // SAFETY: as above.
+                unsafe { many(&source, progress, material.cull, &mut raster, interpolation) }
+            } else {
+                let mut flush = |all: &[[Plain; 3]]| {
+                    let mut drawn = DrawStats::default();
+                    for corners in all {
+                        drawn += raster.triangle(&corners.each_ref().map(|corner| *corner.vertex()), interpolation);
+                    }
+                    [drawn.spans, drawn.covered, drawn.pixels]
+                };
+                // SAFETY: as above.
+                unsafe { (readers.few)(&source, progress, material.cull, &mut flush) }
+            }
         })
     };
     let _ = context;

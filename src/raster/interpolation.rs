@@ -1,5 +1,7 @@
 //! Interpolation of shades over a triangle.
 
+use crate::fixed::IS_SMALL;
+
 /// Interpolation of shades over the pixels of a triangle.
 ///
 /// | shading | differs from exact by less than | in |
@@ -73,7 +75,8 @@ impl Interpolation {
     /// `[(min + 128) >> 8, (max + 128) >> 8]` of the vertices' shades.
     #[must_use]
     pub const fn has_exact_cover(self) -> bool {
-        !matches!(self, Self::GouraudVintage)
+        // Known to the compiler where there is no other.
+        IS_SMALL || !matches!(self, Self::GouraudVintage)
     }
 
     /// Returns whether shades are linear on the face in space rather than on the screen.

@@ -15,6 +15,7 @@ use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::{RESEED, ShadePlane};
 use super::vintage::{Ramp, VintageTriangle};
+use crate::fixed::IS_SMALL;
 #[cfg(feature = "alloc")]
 use crate::lanes::{LANES, each};
 #[cfg(feature = "alloc")]
@@ -68,15 +69,19 @@ impl RowShader {
     #[inline(never)]
     fn of_another_kind(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {
-            Interpolation::GouraudVintage => Self::Vintage(VintageTriangle::new(triangle, values)),
+            Interpolation::GouraudVintage if !IS_SMALL => Self::Vintage(VintageTriangle::new(triangle, values)),
             Interpolation::Gouraud1616 => Self::Fixed16(ShadePlane16::of_values(triangle, values)),
             Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
-            Interpolation::Float => Self::Float(FloatPlane::of_values(triangle, values)),
+            Interpolation::Float if !IS_SMALL => Self::Float(FloatPlane::of_values(triangle, values)),
             // Handled above.
             Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded => {
                 Self::of_values(triangle, values, interpolation)
             }
+            // Only in a build for size.
+            Interpolation::GouraudVintage => Self::of_values(triangle, values, Interpolation::Gouraud),
+            #[cfg(feature = "alloc")]
+            Interpolation::Float => Self::of_values(triangle, values, Interpolation::Gouraud),
         }
     }
 
@@ -95,8 +100,10 @@ impl RowShader {
     #[inline(never)]
     fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
         match self {
-            Self::Vintage(triangle) => Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn),
-            Self::Ramp(ramp) => ramp.spans(row.x0..row.x1, |range, shade, step| {
+            Self::Vintage(triangle) if !IS_SMALL => {
+                Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn)
+            }
+            Self::Ramp(ramp) if !IS_SMALL => ramp.spans(row.x0..row.x1, |range, shade, step| {
                 span(pixels, range, drawn, |pixels| kernel.fill(pixels, shade, step));
             }),
             _ => pieces(row, |_, x, end| {
@@ -130,10 +137,10 @@ impl RowShader {
     #[inline(never)]
     fn row_of_another_kind_where_nearer<D: Cell>(&self, row: &Row, tested: &mut Tested<'_, D>) {
         match self {
-            Self::Vintage(triangle) => {
+            Self::Vintage(triangle) if !IS_SMALL => {
                 Self::Ramp(triangle.ramp(row.y)).row_of_another_kind_where_nearer(row, tested);
             }
-            Self::Ramp(ramp) => {
+            Self::Ramp(ramp) if !IS_SMALL => {
                 ramp.spans(row.x0..row.x1, |range, shade, step| tested.linear_span(range, shade, step));
             }
             _ => pieces(row, |_, x, end| {
@@ -153,13 +160,15 @@ impl RowShader {
             Self::Fixed16(plane) => fill_16_16(pixels, fixed16_start(plane, row, x), plane.step()),
             Self::Hyperbolic(plane) => plane.fill(x, row.y, pixels),
             #[cfg(feature = "alloc")]
-            Self::Float(plane) => {
+            Self::Float(plane) if !IS_SMALL => {
                 let at = plane.row(row);
                 float::fill_float(pixels, x - at.start, at.n, at.d, at.range);
             }
             Self::Flat(index) => pixels.fill(*index),
             // Their rows are split where they are reseeded.
             Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
+            #[cfg(feature = "alloc")]
+            Self::Float(_) => {}
         }
     }
 }
@@ -187,9 +196,11 @@ impl RowShader {
                 };
                 linear(piece, column, start, plane.step(), 128);
             }
-            (Self::Vintage(triangle), _) => Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel),
+            (Self::Vintage(triangle), _) if !IS_SMALL => {
+                Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel)
+            }
             // At most 64 pixels.
-            (Self::Ramp(ramp), _) => ramp.spans(x..x + piece.len() as i32, |range, shade, step| {
+            (Self::Ramp(ramp), _) if !IS_SMALL => ramp.spans(x..x + piece.len() as i32, |range, shade, step| {
                 linear(&mut piece[range.start - column..range.end - column], range.start, shade, step, 0);
             }),
             (_, None) | (Self::Flat(_), _) => self.fill(row, x, piece),
@@ -221,13 +232,13 @@ impl RowShader {
                     *shade = hyperbolic::floor_quotient(n, d) as u16;
                 }
             }
-            Self::Float(plane) => {
+            Self::Float(plane) if !IS_SMALL => {
                 let at = plane.row(row);
                 for (i, shade) in shades.iter_mut().enumerate() {
                     *shade = (float::quotient(x - at.start + i as i32, at.n, at.d, at.range) * 256.0) as u16;
                 }
             }
-            Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
+            Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) | Self::Float(_) => {}
         }
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster ensures.
 
-use crate::fixed::{HAS_F64, nearest_whole};
+use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
 
 /// Fills `row` with the quotients of two numbers that change linearly along it.
 ///
@@ -57,7 +57,7 @@ pub(crate) fn fill_estimated_quotients(
 #[inline]
 pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {
     if !HAS_F64 {
-        return n.div_euclid(d) as i64;
+        return floor_of_wide(n, d);
     }
     // Three roundings of one part in 2⁵³ each, and one to an integer: within 0.6 of n / d, so it is the floor or the
     // next integer, and the exact remainder says which. A cast would not do, since it rounds toward zero: −2 − δ may

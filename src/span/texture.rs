@@ -14,7 +14,7 @@
 
 use core::fmt;
 
-use crate::fixed::{HAS_F64, ROUND_MAGIC};
+use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::{BASELINE, Lanes8};
 
@@ -714,7 +714,7 @@ fn each_exact_place<T>(
     for to in row {
         let divisor = d.max(1);
         // Modulo 2³²: the mask keeps fewer bits.
-        put(to, texels.place(u.div_euclid(divisor) as u32, v.div_euclid(divisor) as u32));
+        put(to, texels.place(floor_of_wide(u, divisor) as u32, floor_of_wide(v, divisor) as u32));
         // The sum after the last pixel may be anything.
         u = u.wrapping_add(du);
         v = v.wrapping_add(dv);

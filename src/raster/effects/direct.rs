@@ -1,6 +1,7 @@
 //! Pipelines whose texels need no stage before them: one loop per span shows them.
 
 use super::pipeline::{PixelPipeline, ShadeSource};
+use crate::fixed::IS_SMALL;
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
 use crate::span::texture::Texels;
@@ -27,7 +28,8 @@ pub(super) enum DirectTint<'a> {
 impl<'a> DirectTexture<'a> {
     /// The direct texture of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
-        let stage = pipeline.texture()?;
+        // A build for size has no loop for each tint: it finds the places of texels, and then looks these up.
+        let stage = pipeline.texture().filter(|_| !IS_SMALL)?;
         let table = stage.tables[0];
         let is_plain =
             pipeline.levels().is_none() && pipeline.channels().is_none() && stage.mapping != Mapping::Every16;

@@ -51,7 +51,7 @@ use super::reference::cover::Row;
 use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
-use crate::fixed::HAS_F64;
+use crate::fixed::{HAS_F64, IS_SMALL};
 use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
 use crate::span::depth::Cells;
 use crate::span::list::{SpanList, Target};
@@ -225,6 +225,9 @@ fn write_where_nearer<D: Cell>(
     kernel: Kernel,
 ) -> u32 {
     match (pipeline.blend(), pipeline.keeps_depth) {
+        // A build for size asks each span whether it blends.
+        (blend, true) if IS_SMALL => write_nearer::<D, true, true>(kernel, kernel, spans, bytes, blend, target),
+        (blend, false) if IS_SMALL => write_nearer::<D, true, false>(kernel, kernel, spans, bytes, blend, target),
         (None, true) => write_nearer::<D, false, true>(kernel, kernel, spans, bytes, None, target),
         (None, false) => write_nearer::<D, false, false>(kernel, kernel, spans, bytes, None, target),
         (blend, true) => write_nearer::<D, true, true>(kernel, kernel, spans, bytes, blend, target),

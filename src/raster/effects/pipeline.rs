@@ -126,6 +126,19 @@ pub struct PixelPipeline<'a> {
 
 /// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
 impl<'a> PixelPipeline<'a> {
+    /// Its source, which is not light at the pixels if that is left out.
+    #[inline]
+    pub(super) fn source(&self) -> ShadeSource<'a> {
+        match self.source {
+            ShadeSource::Lit(_) | ShadeSource::LitEvery(..) | ShadeSource::Curved(_)
+                if cfg!(mode13h_leave_out = "phong") =>
+            {
+                ShadeSource::Shaded(Interpolation::GouraudReseeded)
+            }
+            source => source,
+        }
+    }
+
     #[inline]
     pub(super) fn channels(&self) -> Option<Mix<'a>> {
         self.channels.filter(|_| !cfg!(mode13h_leave_out = "rgb-channels"))

@@ -5,6 +5,7 @@ use super::curve::CurvePlane;
 use super::listing::FaceCorners;
 use super::pipeline::{Mix, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
+use crate::fixed::IS_SMALL;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{to_bytes, to_nearest_bytes};
@@ -39,9 +40,9 @@ impl Spans<'_> {
             }
             return self.mix(buffers, mix, pipeline.dither());
         }
-        let row = match pipeline.source {
-            // The table's row.
-            ShadeSource::Shaded(Interpolation::Flat(shade)) => {
+        let row = match pipeline.source() {
+            // The table's row. A build for size has one loop for both.
+            ShadeSource::Shaded(Interpolation::Flat(shade)) if !IS_SMALL => {
                 stage.tables[0].as_chunks::<256>().0.get(usize::from(shade))
             }
             _ => None,
@@ -60,7 +61,7 @@ impl Spans<'_> {
     #[inline(never)]
     fn shade_bytes(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
         let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
-        match pipeline.source {
+        match pipeline.source() {
             ShadeSource::Shaded(interpolation) => {
                 self.fill(Shaded { value: None, interpolation, dither: pipeline.dither() }, bytes, kernel);
             }
@@ -94,10 +95,10 @@ impl Spans<'_> {
         let Buffers { channels, shades, .. } = buffers;
         let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
         let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
-        match pipeline.source {
+        match pipeline.source() {
             // A table of normals gives one shade; there is none for channels.
             ShadeSource::Shaded(_) | ShadeSource::NormalTable(_) => {
-                let interpolation = match pipeline.source {
+                let interpolation = match pipeline.source() {
                     ShadeSource::Shaded(interpolation) => interpolation,
                     _ => Interpolation::default(),
                 };

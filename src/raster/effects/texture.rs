@@ -8,6 +8,7 @@ use super::direct::{DirectTexture, DirectTint};
 use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
+use crate::fixed::IS_SMALL;
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
 use crate::raster::reference::level::{self, LevelPlane};
@@ -22,6 +23,9 @@ use crate::span::texture::{
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
 const EVERY_WHOLE: i32 = 16;
+
+/// Whether this build has mipmaps. Tested again where they are used, so that the compiler drops their code.
+const HAS_LEVELS: bool = !cfg!(mode13h_leave_out = "mipmaps");
 
 /// An image, with its levels if one of them is to be chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
@@ -69,6 +73,10 @@ impl DirectTexture<'_> {
 
     #[inline(always)]
     fn show<T: Tint, const DIRECT: bool>(self, spans: &Spans<'_>, tint: T, out: &mut [u8], kernel: Kernel) {
+        // There is none; here the compiler sees that.
+        if IS_SMALL {
+            return;
+        }
         let level = kernel.simd_level();
         match self.is_perspective {
             false => show_affine::<T, DIRECT>(level, spans, self.image, tint, out),
@@ -91,14 +99,14 @@ impl Spans<'_> {
         let level = kernel.simd_level();
         // One function for each, so that leaving one out does not change how another is compiled.
         match (stage.mapping, levels) {
-            (Mapping::Affine, None) => {
+            (Mapping::Affine, None) if !IS_SMALL => {
                 show_affine::<_, false>(level, self, stage.texels, shown.tint(), out);
             }
-            (Mapping::Perspective, None) => {
+            (Mapping::Perspective, None) if !IS_SMALL => {
                 show_exact::<_, false>(level, self, stage.texels, shown.tint(), out);
             }
-            (Mapping::Affine, Some(_)) => self.affine_levels(shown, image, (out, places)),
-            (Mapping::Perspective, Some(_)) => self.perspective_levels::<false>(shown, image, (out, places), kernel),
+            (Mapping::Affine, _) => self.affine_levels(shown, image, (out, places)),
+            (Mapping::Perspective, _) => self.perspective_levels::<false>(shown, image, (out, places), kernel),
             (Mapping::Every16, _) => self.perspective_levels::<true>(shown, image, (out, places), kernel),
         }
     }
@@ -122,7 +130,7 @@ impl Spans<'_> {
         (out, places): (&mut [u8], &mut [i32]),
         kernel: Kernel,
     ) {
-        let Some(levels) = levels else {
+        let Some(levels) = levels.filter(|_| HAS_LEVELS) else {
             return self.each(out, perspective, |plane, span, pixels| {
                 plane.places::<EVERY_16>((image, 0), span, span.x, (&mut *places, pixels.len()), kernel);
                 show(shown, pixels, image, places);
@@ -269,7 +277,7 @@ impl<'a> AffineTexture<'a> {
         let area = Divisor::new(face.triangle.area());
         let plane = |i: usize| AffinePlane::new(&face.triangle, area, face.texture(i));
         let planes = [plane(0), plane(1)];
-        let Some(levels) = levels else { return Self { texels: image, planes } };
+        let Some(levels) = levels.filter(|_| HAS_LEVELS) else { return Self { texels: image, planes } };
         let change = |direction: usize| [0, 1].map(|i| 256 * i128::from(planes[i].gradient()[direction]));
         let level = level::of_face(change(0), change(1), area.get(), levels.last());
         Self { texels: levels.get(level).unwrap_or(image), planes: planes.map(|plane| plane.of_level(level)) }

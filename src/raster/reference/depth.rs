@@ -18,6 +18,7 @@
 
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
+use crate::fixed::floor_of_wide;
 use crate::lanes::three;
 
 /// The depth plane of a triangle.
@@ -110,6 +111,6 @@ fn gradient(numerator: i64, area: &Divisor) -> i64 {
     } else {
         let wide = (i128::from(numerator) << 24) + i128::from(area.get() >> 1);
         // Wrapping is intended: see the module's documentation.
-        wide.div_euclid(i128::from(area.get())) as i64
+        floor_of_wide(wide, area.get().into())
     }
 }

@@ -15,7 +15,7 @@
 //! 0.53 and −0.53·d < r < 0.53·d. The result is the integer floor, so it is the same on every processor; where there is
 //! no f64 unit, integer division is used, and this module links no soft-float routine.
 
-use crate::fixed::{HAS_F64, nearest_whole};
+use crate::fixed::{HAS_F64, IS_SMALL, nearest_whole};
 
 /// A divisor, 1 to 2⁴⁴, with its reciprocal.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,11 @@ impl Divisor {
     pub fn div_rem_floor(&self, n: i64) -> (i64, i64) {
         debug_assert!((n / self.divisor).abs() <= Self::MAX_QUOTIENT, "{n} / {}", self.divisor);
         if !HAS_F64 {
-            return (n.div_euclid(self.divisor), n.rem_euclid(self.divisor));
+            return if IS_SMALL {
+                in_integers(n, self.divisor)
+            } else {
+                (n.div_euclid(self.divisor), n.rem_euclid(self.divisor))
+            };
         }
         let nearest = nearest_whole(n as f64 * self.reciprocal);
         let rest = n.wrapping_sub(nearest.wrapping_mul(self.divisor));
@@ -84,6 +88,15 @@ impl Divisor {
     }
 }
 
+/// Quotient and remainder by one division.
+#[inline(never)]
+fn in_integers(n: i64, divisor: i64) -> (i64, i64) {
+    let toward_zero = n / divisor;
+    let rest = n - toward_zero * divisor;
+    let below = rest >> 63; // −1 or 0
+    (toward_zero + below, rest + (below & divisor))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,6 +106,7 @@ mod tests {
         let divisor = Divisor::new(d);
         assert_eq!(divisor.div_rem_floor(n), (n.div_euclid(d), n.rem_euclid(d)), "{n} / {d}");
         assert_eq!(divisor.truncate(n), n / d, "{n} / {d}");
+        assert_eq!(in_integers(n, d), divisor.div_rem_floor(n), "{n} / {d}");
         assert_eq!(divisor.ceil(n), -((-n).div_euclid(d)), "{n} / {d}");
     }
 

@@ -3,7 +3,7 @@
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
 use super::weights::{Weights, in_f64};
-use crate::fixed::{HAS_F64, nearest_whole};
+use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
 use crate::simd::Lanes8;
 use crate::span::texture::{Texels, exact_places, perspective_places};
 
@@ -94,7 +94,8 @@ impl AffinePlane {
     }
 
     /// The coordinate at a pixel whose centre lies in the triangle; 16.16.
-    #[inline]
+    #[cfg_attr(mode13h_small, inline(never))]
+    #[cfg_attr(not(mode13h_small), inline)]
     pub(in crate::raster) fn start(&self, x: i32, y: i32) -> u32 {
         let ([gx, gy], [bias, of_level]) = (self.gradient, self.bias);
         let (dx, dy) = (i64::from(x) * 256 - self.corner[0], i64::from(y) * 256 - self.corner[1]);
@@ -103,7 +104,7 @@ impl AffinePlane {
         } else {
             let n = i128::from(gx) * i128::from(dx) + i128::from(gy) * i128::from(dy) + i128::from(bias);
             // Within D.
-            n.div_euclid(self.area.get().into()) as i64
+            floor_of_wide(n, self.area.get().into())
         };
         // Modulo 2³².
         ((self.coordinate + quotient + of_level) >> self.level) as u32
@@ -129,7 +130,8 @@ pub(in crate::raster) struct PerspectiveTexture {
 }
 
 /// The sum over the corners of weights times values, exact.
-#[inline]
+#[cfg_attr(mode13h_small, inline(never))]
+#[cfg_attr(not(mode13h_small), inline)]
 pub(in crate::raster) fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
     let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
     product(wa, a) + product(wb, b) + product(wc, c)
@@ -146,7 +148,7 @@ fn estimate([wa, wb, wc]: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
 fn floor(estimate: f64, n: i128, d: i128) -> i64 {
     if !HAS_F64 {
         // A mean of coordinates.
-        return n.div_euclid(d) as i64;
+        return floor_of_wide(n, d);
     }
     // The floor or the next integer.
     let near = nearest_whole(estimate);
