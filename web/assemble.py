@@ -18,11 +18,21 @@ import subprocess
 import sys
 import tempfile
 
-from bundle import COMMENT, bundle
-
 
 def read(*paths):
     return "\n".join(path.read_text().strip() for path in paths if path.exists())
+
+
+def minified(text, loader):
+    """A script or a style sheet without what only people read."""
+    command = [web / "node_modules/.bin/esbuild", "--minify", f"--loader={loader}"]
+    return subprocess.run(command, input=text, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def bundle(root):
+    """One module of `root` and all that it imports: a page that opens from a disk cannot load modules from there."""
+    command = [web / "node_modules/.bin/esbuild", "--bundle", "--minify", "--format=esm", root]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 def pack(data):
@@ -58,13 +68,13 @@ packed = {
     "worker": bundle(page / "worker.js").encode(),
     "page": bundle(page / "page.js").encode(),
     # What the first screen does not need.
-    "style": read(shared / "figures.css", text / "text.css").encode(),
+    "style": minified(read(shared / "figures.css", text / "text.css"), "css").encode(),
     "text": read(text / "text.html").encode(),
 }
 parts = {
-    "style": read(shared / "tokens.css", page / "style.css"),
+    "style": minified(read(shared / "tokens.css", page / "style.css"), "css"),
     "parts": json.dumps({name: len(part) for name, part in packed.items()}),
-    "begin": COMMENT.sub("", read(page / "begin.js")),
+    "begin": minified(read(page / "begin.js"), "js"),
     "packed": in_base64(pack(b"".join(packed.values()))),
     **{side: data_address(first / f"{side}.png") for side in ("left", "right")},
 }
