@@ -384,7 +384,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::IsADirectory => {
             Failure::file(format!("{shown}: is a directory, not a palette"))
         }
-        LoadErrorKind::Palette(_) => Failure::words(error.to_string()),
+        LoadErrorKind::Palette(_) | LoadErrorKind::Picture(_) => Failure::words(error.to_string()),
         _ => Failure::file(error.to_string()),
     })?;
     read_files::add(path);

@@ -465,7 +465,8 @@ fn long_help_on_arithmetic() -> String {
 
 fn long_help_on_palettes() -> String {
     format!(
-        "A palette file ({}), a built-in palette (`mode13h list palettes`), or `auto`, which makes one for what is seen\n\n\
+        "A palette file ({}), an indexed picture (.png, .gif, .pcx, .aseprite), a built-in palette (`mode13h list \
+         palettes`), or `auto`, which makes one for what is seen\n\n\
          [default: the scene's; for a model, auto if it has colours of its own, or else grey]",
         input::palette_extensions()
     )

@@ -1173,6 +1173,38 @@ fn palettes_are_converted_from_each_format_to_each() {
     assert!(extensions.len() >= 5);
 }
 
+/// `--palette` and the key of a scene take the palette of the same pictures, and `palette` converts it.
+#[test]
+fn a_picture_lends_its_palette() {
+    let directory = directory();
+    let put = |name: &str, bytes: &[u8]| fs::write(directory.path().join(name), bytes).expect("written");
+    succeed(&directory, &["render", "crate", "-o", "a.png", "--palette", "copper"]);
+    put("a.gif", include_bytes!("../../../tests/corpus/texture/gif"));
+    put("a.pcx", include_bytes!("../../../tests/corpus/texture/pcx"));
+    put("a.aseprite", include_bytes!("../../../tests/corpus/texture/aseprite"));
+    put("plain.toml", b"[[objects]]\nshape = \"cube\"\n");
+    for picture in ["a.png", "a.gif", "a.pcx", "a.aseprite"] {
+        put("asking.toml", format!("palette = \"{picture}\"\n[[objects]]\nshape = \"cube\"\n").as_bytes());
+        succeed(&directory, &["render", "asking.toml", "-o", "due.png"]);
+        succeed(&directory, &["render", "plain.toml", "-o", "x.png", "--palette", picture]);
+        assert!(read(&directory, "x.png") == read(&directory, "due.png"), "{picture}");
+        succeed(&directory, &["palette", picture, "-o", "x.gpl"]);
+        succeed(&directory, &["render", "plain.toml", "-o", "x.png", "--palette", "x.gpl"]);
+        assert!(read(&directory, "x.png") == read(&directory, "due.png"), "{picture}");
+    }
+    succeed(&directory, &["palette", "a.png", "-o", "x.gpl"]);
+    let copper = &builtin::by_name("copper").expect("built in").palette;
+    let palette = palette_file::load(directory.path().join("x.gpl")).expect("a palette");
+    assert!(palette.colors() == copper.on_dac().colors());
+    succeed(&directory, &["render", "cube", "-o", "rgb.png", "--rgb"]);
+    put("cut.png", &read(&directory, "a.png")[..60]);
+    for picture in ["rgb.png", "cut.png"] {
+        for words in [&["render", "cube", "-o", "y.png", "--palette", picture][..], &["palette", picture]] {
+            assert_fails(&run(&directory, words), 2, &format!("{picture}: no picture that can be read: "));
+        }
+    }
+}
+
 #[test]
 fn palettes_are_looked_at() {
     let directory = directory();
