@@ -40,11 +40,23 @@ pub(crate) struct Model {
     lights: Vec<Light>,
     camera: Option<Camera>,
     rig: Option<Rig>,
+    /// The animation that it plays.
+    clip: usize,
     /// One of the engine's shapes, not from a file.
     pub(crate) is_shape: bool,
 }
 
 impl Model {
+    /// Makes it play an animation by its name or number.
+    pub(crate) fn choose(&mut self, clip: &str) -> Result<(), Failure> {
+        let found = match &self.rig {
+            Some(rig) => rig.find_clip(clip).map_err(|unknown| unknown.to_string()),
+            None => Err("it has no animation".to_string()),
+        };
+        self.clip = found.map_err(|what| Failure::words(format!("--clip: {}: {what}", self.name)))?;
+        Ok(())
+    }
+
     /// The stage on which it is shown, in greys. With an axis of the user's own the file's lights and camera are left out,
     /// and with a camera of the user's own the file's.
     pub(crate) fn stage(self, up: Option<UpAxis>, has_camera: bool) -> Result<Turntable, Failure> {
@@ -55,9 +67,10 @@ impl Model {
         let object = with_textures(Object::new(self.mesh), &textures);
         let (lights, camera) = if up.is_none() { (self.lights, self.camera) } else { (Vec::new(), None) };
         let camera = camera.filter(|_| !has_camera);
+        let moving = self.rig.map(|rig| (rig, self.clip));
         let stage = match lights.is_empty() && camera.is_none() {
-            true => Turntable::of_model(object, up.or(self.up), self.rig),
-            false => Turntable::of_composed(object, &lights, camera, self.rig),
+            true => Turntable::of_model(object, up.or(self.up), moving),
+            false => Turntable::of_composed(object, &lights, camera, moving),
         };
         stage.map_err(Failure::from)
     }
@@ -213,7 +226,7 @@ fn of_file(name: String, loaded: model_file::Loaded) -> Model {
     let model_file::Loaded { mesh, textures, up, warnings, files, lights, camera, rig, .. } = loaded;
     read_files::add_all(&files);
     warnings.iter().for_each(warn);
-    Model { name, mesh, textures, up, lights, camera, rig, is_shape: false }
+    Model { name, mesh, textures, up, lights, camera, rig, clip: 0, is_shape: false }
 }
 
 /// Says a line on standard error.
@@ -240,7 +253,7 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
         }
         let name = words.to_string_lossy().into_owned();
         let (textures, lights) = (Embedded::new(), Vec::new());
-        Ok(Model { name, mesh, textures, up: None, lights, camera: None, rig: None, is_shape: true })
+        Ok(Model { name, mesh, textures, up: None, lights, camera: None, rig: None, clip: 0, is_shape: true })
     } else if Format::of_path(path).is_some() || (path.extension().is_none() && format_of_contents(path).is_some()) {
         load(path, options).map(|loaded| of_file(name_of(words), loaded)).map_err(Failure::from)
     } else {
@@ -371,7 +384,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::IsADirectory => {
             Failure::file(format!("{shown}: is a directory, not a palette"))
         }
-        LoadErrorKind::Palette(_) => Failure::words(error.to_string()),
+        LoadErrorKind::Palette(_) | LoadErrorKind::Picture(_) => Failure::words(error.to_string()),
         _ => Failure::file(error.to_string()),
     })?;
     read_files::add(path);

@@ -53,6 +53,13 @@ pub(crate) struct Drawing {
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = crease, hide_short_help = true)]
     crease: Option<Angle>,
+    /// Play this animation of a model
+    ///
+    /// A name, or a number from 0. A wrong one gets a list of those there are.
+    ///
+    /// [default: the first]
+    #[arg(long, value_name = "NAME|N", hide_short_help = true)]
+    clip: Option<String>,
     #[arg(
         long,
         value_name = "FILE|NAME",
@@ -228,10 +235,17 @@ impl Drawing {
 
     /// Reads INPUT as was asked for.
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
-        let input = input::input(words, &Options { crease: self.crease })?;
-        if self.crease.is_some() && matches!(input, Input::Scene { .. }) {
-            return Err(Failure::words("--crease is for models; in a scene, each model has a key for it"));
-        }
+        let mut input = input::input(words, &Options { crease: self.crease })?;
+        match &mut input {
+            Input::Scene { .. } if self.crease.is_some() => {
+                Err(Failure::words("--crease is for models; in a scene, each model has a key for it"))
+            }
+            Input::Scene { .. } if self.clip.is_some() => {
+                Err(Failure::words("--clip is for models; in a scene, each model has a key for it"))
+            }
+            Input::Model(model) => self.clip.as_deref().map_or(Ok(()), |clip| model.choose(clip)),
+            Input::Scene { .. } => Ok(()),
+        }?;
         Ok(input)
     }
 
@@ -451,7 +465,8 @@ fn long_help_on_arithmetic() -> String {
 
 fn long_help_on_palettes() -> String {
     format!(
-        "A palette file ({}), a built-in palette (`mode13h list palettes`), or `auto`, which makes one for what is seen\n\n\
+        "A palette file ({}), an indexed picture (.png, .gif, .pcx, .aseprite), a built-in palette (`mode13h list \
+         palettes`), or `auto`, which makes one for what is seen\n\n\
          [default: the scene's; for a model, auto if it has colours of its own, or else grey]",
         input::palette_extensions()
     )

@@ -51,7 +51,8 @@ pub(crate) struct Options {
 
 fn long_help() -> String {
     format!(
-        "A palette file ({}), or the name of a built-in palette; `mode13h list palettes` shows those",
+        "A palette file ({}), an indexed picture (.png, .gif, .pcx, .aseprite), or the name of a built-in palette; \
+         `mode13h list palettes` shows those",
         input::palette_extensions()
     )
 }

@@ -105,9 +105,13 @@ impl Turntable {
     }
 
     /// A model in the [`studio`], in greys. One that moves by itself stands still otherwise.
-    pub(crate) fn of_model(object: Object, up: Option<UpAxis>, rig: Option<Rig>) -> Result<Turntable, RenderError> {
+    pub(crate) fn of_model(
+        object: Object,
+        up: Option<UpAxis>,
+        moving: Option<(Rig, usize)>,
+    ) -> Result<Turntable, RenderError> {
         let mut stage = Turntable::new(studio(object, up)?, Shown::Model);
-        if let Some(playback) = stage.play(rig, false, false) {
+        if let Some(playback) = stage.play(moving, false, false) {
             // Its angles are set from the time all the same.
             stage.scene.motions.iter_mut().for_each(|motion| turn_by(motion, 0.0));
             stage.camera = playback.framing(&stage.scene.objects()[0]);
@@ -121,10 +125,10 @@ impl Turntable {
         object: Object,
         lights: &[Light],
         camera: Option<Camera>,
-        rig: Option<Rig>,
+        moving: Option<(Rig, usize)>,
     ) -> Result<Turntable, RenderError> {
         let mut stage = Turntable::new(composed(object, lights, camera)?, Shown::Scene);
-        if let Some(playback) = stage.play(rig, !lights.is_empty(), camera.is_some()) {
+        if let Some(playback) = stage.play(moving, !lights.is_empty(), camera.is_some()) {
             if camera.is_none() {
                 stage.camera = playback.framing(&stage.scene.objects()[0]);
             }
@@ -133,9 +137,10 @@ impl Turntable {
         Ok(stage)
     }
 
-    /// The first animation of a rig, played by the only object; a round takes as long.
-    fn play(&mut self, rig: Option<Rig>, lights: bool, camera: bool) -> Option<Playback> {
-        let playback = Playback::new(rig?, 0, &self.scene, *self.scene.object_ids().first()?)?;
+    /// A clip of a rig, played by the only object; a round takes as long.
+    fn play(&mut self, moving: Option<(Rig, usize)>, lights: bool, camera: bool) -> Option<Playback> {
+        let (rig, clip) = moving?;
+        let playback = Playback::new(rig, clip, &self.scene, *self.scene.object_ids().first()?)?;
         let duration = playback.clip().duration();
         if duration > 0.0 {
             self.scene.duration = duration.min(MAX_DURATION);

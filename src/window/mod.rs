@@ -357,9 +357,15 @@ impl WindowError {
     }
 }
 
-/// The first line of another library's message, without a full stop at its end.
+/// The first line of another library's message, without a value that is printed with its fields, and without a full stop
+/// at its end.
 fn first_line(said: &str) -> &str {
-    said.lines().next().unwrap_or_default().trim_end_matches('.')
+    let line = said.lines().next().unwrap_or_default();
+    let clause = match line.split_once(" { ") {
+        Some((before, _)) => before.rsplit_once(": ").map_or(before, |(clause, _)| clause),
+        None => line,
+    };
+    clause.trim_end_matches('.')
 }
 
 impl fmt::Display for WindowError {
@@ -379,3 +385,23 @@ impl fmt::Display for WindowError {
 crate::errors::debug_as_display!(WindowError);
 
 impl Error for WindowError {}
+
+#[cfg(test)]
+mod tests {
+    use super::WindowError;
+
+    /// What minifb says on X11 without a server, and without the library.
+    #[test]
+    fn a_missing_display_is_one_short_line() {
+        for (why, due) in [
+            ("XOpenDisplay failed", "no display: XOpenDisplay failed"),
+            (
+                "failed to load Xlib: OpenError { kind: Library, detail: \"opening library failed (libX11.so.6: cannot open)\" }",
+                "no display: failed to load Xlib",
+            ),
+            ("Failed.\nTry again", "no display: Failed"),
+        ] {
+            assert_eq!(WindowError::new(minifb::Error::WindowCreate(why.into())).to_string(), due);
+        }
+    }
+}

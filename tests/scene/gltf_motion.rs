@@ -1,6 +1,8 @@
 //! glTF: lights, cameras, animations and skins, against answers worked out by hand.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::io;
+use std::path::Path;
 
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
@@ -9,6 +11,7 @@ use mode13h::plan::Effect;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
+use mode13h_assets::SceneExt;
 use mode13h_assets::model::{Playback, composed};
 use mode13h_assets::model_file::{Loaded, Rig};
 
@@ -410,6 +413,95 @@ fn a_body_that_bends_is_drawn_as_a_new_one() {
     }
     assert!(pictures[0] == pictures[4] && pictures[1] == pictures[3]);
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+}
+
+/// A cube with clips called `translation`, `scale` and, without a name, a second move: to x = 1, twice as large, to x = 2.
+fn with_clips() -> Gltf {
+    let mut file = with_shape(&shapes::cube());
+    for (path, end) in [("translation", [1.0, 0.0, 0.0]), ("scale", [2.0; 3]), ("translation", [2.0, 0.0, 0.0])] {
+        let start = if path == "scale" { [1.0; 3] } else { [0.0; 3] };
+        let values = file.floats(&[start, end]);
+        animate(&mut file, 0, path, "LINEAR", &[0.0, 1.0], &values.to_string());
+    }
+    file
+}
+
+#[test]
+fn a_clip_is_found_by_name_or_number() {
+    let model = loaded(&with_clips().glb(), "a.glb");
+    let found = |word: &str| rig(&model).find_clip(word).map_err(|unknown| unknown.to_string());
+    for (word, clip) in [("translation", 0), ("scale", 1), ("0", 0), ("1", 1), ("2", 2)] {
+        assert_eq!(found(word), Ok(clip), "{word}");
+    }
+    let known = "there are 0 (translation), 1 (scale), 2 (translation)";
+    for word in ["3", "-1", "Scale", "", "18446744073709551616"] {
+        assert_eq!(found(word), Err(format!("no clip {word}; {known}")));
+    }
+    // A name comes before a number; one without a name has the number only.
+    let edited = |from: &str, to: &str| {
+        let mut file = with_clips();
+        for item in file.lists.get_mut("animations").expect("clips") {
+            *item = item.replace(from, to);
+        }
+        loaded(&file.glb(), "a.glb")
+    };
+    let model = edited("\"name\":\"scale\"", "\"name\":\"0\"");
+    assert_eq!(rig(&model).find_clip("0"), Ok(1));
+    let model = edited("\"name\":\"translation\",", "");
+    assert_eq!(rig(&model).find_clip("x").expect_err("none").to_string(), "no clip x; there are 0, 1 (scale), 2");
+}
+
+/// The key `clip` of a scene's model.
+#[test]
+fn a_scene_chooses_the_clip_of_a_model() {
+    let glb = with_clips().glb();
+    let open = |path: &Path| -> io::Result<Box<dyn io::BufRead>> {
+        match path.to_str() {
+            Some("a.glb") => Ok(Box::new(io::Cursor::new(glb.clone()))),
+            Some("a.stl") => Ok(Box::new(io::Cursor::new(&include_bytes!("../corpus/stl/tetrahedron")[..]))),
+            _ => Err(io::ErrorKind::NotFound.into()),
+        }
+    };
+    let read = |keys: &str| {
+        let text = format!("[[objects]]\nmodel = 'a.glb'\n{keys}");
+        Scene::from_toml_bytes(text.as_bytes(), Path::new("a.toml"), open)
+    };
+    for (keys, size, middle) in [
+        ("", 1.0, 0.5),
+        ("clip = 'translation'", 1.0, 0.5),
+        ("clip = 'scale'", 1.5, 0.0),
+        ("clip = 1", 1.5, 0.0),
+        ("clip = '1'", 1.5, 0.0),
+        ("clip = 2", 1.0, 1.0),
+    ] {
+        let mut loaded = read(keys).expect(keys);
+        let at_rest = loaded.scene.objects()[0].mesh().bounds();
+        loaded.playbacks[0].show(&mut loaded.scene, 0.5);
+        let moved = loaded.scene.objects()[0].mesh().bounds();
+        assert_eq!((moved.radius / at_rest.radius, moved.centre.x - at_rest.centre.x), (size, middle), "{keys}");
+    }
+    let refused = |keys: &str| read(keys).expect_err(keys).to_string();
+    let known = "there are 0 (translation), 1 (scale), 2 (translation)";
+    assert_eq!(refused("clip = 'run'"), format!("a.toml:3:8: key `objects[0].clip`: no clip run; {known}"));
+    assert_eq!(refused("clip = 3"), format!("a.toml:3:8: key `objects[0].clip`: no clip 3; {known}"));
+    for (value, found) in [("-1", "-1"), ("1.0", "floating point `1.0`")] {
+        assert_eq!(
+            refused(&format!("clip = {value}")),
+            format!(
+                "a.toml:3:8: key `objects[0].clip`: expected the name of an animation, or its number, from 0, found {found}"
+            )
+        );
+    }
+    let still =
+        |text: &str| Scene::from_toml_bytes(text.as_bytes(), Path::new("a.toml"), open).expect_err(text).to_string();
+    assert_eq!(
+        still("[[objects]]\nmodel = 'a.stl'\nclip = 0"),
+        "a.toml:3:8: key `objects[0].clip`: the model has no animation"
+    );
+    assert_eq!(
+        still("[[objects]]\nshape = 'cube'\nclip = 0"),
+        "a.toml:3:8: key `objects[0].clip`: only a model has animations"
+    );
 }
 
 /// A camera and a lamp on moving nodes.

@@ -11,6 +11,7 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Blend, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::Object;
+use mode13h::texture::Texture;
 use mode13h_assets::model_file::obj;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
 use proptest::prelude::*;
@@ -708,6 +709,66 @@ fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
             "model.obj:2: colours of vertices left out"
         ]
     );
+}
+
+/// The same colours in PLY, which has them as bytes, and in OBJ, where some programs write 0 to 1 and others 0 to 255.
+#[test]
+fn vertices_have_colours_as_in_ply() {
+    const POINTS: [[u8; 3]; 4] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    const COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [51, 102, 204], [7, 8, 9]];
+    let shown = |numbers: [u8; 3]| format!("{} {} {}", numbers[0], numbers[1], numbers[2]);
+    let lines = |color: &dyn Fn([u8; 3]) -> String, before: &str| -> String {
+        POINTS.iter().zip(COLORS).map(|(&point, own)| format!("{before}{} {}\n", shown(point), color(own))).collect()
+    };
+    let mut header = String::from("ply\nformat ascii 1.0\nelement vertex 4\n");
+    for name in ["float x", "float y", "float z", "uchar red", "uchar green", "uchar blue"] {
+        header += &format!("property {name}\n");
+    }
+    header += "element face 3\nproperty list uchar int vertex_index\nend_header\n";
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let read = |text: &str, path: &str| {
+        let loaded = model_file::parse(text.as_bytes(), path, none, &Options::default()).expect(path);
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        let texture = loaded.mesh.surfaces()[0].texture.clone().expect("a texture");
+        (loaded.mesh.texcoords().expect("coordinates").to_vec(), Texture::clone(&loaded.textures[&texture]))
+    };
+    let due = read(&format!("{header}{}3 0 2 1\n3 0 1 3\n3 0 3 2\n", lines(&shown, "")), "a.ply");
+    let faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    let shares = |color: [u8; 3]| {
+        let [r, g, b] = color.map(|channel| f32::from(channel) / 255.0);
+        format!("{r} {g} {b}")
+    };
+    assert_eq!(read(&format!("{}{faces}", lines(&shown, "v ")), "a.obj"), due);
+    assert_eq!(read(&format!("{}{faces}", lines(&shares, "v ")), "a.obj"), due);
+    // With an alpha after it.
+    assert_eq!(read(&format!("{}{faces}", lines(&|color| shares(color) + " 1", "v ")), "a.obj"), due);
+
+    let mtl =
+        "newmtl red\nKd 1 0 0\nnewmtl grey\nKd 0.6 0.6 0.6\nnewmtl shiny\nKd 0.7 0.7 0.7\nKs 0.5 0.5 0.5\nNs 30\n";
+    let parse = |text: &str| obj::parse(text.as_bytes(), "a.obj", |_| Ok(mtl.into())).expect("a model");
+    let first = lines(&shares, "v ");
+    for text in [
+        // One vertex without.
+        format!("{first}v 2 2 2\n{faces}"),
+        format!("v 2 2 2\n{first}f 2 4 3\n"),
+        // A material has a colour of its own, or another has.
+        format!("mtllib a.mtl\n{first}usemtl red\n{faces}"),
+        format!("mtllib a.mtl\n{first}usemtl grey\n{faces}usemtl shiny\n{faces}"),
+    ] {
+        let loaded = parse(&text);
+        assert!(loaded.warnings.len() == 1 && loaded.textures.is_empty(), "{:?}", loaded.warnings);
+        assert!(loaded.warnings[0].ends_with(": colours of vertices left out"), "{:?}", loaded.warnings);
+    }
+    // What is grey is their light, as with a texture, and a highlight stays.
+    let shiny = parse(&format!("mtllib a.mtl\n{first}usemtl red\nusemtl shiny\n{faces}"));
+    let surface = &shiny.mesh.surfaces()[0];
+    assert_eq!((surface.name.as_str(), surface.specular, surface.shininess), ("shiny", [0.5; 3], 30.0));
+    assert_eq!(*shiny.textures[surface.texture.as_ref().expect("a texture")], due.1);
+    // A weight is no colour, nor are words.
+    let weights = parse(&format!("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nv 0 0 1 1\n{faces}"));
+    assert!(weights.warnings.is_empty() && weights.textures.is_empty());
+    let words = parse(&format!("v 0 0 0 a b c\nv 1 0 0 a b c\nv 0 1 0 a b c\nv 0 0 1 a b c\n{faces}"));
+    assert!(words.warnings.is_empty() && words.textures.is_empty());
 }
 
 #[test]

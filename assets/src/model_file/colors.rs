@@ -11,6 +11,7 @@ use mode13h::scene::Shared;
 use mode13h::texture::Texture;
 
 use super::Draft;
+use super::lists::{Corner, Lists};
 
 /// The side of the texture, in texels.
 const SIDE: u8 = 16;
@@ -50,4 +51,23 @@ pub(crate) fn paint(draft: &mut Draft, colors: &[(usize, Rgb)], name: String) ->
         name
     });
     Surface { name: "colours".into(), texture, ..Surface::default() }
+}
+
+/// The colour of each face, given one for each position: the mean of its corners.
+pub(crate) fn of_faces(lists: &Lists, of_vertices: &[Rgb]) -> Vec<Rgb> {
+    let mut corners = lists.corners.iter();
+    lists.sizes.iter().map(|&size| mean(corners.by_ref().take(size as usize), of_vertices)).collect()
+}
+
+/// The mean colour of a face's corners.
+fn mean<'c>(corners: impl Iterator<Item = &'c Corner>, colors: &[Rgb]) -> Rgb {
+    let (mut sums, mut count) = ([0_u64; 3], 0);
+    for corner in corners {
+        let Rgb { r, g, b } = colors[corner.position as usize];
+        sums.iter_mut().zip([r, g, b]).for_each(|(sum, channel)| *sum += u64::from(channel));
+        count += 1;
+    }
+    // At most 255.
+    let [r, g, b] = sums.map(|sum| ((sum + count / 2) / count.max(1)) as u8);
+    Rgb::new(r, g, b)
 }

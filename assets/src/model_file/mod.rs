@@ -45,7 +45,7 @@ pub(crate) use colors::paint;
 pub use error::{ModelFileError, ModelFileErrorKind, Place};
 use lists::Lists;
 use progress::Counted;
-pub use rig::{Clip, Pose, Rig};
+pub use rig::{Clip, Pose, Rig, UnknownClip};
 use rig::{Nodes, Staged};
 use warnings::Warnings;
 

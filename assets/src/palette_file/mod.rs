@@ -38,6 +38,7 @@ mod vga;
 
 pub use error::Excerpt;
 pub use error::{PaletteError, PaletteErrorKind, Place};
+pub(crate) use load::{LONGEST_PICTURE, of_bytes};
 pub use load::{LoadError, LoadErrorKind, load};
 
 use mode13h::palette::Palette;

@@ -155,7 +155,10 @@ impl<'a> Builder<'a> {
                 let id = self.scene.add(object);
                 let object = &self.scene[id];
                 let playback = moving.as_ref().and_then(|moving| {
-                    Some(Playback::new(Shared::clone(&moving.rig), 0, &self.scene, id)?.stretched(moving.stretch))
+                    Some(
+                        Playback::new(Shared::clone(&moving.rig), moving.clip, &self.scene, id)?
+                            .stretched(moving.stretch),
+                    )
                 });
                 if is_framed {
                     let swept = |object: &Object| Swept::new(object, turning, path.as_ref());

@@ -64,6 +64,7 @@ pub(super) struct ObjectLayout {
     pub(super) shape: Option<Name<Shape>>,
     pub(super) subdivisions: Option<Spanned<Subdivisions>>,
     pub(super) model: Option<Spanned<FileName>>,
+    pub(super) clip: Option<Spanned<ClipLayout>>,
     pub(super) crease: Option<Spanned<Crease>>,
     pub(super) position: Option<Vector>,
     pub(super) positions: Option<Spanned<Vec<Vector>>>,
@@ -223,6 +224,36 @@ impl<'de> Deserialize<'de> for RampLayout {
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RampLayout, A::Error> {
                 EntriesLayout::deserialize(MapAccessDeserializer::new(map)).map(RampLayout::Entries)
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// `clip`: a name, or a number.
+pub(super) enum ClipLayout {
+    Name(String),
+    Index(usize),
+}
+
+impl<'de> Deserialize<'de> for ClipLayout {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl Visitor<'_> for Either {
+            type Value = ClipLayout;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of an animation, or its number, from 0")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<ClipLayout, E> {
+                Ok(ClipLayout::Name(name.into()))
+            }
+
+            fn visit_i64<E: Error>(self, number: i64) -> Result<ClipLayout, E> {
+                usize::try_from(number).map(ClipLayout::Index).map_err(|_| not_in_range(number, &self))
             }
         }
 

@@ -11,11 +11,11 @@ use mode13h::scene::{Shared, UpAxis};
 use mode13h::texture::Texture;
 use toml::Spanned;
 
+use super::SceneErrorKind;
 use super::error::Fault;
 use super::value::FileName;
-use super::{LONGEST, SceneErrorKind};
 use crate::model_file::{self, Format, Options, Rig};
-use crate::palette_file;
+use crate::palette_file::{self, LONGEST_PICTURE};
 use crate::texture::{self, LoadError, LoadErrorKind};
 
 /// The caller's function for opening files.
@@ -42,12 +42,6 @@ pub(super) struct Named<'a> {
     textures: BTreeMap<PathBuf, Shared<Texture>>,
     pub(super) warnings: Vec<String>,
 }
-
-/// The max length of a palette file. A longer one is read up to here, and then rejected for its contents.
-const LONGEST_PALETTE: usize = LONGEST;
-
-/// The max length of a texture file: an incompressible picture of 4,096 × 4,096 in true colour.
-const LONGEST_TEXTURE: u64 = 64 << 20;
 
 impl<'a> Named<'a> {
     pub(super) fn new(scene: &'a Path, open: &'a mut Open<'a>) -> Self {
@@ -89,17 +83,15 @@ impl<'a> Named<'a> {
             return Ok(builtin.palette.clone());
         }
         let path = self.folder.join(&name.get_ref().0);
-        let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
-        if texture::may_have_palette(&bytes) {
-            let decoded = texture::decode_all(Cursor::new(bytes)).and_then(|decoded| {
-                decoded.palette.ok_or_else(|| LoadErrorKind::Picture("it has no palette".into())) //
-            });
-            let failed = |kind| Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }));
-            return decoded.map(Palette::from_colors).map_err(failed);
-        }
-        let bytes = &bytes[..bytes.len().min(LONGEST_PALETTE)];
-        palette_file::parse_named(&name.get_ref().0, bytes)
-            .map_err(|error| Fault::of(name.span(), SceneErrorKind::Palette { path, error }))
+        let bytes = self.bytes(&path, name)?;
+        palette_file::of_bytes(&name.get_ref().0, &bytes).map_err(|kind| {
+            let kind = match kind {
+                palette_file::LoadErrorKind::Read(error) => SceneErrorKind::File { path, error },
+                palette_file::LoadErrorKind::Palette(error) => SceneErrorKind::Palette { path, error },
+                palette_file::LoadErrorKind::Picture(kind) => SceneErrorKind::Texture(LoadError { path, kind }),
+            };
+            Fault::of(name.span(), kind)
+        })
     }
 
     /// Loads a texture: a built-in one, or the picture in a file.
@@ -111,7 +103,7 @@ impl<'a> Named<'a> {
         let texture = match name.get_ref().0.parse() {
             Ok(builtin) => builtin,
             Err(_) => {
-                let bytes = self.bytes(&path, name, LONGEST_TEXTURE)?;
+                let bytes = self.bytes(&path, name)?;
                 let decoded = texture::decode_all(Cursor::new(bytes)).map_err(|kind| {
                     Fault::of(name.span(), SceneErrorKind::Texture(LoadError { path: path.clone(), kind }))
                 })?;
@@ -132,7 +124,7 @@ impl<'a> Named<'a> {
             return Some(known.clone());
         }
         let mut bytes = Vec::new();
-        let read = (self.open)(&path).and_then(|file| file.take(LONGEST_TEXTURE).read_to_end(&mut bytes));
+        let read = (self.open)(&path).and_then(|file| file.take(LONGEST_PICTURE).read_to_end(&mut bytes));
         let decoded = read.map_err(LoadErrorKind::Read).and_then(|_| texture::decode_all(Cursor::new(bytes)));
         match decoded {
             Ok(decoded) => {
@@ -149,10 +141,10 @@ impl<'a> Named<'a> {
         }
     }
 
-    fn bytes(&mut self, path: &Path, name: &Spanned<FileName>, most: u64) -> Result<Vec<u8>, Fault> {
+    fn bytes(&mut self, path: &Path, name: &Spanned<FileName>) -> Result<Vec<u8>, Fault> {
         let file = self.opened(path, name)?;
         let mut bytes = Vec::new();
-        match file.take(most).read_to_end(&mut bytes) {
+        match file.take(LONGEST_PICTURE).read_to_end(&mut bytes) {
             Ok(_) => Ok(bytes),
             Err(error) => Err(not_read(path, name, error)),
         }

@@ -10,7 +10,7 @@ use mode13h::scene::{Object, Shared};
 use toml::Spanned;
 
 use super::error::Fault;
-use super::layout::ObjectLayout;
+use super::layout::{ClipLayout, ObjectLayout};
 use super::named::{Named, NamedModel};
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
@@ -38,6 +38,8 @@ impl Change {
 /// What moves the mesh of an object.
 pub(super) struct Moving {
     pub(super) rig: Shared<Rig>,
+    /// The clip that it plays.
+    pub(super) clip: usize,
     /// The factors of the mesh's length along x, y and z.
     pub(super) stretch: Vec3,
 }
@@ -88,6 +90,9 @@ impl Objects {
         if let (None, Some(crease)) = (&layout.model, &layout.crease) {
             return Err(Fault::value(crease.span(), "only a model has a crease angle"));
         }
+        if let (None, Some(clip)) = (&layout.model, &layout.clip) {
+            return Err(Fault::value(clip.span(), "only a model has animations"));
+        }
         let (mesh, origin, up, rig) = match (&layout.shape, &layout.model) {
             (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3], None, None),
             (None, Some(model)) => {
@@ -107,6 +112,8 @@ impl Objects {
             }
             (None, None) => return Err(Fault::value(span, "an object needs a `shape` or a `model`")),
         };
+
+        let clip = layout.clip.as_ref().map_or(Ok(0), |word| clip(word, rig.as_deref()))?;
 
         let mut object = Object::new(mesh).centred();
         object.name = match (&layout.name, &layout.shape, &layout.model) {
@@ -131,7 +138,7 @@ impl Objects {
             object.position = position;
             object
         });
-        Ok((objects.collect(), rig.map(|rig| Moving { rig, stretch })))
+        Ok((objects.collect(), rig.map(|rig| Moving { rig, clip, stretch })))
     }
 
     fn shape(
@@ -216,6 +223,18 @@ fn changed(mesh: &Mesh, change: Change, layout: &ObjectLayout, span: &Range<usiz
         mesh = mesh.with_texcoords(texcoords).map_err(|error| Fault::value(repeat.span(), error))?;
     }
     Ok(mesh)
+}
+
+/// The index of the clip that a model plays.
+fn clip(clip: &Spanned<ClipLayout>, rig: Option<&Rig>) -> Result<usize, Fault> {
+    let Some(rig) = rig else {
+        return Err(Fault::value(clip.span(), "the model has no animation"));
+    };
+    let found = match clip.get_ref() {
+        ClipLayout::Name(name) => rig.find_clip(name),
+        ClipLayout::Index(index) => rig.numbered(Some(*index), &index.to_string()),
+    };
+    found.map_err(|unknown| Fault::value(clip.span(), unknown))
 }
 
 /// A file's name without its folder and its extension.

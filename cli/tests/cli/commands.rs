@@ -866,6 +866,46 @@ fn an_animation_is_played() {
     }
 }
 
+/// A triangle that goes aside in its first animation, and up in its second.
+const TWO_CLIPS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+        {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+        {"bufferView": 0, "byteOffset": 44, "componentType": 5126, "count": 2, "type": "VEC3"},
+        {"bufferView": 0, "byteOffset": 68, "componentType": 5126, "count": 2, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 92}],
+    "buffers": [{"byteLength": 92, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAACAPwAAAAA="}],
+    "animations": [
+        {"name": "Aside", "samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]},
+        {"name": "Up", "samplers": [{"input": 1, "output": 3}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}"#;
+
+/// `--clip` chooses an animation by its name or number; a wrong one gets a list of those there are.
+#[test]
+fn an_animation_is_chosen() {
+    let directory = directory();
+    std::fs::write(directory.path().join("a.gltf"), TWO_CLIPS).expect("written");
+    std::fs::write(directory.path().join("a.toml"), "[[objects]]\nmodel = \"a.gltf\"\n").expect("written");
+    let picture = |words: &[&str]| {
+        let view = ["render", "a.gltf", "-o", "x.png", "--camera", "0,0,5", "--time", "0.5"];
+        succeed(&directory, &[&view, words].concat());
+        read(&directory, "x.png")
+    };
+    let [usual, aside, up] = [&[][..], &["--clip", "Aside"], &["--clip", "Up"]].map(picture);
+    assert!(usual == aside && aside != up);
+    assert!(aside == picture(&["--clip", "0"]) && up == picture(&["--clip", "1"]));
+    for (input, clip, says) in [
+        ("a.gltf", "Down", "--clip: a: no clip Down; there are 0 (Aside), 1 (Up)"),
+        ("a.gltf", "2", "--clip: a: no clip 2; there are 0 (Aside), 1 (Up)"),
+        ("torus.obj", "0", "--clip: torus: it has no animation"),
+        ("a.toml", "0", "--clip is for models; in a scene, each model has a key for it"),
+    ] {
+        std::fs::write(directory.path().join("torus.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+        assert_fails(&run(&directory, &["render", input, "-o", "y.png", "--clip", clip]), 2, says);
+    }
+    assert!(!directory.path().join("y.png").exists());
+}
+
 /// A model's own lights and camera are taken, unless the command line has a view of its own.
 #[test]
 fn a_model_brings_lights_and_a_camera() {
@@ -1131,6 +1171,38 @@ fn palettes_are_converted_from_each_format_to_each() {
         }
     }
     assert!(extensions.len() >= 5);
+}
+
+/// `--palette` and the key of a scene take the palette of the same pictures, and `palette` converts it.
+#[test]
+fn a_picture_lends_its_palette() {
+    let directory = directory();
+    let put = |name: &str, bytes: &[u8]| fs::write(directory.path().join(name), bytes).expect("written");
+    succeed(&directory, &["render", "crate", "-o", "a.png", "--palette", "copper"]);
+    put("a.gif", include_bytes!("../../../tests/corpus/texture/gif"));
+    put("a.pcx", include_bytes!("../../../tests/corpus/texture/pcx"));
+    put("a.aseprite", include_bytes!("../../../tests/corpus/texture/aseprite"));
+    put("plain.toml", b"[[objects]]\nshape = \"cube\"\n");
+    for picture in ["a.png", "a.gif", "a.pcx", "a.aseprite"] {
+        put("asking.toml", format!("palette = \"{picture}\"\n[[objects]]\nshape = \"cube\"\n").as_bytes());
+        succeed(&directory, &["render", "asking.toml", "-o", "due.png"]);
+        succeed(&directory, &["render", "plain.toml", "-o", "x.png", "--palette", picture]);
+        assert!(read(&directory, "x.png") == read(&directory, "due.png"), "{picture}");
+        succeed(&directory, &["palette", picture, "-o", "x.gpl"]);
+        succeed(&directory, &["render", "plain.toml", "-o", "x.png", "--palette", "x.gpl"]);
+        assert!(read(&directory, "x.png") == read(&directory, "due.png"), "{picture}");
+    }
+    succeed(&directory, &["palette", "a.png", "-o", "x.gpl"]);
+    let copper = &builtin::by_name("copper").expect("built in").palette;
+    let palette = palette_file::load(directory.path().join("x.gpl")).expect("a palette");
+    assert!(palette.colors() == copper.on_dac().colors());
+    succeed(&directory, &["render", "cube", "-o", "rgb.png", "--rgb"]);
+    put("cut.png", &read(&directory, "a.png")[..60]);
+    for picture in ["rgb.png", "cut.png"] {
+        for words in [&["render", "cube", "-o", "y.png", "--palette", picture][..], &["palette", picture]] {
+            assert_fails(&run(&directory, words), 2, &format!("{picture}: no picture that can be read: "));
+        }
+    }
 }
 
 #[test]

@@ -2,7 +2,8 @@
 //!
 //! | statement | read as |
 //! |---|---|
-//! | `v x y z` | a position; a weight after it is ignored, a colour ignored with a warning |
+//! | `v x y z` | a position; a weight after it is ignored |
+//! | `v x y z r g b` | a position and a colour, used if each vertex has one and all faces share a grey material without a texture, otherwise ignored with a warning; a face has the mean of its corners |
 //! | `vt u v`, `vn x y z` | texture coordinates (`v` defaults to 0), a normal |
 //! | `f`, with `v`, `v/vt`, `v//vn`, `v/vt/vn` | a face of three corners or more, fewer are dropped with a warning; negative indices count back from the last; an index may refer to a later entry of the file |
 //! | `s` | a smoothing group, for faces without normals; `off` and 0: each face is flat |
@@ -37,10 +38,14 @@ mod material;
 mod statement;
 
 use std::io::{self, BufRead};
+use std::iter;
 use std::path::Path;
 
 use mode13h::mesh::Surface;
+use mode13h::palette::Rgb;
 
+use crate::model_file::colors::{of_faces, paint};
+use crate::model_file::lists::Lists;
 use crate::model_file::warnings::Warnings;
 use crate::model_file::{Draft, Loaded, ModelFileError, Options, finish};
 use statement::Statements;
@@ -100,11 +105,50 @@ pub(crate) fn draft(
     let model = statement::read(reader, path)?;
     let mut warnings = Warnings::default();
     let surfaces: Vec<Surface> = material::surfaces(&model, path, library, &mut warnings)?;
-    let Statements { lists, colored, .. } = model;
-    if colored > 0 {
-        warnings.push(|| format!("{}:{colored}: colours of vertices left out", path.display()));
+    let Statements { lists, colored, colors, .. } = model;
+    let mut draft = Draft { lists, surfaces, warnings, ..Draft::default() };
+    let is_plain = |surface: &Surface| {
+        let [red, green, blue] = surface.diffuse;
+        surface.texture.is_none() && red == green && green == blue
+    };
+    let surface = only_surface(&draft.lists).filter(|surface| is_plain(&draft.surfaces[*surface]));
+    match surface {
+        _ if colored == 0 => {}
+        Some(surface) if colors.len() == draft.lists.positions.len() => {
+            let colors = of_faces(&draft.lists, &rgb(&colors)).into_iter().enumerate().collect::<Vec<_>>();
+            let painted = paint(&mut draft, &colors, format!("{}#colours", path.display()));
+            let own = &mut draft.surfaces[surface];
+            own.texture = painted.texture;
+            if own.name.is_empty() {
+                own.name = painted.name;
+            }
+        }
+        _ => draft.warnings.push(|| format!("{}:{colored}: colours of vertices left out", path.display())),
     }
-    Ok(Draft { lists, surfaces, warnings, ..Draft::default() })
+    Ok(draft)
+}
+
+/// The surface of all faces, if they share one.
+fn only_surface(lists: &Lists) -> Option<usize> {
+    let starts = iter::once((0, 0)).chain(lists.runs.iter().copied());
+    let ends = lists.runs.iter().map(|(end, _)| *end).chain([lists.sizes.len()]);
+    let mut used = starts.zip(ends).filter(|((start, _), end)| start < end).map(|((_, surface), _)| surface);
+    let first = used.next()?;
+    used.all(|surface| surface == first).then_some(first)
+}
+
+/// The colours of vertices, which are in 0 to 1, or in 0 to 255 if one of them is above 1.
+fn rgb(colors: &[[f32; 3]]) -> Vec<Rgb> {
+    let full = if colors.as_flattened().iter().any(|channel| *channel > 1.0) { 255.0 } else { 1.0 };
+    // 0 to 255.5: the cast truncates after 0.5 is added.
+    let byte = |channel: f32| ((channel / full).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    colors
+        .iter()
+        .map(|color| {
+            let [r, g, b] = color.map(byte);
+            Rgb::new(r, g, b)
+        })
+        .collect()
 }
 
 /// Returns whether the first line that is not a comment is an OBJ statement.

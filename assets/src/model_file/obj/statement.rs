@@ -22,8 +22,10 @@ pub(super) struct Statements {
     pub(super) libraries: Vec<(u64, String)>,
     /// The line of the first `usemtl` with each name.
     pub(super) name_lines: Vec<u64>,
-    /// The line of the first vertex with a colour; 0 if there is none. Colours are ignored.
+    /// The line of the first vertex with a colour; 0 if there is none.
     pub(super) colored: u64,
+    /// The colours of the first vertices, up to one that has none; usually in 0 to 1, in some files in 0 to 255.
+    pub(super) colors: Vec<[f32; 3]>,
 }
 
 /// Reads all lines.
@@ -38,8 +40,13 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Statements, Mode
         let (word, rest) = keyword(text);
         let result = match word {
             b"v" => {
-                if model.colored == 0 && words(rest).nth(5).is_some() {
-                    model.colored = line;
+                if let Some(color) = color(rest) {
+                    if model.colored == 0 {
+                        model.colored = line;
+                    }
+                    if model.colors.len() == model.lists.positions.len() {
+                        model.colors.push(color);
+                    }
                 }
                 position(&mut model.lists, rest)
             }
@@ -79,6 +86,13 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Statements, Mode
 
 fn position(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
     push(&mut lists.positions, Wide::new(wide_numbers(&mut words(rest), "a position (3)")?))
+}
+
+/// The colour after a position, if there is one.
+fn color(rest: &[u8]) -> Option<[f32; 3]> {
+    let mut words = words(rest).skip(3);
+    let mut channel = || number(&mut words).ok().flatten();
+    Some([channel()?, channel()?, channel()?])
 }
 
 fn texcoord(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {

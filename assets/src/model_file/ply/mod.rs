@@ -23,6 +23,7 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Surface;
 use mode13h::palette::Rgb;
 
+use crate::model_file::colors::of_faces;
 use crate::model_file::lists::{Corner, Lists, Wide, push};
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, paint};
 use header::{Element, Header, Kind};
@@ -248,8 +249,7 @@ impl Reading {
         let colors = if self.of_faces.len() == lists.sizes.len() {
             self.of_faces
         } else if self.of_vertices.len() == lists.positions.len() {
-            let mut corners = lists.corners.iter();
-            lists.sizes.iter().map(|&size| mean(corners.by_ref().take(size as usize), &self.of_vertices)).collect()
+            of_faces(lists, &self.of_vertices)
         } else {
             return;
         };
@@ -264,19 +264,6 @@ impl Reading {
 /// Returns whether each vertex has a normal. If the vertices follow the faces, the faces have none.
 fn has_normals(lists: &Lists, vertices: u64) -> bool {
     !lists.normals.is_empty() && lists.normals.len() as u64 == vertices
-}
-
-/// The mean colour of a face's corners.
-fn mean<'c>(corners: impl Iterator<Item = &'c Corner>, colors: &[Rgb]) -> Rgb {
-    let (mut sums, mut count) = ([0_u64; 3], 0);
-    for corner in corners {
-        let Rgb { r, g, b } = colors[corner.position as usize];
-        sums.iter_mut().zip([r, g, b]).for_each(|(sum, channel)| *sum += u64::from(channel));
-        count += 1;
-    }
-    // At most 255.
-    let [r, g, b] = sums.map(|sum| ((sum + count / 2) / count.max(1)) as u8);
-    Rgb::new(r, g, b)
 }
 
 impl Element {

@@ -1,5 +1,10 @@
 //! Keyframes: what moves in which way.
 
+use core::fmt;
+use std::error::Error;
+
+use crate::model_file::word::shown;
+
 /// An animation of a model: some of its nodes, moving for a while.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -30,6 +35,40 @@ impl Clip {
         self.duration
     }
 }
+
+/// A model has no clip of this name or number.
+///
+/// Displays with a list of the clips there are: `no clip Jump; there are 0 (Idle), 1 (Run)`.
+#[derive(Clone, PartialEq, Eq)]
+pub struct UnknownClip {
+    word: String,
+    /// The names of the clips that there are; empty for one without a name.
+    names: Vec<String>,
+}
+
+impl UnknownClip {
+    pub(super) fn new(word: &str, clips: &[Clip]) -> Self {
+        Self { word: word.to_owned(), names: clips.iter().map(|clip| clip.name.clone()).collect() }
+    }
+}
+
+impl fmt::Display for UnknownClip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no clip {}; there are ", shown(self.word.as_bytes()))?;
+        for (number, name) in self.names.iter().enumerate() {
+            let before = if number == 0 { "" } else { ", " };
+            match name.as_str() {
+                "" => write!(f, "{before}{number}")?,
+                name => write!(f, "{before}{number} ({})", shown(name.as_bytes()))?,
+            }
+        }
+        Ok(())
+    }
+}
+
+crate::errors::debug_as_display!(UnknownClip);
+
+impl Error for UnknownClip {}
 
 /// A part of a node's transform, and the sampler that it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,8 +13,8 @@ use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::scene::Camera;
 
-pub use clip::Clip;
 pub(crate) use clip::{Channel, Interpolation, Property, Sampler};
+pub use clip::{Clip, UnknownClip};
 use place::Placement;
 use stage::Stand;
 pub(crate) use stage::{Eye, Kind, Source};
@@ -30,10 +30,11 @@ use crate::wide::{Wide, widen};
 /// let mut scene = Scene::new();
 /// let fox = scene.add(Object::new(model.mesh.clone()));
 /// if let Some(rig) = &model.rig {
-///     let half = rig.clips()[0].duration() / 2.0;
-///     scene[fox].set_mesh(rig.pose(&model.mesh, 0, half).mesh);
+///     let run = rig.find_clip("Run")?;
+///     let half = rig.clips()[run].duration() / 2.0;
+///     scene[fox].set_mesh(rig.pose(&model.mesh, run, half).mesh);
 /// }
-/// # Ok::<(), model_file::ModelFileError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
@@ -218,6 +219,22 @@ impl Rig {
     #[must_use]
     pub fn clips(&self) -> &[Clip] {
         &self.clips
+    }
+
+    /// The index of a clip by its name, the first if several share it, or else by its index as a number: `Run` or `2`.
+    ///
+    /// # Errors
+    /// An [`UnknownClip`], which lists the clips there are.
+    pub fn find_clip(&self, word: &str) -> Result<usize, UnknownClip> {
+        match self.clips.iter().position(|clip| clip.name() == word) {
+            Some(named) => Ok(named),
+            None => self.numbered(word.parse().ok(), word),
+        }
+    }
+
+    /// A clip's index, if there is such a clip; `word` is what the user wrote.
+    pub(crate) fn numbered(&self, index: Option<usize>, word: &str) -> Result<usize, UnknownClip> {
+        index.filter(|index| *index < self.clips.len()).ok_or_else(|| UnknownClip::new(word, &self.clips))
     }
 
     /// The model at a time of a clip, in seconds; a clip begins again when it ends. `mesh` is the one that was read with the
