@@ -76,7 +76,7 @@ enum Command {
 
 /// All commands and options: what is parsed, and what help, completions and man pages are made from.
 pub(crate) fn command() -> clap::Command {
-    let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::KEYS);
+    let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::help_on_keys(WIDTH));
     // What stands behind an option is its value, with a minus, too.
     let takes_negative = |arg: clap::Arg| match arg.is_positional() || !arg.get_action().takes_values() {
         true => arg,

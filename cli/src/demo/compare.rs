@@ -4,141 +4,82 @@
 //! alone, and what is seen of it does not matter. The divider is where the mouse is; a click fixes it there, and another
 //! lets it go.
 
-use std::mem;
-use std::time::Instant;
-
 use mode13h::palette::Rgb;
-use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h::vga::Vga;
-use mode13h::window::{Input, Key};
-use mode13h_lab::truth::Figures;
 
-use super::shading::{Pacing, ShadingChoice};
-use super::timing::Timing;
-use crate::overlay::{Row, Sheet, Side};
+use super::shading::ShadingChoice;
+use super::{Failure, Input, Key, Keys, Panel, Row, Sheet, Show, Side};
+
+pub(super) const KEYS: Keys = &[
+    ("C", "Divide the window at the mouse, with another shading on the right; a click fixes the divider"),
+    ("Shift", "With [ ] and digits: the right shading"),
+    ("X", "Swap the two shadings"),
+];
 
 /// Greatest way of the mouse while its button is down, in pixels of the frame, for a click. Beyond that it turns the
 /// model.
 const CLICK: f32 = 2.0;
 
-/// A shading, what draws by it, and what it drew.
-pub(super) struct Half {
-    pub(super) shading: ShadingChoice,
-    pub(super) renderer: Renderer,
-    pacing: Pacing,
-    pub(super) vga: Vga,
-    pub(super) timing: Timing,
-}
-
-/// The right half, and how the window is divided.
-pub(super) struct Compare {
-    pub(super) is_on: bool,
-    pub(super) right: Half,
-    divider: Divider,
-}
-
-impl Compare {
-    pub(super) fn new() -> Compare {
-        let right = Half {
-            shading: ShadingChoice::new(Shading::Phong, None),
-            renderer: Renderer::new(),
-            pacing: Pacing::default(),
-            vga: Vga::new(),
-            timing: Timing::default(),
-        };
-        Compare { is_on: false, right, divider: Divider::default() }
-    }
-
-    /// Follows the user's input, and says what that changed. `left` is the shading of the left half, and `renderer`
-    /// draws that.
-    pub(super) fn follow(&mut self, input: &Input, left: &ShadingChoice, renderer: &Renderer) -> Option<String> {
-        if input.pressed(Key::C) {
-            self.is_on ^= true;
-            if !self.is_on {
-                return Some("side by side off".into());
+impl Panel for Divider {
+    fn follow(&mut self, input: &Input, show: &mut Show) -> Result<(), Failure> {
+        let [left, right] = &mut show.halves;
+        let said = if input.pressed(Key::C) && show.divider.is_some() {
+            show.divider = None;
+            "side by side off".to_string()
+        } else if input.pressed(Key::C) {
+            right.shading = opposite(&left.shading);
+            let said = format!("{} | {}", left.shading, right.shading);
+            *self = Divider::default();
+            self.follow_mouse(input);
+            show.divider = Some(self.column);
+            show.renew_right();
+            said
+        } else if show.divider.is_none() {
+            return Ok(());
+        } else if input.pressed(Key::X) {
+            right.is_chosen = true;
+            std::mem::swap(left, right);
+            format!("{} | {}", left.shading, right.shading)
+        } else if right.shading.follow(input, true) {
+            right.forget_times();
+            format!("right: {}", right.shading)
+        } else {
+            let is_click = self.follow_mouse(input);
+            show.divider = Some(self.column);
+            match (is_click, self.is_fixed) {
+                (false, _) => return Ok(()),
+                (true, true) => "divider fixed; a click lets it go".to_string(),
+                (true, false) => "the divider follows the mouse".to_string(),
             }
-            self.right.shading = opposite(left);
-            self.renew(renderer);
-            self.divider = Divider::default();
-            self.divider.follow(input);
-            return Some(format!("{left} | {}", self.right.shading));
-        }
-        if !self.is_on {
-            return None;
-        }
-        if self.right.shading.follow_shifted(input) {
-            self.right.timing = Timing::default();
-            return Some(format!("right: {}", self.right.shading));
-        }
-        self.divider.follow(input).then(|| match self.divider.is_fixed {
-            true => "divider fixed; a click lets it go".into(),
-            false => "the divider follows the mouse".into(),
-        })
-    }
-
-    /// Gives the right half a renderer that is set as the left one's.
-    pub(super) fn renew(&mut self, left: &Renderer) {
-        self.right.renderer = left.with_same_settings();
-        self.right.pacing = Pacing::default();
-        self.right.timing = Timing::default();
-    }
-
-    /// Draws the right half. Whether it is another picture than before.
-    pub(super) fn draw(&mut self, scene: &Scene, seconds: f64) -> Result<bool, RenderError> {
-        let Half { shading, renderer, pacing, vga, timing } = &mut self.right;
-        shading.set(renderer, pacing);
-        let start = Instant::now();
-        let stats = renderer.draw(scene, vga)?;
-        let taken = start.elapsed();
-        pacing.report(&stats, taken);
-        timing.add(stats.redrawn.then_some(taken.as_secs_f64()), seconds);
-        Ok(stats.redrawn)
-    }
-
-    /// The column of the frame from which on the right half is seen.
-    pub(super) fn divider(&self) -> usize {
-        if self.is_on { self.divider.column } else { Vga::WIDTH }
-    }
-
-    /// Puts what is seen of the right half into a picture that shows the left one.
-    pub(super) fn compose(&self, vga: &mut Vga) {
-        let divider = self.divider();
-        let rows = vga.pixels_mut().chunks_exact_mut(Vga::WIDTH).zip(self.right.vga.pixels().chunks_exact(Vga::WIDTH));
-        rows.for_each(|(left, right)| left[divider..].copy_from_slice(&right[divider..]));
+        };
+        // Another picture, if only of the right half.
+        show.number += 1;
+        show.say(said);
+        Ok(())
     }
 
     /// The divider, and over each half its shading, its time and its error.
-    pub(super) fn lay_over(&self, sheet: &mut Sheet, left: (&ShadingChoice, &Timing), errors: [Option<Figures>; 2]) {
+    fn lay_over(&self, show: &Show, sheet: &mut Sheet) {
+        let Some(column) = show.divider else { return };
         let picture = sheet.picture_area();
         // Within the window.
-        let x = picture.from_frame(self.divider.column as f32, 0.0).0 as i32;
+        let x = picture.from_frame(column as f32, 0.0).0 as i32;
         let (top, bottom) = (picture.top as i32, (picture.top + picture.height) as i32);
         sheet.line((x, top), (x, bottom), Rgb::WHITE, 1);
-        let right = (&self.right.shading, &self.right.timing);
-        for ((side, (shading, timing)), errors) in [(Side::Left, left), (Side::Right, right)].into_iter().zip(errors) {
-            let [worst, mean] = match errors {
+        for (half, side) in [Side::Left, Side::Right].into_iter().enumerate() {
+            let [worst, mean] = match show.map.errors_of(show.number, half) {
                 Some(figures) => [figures.max, figures.mean()].map(|error| format!("{error:.2}")),
                 None => ["...", "..."].map(String::from),
             };
             let rows = [
-                Row::text(shading.to_string()),
-                Row::new("time", timing.to_string()),
+                Row::text(show.halves[half].shading.to_string()),
+                Row::new("time", show.halves[half].timing.to_string()),
                 Row::new("worst", format!("{worst} shades")),
                 Row::new("mean", format!("{mean} shades")),
             ];
             sheet.panel(side, &rows, false, 0, "");
         }
-    }
-
-    /// Swaps the halves.
-    pub(super) fn swap(&mut self, left: (&mut ShadingChoice, &mut Renderer, &mut Vga, &mut Timing)) {
-        let Half { shading, renderer, vga, timing, .. } = &mut self.right;
-        mem::swap(shading, left.0);
-        mem::swap(renderer, left.1);
-        mem::swap(vga, left.2);
-        mem::swap(timing, left.3);
     }
 }
 
@@ -150,7 +91,7 @@ fn opposite(left: &ShadingChoice) -> ShadingChoice {
 
 /// Divider of the picture.
 #[derive(Debug)]
-struct Divider {
+pub(super) struct Divider {
     /// 0 to 320.
     column: usize,
     is_fixed: bool,
@@ -166,20 +107,15 @@ impl Default for Divider {
 
 impl Divider {
     /// Follows the mouse, or not. Whether a click changed that.
-    fn follow(&mut self, input: &Input) -> bool {
-        let x = input.mouse.map(|(x, _)| x);
-        self.moved(x, input.buttons.left, input.drag)
-    }
-
-    fn moved(&mut self, mouse: Option<f32>, is_down: bool, drag: (f32, f32)) -> bool {
+    fn follow_mouse(&mut self, input: &Input) -> bool {
         let mut is_click = false;
-        if is_down {
-            *self.dragged.get_or_insert(0.0) += drag.0.abs() + drag.1.abs();
+        if input.buttons.left {
+            *self.dragged.get_or_insert(0.0) += input.drag.0.abs() + input.drag.1.abs();
         } else {
             is_click = self.dragged.take().is_some_and(|dragged| dragged < CLICK);
             self.is_fixed ^= is_click;
         }
-        if let Some(x) = mouse.filter(|_| !self.is_fixed && !is_down) {
+        if let Some((x, _)) = input.mouse.filter(|_| !self.is_fixed && !input.buttons.left) {
             // Columns of the frame.
             self.column = x.clamp(0.0, Vga::WIDTH as f32) as usize;
         }
@@ -190,59 +126,35 @@ impl Divider {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mode13h::mesh::shapes;
 
     #[test]
     fn the_divider_follows_the_mouse_until_a_click_fixes_it() {
+        let follow = |divider: &mut Divider, x, left, drag| {
+            let mut input = Input::default();
+            (input.mouse, input.buttons.left, input.drag) = (Some((x, 100.0)), left, drag);
+            divider.follow_mouse(&input)
+        };
         let mut divider = Divider::default();
-        assert!(!divider.moved(Some(40.7), false, (0.0, 0.0)));
+        assert!(!follow(&mut divider, 40.7, false, (0.0, 0.0)));
         assert_eq!(divider.column, 40);
         for (x, column) in [(-9.0, 0), (400.0, 320), (100.0, 100)] {
-            divider.moved(Some(x), false, (0.0, 0.0));
+            follow(&mut divider, x, false, (0.0, 0.0));
             assert_eq!(divider.column, column);
         }
         // A drag turns the model, and the divider stays meanwhile.
-        divider.moved(Some(100.0), true, (0.0, 0.0));
-        divider.moved(Some(130.0), true, (30.0, 0.0));
+        follow(&mut divider, 100.0, true, (0.0, 0.0));
+        follow(&mut divider, 130.0, true, (30.0, 0.0));
         assert_eq!(divider.column, 100);
-        assert!(!divider.moved(Some(130.0), false, (0.0, 0.0)));
+        assert!(!follow(&mut divider, 130.0, false, (0.0, 0.0)));
         assert_eq!((divider.column, divider.is_fixed), (130, false));
         // A click fixes it where it is.
-        divider.moved(Some(130.0), true, (0.0, 0.0));
-        assert!(divider.moved(Some(131.0), false, (0.0, 0.0)));
-        divider.moved(Some(20.0), false, (0.0, 0.0));
+        follow(&mut divider, 130.0, true, (0.0, 0.0));
+        assert!(follow(&mut divider, 131.0, false, (0.0, 0.0)));
+        follow(&mut divider, 20.0, false, (0.0, 0.0));
         assert_eq!((divider.column, divider.is_fixed), (130, true));
-        divider.moved(Some(20.0), true, (1.0, 0.0));
-        assert!(divider.moved(Some(20.0), false, (0.0, 0.0)));
+        follow(&mut divider, 20.0, true, (1.0, 0.0));
+        assert!(follow(&mut divider, 20.0, false, (0.0, 0.0)));
         assert_eq!((divider.column, divider.is_fixed), (20, false));
-    }
-
-    #[test]
-    fn the_right_half_is_drawn_by_its_own_renderer() {
-        let scene = Scene::showing(shapes::torus(24, 12));
-        let (mut renderer, mut phong) = (Renderer::new(), Vga::new());
-        renderer.settings.accuracy = Some(Shading::Phong.into());
-        renderer.draw(&scene, &mut phong).expect("a legal scene");
-        let mut compare = Compare::new();
-        assert!(compare.draw(&scene, 0.0).expect("a legal scene"));
-        assert!(compare.right.vga.pixels() == phong.pixels());
-        assert!(!compare.draw(&scene, 0.0).expect("a legal scene"), "it is not drawn again");
-    }
-
-    #[test]
-    fn each_half_is_seen_on_its_side_of_the_divider() {
-        let mut compare = Compare::new();
-        compare.right.vga.pixels_mut().fill(9);
-        let mut left = Vga::new();
-        left.pixels_mut().fill(5);
-        for (is_on, column) in [(true, 0), (true, 1), (true, 160), (true, 319), (true, 320), (false, 160)] {
-            (compare.is_on, compare.divider.column) = (is_on, column);
-            let mut shown = left.clone();
-            compare.compose(&mut shown);
-            let right = |place: usize| is_on && place % 320 >= column;
-            let expected: Vec<u8> = (0..64_000).map(|place| if right(place) { 9 } else { 5 }).collect();
-            assert!(shown.pixels() == expected, "{is_on}, {column}");
-        }
     }
 
     #[test]

@@ -21,7 +21,6 @@ use mode13h_lab::cost::{Probe, error_levels};
 use mode13h_lab::truth::{ErrorMap, Face, Figures, Shown, Tiles, Truth, TruthFrame};
 
 use super::background::{Background, Desk};
-use super::pixel::Pixel;
 use crate::failure::Failure;
 use crate::overlay::{Row, Sheet, Side as Edge};
 
@@ -47,6 +46,24 @@ const COARSE: u32 = 4;
 const REPORT: Duration = Duration::from_millis(60);
 /// The small picture's share of the large one's sides.
 const SMALL: f32 = 0.3;
+
+/// A pixel of the frame.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Pixel {
+    /// 0 to 319.
+    pub(super) x: u16,
+    /// 0 to 199.
+    pub(super) y: u16,
+}
+
+impl Pixel {
+    /// The one that a point of the picture lies in, if it is on the picture; x and y in pixels of the frame.
+    pub(super) fn at((x, y): (f32, f32)) -> Option<Pixel> {
+        let on_picture = (0.0..Vga::WIDTH as f32).contains(&x) && (0.0..Vga::HEIGHT as f32).contains(&y);
+        // Whole numbers within the ranges above.
+        on_picture.then_some(Pixel { x: x as u16, y: y as u16 })
+    }
+}
 
 /// Picture to be measured: that of one renderer, or of two side by side.
 pub(super) struct Frame {

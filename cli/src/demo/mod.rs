@@ -2,11 +2,15 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `shading` | the keys for shadings and the budget |
+//! | `show` | the picture, and what else the panels share |
+//! | `scenes` | the inputs |
 //! | `motion` | what the clock and the user move |
-//! | `error_map` | how far each pixel is from the truth, over the picture |
+//! | `panels` | the keys for the shading and the error map |
+//! | `shading` | a shading, a budget or a time, by keys |
+//! | `error_map` | how far each pixel is from the truth |
+//! | `looks` | kernel, palette, mapping and effects |
 //! | `compare` | two shadings side by side |
-//! | `figures`, `timing` | what I and H show |
+//! | `timing` | times that can be read |
 //! | `background` | a thread that the picture does not wait for |
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
@@ -16,25 +20,25 @@ mod background;
 mod choice;
 mod compare;
 mod error_map;
-mod figures;
 mod loader;
+mod looks;
 mod motion;
-mod pixel;
+mod panels;
+mod scenes;
 mod shading;
+mod show;
 mod terminal;
 mod timing;
 
 use std::ffi::OsString;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
 use mode13h::export::Scale;
-use mode13h::palette::{Palette, builtin};
-use mode13h::render::{Renderer, Screen, Stats};
+use mode13h::render::{Renderer, Screen};
 use mode13h::scene::Scene;
-use mode13h::settings::Mapping;
-use mode13h::settings::Settings;
+use mode13h::settings::{Settings, Shading};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h::window::{Flow, Input, Key, Window, WindowError};
@@ -42,44 +46,85 @@ use mode13h_assets::terminal::Protocol;
 
 use crate::failure::Failure;
 use crate::options::{Drawing, Moment, ShadingOptions, one_of};
-use crate::overlay::{self, Sheet, Side};
-use crate::toggles::Switch;
-use crate::turntable::Colors;
+use crate::overlay::{self, Row, Sheet, Side, wrapped};
 use crate::turntable::Turntable;
 use crate::{input, output};
-use choice::Choice;
-use compare::Compare;
-use error_map::Map;
+use compare::Divider;
+use error_map::Pixel;
 use loader::{Inputs, Loader, Loading};
+use looks::Looks;
 use motion::{Motion, STOPPED};
-use pixel::Pixel;
-use shading::{Pacing, ShadingChoice};
-use timing::Timing;
+use panels::{Maps, Shades};
+use scenes::Scenes;
+use shading::ShadingChoice;
+use show::{Half, Show};
 
-/// The keys, as the long help lists them.
-pub(crate) const KEYS: &str = "\
-Keys in the window:
-  Esc             Quit
-  H               Show the keys
-  I               Show the plan, times, errors, and the share of each shading
-  Space           Stop time, start it again
-  arrows, mouse   Turn
-  + - and wheel   Zoom
-  [ and ]         Step through the shadings
-  1 to 9          The first nine shadings
-  0               The error budget
-  B, Shift-B      A smaller budget, a larger one: 16, 8, 4, 2, 1, 1/2 shades
-  F, Shift-F      The smallest error that fits a time: less time, more time
-  E               The error map
-  C               Divide the window at the mouse, with another shading on the
-                  right; a click fixes the divider, Shift with [ ] and digits
-                  chooses the right shading
-  X               Swap the two shadings
-  K, P, M         The next kernel, palette, texture mapping
-  L, O, T         Lights, fog, textures off and on
-  D               Dither: ordered, blue noise, ps1, off
-  N, Shift-N      The next INPUT, the one before
-  S               Save the picture as a PNG, without the text over it";
+/// Keys, and what each does.
+type Keys = &'static [(&'static str, &'static str)];
+
+/// Keys of the window itself.
+const KEYS: Keys = &[
+    ("Esc", "Quit"),
+    ("H", "Show the keys"),
+    ("I", "Show the plan, times, errors, and the share of each shading"),
+    ("S", "Save the picture as a PNG, without the text over it"),
+];
+
+/// A part of the window with keys of its own.
+trait Panel {
+    /// Follows the user's input.
+    fn follow(&mut self, input: &Input, show: &mut Show) -> Result<(), Failure>;
+
+    /// Adapts to another stage. If that `keeps` what keys have changed, it is changed again; otherwise all starts over.
+    fn renew(&mut self, _show: &mut Show, _keeps: bool) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Its rows among the figures.
+    fn figures(&self, _show: &Show) -> Vec<Row> {
+        Vec::new()
+    }
+
+    /// Lays over the picture what it shows.
+    fn lay_over(&self, _show: &Show, _sheet: &mut Sheet) {}
+}
+
+struct Panels {
+    scenes: Scenes,
+    motion: Motion,
+    shades: Shades,
+    maps: Maps,
+    looks: Looks,
+    divider: Divider,
+}
+
+/// Keys of a panel, and where it is.
+type Entry = (Keys, fn(&mut Panels) -> &mut dyn Panel);
+
+/// The panels, in the order of the help and the figures.
+const PANELS: [Entry; 6] = [
+    (scenes::KEYS, |panels| &mut panels.scenes),
+    (motion::KEYS, |panels| &mut panels.motion),
+    (panels::SHADES, |panels| &mut panels.shades),
+    (compare::KEYS, |panels| &mut panels.divider),
+    (panels::MAPS, |panels| &mut panels.maps),
+    (looks::KEYS, |panels| &mut panels.looks),
+];
+
+fn all_keys() -> impl Iterator<Item = (&'static str, &'static str)> {
+    KEYS.iter().chain(PANELS.iter().flat_map(|(keys, _)| *keys)).copied()
+}
+
+/// The keys, as the long help lists them in lines of `width` letters.
+pub(crate) fn help_on_keys(width: usize) -> String {
+    let mut help = "Keys in the window:".to_string();
+    for (mut keys, does) in all_keys() {
+        for line in wrapped(does, width - 18) {
+            help += &format!("\n  {:15} {line}", std::mem::take(&mut keys));
+        }
+    }
+    help
+}
 
 #[derive(Args, Clone)]
 pub(crate) struct Options {
@@ -134,11 +179,7 @@ impl Options {
     }
 }
 
-/// Words at first, and their time in seconds.
-const HINT: &str = "H help, I figures";
-const HINT_SECONDS: f64 = 3.0;
-/// Seconds for which the words stand on what a key has changed, and on where a picture was saved.
-const NOTICE: f64 = 1.0;
+/// Seconds for which the words stand on where a picture was saved.
 const SAVED: f64 = 3.0;
 
 /// Time that the first input may take to load before a window opens that says so.
@@ -172,30 +213,35 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(first) = loader.wait(PATIENCE) {
         demo.put_on(first)?;
     }
-    let mut window = match Window::open(&demo.name) {
+    let mut window = match Window::open(&demo.panels.scenes.name) {
         Ok(window) => window,
         Err(no_display) => {
-            while demo.is_loading {
+            while demo.panels.scenes.is_loading {
                 let first = loader.wait(Duration::MAX).ok_or_else(|| Failure::file("the loader has ended"))?;
                 demo.put_on(first)?;
             }
             return demo.save_each(&no_display);
         }
     };
-    let (mut title, mut shown) = (String::new(), PixelPipeline::of(&Vga::new(), Sheet::new((0, 0))));
-    // When what is shown last changed.
-    let mut changed = 0.0;
+    let mut title = String::new();
+    // What is shown, and when that last changed.
+    let (mut shown, mut changed) = (None, 0.0);
     loop {
-        let wish = demo.follow(window.input(), window.seconds())?;
+        let (input, at) = (window.input(), demo.panels.scenes.at);
+        if input.pressed(Key::Escape) {
+            return Ok(());
+        }
+        let saves = input.pressed(Key::S);
+        demo.follow(input, window.seconds())?;
         if let Some(loading) = loader.loaded() {
             demo.put_on(loading)?;
         }
         demo.draw()?;
-        match wish {
-            Wish::Nothing => {}
-            Wish::Picture => demo.save(),
-            Wish::Input(at) => loader.ask(at),
-            Wish::End => return Ok(()),
+        if saves {
+            demo.save();
+        }
+        if demo.panels.scenes.at != at {
+            loader.ask(demo.panels.scenes.at);
         }
         let new = demo.title();
         if new != title {
@@ -203,13 +249,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             title = new;
         }
         let sheet = demo.sheet(window.size());
-        let look = PixelPipeline::of(demo.on_screen(), sheet);
+        let screen = &demo.show.screen;
+        let look = Some((screen.pixels().to_vec(), screen.palette(), sheet.clone()));
         let flow = if look == shown {
             let is_still = window.seconds() - changed > STILL.as_secs_f64();
             window.rest(if is_still { STILL_REST } else { SHORT_REST })
         } else {
             (shown, changed) = (look, window.seconds());
-            window.show_over(demo.on_screen(), |canvas| shown.sheet.draw(canvas))
+            window.show_over(screen, |canvas| sheet.draw(canvas))
         };
         if flow.map_err(Failure::from)? == Flow::Close {
             return Ok(());
@@ -217,125 +264,27 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// Contents of the window.
-#[derive(PartialEq)]
-struct PixelPipeline {
-    pixels: Vec<u8>,
-    palette: Palette,
-    sheet: Sheet,
-}
-
-impl PixelPipeline {
-    fn of(vga: &Vga, sheet: Sheet) -> PixelPipeline {
-        PixelPipeline { pixels: vga.pixels().to_vec(), palette: vga.palette(), sheet }
-    }
-}
-
-/// Request of the keys beyond a change of the picture.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Wish {
-    Nothing,
-    Picture,
-    /// The input at this place in the list.
-    Input(usize),
-    End,
-}
-
 struct Demo {
-    inputs: Arc<Inputs>,
-    /// The place of the input that is shown or being loaded.
-    at: usize,
-    /// True while it is being loaded.
-    is_loading: bool,
-    /// Its name.
-    name: String,
-    triangles: usize,
-    /// Scene on show; without objects until something could be loaded.
-    stage: Turntable,
-    /// Reason why the scene on show is not that of the files.
-    wrong: Option<Failure>,
-    renderer: Renderer,
-    shading: ShadingChoice,
-    pacing: Pacing,
-    /// True if a key chose it.
-    chose_shading: bool,
-    kernels: Choice<Kernel>,
-    palettes: Choice<(String, Colors)>,
-    /// True if a key chose one.
-    chose_palette: bool,
-    /// `None` leaves it to the plan.
-    mappings: Choice<Option<Mapping>>,
-    motion: Motion,
-    /// The keys.
-    help: Panel,
-    /// Figures of the picture.
-    figures: Panel,
-    maps: bool,
-    /// The pixel under the mouse, or the last that was.
-    mouse: Pixel,
-    map: Map,
-    compare: Compare,
-    /// The picture.
-    vga: Vga,
-    /// The picture with what is laid over it.
-    shown: Vga,
-    /// Number of different pictures so far.
-    number: u64,
-    timing: Timing,
-    /// The time of making the plan, while the plan is shown.
-    planning: Timing,
-    stats: Option<Stats>,
-    /// True if the last frame was drawn, and not the same as the one before.
-    is_redrawn: bool,
-    /// Words at the lower edge, and until when.
-    notice: Option<(String, f64)>,
-    /// An effect that a key has just switched, and whether it was on before.
-    switched: Option<(Switch, &'static str)>,
-    /// The effects that keys switched, and to what.
-    switches: Vec<(Switch, &'static str)>,
-    seconds: f64,
+    show: Show,
+    panels: Panels,
 }
 
 impl Demo {
     /// Makes a demo with nothing to show yet.
     fn new(inputs: Arc<Inputs>, kernel: Kernel) -> Demo {
         let Inputs { drawing, shading, .. } = &*inputs;
-        let stage = Turntable::of_scene(Scene::new());
-        Demo {
-            at: 0,
-            is_loading: true,
-            name: inputs.name(0),
-            triangles: 0,
-            wrong: None,
-            renderer: shading.renderer(drawing, kernel),
-            shading: ShadingChoice::of(shading.asked_for(&Settings::default())),
-            pacing: Pacing::default(),
-            chose_shading: false,
-            kernels: Choice::new(Kernel::available(), kernel, |a, b| a.name() == b.name()),
-            palettes: palettes(&stage, drawing),
-            chose_palette: false,
-            mappings: Choice::new([None].into_iter().chain(Mapping::ALL.map(Some)), drawing.mapping(), |a, b| a == b),
-            stage,
+        let left = ShadingChoice::of(shading.asked_for(&Settings::default()));
+        let left = Half::new(left, shading.renderer(drawing, kernel));
+        let right = Half::new(ShadingChoice::new(Shading::Phong, None), Renderer::new());
+        let panels = Panels {
+            scenes: Scenes { at: 0, is_loading: true, name: inputs.name(0), wrong: None },
             motion: Motion::new(),
-            help: Panel::default(),
-            figures: Panel::default(),
-            maps: false,
-            mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 },
-            map: Map::default(),
-            compare: Compare::new(),
-            vga: Vga::new(),
-            shown: Vga::new(),
-            number: 0,
-            timing: Timing::default(),
-            planning: Timing::default(),
-            stats: None,
-            is_redrawn: false,
-            notice: Some((HINT.to_string(), HINT_SECONDS)),
-            switched: None,
-            switches: Vec::new(),
-            seconds: 0.0,
-            inputs,
-        }
+            shades: Shades,
+            maps: Maps { is_on: false, mouse: Pixel { x: Vga::WIDTH as u16 / 2, y: Vga::HEIGHT as u16 / 2 } },
+            looks: Looks::new(&inputs, kernel),
+            divider: Divider::default(),
+        };
+        Demo { show: Show::new(inputs, [left, right]), panels }
     }
 
     /// Shows what was loaded, unless something else has been asked for since. Loaded again, it keeps pose, time and what
@@ -343,109 +292,77 @@ impl Demo {
     /// failure if there is no other input.
     fn put_on(&mut self, loading: Loading) -> Result<(), Failure> {
         let Loading { at, is_again, result, .. } = loading;
-        if at != self.at {
+        let Demo { show, panels } = self;
+        let (scenes, count) = (&mut panels.scenes, show.inputs.words.len());
+        if at != scenes.at {
             return Ok(());
         }
-        self.is_loading = false;
+        scenes.is_loading = false;
         // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
         let checked = result.and_then(|stage| {
-            let mut renderer = self.renderer.with_same_settings();
+            let mut renderer = show.halves[0].renderer.with_same_settings();
             renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
             Ok(*stage)
         });
-        let keeps = is_again && !self.stage.scene.objects().is_empty();
+        let keeps = is_again && !show.stage.scene.objects().is_empty();
         let stage = match checked {
             Ok(stage) => {
-                self.wrong = None;
+                scenes.wrong = None;
                 if is_again {
-                    self.say("loaded again".to_string());
-                } else if self.inputs.words.len() > 1 {
-                    self.say(format!("{} of {}: {}", at + 1, self.inputs.words.len(), self.inputs.name(at)));
+                    show.say("loaded again");
+                } else if count > 1 {
+                    show.say(format!("{} of {count}: {}", at + 1, show.inputs.name(at)));
                 }
                 stage
             }
-            Err(failure) if self.inputs.words.len() == 1 && !is_again => return Err(failure),
+            Err(failure) if count == 1 && !is_again => return Err(failure),
             Err(failure) => {
-                if self.wrong.as_ref() != Some(&failure) {
+                if scenes.wrong.as_ref() != Some(&failure) {
                     eprintln!("mode13h: {failure}");
                 }
-                self.notice = None;
-                self.wrong = Some(failure);
+                show.notice = None;
+                scenes.wrong = Some(failure);
                 if is_again {
                     return Ok(());
                 }
                 Turntable::of_scene(Scene::new())
             }
         };
-        self.set(stage, keeps)
-    }
-
-    /// Shows another stage, as what is shown has been changed by keys if it `keeps` that.
-    fn set(&mut self, stage: Turntable, keeps: bool) -> Result<(), Failure> {
-        let Inputs { moment, drawing, shading, .. } = &*self.inputs;
-        self.name = self.inputs.name(self.at);
-        self.triangles = stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
-        self.stage = stage;
-        if !self.chose_shading {
-            self.shading = ShadingChoice::of(shading.asked_for(&self.stage.scene.settings));
-        }
-        let before = std::mem::replace(&mut self.palettes, palettes(&self.stage, drawing));
-        if keeps && self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
-            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
-        }
+        show.stage = stage;
+        let left = &mut show.halves[0];
         if keeps {
-            for &(switch, wanted) in &self.switches {
-                for _ in 0..Switch::MAX_STATES {
-                    self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
-                    if switch.state(&self.renderer) == wanted {
-                        break;
-                    }
-                    switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
-                }
-            }
+            left.stats = None;
+            left.forget_times();
         } else {
-            self.renderer = shading.renderer(drawing, *self.kernels.chosen());
-            self.pacing = Pacing::default();
-            self.switches.clear();
-            self.chose_palette = false;
-            self.motion.begin_anew(moment.of_first());
+            let Inputs { drawing, shading, .. } = &*show.inputs;
+            left.renew(shading.renderer(drawing, left.renderer.kernel));
         }
-        self.compare.renew(&self.renderer);
-        self.forget_times();
-        self.stats = None;
+        for (_, panel) in PANELS {
+            panel(panels).renew(show, keeps)?;
+        }
+        show.renew_right();
         Ok(())
-    }
-
-    /// Goes to the next input, or back. Its place, if there is another.
-    fn leaf(&mut self, back: bool) -> Option<usize> {
-        let count = self.inputs.words.len();
-        if count == 1 {
-            self.say("there is no other input".to_string());
-            return None;
-        }
-        self.at = (self.at + if back { count - 1 } else { 1 }) % count;
-        (self.is_loading, self.notice) = (true, None);
-        Some(self.at)
     }
 
     /// Without a display: saves a picture of each input that can be loaded. The others are failures.
     fn save_each(mut self, no_display: &WindowError) -> Result<(), Failure> {
-        let count = self.inputs.words.len();
+        let inputs = Arc::clone(&self.show.inputs);
+        let count = inputs.words.len();
         let (mut failed, mut worst): (usize, Option<Failure>) = (0, None);
         for at in 0..count {
             if at > 0 {
-                self.at = at;
-                self.put_on(loader::load(&self.inputs, at, &[]))?;
+                self.panels.scenes.at = at;
+                self.put_on(loader::load(&inputs, at, &[]))?;
             }
-            if let Some(wrong) = self.wrong.take() {
+            if let Some(wrong) = self.panels.scenes.wrong.take() {
                 failed += 1;
                 worst = worst.filter(|worst| worst.status() >= wrong.status()).or(Some(wrong));
                 continue;
             }
-            self.motion.go_to(self.inputs.moment.of_picture(&self.stage.scene));
+            self.panels.motion.go_to(inputs.moment.of_picture(&self.show.stage.scene));
             self.draw()?;
-            let path = output::numbered_picture(self.on_screen())?;
-            let of = if count == 1 { String::new() } else { format!(" of {}", self.name) };
+            let path = output::numbered_picture(&self.show.screen)?;
+            let of = if count == 1 { String::new() } else { format!(" of {}", inputs.name(at)) };
             eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
         }
         match worst {
@@ -455,286 +372,224 @@ impl Demo {
     }
 
     /// Follows the user's input in the frame that shows the time `seconds`.
-    fn follow(&mut self, input: &Input, seconds: f64) -> Result<Wish, Failure> {
-        self.seconds = seconds;
-        self.notice.take_if(|(_, until)| *until < seconds);
-        if self.motion.follow(input, seconds) {
-            self.say(self.motion.to_string());
-        }
-        if self.shading.follow(input) {
-            self.chose_shading = true;
-            self.forget_times();
-            self.say(self.shading.to_string());
-        }
-        if input.pressed(Key::K) {
-            self.kernels.go_round();
-            self.forget_times();
-            self.say(format!("kernel {}", self.kernels.chosen()));
-        }
-        if input.pressed(Key::P) {
-            self.palettes.go_round();
-            self.chose_palette = true;
-            self.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
-            self.say(format!("palette {}", self.palettes.chosen().0));
-        }
-        if input.pressed(Key::M) {
-            self.mappings.go_round();
-            self.forget_times();
-            self.say(self.mapping());
-        }
-        for (key, switch) in Switch::KEYS {
+    fn follow(&mut self, input: &Input, seconds: f64) -> Result<(), Failure> {
+        let Demo { show, panels } = self;
+        show.seconds = seconds;
+        show.notice.take_if(|(_, until)| *until < seconds);
+        for (key, pages) in [(Key::H, &mut show.help), (Key::I, &mut show.figures)] {
             if input.pressed(key) {
-                self.switched = Some((switch, switch.state(&self.renderer)));
-                self.forget_times();
-                switch.turn(&mut self.stage, &mut self.renderer).map_err(Failure::from)?;
-                self.compare.renew(&self.renderer);
+                pages.press();
             }
         }
-        self.follow_sides(input);
-        for (key, panel) in [(Key::H, &mut self.help), (Key::I, &mut self.figures)] {
-            if input.pressed(key) {
-                panel.press();
-            }
-        }
-        if input.pressed(Key::E) {
-            self.maps ^= true;
-            self.say(format!("error map {}", if self.maps { "on" } else { "off" }));
-        }
-        self.mouse = input.mouse.and_then(Pixel::at).unwrap_or(self.mouse);
-        Ok(if input.pressed(Key::Escape) {
-            Wish::End
-        } else if input.pressed(Key::N)
-            && let Some(at) = self.leaf(input.pressed_with_shift(Key::N))
-        {
-            Wish::Input(at)
-        } else if input.pressed(Key::S) {
-            Wish::Picture
-        } else {
-            Wish::Nothing
-        })
+        PANELS.iter().try_for_each(|(_, panel)| panel(panels).follow(input, show))
     }
 
-    /// Something has changed that changes how long frames take.
-    fn forget_times(&mut self) {
-        (self.timing, self.planning) = (Timing::default(), Timing::default());
-    }
-
-    /// Says something for a moment.
-    fn say(&mut self, what: String) {
-        self.notice = Some((what, self.seconds + NOTICE));
-    }
-
-    /// Draws the picture, and what the keys lay over it.
+    /// Draws the picture, and the error map over it.
     fn draw(&mut self) -> Result<(), Failure> {
-        self.draw_scene()?;
-        if let Some((switch, was)) = self.switched.take() {
-            let is = switch.state(&self.renderer);
-            self.say(switch.outcome(was, is));
-            self.switches.retain(|(other, _)| *other != switch);
-            self.switches.push((switch, is));
+        let Demo { show, panels: Panels { motion, maps, .. } } = self;
+        show.stage.show(motion.seconds(), motion.pose);
+        show.draw().map_err(Failure::from)?;
+        if show.figures.is_open || maps.is_on || show.divider.is_some() {
+            show.measure(maps.mouse)?;
         }
-        // The picture itself stays as it is, for the next frame may be the same.
-        self.shown.clone_from(&self.vga);
-        self.compare.compose(&mut self.shown);
-        if self.figures.is_open || self.maps || self.compare.is_on {
-            let right = self.compare.is_on.then_some(&self.compare.right);
-            let renderers = [&self.renderer].into_iter().chain(right.map(|right| &right.renderer));
-            let shadings = [&self.shading].into_iter().chain(right.map(|right| &right.shading));
-            let frame = || error_map::Frame {
-                snapshot: error_map::Snapshot {
-                    number: self.number,
-                    seconds: self.seconds,
-                    picture: self.shown.clone(),
-                    divider: self.compare.divider(),
-                    shadings: shadings.map(|shading| shading.to_string()).collect(),
-                },
-                scene: self.stage.scene.clone(),
-                renderers: renderers.map(Renderer::with_same_settings).collect(),
-                mouse: self.mouse,
-            };
-            self.map.follow(self.number, frame)?;
-        }
-        if self.maps {
-            self.map.lay_over(&mut self.shown, self.number, self.compare.divider());
+        if maps.is_on {
+            let column = show.column();
+            show.map.lay_over(&mut show.screen, show.number, column);
         }
         Ok(())
-    }
-
-    /// Compares two shadings as the keys say.
-    fn follow_sides(&mut self, input: &Input) {
-        if let Some(said) = self.compare.follow(input, &self.shading, &self.renderer) {
-            // Another picture, if only of the right half.
-            self.number += 1;
-            self.say(said);
-        }
-        if input.pressed(Key::X) && self.compare.is_on {
-            self.compare.swap((&mut self.shading, &mut self.renderer, &mut self.vga, &mut self.timing));
-            self.number += 1;
-            self.chose_shading = true;
-            self.say(format!("{} | {}", self.shading, self.compare.right.shading));
-        }
-    }
-
-    /// Lays the error map's legend and what is said of two halves over the picture.
-    fn lay_over(&self, sheet: &mut Sheet) {
-        if self.compare.is_on {
-            let errors = [0, 1].map(|side| self.map.errors_of(self.number, side));
-            self.compare.lay_over(sheet, (&self.shading, &self.timing), errors);
-        }
-        if self.maps && !self.help.is_open {
-            self.map.legend(sheet, self.number, self.seconds, self.compare.is_on);
-        }
     }
 
     /// Lays out the sheet over the picture in a window of this size.
     fn sheet(&mut self, size: (usize, usize)) -> Sheet {
-        let mut sheet = Sheet::new(size);
-        if self.maps {
-            self.map.corner(&mut sheet, self.number);
+        let (mut sheet, said) = (Sheet::new(size), self.said());
+        let Demo { show, panels } = self;
+        if panels.maps.is_on {
+            show.map.corner(&mut sheet, show.number);
         }
-        let said = if self.is_loading { Some(self.loading()) } else { self.said() };
         if let Some(said) = said {
             sheet.message(overlay::TEXT, &said);
         }
-        if let Some(wrong) = &self.wrong {
-            sheet.message(overlay::WRONG, &wrong.to_string());
+        PANELS.iter().for_each(|(_, panel)| panel(panels).lay_over(show, &mut sheet));
+        let is_alone = !(show.help.is_open && show.figures.is_open);
+        if show.figures.is_open {
+            let rows: Vec<Row> = PANELS.iter().flat_map(|(_, panel)| panel(panels).figures(show)).collect();
+            show.figures.pages = sheet.panel(Side::Left, &rows, is_alone, show.figures.page, "I");
         }
-        self.lay_over(&mut sheet);
-        let is_alone = !(self.help.is_open && self.figures.is_open);
-        if self.figures.is_open {
-            let rows = self.figures();
-            self.figures.pages = sheet.panel(Side::Left, &rows, is_alone, self.figures.page, "I");
-        }
-        if self.help.is_open {
-            self.help.pages = sheet.panel(Side::Right, &figures::help(), is_alone, self.help.page, "H");
+        if show.help.is_open {
+            let rows: Vec<Row> = all_keys().map(|(keys, does)| Row::new(keys, does)).collect();
+            show.help.pages = sheet.panel(Side::Right, &rows, is_alone, show.help.page, "H");
         }
         sheet
     }
 
-    fn draw_scene(&mut self) -> Result<(), Failure> {
-        self.stage.show(self.motion.seconds(), self.motion.pose);
-        self.shading.set(&mut self.renderer, &mut self.pacing);
-        self.renderer.kernel = *self.kernels.chosen();
-        self.renderer.settings.mapping = *self.mappings.chosen();
-        // Of a picture that stands still the time for its plan stays, too.
-        if self.figures.is_open && (self.is_redrawn || self.planning.frame == 0.0) {
-            let start = Instant::now();
-            self.renderer.make_plan(&self.stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
-            self.planning.add(Some(start.elapsed().as_secs_f64()), self.seconds);
-        }
-        let start = Instant::now();
-        let stats = self.renderer.draw(&self.stage.scene, &mut self.vga).map_err(Failure::from)?;
-        let taken = start.elapsed();
-        self.pacing.report(&stats, taken);
-        self.is_redrawn = stats.redrawn;
-        self.timing.add(stats.redrawn.then_some(taken.as_secs_f64()), self.seconds);
-        // What was counted is of the frame that is shown, if that was there already.
-        if stats.redrawn || self.stats.is_none() {
-            self.stats = Some(stats);
-            self.number += 1;
-        }
-        if self.compare.is_on {
-            self.compare.right.renderer.kernel = *self.kernels.chosen();
-            self.compare.right.renderer.settings.mapping = *self.mappings.chosen();
-            let is_new = self.compare.draw(&self.stage.scene, self.seconds).map_err(Failure::from)?;
-            self.number += u64::from(is_new);
-        }
-        Ok(())
-    }
-
-    /// Picture that was drawn last.
-    fn on_screen(&self) -> &Vga {
-        if self.maps || self.compare.is_on { &self.shown } else { &self.vga }
-    }
-
     /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.
     fn save(&mut self) {
-        let notice = match output::numbered_picture(self.on_screen()) {
+        let notice = match output::numbered_picture(&self.show.screen) {
             Ok(path) => format!("saved {}", path.display()),
             Err(error) => error.to_string(),
         };
         eprintln!("mode13h: {notice}");
-        self.notice = Some((notice, self.seconds + SAVED));
+        self.show.notice = Some((notice, self.show.seconds + SAVED));
     }
 
     fn title(&self) -> String {
-        if self.is_loading {
-            return format!("{} - mode13h", self.loading());
+        let (scenes, left) = (&self.panels.scenes, &self.show.halves[0]);
+        match scenes.loading(&self.show) {
+            Some(loading) => format!("{loading} - mode13h"),
+            None => format!("{} - {} - {} - mode13h", scenes.name, left.shading, left.timing.in_words()),
         }
-        format!("{} - {} - {} - mode13h", self.name, self.shading, self.drawn())
     }
 
-    /// The words at the lower edge: a notice, and, as long as it lasts, that the time stands still.
+    /// The words at the lower edge: what is being loaded, or a notice, and, as long as it lasts, that the time stands still.
     fn said(&self) -> Option<String> {
-        let notice = self.notice.as_ref().map(|(notice, _)| notice.clone());
-        match (notice, self.motion.is_stopped()) {
+        let notice = self.show.notice.as_ref().map(|(notice, _)| notice.clone());
+        self.panels.scenes.loading(&self.show).or(match (notice, self.panels.motion.is_stopped()) {
             (Some(notice), true) if notice != STOPPED => Some(format!("{notice} ({STOPPED})")),
             (_, true) => Some(STOPPED.to_string()),
             (notice, false) => notice,
-        }
-    }
-
-    /// Words on the input that is being loaded.
-    fn loading(&self) -> String {
-        let count = self.inputs.words.len();
-        let number = if count > 1 { format!("{} of {count}: ", self.at + 1) } else { String::new() };
-        let read = match input::percent_read() {
-            Some(100) => ", making the mesh".to_string(),
-            Some(percent) => format!(", {percent} % read"),
-            None => String::new(),
-        };
-        format!("{number}loading {}{read}", self.inputs.name(self.at))
-    }
-
-    /// Words on the time that the picture took to draw, and on how often it is drawn.
-    fn drawn(&self) -> String {
-        let again = if self.is_redrawn { "" } else { ", not drawn again" };
-        format!("{}{again}", self.timing)
-    }
-
-    /// The mapping of textures that was chosen.
-    fn mapping(&self) -> String {
-        format!("mapping {}", self.mappings.chosen().map_or("by plan", |mapping| mapping.name()))
+        })
     }
 }
 
-/// The palettes that P goes through, of which the stage's is chosen.
-fn palettes(stage: &Turntable, drawing: &Drawing) -> Choice<(String, Colors)> {
-    // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if that
-    // was asked for.
-    let has_colors = stage.has_colors();
-    let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
-    let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
-    let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
-    // A scene that has none leaves the DAC alone.
-    let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-    // Under its own name, if it has one, it does not stand twice in the list.
-    let usual = match &colors {
-        Colors::Auto => input::AUTO,
-        Colors::Palette(palette) => {
-            let same = builtin::ALL.iter().find(|builtin| builtin.palette.colors() == palette.colors());
-            same.map_or("the scene's", |builtin| builtin.name)
-        }
-    };
-    let palette = (drawing.palette_name().unwrap_or(usual.to_string()), colors);
-    Choice::new(palettes, palette, |(a, _), (b, _)| a == b)
-}
-
-/// A panel that a key opens, leafs through and closes.
+/// Rows that a key opens, leafs through and closes.
 #[derive(Default)]
-struct Panel {
+struct Pages {
     is_open: bool,
     page: usize,
     /// Number of pages when it was laid last.
     pages: usize,
 }
 
-impl Panel {
+impl Pages {
     fn press(&mut self) {
         if self.is_open && self.page + 1 < self.pages {
             self.page += 1;
         } else {
-            *self = Panel { is_open: !self.is_open, page: 0, pages: 0 };
+            *self = Pages { is_open: !self.is_open, page: 0, pages: 0 };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use mode13h_assets::shipped;
+
+    use super::scenes::counted;
+    use super::*;
+    use crate::overlay::tests::WINDOWS;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        drawing: Drawing,
+        #[command(flatten)]
+        shading: ShadingOptions,
+    }
+
+    /// The demo of a scene after its first frame.
+    fn demo(name: &str) -> Demo {
+        let Words { drawing, shading } = Words::parse_from(["mode13h"]);
+        let inputs = Arc::new(Inputs { moment: Moment::default(), drawing, shading, words: vec![name.into()] });
+        let first = loader::load(&inputs, 0, &[]);
+        let mut demo = Demo::new(inputs, Kernel::default());
+        demo.put_on(first).expect("a shipped scene");
+        demo.draw().expect("a legal scene");
+        demo
+    }
+
+    /// While something else is said, too.
+    #[test]
+    fn a_stopped_picture_says_so_as_long_as_it_is_stopped() {
+        let mut demo = demo("torus");
+        let says = |demo: &mut Demo, seconds| {
+            demo.follow(&Input::default(), seconds).expect("a legal scene");
+            demo.sheet((960, 720)).words().iter().any(|word| word.contains("stopped"))
+        };
+        assert!(!says(&mut demo, 0.0));
+        demo.panels.motion.toggle();
+        for seconds in [0.1, 1.5, 3600.0] {
+            assert!(says(&mut demo, seconds), "after {seconds} s");
+        }
+        demo.show.say("palette copper".to_string());
+        assert!(says(&mut demo, 3600.1));
+    }
+
+    /// Tests that in every scene, window and page, with one panel open or both, no letter is cut, missing from the
+    /// font, or over another, and that every word of a panel stands on one of its pages.
+    #[test]
+    fn text_is_never_cut_in_any_scene() {
+        for scene in shipped::ALL {
+            let mut demo = demo(scene.name);
+            for budget in [None, Some(1.0)] {
+                let shading = demo.show.halves[0].renderer.settings.accuracy.unwrap_or_default().shading();
+                demo.show.halves[0].shading = ShadingChoice::new(shading, budget);
+                demo.draw().expect("a legal scene");
+                for size in WINDOWS {
+                    for (help, figures) in [(true, false), (false, true), (true, true)] {
+                        (demo.show.help.is_open, demo.show.figures.is_open) = (help, figures);
+                        for message in
+                            ["palette the scene's", "gouraud-8.8-reseeded", "a-long-name.toml:12:3: ".repeat(9).trim()]
+                        {
+                            demo.show.say(message.to_string());
+                            let mut words = Vec::new();
+                            let mut pages = 1;
+                            for page in (0..).take_while(|page| *page < 9) {
+                                if page >= pages {
+                                    break;
+                                }
+                                (demo.show.help.page, demo.show.figures.page) = (page, page);
+                                let sheet = demo.sheet(size);
+                                let what = format!("{} in {size:?}, page {page}", scene.name);
+                                assert_eq!(sheet.faults(), [""; 0], "{what}");
+                                let open = [(help, demo.show.help.pages), (figures, demo.show.figures.pages)];
+                                assert!(open.iter().all(|(is_open, pages)| !is_open || *pages > 0), "{what}");
+                                pages = open
+                                    .iter()
+                                    .filter(|(is_open, _)| *is_open)
+                                    .map(|(_, pages)| *pages)
+                                    .max()
+                                    .unwrap_or(1);
+                                words.extend(sheet.words());
+                            }
+                            assert!(!help || words.iter().any(|word| word == "Shift-N"), "{} in {size:?}", scene.name);
+                            assert!(
+                                !figures || words.iter().any(|word| word == "effects"),
+                                "{} in {size:?}",
+                                scene.name
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_is_not_said_in_the_plural() {
+        assert_eq!(counted(1, "object"), "1 object");
+        assert_eq!(counted(0, "object"), "0 objects");
+        let Demo { show, panels } = demo("torus");
+        let rows = panels.scenes.figures(&show);
+        assert!(rows.iter().any(|row| format!("{row:?}").contains("1 object, 2304 triangles")), "{rows:?}");
+    }
+
+    #[test]
+    fn the_title_has_the_time_of_the_shading_that_it_names() {
+        let mut demo = demo("torus");
+        let times: Vec<f64> = ["flat", "phong"]
+            .map(|shading| {
+                demo.show.halves[0].shading = ShadingChoice::new(shading.parse().expect("a shading"), None);
+                demo.show.halves[0].forget_times();
+                demo.draw().expect("a legal scene");
+                assert_eq!(demo.title(), format!("torus - {shading} - {} - mode13h", demo.show.halves[0].timing));
+                demo.show.halves[0].timing.frame
+            })
+            .into();
+        assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
+        // The same again is the same picture.
+        demo.draw().expect("a legal scene");
+        assert!(demo.title().contains("not drawn again"), "{}", demo.title());
+        assert_eq!(demo.show.halves[0].timing.frame, times[1]);
     }
 }

@@ -1,11 +1,12 @@
 //! Motion by the clock and by hand.
 
-use std::fmt;
-
 use mode13h::vga::Vga;
-use mode13h::window::{Input, Key};
 
+use super::{Failure, Input, Key, Keys, Panel, Row, Show};
 use crate::turntable::Pose;
+
+pub(super) const KEYS: Keys =
+    &[("Space", "Stop time, start it again"), ("arrows, mouse", "Turn"), ("+ -, wheel", "Zoom")];
 
 /// The note on a stopped picture.
 pub(super) const STOPPED: &str = "stopped";
@@ -20,7 +21,7 @@ const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f6
 /// Factor by which one notch of the wheel, or one + or -, enlarges.
 pub(super) const NOTCH: f64 = 1.1;
 /// The least and the greatest enlargement.
-pub(super) const ZOOM: (f64, f64) = (0.25, 8.0);
+const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
 const LONGEST_FRAME: f64 = 0.1;
 
@@ -31,41 +32,13 @@ pub(super) struct Motion {
     /// Time at which the clock began to move it, in seconds; nothing while it is stopped.
     change: Option<f64>,
     pub(super) pose: Pose,
-    now: f64,
-    /// Last change by the user.
-    changed: Changed,
-}
-
-enum Changed {
-    Clock,
-    Turn,
-    Zoom,
-}
-
-/// Last change by the user, in words.
-impl fmt::Display for Motion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Pose { turn, tilt, zoom } = self.pose;
-        match self.changed {
-            Changed::Clock => f.write_str(if self.is_stopped() { STOPPED } else { "goes on" }),
-            // Of what is turned on and on, what it comes to.
-            Changed::Turn => {
-                write!(f, "turned {:.0}°, tilted {:.0}°", turn.to_degrees() % 360.0, tilt.to_degrees() % 360.0)
-            }
-            Changed::Zoom => write!(f, "zoom {zoom:.2}"),
-        }
-    }
+    /// Time of the last frame.
+    pub(super) now: f64,
 }
 
 impl Motion {
     pub(super) fn new() -> Motion {
-        Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0, changed: Changed::Clock }
-    }
-
-    /// Starts again at the time `seconds`, in the first pose; stays stopped if it is.
-    pub(super) fn begin_anew(&mut self, seconds: f64) {
-        (self.time, self.pose) = (seconds, Pose::FIRST);
-        self.change = self.change.map(|_| self.now);
+        Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0 }
     }
 
     /// Puts the scene's time to `seconds`; it goes on from there.
@@ -74,14 +47,23 @@ impl Motion {
         self.change = self.change.map(|_| self.now);
     }
 
-    /// Moves by what the user did until the time `seconds`. Whether a key changed something.
-    pub(super) fn follow(&mut self, input: &Input, seconds: f64) -> bool {
+    /// Stops time, or starts it again.
+    pub(super) fn toggle(&mut self) {
+        self.time = self.seconds();
+        self.change = if self.change.is_none() { Some(self.now) } else { None };
+    }
+
+    pub(super) fn zoom(&mut self, factor: f64) {
+        self.pose.zoom = (self.pose.zoom * factor).clamp(ZOOM.0, ZOOM.1);
+    }
+
+    /// Moves by what the user did until the time `seconds`. What that changed, in words.
+    fn move_by(&mut self, input: &Input, seconds: f64) -> Option<String> {
         let was = (self.change.is_some(), self.pose);
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
         self.now = seconds;
         if input.pressed(Key::Space) {
-            self.time = self.seconds();
-            self.change = if self.change.is_none() { Some(seconds) } else { None };
+            self.toggle();
         }
         let arrow = |key| {
             let held = if input.held(key) { ARROW_SPEED * passed } else { 0.0 };
@@ -99,17 +81,17 @@ impl Motion {
         if input.pressed(Key::NumPadMinus) || typed(&['-', '_']) {
             notches -= 1.0;
         }
-        self.pose.zoom = (self.pose.zoom * NOTCH.powf(notches)).clamp(ZOOM.0, ZOOM.1);
-        self.changed = if self.change.is_some() != was.0 {
-            Changed::Clock
+        self.zoom(NOTCH.powf(notches));
+        let Pose { turn, tilt, zoom } = self.pose;
+        if self.change.is_some() != was.0 {
+            Some(if self.is_stopped() { STOPPED } else { "goes on" }.to_string())
         } else if notches != 0.0 {
-            Changed::Zoom
-        } else if self.pose != was.1 {
-            Changed::Turn
+            Some(format!("zoom {zoom:.2}"))
         } else {
-            return false;
-        };
-        true
+            // What is turned on and on comes to less than a turn.
+            let [turn, tilt] = [turn, tilt].map(|angle| angle.to_degrees() % 360.0);
+            (self.pose != was.1).then(|| format!("turned {turn:.0}°, tilted {tilt:.0}°"))
+        }
     }
 
     /// Returns whether the clock is stopped.
@@ -117,17 +99,32 @@ impl Motion {
         self.change.is_none()
     }
 
-    /// Stops the clock.
-    #[cfg(test)]
-    pub(super) fn stop(&mut self) {
-        self.time = self.seconds();
-        self.change = None;
-    }
-
-    /// The scene's time at the time of the last [`follow`](Self::follow). It comes from the clock and not from the frames
+    /// The scene's time at the time of the last [`move_by`](Self::move_by). It comes from the clock and not from the frames
     /// that were drawn since.
     pub(super) fn seconds(&self) -> f64 {
         self.time + self.change.map_or(0.0, |change| self.now - change)
+    }
+}
+
+impl Panel for Motion {
+    fn follow(&mut self, input: &Input, show: &mut Show) -> Result<(), Failure> {
+        if let Some(said) = self.move_by(input, show.seconds) {
+            show.say(said);
+        }
+        Ok(())
+    }
+
+    fn renew(&mut self, show: &mut Show, keeps: bool) -> Result<(), Failure> {
+        if !keeps {
+            // Stays stopped if it is.
+            self.pose = Pose::FIRST;
+            self.go_to(show.inputs.moment.of_first());
+        }
+        Ok(())
+    }
+
+    fn figures(&self, _: &Show) -> Vec<Row> {
+        vec![Row::new("zoom", format!("{:.2}", self.pose.zoom))]
     }
 }
 
@@ -140,7 +137,7 @@ mod tests {
         let time_after = |times: &[f64]| {
             let mut motion = Motion::new();
             for &seconds in times {
-                motion.follow(&Input::default(), seconds);
+                motion.move_by(&Input::default(), seconds);
             }
             (motion.seconds(), motion.pose)
         };
@@ -152,7 +149,7 @@ mod tests {
     fn an_hour_in_one_frame_is_an_hour_of_the_scene() {
         let mut motion = Motion::new();
         for seconds in [0.0, 0.0, 3600.0, 3599.0] {
-            motion.follow(&Input::default(), seconds);
+            motion.move_by(&Input::default(), seconds);
             assert_eq!(motion.seconds(), seconds);
         }
     }

@@ -52,51 +52,39 @@ enum Wish {
     Longer,
 }
 
-/// Finds the user's request, if there is any.
-fn wish(input: &Input) -> Option<Wish> {
+/// Finds the user's request, if there is any, for the picture, or for the right half of one: the same keys with Shift.
+fn wish(input: &Input, is_right: bool) -> Option<Wish> {
     let typed = |character: char| input.typed.contains(character);
-    let is_down = |&(key, pad, character): &(Key, Key, char)| {
-        // Where digits are typed with Shift, as in France, a key of the top row means what it types.
-        input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed.is_empty())
+    let is_down = |&(key, pad, character): &(Key, Key, char)| match is_right {
+        // Where digits are typed with Shift, as in France, a key of the top row means what it types, to the left half.
+        true => input.pressed_with_shift(key) && !typed(character),
+        false => input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed.is_empty()),
     };
-    if let Some(shading) =
-        DIGITS.iter().zip(Shading::ALL).find_map(|(digit, shading)| is_down(digit).then_some(shading))
-    {
-        return Some(Wish::Shading(shading));
-    }
-    if is_down(&(Key::Key0, Key::NumPad0, '0')) {
-        return Some(Wish::Budget);
-    }
-    if input.pressed(Key::B) {
-        return Some(if input.pressed_with_shift(Key::B) { Wish::More } else { Wish::Less });
-    }
-    if input.pressed(Key::F) {
-        return Some(if input.pressed_with_shift(Key::F) { Wish::Longer } else { Wish::Shorter });
-    }
-    let without_shift = |key| input.pressed(key) && !input.pressed_with_shift(key);
-    if without_shift(Key::LeftBracket) || typed('[') {
-        return Some(Wish::Cheaper);
-    }
-    (without_shift(Key::RightBracket) || typed(']')).then_some(Wish::Dearer)
+    let bracket = |key, character| {
+        let is_pressed = input.pressed(key) && input.pressed_with_shift(key) == is_right;
+        is_pressed || (!is_right && typed(character))
+    };
+    let letter = |key, plain, with_shift| {
+        let wish = if input.pressed_with_shift(key) { with_shift } else { plain };
+        (input.pressed(key) && !is_right).then_some(wish)
+    };
+    let digit = DIGITS.iter().zip(Shading::ALL).find(|(digit, _)| is_down(digit));
+    digit
+        .map(|(_, shading)| Wish::Shading(shading))
+        .or(is_down(&(Key::Key0, Key::NumPad0, '0')).then_some(Wish::Budget))
+        .or(letter(Key::B, Wish::Less, Wish::More))
+        .or(letter(Key::F, Wish::Shorter, Wish::Longer))
+        .or(bracket(Key::LeftBracket, '[').then_some(Wish::Cheaper))
+        .or(bracket(Key::RightBracket, ']').then_some(Wish::Dearer))
 }
 
-/// Finds the user's request for the right half of a picture: the same keys with Shift.
-fn shifted_wish(input: &Input) -> Option<Wish> {
-    let typed = |character: char| input.typed.contains(character);
-    // Where digits are typed with Shift they are the left half's.
-    let is_down = |&(key, _, character): &(Key, Key, char)| input.pressed_with_shift(key) && !typed(character);
-    if let Some(shading) =
-        DIGITS.iter().zip(Shading::ALL).find_map(|(digit, shading)| is_down(digit).then_some(shading))
-    {
-        return Some(Wish::Shading(shading));
-    }
-    if is_down(&(Key::Key0, Key::NumPad0, '0')) {
-        return Some(Wish::Budget);
-    }
-    if input.pressed_with_shift(Key::LeftBracket) {
-        return Some(Wish::Cheaper);
-    }
-    input.pressed_with_shift(Key::RightBracket).then_some(Wish::Dearer)
+/// The next in a falling list, from whatever the command line or the scene says.
+fn less(list: &[f32], than: f32) -> f32 {
+    list.iter().copied().find(|&entry| entry < than).unwrap_or(than)
+}
+
+fn more(list: &[f32], than: f32) -> f32 {
+    list.iter().copied().rfind(|&entry| entry > than).unwrap_or(than)
 }
 
 /// Means by which shades are chosen.
@@ -138,16 +126,9 @@ impl ShadingChoice {
         }
     }
 
-    /// Follows the user's input. Returns whether there was a request.
-    pub(super) fn follow(&mut self, input: &Input) -> bool {
-        let wish = wish(input);
-        wish.into_iter().for_each(|wish| self.fulfil(wish));
-        wish.is_some()
-    }
-
-    /// Follows the user's input for the right half of a picture. Returns whether there was a request.
-    pub(super) fn follow_shifted(&mut self, input: &Input) -> bool {
-        let wish = shifted_wish(input);
+    /// Follows the user's input for the picture, or for the right half of one. Returns whether there was a request.
+    pub(super) fn follow(&mut self, input: &Input, is_right: bool) -> bool {
+        let wish = wish(input, is_right);
         wish.into_iter().for_each(|wish| self.fulfil(wish));
         wish.is_some()
     }
@@ -167,23 +148,10 @@ impl ShadingChoice {
             Wish::Dearer => self.shading = Shading::ALL[(place + 1).min(Shading::ALL.len() - 1)],
             Wish::Budget => {}
             _ if was != by => {}
-            // The next in the list, from whatever the command line or the scene says.
-            Wish::Less => {
-                let less = BUDGETS.into_iter().find(|&budget| budget < self.budget);
-                self.budget = less.unwrap_or(self.budget);
-            }
-            Wish::More => {
-                let more = BUDGETS.into_iter().rev().find(|&budget| budget > self.budget);
-                self.budget = more.unwrap_or(self.budget);
-            }
-            Wish::Shorter => {
-                let less = TIMES.into_iter().find(|&time| time < self.time);
-                self.time = less.unwrap_or(self.time);
-            }
-            Wish::Longer => {
-                let more = TIMES.into_iter().rev().find(|&time| time > self.time);
-                self.time = more.unwrap_or(self.time);
-            }
+            Wish::Less => self.budget = less(&BUDGETS, self.budget),
+            Wish::More => self.budget = more(&BUDGETS, self.budget),
+            Wish::Shorter => self.time = less(&TIMES, self.time),
+            Wish::Longer => self.time = more(&TIMES, self.time),
         }
     }
 

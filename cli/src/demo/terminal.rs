@@ -11,10 +11,10 @@ use mode13h::render::Renderer;
 use mode13h::vga::Vga;
 use mode13h_assets::terminal::Protocol;
 
-use super::motion::{ARROW_TAP, NOTCH, ZOOM};
+use super::motion::{ARROW_TAP, Motion, NOTCH};
 use crate::failure::Failure;
 use crate::output;
-use crate::turntable::{Pose, Turntable};
+use crate::turntable::Turntable;
 
 /// The time from one frame to the next: 35 a second.
 const PERIOD: Duration = Duration::from_nanos(1_000_000_000 / 35);
@@ -66,21 +66,29 @@ impl Sending {
         mut renderer: Renderer,
         seconds: f64,
     ) -> Result<(), Failure> {
-        let mut motion = Motion { seconds, since: Some(Instant::now()), pose: Pose::FIRST };
+        let mut motion = Motion::new();
+        motion.go_to(seconds);
+        let begun = Instant::now();
         let (mut vga, mut shown) = (Vga::new(), None);
         let mut due = Instant::now();
         for number in 1_u32.. {
             let typed = screen.keys.read().map_err(|error| Failure::file(format!("standard input: {error}")))?;
+            motion.now = begun.elapsed().as_secs_f64();
             for key in keys(&typed) {
                 match key {
                     Key::End => return Ok(()),
-                    key => motion.follow(key),
+                    Key::Stop => motion.toggle(),
+                    Key::Turn(turn, tilt) => {
+                        motion.pose.turn += turn;
+                        motion.pose.tilt += tilt;
+                    }
+                    Key::Zoom(factor) => motion.zoom(factor),
                 }
             }
             if output::is_interrupted() {
                 return Ok(());
             }
-            stage.show(motion.now(), motion.pose);
+            stage.show(motion.seconds(), motion.pose);
             renderer.draw(&stage.scene, &mut vga).map_err(Failure::from)?;
             let frame = (vga.pixels().to_vec(), vga.palette());
             // What stands still is sent once.
@@ -241,36 +249,6 @@ fn keys(mut bytes: &[u8]) -> Vec<Key> {
         };
         keys.extend(key);
         bytes = rest;
-    }
-}
-
-/// Time by the clock, unless it is stopped, and what keys have turned.
-struct Motion {
-    /// The scene's time at `since`, or while that is nothing.
-    seconds: f64,
-    since: Option<Instant>,
-    pose: Pose,
-}
-
-impl Motion {
-    /// The scene's time, in seconds.
-    fn now(&self) -> f64 {
-        self.seconds + self.since.map_or(0.0, |since| since.elapsed().as_secs_f64())
-    }
-
-    fn follow(&mut self, key: Key) {
-        match key {
-            Key::End => {}
-            Key::Stop => {
-                self.seconds = self.now();
-                self.since = if self.since.is_none() { Some(Instant::now()) } else { None };
-            }
-            Key::Turn(turn, tilt) => {
-                self.pose.turn += turn;
-                self.pose.tilt += tilt;
-            }
-            Key::Zoom(factor) => self.pose.zoom = (self.pose.zoom * factor).clamp(ZOOM.0, ZOOM.1),
-        }
     }
 }
 

@@ -11,6 +11,8 @@ pub(super) struct Timing {
     pub(super) frame: f64,
     /// Frames a second, drawn or not, over the last period.
     pub(super) rate: f64,
+    /// True if the last frame was drawn, and not the same as the one before.
+    pub(super) is_redrawn: bool,
 }
 
 impl Timing {
@@ -19,6 +21,7 @@ impl Timing {
 
     /// A frame was shown at the time `now`. It was drawn in `taken` seconds, or, with `None`, was there already.
     pub(super) fn add(&mut self, taken: Option<f64>, now: f64) {
+        self.is_redrawn = taken.is_some();
         self.sum += taken.unwrap_or(0.0);
         self.drawn += u32::from(taken.is_some());
         self.frames += 1;
@@ -30,6 +33,11 @@ impl Timing {
             self.rate = if passed > 0.0 { f64::from(self.frames) / passed } else { 0.0 };
             (self.sum, self.drawn, self.frames, self.change) = (0.0, 0, 0, now);
         }
+    }
+
+    /// The time, and whether the last frame took it.
+    pub(super) fn in_words(&self) -> String {
+        format!("{self}{}", if self.is_redrawn { "" } else { ", not drawn again" })
     }
 }
 
