@@ -1,4 +1,4 @@
-//! What draws and how: the kernel, the palette, the mapping of textures and the effects, as the plan and the keys have them.
+//! The kernel, palette, texture mapping and effects in use, and the keys that change them.
 
 use mode13h::palette::{Palette, builtin};
 use mode13h::plan::{self, Effect};

@@ -1,4 +1,4 @@
-//! What the panels share: the picture, what it is of, and what is said about it.
+//! State shared by all panels: the scene on show, its picture, and the messages over it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -77,7 +77,7 @@ impl Half {
     }
 }
 
-/// What the panels share.
+/// State shared by all panels.
 pub(super) struct Show {
     pub(super) inputs: Arc<Inputs>,
     /// Scene on show; without objects until something could be loaded.
