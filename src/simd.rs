@@ -30,6 +30,8 @@ mod sse2;
 mod wasm;
 
 pub(crate) use lanes::Lanes8;
+#[cfg(simd_x86_64)]
+pub(crate) use lanes::SET_THEN_CLEAR;
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
 #[cfg(feature = "alloc")]

@@ -44,6 +44,8 @@ use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
+use crate::span::depth::{Cells, copy_nearer};
+use crate::span::depth_test::copy_span;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float;
 use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
@@ -245,7 +247,22 @@ impl<'a> Shaded8<'a> {
                     exact_bytes(&self.listed, &fill, list.offset(k), bytes);
                 }
             }
-            nearer += kernel.copy_spans(pixels, cells, (list, first..end), &self.bytes);
+            for k in first..end {
+                let (length, bytes) = (list.fill_of(k).0, self.bytes.of(k - first));
+                let (at, (cell, depths)) = (list.offset(k) as usize, list.depth_at(k));
+                let row = pixels.get_mut(at..).unwrap_or_default();
+                match cells {
+                    None => kernel.copy(length, row, bytes),
+                    Some(Cells::U32(cells)) => {
+                        let cells = cells.get_mut(cell..).unwrap_or_default();
+                        nearer += copy_span(s, (row, cells), (bytes, length), true, depths);
+                    }
+                    Some(Cells::U16(cells)) => {
+                        let ([z, dz], cells) = (depths, cells.get_mut(cell..).unwrap_or_default());
+                        nearer += copy_nearer(row, cells, &bytes[..length.min(bytes.len())], z >> 8, dz >> 8);
+                    }
+                }
+            }
             first = end;
         }
         list.clear(nearer);

@@ -5,6 +5,7 @@ use core::arch::x86_64::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
+use super::lanes::SET_THEN_CLEAR;
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
 use super::{Avx2, Lanes8};
@@ -225,6 +226,47 @@ impl Lanes8 for Avx2 {
             _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits.into()), lanes), lanes)
         }
         fn to_bitmask(mask: __m256i) -> u32 { _mm256_movemask_ps(_mm256_castsi256_ps(mask)).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn test_four(self, cells: &mut [u32; 4], [z, dz]: [i64; 2], count: usize, keeps: bool) -> u32 {
+        // SAFETY: `self` proves that the processor has the instructions. The mask is four of sixteen lanes, from at
+        // most the ninth on; cells are loaded and stored as a whole. Neither requires alignment.
+        unsafe {
+            let dz = _mm_set1_epi64x(dz);
+            let first = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
+            let last = _mm_castsi128_ps(_mm_add_epi64(first, _mm_slli_epi64::<1>(dz)));
+            let upper = _mm_castps_si128(_mm_shuffle_ps::<0b11_01_11_01>(_mm_castsi128_ps(first), last));
+            let there = _mm_loadu_si128(SET_THEN_CLEAR.as_ptr().add(8 - count.min(8)).cast());
+            let before = _mm_loadu_si128(cells.as_ptr().cast());
+            let after = _mm_max_epu32(before, _mm_and_si128(upper, there));
+            if keeps {
+                _mm_storeu_si128(cells.as_mut_ptr().cast(), after);
+            }
+            // The lowest byte of each lane.
+            let stays = _mm_shuffle_epi8(_mm_cmpeq_epi32(before, after), _mm_set1_epi32(0x0C08_0400));
+            _mm_cvtsi128_si32(stays).cast_unsigned()
+        }
+    }
+    #[inline(always)]
+    fn test_eight(self, cells: &mut [u32; 8], [z, dz]: [i64; 2], count: usize, keeps: bool) -> u64 {
+        // SAFETY: as in `test_four`, with eight lanes.
+        unsafe {
+            // Arranged so that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
+            let dz = _mm256_set1_epi64x(dz);
+            let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
+            let later = _mm256_and_si256(_mm256_slli_epi64::<2>(dz), _mm256_setr_epi64x(0, 0, -1, -1));
+            let first = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
+            let last = _mm256_castsi256_ps(_mm256_add_epi64(first, _mm256_slli_epi64::<1>(dz)));
+            let upper = _mm256_shuffle_ps::<0b11_01_11_01>(_mm256_castsi256_ps(first), last);
+            let there = _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(8 - count.min(8)).cast());
+            let before = _mm256_loadu_si256(cells.as_ptr().cast());
+            let after = _mm256_max_epu32(before, _mm256_and_si256(_mm256_castps_si256(upper), there));
+            if keeps {
+                _mm256_storeu_si256(cells.as_mut_ptr().cast(), after);
+            }
+            u64::from_le_bytes(self.low_bytes(_mm256_cmpeq_epi32(before, after)))
+        }
     }
 
     #[inline(always)]

@@ -120,6 +120,15 @@ impl Lanes8 for Avx512 {
     }
 
     #[inline(always)]
+    fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
+        self.0.test_four(cells, depths, count, keeps)
+    }
+    #[inline(always)]
+    fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
+        self.0.test_eight(cells, depths, count, keeps)
+    }
+
+    #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: `self` proves that the processor has the instructions; the store goes to a whole array.

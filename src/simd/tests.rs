@@ -67,6 +67,36 @@ impl<S: Lanes8> Checker<S> {
     }
 }
 
+/// Compares depth tests with the definition, some of whose depths equal their cells.
+fn check_depth_test<S: Lanes8>(s: S, name: &str, random: &mut Numbers) {
+    let ([z, dz, ..], count) = (random.i64s(), (random.bits() % 9) as usize);
+    let depths = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| (z.wrapping_add(dz.wrapping_mul(k)) >> 32) as u32);
+    let mut before = random.i32s().map(i32::cast_unsigned);
+    for (lane, cell) in before.iter_mut().enumerate().filter(|(lane, _)| lane % 3 == 0) {
+        *cell = depths[lane].wrapping_sub((random.bits() % 3) as u32);
+    }
+    for keeps in [false, true] {
+        for (lanes, count) in [(4, count.min(4)), (8, count)] {
+            let (mut after, mut stays, mut cells) = (before, [255; 8], before);
+            for lane in (0..count).filter(|lane| depths[*lane] > before[*lane]) {
+                stays[lane] = 0;
+                if keeps {
+                    after[lane] = depths[lane];
+                }
+            }
+            let expected = u64::from_le_bytes(stays);
+            let found = match lanes {
+                4 => {
+                    let four = cells.first_chunk_mut().expect("eight");
+                    u64::from(u32::MAX) << 32 | u64::from(s.test_four(four, [z, dz], count, keeps))
+                }
+                _ => s.test_eight(&mut cells, [z, dz], count, keeps),
+            };
+            assert_eq!((found, cells), (expected, after), "depth test of {lanes} by {name}: {z}, {dz}, {before:?}");
+        }
+    }
+}
+
 fn check<S: Eights>(s: S, name: &'static str) {
     check_singles(s, name);
     let c = Checker { s, name };
@@ -114,6 +144,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
         c.mask("is_equal", equal, p.is_equal(i, j));
         c.mask("is_equal, equal", s.is_equal(ii, ii), [-1; 8]);
         let mask = p.is_greater(i, j);
+        check_depth_test(s, name, &mut random);
         c.f64s("select", s.select(greater, fa, fb), p.select(mask, a, b));
         c.i32s("select_i32", s.select_i32(greater, ii, ij), p.select_i32(mask, i, j));
         let ([low, high], expected) = (s.interleave_i32(ii, ij), p.interleave_i32(i, j));

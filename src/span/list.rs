@@ -7,10 +7,8 @@
 //! or, with a depth test, `fill_nearer`. Rows of triangles are appended eight at a time; lanes without pixels, and
 //! spans that do not lie inside the pixels, are dropped by compression, so no branch depends on how many there are.
 
-use core::ops::Range;
-
 use super::Kernel;
-use super::depth::{Cell, Cells, copy_nearer, fill_nearer};
+use super::depth::{Cell, Cells, fill_nearer};
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable};
 
@@ -270,10 +268,10 @@ impl SpanList {
         (self.length[k] as usize, self.paint[k])
     }
 
-    /// Appends a span without a depth, if it lies inside and there is room. Its pixels and its cells have the same
-    /// offset. Returns its index.
+    /// Appends a span with its depth and the change per pixel, if it lies inside and there is room. Its pixels and its
+    /// cells have the same offset. Returns its index.
     #[cfg(feature = "alloc")]
-    pub(crate) fn push(&mut self, (at, length): (usize, usize), paint: u32) -> Option<usize> {
+    pub(crate) fn push(&mut self, (at, length): (usize, usize), paint: u32, [z, dz]: [i64; 2]) -> Option<usize> {
         let end = at.checked_add(length)?;
         if self.count >= CAPACITY || length == 0 || end > self.pixels.min(self.cells) as usize {
             return None;
@@ -281,20 +279,18 @@ impl SpanList {
         let k = self.count;
         // Below 2³¹.
         (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, at as u32, length as u32, paint);
+        (self.z[k], self.dz[k]) = (z, dz);
         self.covered[0] = self.covered[0].wrapping_add(length as i32);
         self.count += 1;
         Some(k)
     }
 
-    /// The offset of the first cell of span `k`, whose first pixel is in this column and row.
-    #[cfg(feature = "alloc")]
+    /// The offset of the first cell of span `k`, its depth, and the change per pixel, both with the integer part in the
+    /// upper half.
     #[inline(always)]
-    pub(crate) fn cell_at(&self, k: usize, [column, row]: [i32; 2], first_row: u32) -> usize {
-        if self.cells_are_pixels() {
-            return self.offset(k) as usize;
-        }
-        // In a frame neither is negative.
-        (row as usize - first_row as usize) * self.width as usize + column as usize
+    pub(crate) fn depth_at(&self, k: usize) -> (usize, [i64; 2]) {
+        let k = k.min(CAPACITY);
+        (self.cell()[k] as usize, [self.z[k], self.dz[k]])
     }
 
     /// The offset of the first pixel of span `k`.
@@ -344,17 +340,10 @@ impl SpanList {
     }
 
     /// The spans, in order, with their depths.
-    #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
-        self.tested_spans_of(0..self.count())
-    }
-
-    /// Some of the spans, in order, with their depths.
-    #[inline(always)]
-    pub(super) fn tested_spans_of(&self, range: Range<usize>) -> impl Iterator<Item = (Span, SpanDepth)> {
         let (Self { at, length, paint, z, dz, count, .. }, cell) = (self, self.cell());
-        (range.start..range.end.min(*count).min(CAPACITY)).map(|k| {
+        (0..(*count).min(CAPACITY)).map(|k| {
             (Span { at: at[k], length: length[k], paint: paint[k] }, SpanDepth { cell: cell[k], z: z[k], dz: dz[k] })
         })
     }
@@ -390,36 +379,23 @@ impl SpanList {
     /// Fills each span where it is nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
-        self.each_tested(0..self.count(), pixels, cells, |_, paint, row, cells, [z, dz]| {
+        self.each_tested(pixels, cells, |_, paint, row, cells, [z, dz]| {
             // The shade in the lower half, the step in the upper.
             fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z, dz)
         })
     }
 
-    /// Copies the bytes of some spans where they are nearer. Returns the number of pixels written.
-    #[inline(never)]
-    pub(super) fn each_copied<D: Cell>(
-        &self,
-        range: Range<usize>,
-        pixels: &mut [u8],
-        cells: &mut [D],
-        bytes: &SpanBytes,
-    ) -> u32 {
-        self.each_tested(range, pixels, cells, |k, _, row, cells, [z, dz]| copy_nearer(row, cells, bytes.of(k), z, dz))
-    }
-
-    /// Passes the pixels and cells of some spans to a loop that tests depths, with the span's index among these, its
-    /// packed shade and step, and its first depth and the depth step. Returns the sum of what the loop returns.
+    /// Passes the pixels and cells of each span to a loop that tests depths, with the span's index, its packed
+    /// shade and step, and its first depth and the depth step. Returns the sum of what the loop returns.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,
-        range: Range<usize>,
         pixels: &mut [u8],
         cells: &mut [D],
         mut fill: impl FnMut(usize, u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
     ) -> u32 {
         let mut written = 0;
-        for (k, (Span { at, length, paint }, SpanDepth { cell, z, dz })) in self.tested_spans_of(range).enumerate() {
+        for (k, (Span { at, length, paint }, SpanDepth { cell, z, dz })) in self.tested_spans().enumerate() {
             // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {

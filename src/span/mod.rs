@@ -46,7 +46,6 @@
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
-use core::ops::Range;
 use core::str::FromStr;
 
 use self::depth::Cells;
@@ -58,6 +57,7 @@ use crate::simd::{Avx2, Avx512};
 pub(crate) mod channels;
 pub(crate) mod curve;
 pub(crate) mod depth;
+pub(crate) mod depth_test;
 pub(crate) mod dither;
 pub(crate) mod float;
 pub(crate) mod hyperbolic;
@@ -283,33 +283,6 @@ impl Kernel {
         }
     }
 
-    /// Copies the bytes of some spans of a list to the pixels; if there are cells, only where they are nearer. No span
-    /// has more than 64 pixels. Returns the number of pixels that were nearer.
-    #[inline]
-    pub(crate) fn copy_spans(
-        self,
-        pixels: &mut [u8],
-        cells: &mut Option<Cells<'_>>,
-        (spans, range): (&list::SpanList, Range<usize>),
-        bytes: &list::SpanBytes,
-    ) -> u32 {
-        #[cfg(simd_x86_64)]
-        if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
-            return simd::nearer::copy_spans(avx2, pixels, cells, (spans, range), bytes);
-        }
-        match cells {
-            None => {
-                for (k, (span, _)) in spans.tested_spans_of(range).enumerate() {
-                    let row = pixels.get_mut(span.at as usize..).unwrap_or_default();
-                    self.copy(span.length as usize, row, bytes.of(k));
-                }
-                0
-            }
-            Some(Cells::U32(cells)) => spans.each_copied(range, pixels, cells, bytes),
-            Some(Cells::U16(cells)) => spans.each_copied(range, pixels, cells, bytes),
-        }
-    }
-
     /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades` gives
     /// the first shade and the step of a span, from its index and its packed value. Returns the number of pixels that
     /// were nearer.
@@ -357,12 +330,9 @@ impl Kernel {
         z: i64,
         dz: i64,
     ) -> u32 {
-        #[cfg(simd_x86_64)]
-        if let Some(avx2) = self.avx2()
-            && let Cells::U32(cells) = D::cells(cells)
-            && let Some(written) = simd::nearer::copy::<KEEPS>(avx2, length, row, cells, bytes, z, dz)
-        {
-            return written;
+        if let Cells::U32(cells) = D::cells(cells) {
+            let depths = [z << 8, dz << 8];
+            return depth_test::copy_where_nearer(self.level, length, row, cells, bytes, KEEPS, depths);
         }
         let bytes = &bytes[..length.min(bytes.len())];
         if KEEPS {
@@ -402,6 +372,16 @@ impl Kernel {
         self.level
     }
 
+    /// Returns whether it has vectors that hold eight numbers of 32 bits.
+    #[cfg(feature = "alloc")]
+    #[inline]
+    pub(crate) fn has_wide_lanes(self) -> bool {
+        #[cfg(simd_x86_64)]
+        return self.avx2().is_some();
+        #[cfg(not(simd_x86_64))]
+        return false;
+    }
+
     /// The proof that the processor has AVX2, if this kernel may use it.
     #[cfg(simd_x86_64)]
     #[inline]
@@ -424,7 +404,7 @@ fn nearer_16_16<D: depth::Cell>(
     spans: &list::SpanList,
     shades: impl Fn(usize, u32) -> (u32, u32),
 ) -> u32 {
-    spans.each_tested(0..spans.count(), pixels, cells, |k, paint, row, cells, [z, dz]| {
+    spans.each_tested(pixels, cells, |k, paint, row, cells, [z, dz]| {
         let (start, step) = shades(k, paint);
         depth::fill_nearer_16_16(row, cells, [start, step], z, dz)
     })

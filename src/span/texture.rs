@@ -31,6 +31,10 @@ impl<'a> Texels<'a> {
     /// The most bits that u or v may have: 256 texels.
     pub const MAX_BITS: u32 = 8;
 
+    /// A single texel.
+    #[cfg(feature = "alloc")]
+    pub(crate) const ONE: Self = Self { bytes: &[0], ubits: 0, vbits: 0 };
+
     /// A texture 2^`ubits` wide and 2^`vbits` high, row-major.
     ///
     /// # Errors
@@ -281,13 +285,11 @@ pub(crate) struct SpanValues {
     pub(crate) skipped: u32,
 }
 
-/// Turns the texels of a span into the bytes that are written: as they are, lit, fogged or blended.
+/// Turns the texels of a span into the bytes that are shown: as they are, lit, fogged or blended.
 #[cfg(feature = "alloc")]
 pub(crate) trait Tint: Copy {
     /// True if the density of fog is read.
     const HAS_FOG: bool = false;
-    /// True if the pixels' contents are read, so that they can be written only once.
-    const READS_PIXELS: bool = false;
     /// State that changes along a span.
     type Along<S: Lanes8>: Copy;
     /// Table rows of eight pixels.
@@ -375,6 +377,31 @@ impl Tint for Painted<'_> {
     }
 }
 
+/// The shades of the span alone, whatever the texels.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Copy)]
+pub(crate) struct Untextured;
+
+#[cfg(feature = "alloc")]
+impl Tint for Untextured {
+    type Along<S: Lanes8> = Ramp8<S>;
+    type Rows = [u8; LANES];
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
+        ramp_from(s, values.paint, values.skipped)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
+        let shades = s.low_bytes(s.shr_i32(*values, 8));
+        *values = s.add_i32(*values, *next);
+        shades
+    }
+    #[inline(always)]
+    fn show(self, shades: [u8; LANES], k: usize, _: u8) -> u8 {
+        shades[k]
+    }
+}
+
 /// Texels lit by a table, with the shades that the pixels hold.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy)]
@@ -382,7 +409,6 @@ pub(crate) struct Held<'a>(&'a [u8; 65_536]);
 
 #[cfg(feature = "alloc")]
 impl Tint for Held<'_> {
-    const READS_PIXELS: bool = true;
     type Along<S: Lanes8> = ();
     type Rows = [u8; LANES];
     #[inline(always)]
@@ -405,7 +431,6 @@ pub(crate) struct Blended<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
 #[cfg(feature = "alloc")]
 impl<T: Tint> Tint for Blended<'_, T> {
     const HAS_FOG: bool = T::HAS_FOG;
-    const READS_PIXELS: bool = true;
     type Along<S: Lanes8> = T::Along<S>;
     type Rows = (T::Rows, [u8; LANES]);
     #[inline(always)]
@@ -430,7 +455,6 @@ pub(crate) struct Fogged<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
 #[cfg(feature = "alloc")]
 impl<T: Tint> Tint for Fogged<'_, T> {
     const HAS_FOG: bool = true;
-    const READS_PIXELS: bool = T::READS_PIXELS;
     type Along<S: Lanes8> = (T::Along<S>, Ramp8<S>);
     type Rows = (T::Rows, [u16; LANES]);
     #[inline(always)]
@@ -451,7 +475,7 @@ impl<T: Tint> Tint for Fogged<'_, T> {
 /// follows those pixels does not change.
 #[cfg(feature = "alloc")]
 #[inline(always)]
-fn show_along<S: Lanes8, T: Tint>(
+pub(crate) fn show_along<S: Lanes8, T: Tint>(
     s: S,
     (row, length): (&mut [u8], usize),
     texels: Texels<'_>,
@@ -509,6 +533,68 @@ fn show_along<S: Lanes8, T: Tint>(
     }
 }
 
+/// [`show_along`] by the masks of [`depth_test`](super::depth_test), one for each block.
+#[cfg(feature = "alloc")]
+#[inline(always)]
+pub(crate) fn show_masked<S: Lanes8, T: Tint>(
+    s: S,
+    (row, masks): (&mut [u8], &[u64]),
+    texels: Texels<'_>,
+    (tint, along): (T, &mut T::Along<S>),
+    mut places: impl PlacesAlong<S>,
+) {
+    // Never true: see `show`.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let image = (texels, texels.bytes.len() - 1);
+    let mut rest = row;
+    for &stays in masks {
+        if rest.len() < LANES {
+            // At the frame's end.
+            let rows = tint.rows(s, along, &[0; LANES]);
+            let places = s.low_words(places.next());
+            for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
+                if stay == 0 {
+                    *pixel = texel(tint, rows, places, image, k % LANES);
+                }
+            }
+            break;
+        }
+        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
+        rest = behind;
+        // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case extracts its own
+        // lanes: those of all, extracted before, would not fit into the registers.)
+        if stays == 0 {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let mut k = 0;
+            while k < LANES {
+                block[k] = texel(tint, rows, places, image, k);
+                k += 1;
+            }
+        } else if stays == u64::MAX {
+            tint.rows(s, along, block);
+            places.skip();
+        } else if stays >> 32 == u64::from(u32::MAX) {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let Some(four) = block.first_chunk_mut() else { break };
+            // The lower half.
+            let stay = stays as u32;
+            let bytes = u32::from_le_bytes([
+                texel(tint, rows, places, image, 0),
+                texel(tint, rows, places, image, 1),
+                texel(tint, rows, places, image, 2),
+                texel(tint, rows, places, image, 3),
+            ]);
+            *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+        } else {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
+            *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
+        }
+    }
+}
+
 /// Texel `k` of eight as it is shown. `last` is the index of the last texel.
 #[cfg(feature = "alloc")]
 #[inline(always)]
@@ -522,8 +608,13 @@ const FOUR: usize = LANES / 2;
 
 /// Indices of texels, eight at a time.
 #[cfg(feature = "alloc")]
-trait PlacesAlong<S: Lanes8> {
+pub(crate) trait PlacesAlong<S: Lanes8> {
     fn next(&mut self) -> S::I32;
+    /// Leaves out the next eight.
+    #[inline(always)]
+    fn skip(&mut self) {
+        self.next();
+    }
 }
 
 /// Computes indices of texels in vectors.
@@ -590,19 +681,13 @@ impl<S: Lanes8> AffineLines<S> {
         }
     }
 
-    /// Shows the texels from (`u`, `v`) on in the first pixels of a row, whose number is given with it.
+    /// The indices of the texels from (`u`, `v`) on.
     #[inline(always)]
-    pub(crate) fn show<T: Tint>(
-        &self,
-        row: (&mut [u8], usize),
-        texels: Texels<'_>,
-        tint: (T, &mut T::Along<S>),
-        [u, v]: [u32; 2],
-    ) {
+    pub(crate) fn along(&self, [u, v]: [u32; 2]) -> impl PlacesAlong<S> {
         let s = self.places.s;
         let u = s.add_i32(s.splat_i32(u.cast_signed()), self.first[0]);
         let v = s.add_i32(s.splat_i32((v << self.ubits).cast_signed()), self.first[1]);
-        show_along(s, row, texels, tint, AffineAlong { lines: self, at: [u, v] });
+        AffineAlong { lines: self, at: [u, v] }
     }
 }
 
@@ -623,35 +708,20 @@ impl<S: Lanes8> PlacesAlong<S> for AffineAlong<'_, S> {
     }
 }
 
-/// Shows texels at indices computed before, in the first pixels of a row, whose number is given with it.
+/// Indices of texels that are stored.
 #[cfg(feature = "alloc")]
-#[inline(always)]
-pub(crate) fn show_places<S: Lanes8, T: Tint>(
-    s: S,
-    row: (&mut [u8], usize),
-    texels: Texels<'_>,
-    tint: (T, &mut T::Along<S>),
-    places: &[i32],
-) {
-    show_along(s, row, texels, tint, PlacesOf { s, places });
-}
+pub(crate) struct StoredPlaces<'a, S>(pub(crate) S, pub(crate) &'a [i32]);
 
 #[cfg(feature = "alloc")]
-struct PlacesOf<'a, S> {
-    s: S,
-    places: &'a [i32],
-}
-
-#[cfg(feature = "alloc")]
-impl<S: Lanes8> PlacesAlong<S> for PlacesOf<'_, S> {
+impl<S: Lanes8> PlacesAlong<S> for StoredPlaces<'_, S> {
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
-        match self.places.split_first_chunk::<LANES>() {
+        match self.1.split_first_chunk::<LANES>() {
             Some((eight, rest)) => {
-                self.places = rest;
-                self.s.load_i32(eight)
+                self.1 = rest;
+                self.0.load_i32(eight)
             }
-            None => self.s.splat_i32(0),
+            None => self.0.splat_i32(0),
         }
     }
 }
@@ -792,32 +862,52 @@ pub(crate) fn perspective_places<S: Lanes8>(
     quotients.unsure == 0
 }
 
-/// Shows the texels of a span after the first `skipped` ones, in the first `length` pixels of a row, by the quotients
-/// of [`perspective_places`]. Returns `false` if one of them cannot decide: then the bytes may be anything, unless the
-/// pixels' contents are read.
+/// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by the quotients of
+/// [`perspective_places`]. Where one of them cannot decide, `exact` stores the indices of eight texels, from the one
+/// with this number on. `None` if divisors differ too much.
 #[cfg(feature = "alloc")]
 #[inline(always)]
-pub(crate) fn show_perspective<S: Lanes8, T: Tint>(
+pub(crate) fn perspective_along<S: Lanes8>(
     s: S,
-    (row, length, skipped): (&mut [u8], usize, usize),
     texels: Texels<'_>,
-    tint: (T, &mut T::Along<S>),
-    numerators: [[f64; 2]; 2],
-    divisors: [f64; 2],
-) -> bool {
-    if T::READS_PIXELS {
-        let mut places = [0; PIECE + LANES];
-        let end = (skipped + length).min(PIECE);
-        let is_sure = perspective_places(s, &mut places, end, texels, numerators, divisors);
-        if is_sure {
-            show_places(s, (row, length), texels, tint, &places[skipped.min(PIECE)..]);
+    (numerators, divisors): ([[f64; 2]; 2], [f64; 2]),
+    range: (usize, usize),
+    exact: impl Fn(usize, &mut [i32; LANES]),
+) -> Option<impl PlacesAlong<S>> {
+    let quotients = Quotients::new(s, texels, numerators, divisors, range)?;
+    Some(ExactAlong { quotients, first: range.0, exact })
+}
+
+/// Quotients, and what decides where they cannot.
+#[cfg(feature = "alloc")]
+struct ExactAlong<S: Lanes8, E> {
+    quotients: Quotients<S>,
+    /// The number of the next texel.
+    first: usize,
+    exact: E,
+}
+
+#[cfg(feature = "alloc")]
+impl<S: Lanes8, E: Fn(usize, &mut [i32; LANES])> PlacesAlong<S> for ExactAlong<S, E> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        let first = self.first;
+        self.first += LANES;
+        let places = self.quotients.next();
+        if self.quotients.unsure == 0 {
+            return places;
         }
-        return is_sure;
+        self.quotients.unsure = 0;
+        let mut eight = [0; LANES];
+        (self.exact)(first, &mut eight);
+        self.quotients.at.s.load_i32(&eight)
     }
-    let range = (skipped, skipped + length);
-    let Some(mut quotients) = Quotients::new(s, texels, numerators, divisors, range) else { return false };
-    show_along(s, (row, length), texels, tint, &mut quotients);
-    quotients.unsure == 0
+
+    #[inline(always)]
+    fn skip(&mut self) {
+        self.first += LANES;
+        self.quotients.skip();
+    }
 }
 
 /// The quotients of [`perspective_places`], eight at a time.
@@ -845,9 +935,10 @@ impl<S: Lanes8> Quotients<S> {
         (first, end): (usize, usize),
     ) -> Option<Self> {
         // At most PIECE.
-        let last = d + (end as f64 - 1.0) * dd;
+        let last = d + (end as i32 - 1) as f64 * dd;
+        let (least, greatest) = if d < last { (d, last) } else { (last, d) };
         // False for NaN too.
-        let is_sure = d.min(last) * MAX_RATIO >= d.max(last);
+        let is_sure = least * MAX_RATIO >= greatest;
         is_sure.then(|| Self {
             at: PlaceLanes::new(s, texels),
             numerators,
@@ -859,6 +950,12 @@ impl<S: Lanes8> Quotients<S> {
         })
     }
 
+    /// Leaves out the next eight.
+    #[inline(always)]
+    fn skip(&mut self) {
+        self.numbers = self.at.s.add_i32(self.numbers, self.at.s.splat_i32(LANES as i32));
+    }
+
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
         let (s, [[u, du], [v, dv]], [d, dd]) = (self.at.s, self.numerators, self.divisors);
@@ -868,19 +965,11 @@ impl<S: Lanes8> Quotients<S> {
         // Modulo 2³². Lanes beyond the last may hold anything.
         let u = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(du), s.splat_f64(u)), reciprocal, magic));
         let v = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(dv), s.splat_f64(v)), reciprocal, magic));
+        let least = s.min_i32(s.and_i32(u, fraction), s.and_i32(v, fraction));
         let is_there = s.is_greater(self.end, self.numbers);
-        self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(u, fraction), zero)));
-        self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(s.and_i32(v, fraction), zero)));
-        self.numbers = s.add_i32(self.numbers, s.splat_i32(LANES as i32));
+        self.unsure |= s.to_bitmask(s.and(is_there, s.is_equal(least, zero)));
+        self.skip();
         // By a product, since shifts are by constants.
         self.at.at(u, s.mul_i32(v, self.width))
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<S: Lanes8> PlacesAlong<S> for &mut Quotients<S> {
-    #[inline(always)]
-    fn next(&mut self) -> S::I32 {
-        Quotients::next(self)
     }
 }

@@ -553,24 +553,50 @@ fn without_effects_faces_are_plain_triangles() {
     assert!(long > 50, "{long} with long spans");
 }
 
+/// What is left of a look if one loop is to show its texels, without stages.
+fn fused(look: PixelPipeline<'_>) -> PixelPipeline<'_> {
+    let source = match look.source {
+        ShadeSource::Shaded(Interpolation::Flat(_) | Interpolation::Gouraud) => look.source,
+        _ => ShadeSource::Shaded(Interpolation::GouraudReseeded),
+    };
+    let texture = look.texture.map(|stage| TextureStage { levels: None, ..stage });
+    PixelPipeline { source, channels: None, dither: None, texture, ..look }
+}
+
 /// With a depth buffer a pixel is drawn where it is nearer, and the depth is stored if the look says so.
 #[test]
 fn effects_keep_to_the_depth_buffer() {
     let mut tried = Tried::new("effects_keep_to_the_depth_buffer", 400);
     let mut random = Random::named("effects, depth");
     let stock = Stock::new(&mut random);
+    let kernels: Vec<Kernel> = Kernel::available().collect();
     while tried.more() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
         let attributes = attributes(&mut random);
-        let look = look(&mut random, &stock);
+        let look = match random.within(0, 1) {
+            0 => look(&mut random, &stock),
+            _ => fused(look(&mut random, &stock)),
+        };
         let whole = draw(SIZE, &vertices, &attributes, &look, None, Kernel::PORTABLE);
         let corners = vertices.each_ref().map(oracle::point);
         let has_area = oracle::edge(corners[0], corners[1], corners[2]) != 0;
-        let before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+        let mut before: Vec<u32> = (0..WIDTH * HEIGHT).map(|_| random.log_uniform(30) as u32).collect();
+        // Runs that hide everything, so that whole blocks of a span are skipped.
+        let mut rest = &mut before[..];
+        while !rest.is_empty() {
+            let run = rest.len().min(random.within(1, 40) as usize);
+            let (hidden, behind) = rest.split_at_mut(run);
+            if random.within(0, 1) == 0 {
+                hidden.fill(u32::MAX);
+            }
+            rest = behind;
+        }
+        let kernel = random.one_of(&kernels);
         let (mut depths, mut bytes) = (before.clone(), SIZE.pixels());
         let drawn = SIZE.draw(&mut bytes, SIZE.rows(), |frame| {
             let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
-            Raster::new(frame).with_depth(buffer).triangle_with_effects(&vertices, &attributes, &look)
+            let mut raster = Raster::new(frame).with_kernel(kernel).with_depth(buffer);
+            raster.triangle_with_effects(&vertices, &attributes, &look)
         });
         let mut written = 0;
         for y in 0..HEIGHT {

@@ -1,4 +1,4 @@
-//! Pipelines whose texels need no stage before them: one loop per span shows them.
+//! Pipelines whose pixels need no stage before fog and blending: one loop per span shows them.
 
 use super::pipeline::{PixelPipeline, ShadeSource};
 use crate::fixed::IS_SMALL;
@@ -6,15 +6,16 @@ use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
 use crate::span::texture::Texels;
 
-/// How the texels of faces are shown by one loop per span, with no buffer between.
+/// How the pixels of faces are shown by one loop per span, with no buffer between.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DirectTexture<'a> {
-    pub(super) image: Texels<'a>,
-    pub(super) is_perspective: bool,
-    pub(super) tint: DirectTint<'a>,
+pub(super) enum Direct<'a> {
+    /// Linear shades, to be fogged.
+    Shades,
+    /// Texels of an image, linear on the face if it is in perspective, otherwise on the screen.
+    Texture { image: Texels<'a>, is_perspective: bool, tint: DirectTint<'a> },
 }
 
-/// How the texels are tinted.
+/// How texels are tinted.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectTint<'a> {
     /// None: texels are shown as they are.
@@ -25,27 +26,39 @@ pub(super) enum DirectTint<'a> {
     Lit(&'a [u8; 65_536]),
 }
 
-impl<'a> DirectTexture<'a> {
-    /// The direct texture of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
+/// A row of a table that shows every texel as it is.
+static IDENTITY: [u8; 256] = {
+    let mut row = [0; 256];
+    let mut texel = 0_u8;
+    while texel < 255 {
+        texel += 1;
+        row[texel as usize] = texel;
+    }
+    row
+};
+
+impl<'a> Direct<'a> {
+    /// The direct form of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
         // A build for size has no loop for each tint: it finds the places of texels, and then looks these up.
-        let stage = pipeline.texture().filter(|_| !IS_SMALL)?;
+        if IS_SMALL || pipeline.channels().is_some() {
+            return None;
+        }
+        let is_linear = pipeline.dither().is_none()
+            && matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded));
+        let Some(stage) = pipeline.texture() else { return is_linear.then_some(Self::Shades) };
+        if pipeline.levels().is_some() || stage.mapping == Mapping::Every16 {
+            return None;
+        }
         let table = stage.tables[0];
-        let is_plain =
-            pipeline.levels().is_none() && pipeline.channels().is_none() && stage.mapping != Mapping::Every16;
         let tint = match pipeline.source {
             ShadeSource::Shaded(Interpolation::Flat(shade)) => {
                 let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
-                let is_identity = row.iter().zip(0..=255).all(|(byte, texel)| *byte == texel);
-                if is_identity { DirectTint::None } else { DirectTint::Row(row) }
+                if *row == IDENTITY { DirectTint::None } else { DirectTint::Row(row) }
             }
-            ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded)
-                if pipeline.dither().is_none() =>
-            {
-                DirectTint::Lit(table)
-            }
+            _ if is_linear => DirectTint::Lit(table),
             _ => return None,
         };
-        is_plain.then_some(Self { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
+        Some(Self::Texture { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
     }
 }

@@ -8,7 +8,7 @@
 //! light are computed by the stage that needs them, from the planes that set-up leaves for eight faces and the span's
 //! [`Mark`].
 
-use super::direct::DirectTexture;
+use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
@@ -180,8 +180,6 @@ pub(super) struct FacePlanes8 {
     /// The first pixel of the box.
     pub(super) column: Ints,
     pub(super) row: Ints,
-    /// The depth there, with 32 fraction bits, and its change per column and per row.
-    pub(super) z: [[i64; 3]; LANES],
     values: [ValuePlanes8; Value::MAX_COUNT],
     pub(super) affine: AffinePlanes8,
     pub(super) perspective: PerspectivePlanes8,
@@ -191,7 +189,6 @@ impl FacePlanes8 {
     const NONE: Self = Self {
         column: [0; LANES],
         row: [0; LANES],
-        z: [[0; 3]; LANES],
         values: [ValuePlanes8::NONE; Value::MAX_COUNT],
         affine: AffinePlanes8::NONE,
         perspective: PerspectivePlanes8::NONE,
@@ -256,7 +253,7 @@ impl Wanted {
 pub(super) struct WalkedFace {
     pub(super) face: SortedFace,
     shade: ShadePlane,
-    pub(super) depth: DepthPlane,
+    depth: DepthPlane,
     values: [Option<ShadePlane>; Value::MAX_COUNT],
 }
 
@@ -273,10 +270,8 @@ pub(super) struct Listed<'a> {
     pub(super) has_texture: bool,
     /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
-    /// How texels are shown by one loop per span, where possible.
-    pub(super) direct: Option<DirectTexture<'a>>,
-    /// The first row of the frame.
-    pub(super) first_row: u32,
+    /// How pixels are shown by one loop per span, where possible.
+    pub(super) direct: Option<Direct<'a>>,
 }
 
 impl Listed<'_> {
@@ -332,25 +327,12 @@ impl<'a> EffectSpans<'a> {
         pipeline: &'a PixelPipeline<'a>,
         Columns { planes, numbers, coordinates, sums }: &'a mut Columns,
         buffers: &'a mut Buffers,
-        first_row: u32,
     ) -> Self {
         let wanted = Wanted::by(pipeline);
-        let direct = DirectTexture::of(pipeline);
+        let direct = Direct::of(pipeline);
         let (batches, has_texture) = (Batches::NONE, wanted.texture.is_some());
         let walked = None;
-        let listed = Listed {
-            faces,
-            wanted,
-            planes,
-            batches,
-            numbers,
-            coordinates,
-            sums,
-            has_texture,
-            walked,
-            direct,
-            first_row,
-        };
+        let listed = Listed { faces, wanted, planes, batches, numbers, coordinates, sums, has_texture, walked, direct };
         Self { listed, pipeline, buffers }
     }
 
@@ -386,7 +368,7 @@ impl<'a> EffectSpans<'a> {
             if !list.has_room(1) {
                 self.draw_spans(list, target);
             }
-            let Some(WalkedFace { shade, values, .. }) = &self.listed.walked else { return };
+            let Some(WalkedFace { shade, depth, values, .. }) = &self.listed.walked else { return };
             let reseeds = self.listed.wanted.reseeds;
             let value = |plane: &ShadePlane, reseeds: bool| {
                 let start = match reseeds {
@@ -406,7 +388,8 @@ impl<'a> EffectSpans<'a> {
                 of_slots[slot] = plane.as_ref().map_or(0, |plane| value(plane, reseeds));
             }
             // A column of a frame.
-            if let Some(k) = list.push((x as usize, (end - x) as usize), paint) {
+            let z = depth.fixed_at(x, row.y);
+            if let Some(k) = list.push((x as usize, (end - x) as usize), paint, [z << 8, depth.step() << 8]) {
                 let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);
@@ -447,9 +430,6 @@ impl Shades8 for EffectSpans<'_> {
         let picks = &picks.range(first, picks.picks.len().min(first + LANES));
         let planes = &mut planes[batches.current()];
         (planes.column, planes.row) = (setup.column, setup.row);
-        for (i, z) in planes.z.iter_mut().enumerate() {
-            *z = [setup.z[i], setup.z_per_column[i], setup.z_per_row[i]];
-        }
         if let Some(mapping) = wanted.texture {
             let of_corners = texture_of_corners(triangles, picks);
             match mapping {
@@ -544,10 +524,7 @@ impl Shades8 for EffectSpans<'_> {
     }
 
     #[inline(always)]
-    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
-        let (planes, i) = (&mut self.listed.planes[self.listed.batches.current()], i % LANES);
-        planes.z[i] = [setup.z[i], setup.z_per_column[i], setup.z_per_row[i]];
-    }
+    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
 
     #[inline(always)]
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {

@@ -38,7 +38,6 @@ mod texture;
 use alloc::vec::Vec;
 
 pub use self::batch::EffectBatch;
-use self::direct::DirectTexture;
 use self::listing::{Columns, EffectSpans, Faces, Listed};
 pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
@@ -51,9 +50,10 @@ use super::reference::cover::Row;
 use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
-use crate::fixed::{HAS_F64, IS_SMALL};
+use crate::fixed::HAS_F64;
 use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
-use crate::span::depth::Cells;
+use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
+use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
 use crate::span::texture::Shown;
 use crate::span::{Kernel, lookup};
@@ -132,7 +132,7 @@ impl EffectScratch {
         let Some((list, columns)) = self.lists.first_mut() else { return };
         list.begin((pixels.len(), 0), (pixels.len(), 0));
         let mut target = Target { pixels, cells: None, kernel };
-        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers, 0);
+        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers);
         spans.walk(k);
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
@@ -165,18 +165,16 @@ fn draw_listed(
     buffers: &mut Buffers,
     target: &mut Target<'_>,
 ) -> u32 {
-    if target.cells.is_none()
-        && pipeline.fog().is_none()
-        && let Some(texture) = listed.direct
+    if let Some(direct) = listed.direct
+        && let Some(nearer) = direct.show(&Spans::all(listed, list), pipeline, target)
     {
-        texture.show_in_frame(&Spans::all(listed, list), pipeline.blend(), target.pixels, target.kernel);
-        return 0;
+        return nearer;
     }
     let (mut first, mut nearer) = (0, 0);
     let mut offsets = [0; SpanList::CAPACITY + 1];
     while first < list.count() {
         let spans = Spans::of(listed, list, first, &mut offsets);
-        run_stages(&spans, (listed.direct, pipeline), buffers, target.kernel);
+        run_stages(&spans, pipeline, buffers, target.kernel);
         nearer += write(&spans, pipeline, &mut buffers.bytes, target);
         first += spans.count();
     }
@@ -185,15 +183,7 @@ fn draw_listed(
 
 /// Passes spans through the stages before blending, and leaves their bytes in the buffers.
 #[inline(never)]
-fn run_stages(
-    spans: &Spans<'_>,
-    (direct, pipeline): (Option<DirectTexture<'_>>, &PixelPipeline<'_>),
-    buffers: &mut Buffers,
-    kernel: Kernel,
-) {
-    if let Some(texture) = direct {
-        return texture.show_in_buffer(spans, pipeline.fog(), &mut buffers.bytes, kernel);
-    }
+fn run_stages(spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, buffers: &mut Buffers, kernel: Kernel) {
     spans.shade(buffers, pipeline, kernel);
     if let Some(table) = pipeline.fog() {
         let Buffers { bytes, other: levels, .. } = buffers;
@@ -209,97 +199,120 @@ fn write(
     bytes: &mut [u8],
     Target { pixels, cells, kernel }: &mut Target<'_>,
 ) -> u32 {
-    match (cells, pipeline.blend()) {
-        (Some(Cells::U32(cells)), _) => write_where_nearer(spans, pipeline, bytes, (pixels, cells), *kernel),
-        (Some(Cells::U16(cells)), _) => write_where_nearer(spans, pipeline, bytes, (pixels, cells), *kernel),
-        (None, None) => write_all::<false>(*kernel, *kernel, spans, bytes, None, pixels),
-        (None, blend) => write_all::<true>(*kernel, *kernel, spans, bytes, blend, pixels),
-    }
-}
-
-fn write_where_nearer<D: Cell>(
-    spans: &Spans<'_>,
-    pipeline: &PixelPipeline<'_>,
-    bytes: &mut [u8],
-    target: (&mut [u8], &mut [D]),
-    kernel: Kernel,
-) -> u32 {
-    match (pipeline.blend(), pipeline.keeps_depth) {
-        // A build for size asks each span whether it blends.
-        (blend, true) if IS_SMALL => write_nearer::<D, true, true>(kernel, kernel, spans, bytes, blend, target),
-        (blend, false) if IS_SMALL => write_nearer::<D, true, false>(kernel, kernel, spans, bytes, blend, target),
-        (None, true) => write_nearer::<D, false, true>(kernel, kernel, spans, bytes, None, target),
-        (None, false) => write_nearer::<D, false, false>(kernel, kernel, spans, bytes, None, target),
-        (blend, true) => write_nearer::<D, true, true>(kernel, kernel, spans, bytes, blend, target),
-        (blend, false) => write_nearer::<D, true, false>(kernel, kernel, spans, bytes, blend, target),
+    let (level, blend, keeps) = (kernel.simd_level(), pipeline.blend(), pipeline.keeps_depth);
+    match cells {
+        Some(Cells::U32(cells)) if kernel.has_wide_lanes() => {
+            write_nearer(level, spans, (bytes, blend), (pixels, cells), keeps)
+        }
+        Some(Cells::U32(cells)) => write_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
+        Some(Cells::U16(cells)) => write_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
+        None => write_all(*kernel, *kernel, spans, (bytes, blend), pixels),
     }
 }
 
 at_best_level! {
     /// Writes spans without a depth test.
     #[inline(never)]
-    fn write_all[const BLENDS: bool][BLENDS](
+    fn write_all[][](
         level: Kernel,
         kernel: Kernel,
         spans: &Spans<'_>,
-        bytes: &mut [u8],
-        blend: Option<&[u8; 65_536]>,
+        bytes: (&mut [u8], Option<&[u8; 65_536]>),
         pixels: &mut [u8],
     ) -> u32 {
-        write_each::<u32, BLENDS, true>(kernel, spans, bytes, blend, (pixels, None))
-    }
-}
-
-at_best_level! {
-    /// Writes spans where they are nearer, and with `KEEPS` stores their depths.
-    #[inline(never)]
-    fn write_nearer[D: Cell, const BLENDS: bool, const KEEPS: bool][D, BLENDS, KEEPS](
-        level: Kernel,
-        kernel: Kernel,
-        spans: &Spans<'_>,
-        bytes: &mut [u8],
-        blend: Option<&[u8; 65_536]>,
-        target: (&mut [u8], &mut [D]),
-    ) -> u32 {
-        write_each::<D, BLENDS, KEEPS>(kernel, spans, bytes, blend, (target.0, Some(target.1)))
+        write_all_by(kernel, spans, bytes, pixels)
     }
 }
 
 #[inline(always)]
-fn write_each<D: Cell, const BLENDS: bool, const KEEPS: bool>(
+fn write_all_by(
     kernel: Kernel,
     spans: &Spans<'_>,
-    bytes: &mut [u8],
-    blend: Option<&[u8; 65_536]>,
-    (pixels, mut cells): (&mut [u8], Option<&mut [D]>),
+    (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
+    pixels: &mut [u8],
+) -> u32 {
+    for i in 0..spans.count() {
+        if let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) {
+            kernel.copy(spans.drawn(i).2, row, bytes);
+        }
+    }
+    0
+}
+
+compiled_for_each_level! {
+    /// Writes spans where they are nearer, and if it keeps depths stores theirs.
+    #[inline(never)]
+    fn write_nearer[][](
+        spans: &Spans<'_>,
+        bytes: (&mut [u8], Option<&[u8; 65_536]>),
+        target: (&mut [u8], &mut [u32]),
+        keeps: bool,
+    ) -> u32 = write_nearer_by;
+}
+
+#[inline(always)]
+fn write_nearer_by<S: Lanes8>(
+    s: S,
+    spans: &Spans<'_>,
+    (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
+    (pixels, cells): (&mut [u8], &mut [u32]),
+    keeps: bool,
 ) -> u32 {
     let mut nearer = 0;
     for i in 0..spans.count() {
-        let (first, at, length) = spans.drawn(i);
-        let Some(row) = pixels.get_mut(at..) else { continue };
-        let bytes = &mut bytes[first..];
-        if BLENDS && let Some(table) = blend {
-            // The table's row is the face's own index.
-            for (byte, there) in bytes.iter_mut().zip(row.iter()).take(length) {
-                table.show(byte, *there);
-            }
-        }
-        match &mut cells {
-            None => kernel.copy(length, row, bytes),
-            Some(cells) => {
-                let (cell, [z, dz]) = spans.depth(i);
-                let Some(cells) = cells.get_mut(cell..) else { continue };
-                nearer += kernel.copy_where_nearer::<D, KEEPS>(length, row, cells, bytes, z, dz);
-            }
-        }
+        let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) else { continue };
+        let ((cell, depths), length) = (spans.depth(i), spans.drawn(i).2);
+        nearer += copy_span(s, (row, cells.get_mut(cell..).unwrap_or_default()), (bytes, length), keeps, depths);
     }
     nearer
 }
 
+/// [`write_nearer`] pixel by pixel, for depth buffers of 16 bits and for levels where vectors gain nothing.
+#[inline(never)]
+fn write_one_by_one<D: Cell>(
+    spans: &Spans<'_>,
+    (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
+    (pixels, cells): (&mut [u8], &mut [D]),
+    keeps: bool,
+) -> u32 {
+    let mut nearer = 0;
+    for i in 0..spans.count() {
+        let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) else { continue };
+        let (cell, [z, dz]) = spans.depth(i);
+        let Some(cells) = cells.get_mut(cell..) else { continue };
+        let (bytes, z, dz) = (&bytes[..spans.drawn(i).2], z >> 8, dz >> 8);
+        nearer += match keeps {
+            true => copy_nearer(row, cells, bytes, z, dz),
+            false => copy_nearer_keep_depth(row, cells, bytes, z, dz),
+        };
+    }
+    nearer
+}
+
+/// The frame from the first drawn pixel of span `i` on, and the span's bytes, blended if there is a table.
+#[inline(always)]
+fn mixed<'a>(
+    spans: &Spans<'_>,
+    i: usize,
+    (bytes, blend): (&'a mut [u8], Option<&[u8; 65_536]>),
+    pixels: &'a mut [u8],
+) -> Option<(&'a mut [u8], &'a [u8])> {
+    let (first, at, length) = spans.drawn(i);
+    let (row, bytes) = (pixels.get_mut(at..)?, &mut bytes[first..]);
+    if let Some(table) = blend {
+        // The table's row is the face's own index.
+        let n = length.min(bytes.len()).min(row.len());
+        for (byte, there) in bytes[..n].iter_mut().zip(&row[..n]) {
+            table.show(byte, *there);
+        }
+    }
+    Some((row, bytes))
+}
+
 compiled_for_each_level! {
-    /// Draws triangles with effects, and if there are depth cells, only their nearer pixels.
+    /// Draws triangles with effects, with `DEPTHS` only their nearer pixels.
     #[inline(never)]
-    fn draw_effects[][](
+    fn draw_effects[const DEPTHS: bool][DEPTHS](
         of: Drawn<'_>,
         effects: (&mut EffectSpans<'_>, &mut SpanList),
         place: Place,
@@ -308,14 +321,14 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn draw_effects_by<S: Lanes8>(
+fn draw_effects_by<S: Lanes8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
     (effects, list): (&mut EffectSpans<'_>, &mut SpanList),
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_triangles::<S, _, true, false>(s, of, place, target, effects, list)
+    draw_triangles::<S, _, true, DEPTHS>(s, of, place, target, effects, list)
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -343,15 +356,19 @@ impl<D: Cell> Raster<'_, D> {
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             if together > 0 {
                 let picks = picks.range(first, first + together);
-                let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers, rows.start);
+                let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
                 let of = Drawn { triangles, picks, in_pieces: true };
                 let (pixels, _) = self.frame.pixels_mut();
                 let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
-                drawn += draw_effects(kernel.simd_level(), of, (&mut spans, list), (layout, clip), target);
+                let (level, place) = (kernel.simd_level(), (layout, clip));
+                drawn += match target.cells {
+                    Some(_) => draw_effects::<true>(level, of, (&mut spans, list), place, target),
+                    None => draw_effects::<false>(level, of, (&mut spans, list), place, target),
+                };
                 first += together;
                 continue;
             }
-            let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers, rows.start);
+            let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
             drawn += self.walk((&mut spans, list), first);
             first += 1;
         }

@@ -84,7 +84,7 @@ impl Shades8 for Recorder<'_> {
                     span: spans.span(i),
                     affine: spans.fits_affine(i).then(|| spans.affine_start(i)),
                     perspective: [spans.sums(i), spans.sum_steps(i)],
-                    depth: spans.depth(i).1,
+                    depth: spans.depth(i).1.map(|z| z >> 8),
                 });
             }
             first += spans.count();
@@ -103,7 +103,7 @@ fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: 
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
     let mut pixels = [0; 4_096];
     let target = &mut Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
-    draw_triangles::<S, _, true, false>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
+    draw_triangles::<S, _, true, true>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
 }
 
 /// The spans of faces, none of them unbatched, in a frame of 4,096 × 4,096 pixels.
@@ -114,7 +114,7 @@ pub(super) fn record(
     pipeline: &PixelPipeline<'_>,
 ) -> Vec<Recorded> {
     let (mut columns, mut buffers) = (Columns::NONE, Buffers::default());
-    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut columns, &mut buffers, 0);
+    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut columns, &mut buffers);
     let mut recorder = Recorder { spans, recorded: Vec::new() };
     let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
     record_at_level(kernel.simd_level(), Drawn { triangles, picks, in_pieces: true }, &mut recorder, clip);

@@ -264,21 +264,12 @@ impl<'a> Spans<'a> {
         });
     }
 
-    /// Where the bytes of span `i` begin, how many there are, and how many of its first pixels are left out: with
-    /// `DIRECT` the drawn pixels in the frame, otherwise all of them in the buffer of all pixels.
+    /// Where the drawn pixels of span `i` lie in the frame, how many there are, and how many of its first pixels are
+    /// hidden by the clip rectangle.
     #[inline(always)]
-    pub(super) fn target<'o, const DIRECT: bool>(
-        &self,
-        i: usize,
-        out: &'o mut [u8],
-    ) -> Option<(&'o mut [u8], usize, u32)> {
+    pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
-        if DIRECT {
-            let (at, length) = (self.list.offset(k) as usize, self.list.fill_of(k).0);
-            return Some((out.get_mut(at..)?, length, self.listed.mark(k).skipped()));
-        }
-        let (first, length) = self.range(i);
-        Some((out.get_mut(first..)?, length, 0))
+        (self.list.offset(k) as usize, self.list.fill_of(k).0, self.listed.mark(k).skipped())
     }
 
     /// Where the drawn pixels of span `i` are among those of all spans, where they lie in the frame, and how many there
@@ -291,23 +282,10 @@ impl<'a> Spans<'a> {
     }
 
     /// Where the first drawn pixel of span `i` lies in the depth buffer, its depth, and the change per pixel, both with
-    /// 24 fraction bits.
+    /// the integer part in the upper half.
     #[inline(always)]
     pub(super) fn depth(&self, i: usize) -> (usize, [i64; 2]) {
-        let k = self.first + i;
-        let mark = self.listed.mark(k);
-        // At most 63.
-        let ([column, row], skipped) = (mark.place(), mark.skipped() as i32);
-        if let Some(walked) = &self.listed.walked {
-            let z = walked.depth.fixed_at(column + skipped, row);
-            return (self.list.offset(k) as usize, [z, walked.depth.step()]);
-        }
-        let (planes, lane) = self.listed.planes(mark.face());
-        let [z, per_column, per_row] = planes.z[lane];
-        let z = z.wrapping_add(per_column.wrapping_mul((column + skipped).into()));
-        let z = z.wrapping_add(per_row.wrapping_mul(row.into()));
-        let place = [planes.column[lane] + column + skipped, planes.row[lane] + row];
-        (self.list.cell_at(k, place, self.listed.first_row), [z >> 8, per_column >> 8])
+        self.list.depth_at(self.first + i)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The span with a depth test in AVX2, for shades and for bytes: four pixels per iteration in the shortest spans, eight
+//! The span with a depth test in AVX2: four pixels per iteration in the shortest spans, eight
 //! in others, and sixteen for shades in spans longer than eight.
 //!
 //! Pixels of an iteration that are not part of the span get depth 0, which is not nearer than anything, so they are
@@ -8,12 +8,10 @@
 //! reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
 
 use core::arch::x86_64::*;
-use core::ops::Range;
 
-use super::super::depth::{copy_nearer, fill_nearer};
-use super::super::list::{Span, SpanBytes, SpanDepth, SpanList};
-use crate::simd::Avx2;
-use crate::span::fixed16::fill_16_16 as fill_16_16_portable;
+use super::super::depth::{fill_nearer, fill_nearer_16_16};
+use super::super::list::{Span, SpanDepth, SpanList};
+use crate::simd::{Avx2, SET_THEN_CLEAR};
 
 /// Pixels per iteration, ...
 const EIGHT: usize = 8;
@@ -26,18 +24,6 @@ const FOUR: usize = 4;
 pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
     unsafe { fill(pixels, cells, spans.tested_spans(), |_, _| Own::Linear) }
-}
-
-/// Copies the bytes of some spans of a list where they are nearer. Returns the number of pixels written.
-pub(crate) fn copy_spans(
-    _: Avx2,
-    pixels: &mut [u8],
-    cells: &mut [u32],
-    (spans, range): (&SpanList, Range<usize>),
-    bytes: &SpanBytes,
-) -> u32 {
-    // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill(pixels, cells, spans.tested_spans_of(range), |number, _| Own::Bytes(bytes.of(number))) }
 }
 
 /// Fills every span of a list where it is nearer, with shades in 16.16: `shades` gives the first one and the step. Returns the
@@ -68,12 +54,11 @@ fn fill_16_16(
 
 /// What a span is filled with.
 #[derive(Clone, Copy)]
-enum Own<'a> {
+enum Own {
     /// Its own shade and step in 8.8.
     Linear,
     /// A shade and a step in 16.16.
     Fixed16(u32, u32),
-    Bytes(&'a [u8; SpanBytes::LENGTH]),
 }
 
 /// Fills spans in order. Returns the number of pixels written.
@@ -81,11 +66,11 @@ enum Own<'a> {
 /// A span that does not lie inside the pixels and cells is not drawn. (One function for a list: one for each span,
 /// which is too large to be inlined in the loop, is a quarter slower.)
 #[target_feature(enable = "avx2")]
-fn fill<'a>(
+fn fill(
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: impl Iterator<Item = (Span, SpanDepth)>,
-    own: impl Fn(usize, &Span) -> Own<'a>,
+    own: impl Fn(usize, &Span) -> Own,
 ) -> u32 {
     // Pixels of all iterations, and per lane those that were not written, as a negative count. Sums are modulo 2³².
     let mut turned = 0_u32;
@@ -122,12 +107,7 @@ fn fill<'a>(
         if let (Some(row), Some(near)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
             let (z, dz) = (depth.z >> 8, depth.dz >> 8);
             let written = match own {
-                Own::Bytes(bytes) => copy_nearer(row, near, bytes, z, dz),
-                Own::Fixed16(start, step) => {
-                    let mut bytes = [0; SpanBytes::LENGTH];
-                    fill_16_16_portable(&mut bytes, start, step);
-                    copy_nearer(row, near, &bytes, z, dz)
-                }
+                Own::Fixed16(start, step) => fill_nearer_16_16(row, near, [start, step], z, dz),
                 Own::Linear => fill_nearer(row, near, span.paint as u16, (span.paint >> 16) as u16, z, dz),
             };
             turned = turned.wrapping_add(written);
@@ -139,95 +119,7 @@ fn fill<'a>(
     turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
 }
 
-/// Copies the first `length` bytes like [`copy_nearer`](super::super::depth::copy_nearer), or without `KEEPS` like
-/// [`copy_nearer_keep_depth`](super::super::depth::copy_nearer_keep_depth). Returns the number of pixels written;
-/// `None`, with nothing done, if something is shorter than the iterations.
-#[inline]
-pub(crate) fn copy<const KEEPS: bool>(
-    _: Avx2,
-    length: usize,
-    row: &mut [u8],
-    cells: &mut [u32],
-    bytes: &[u8],
-    z: i64,
-    dz: i64,
-) -> Option<u32> {
-    // With 32 fraction bits.
-    let (z, dz) = (z << 8, dz << 8);
-    if length <= FOUR {
-        let (row, cells, bytes) = (row.first_chunk_mut()?, cells.first_chunk_mut()?, bytes.first_chunk()?);
-        // SAFETY: the token proves that the processor has AVX2.
-        return Some(unsafe { copy_four::<KEEPS>(length, row, cells, bytes, z, dz) });
-    }
-    let whole = length.next_multiple_of(EIGHT);
-    let (row, cells, bytes) = (row.get_mut(..whole)?, cells.get_mut(..whole)?, bytes.get(..whole)?);
-    // SAFETY: the token proves that the processor has AVX2.
-    Some(unsafe { copy_eights::<KEEPS>(length, row, cells, bytes, z, dz) })
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn copy_four<const KEEPS: bool>(
-    length: usize,
-    row: &mut [u8; FOUR],
-    cells: &mut [u32; FOUR],
-    bytes: &[u8; FOUR],
-    z: i64,
-    dz: i64,
-) -> u32 {
-    let stay = four_stay::<KEEPS>(cells, z, dz, length);
-    // The lowest byte of each, and zeros.
-    let stays = _mm_shuffle_epi8(stay, _mm_setr_epi32(0x0C08_0400, -1, -1, -1));
-    let before = _mm_cvtsi32_si128(i32::from_le_bytes(*row));
-    let after = _mm_cvtsi32_si128(i32::from_le_bytes(*bytes));
-    *row = _mm_cvtsi128_si32(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
-    FOUR as u32 - ones(stays)
-}
-
-#[inline]
-#[target_feature(enable = "avx2")]
-fn copy_eights<const KEEPS: bool>(
-    length: usize,
-    row: &mut [u8],
-    cells: &mut [u32],
-    bytes: &[u8],
-    z: i64,
-    dz: i64,
-) -> u32 {
-    let mut depths = Depths::new(z, dz, length);
-    let mut written = 0;
-    let (rows, cells, bytes) =
-        (row.as_chunks_mut::<EIGHT>().0, cells.as_chunks_mut::<EIGHT>().0, bytes.as_chunks::<EIGHT>().0);
-    let n = rows.len().min(cells.len()).min(bytes.len());
-    let (cells, bytes) = (&mut cells[..n], &bytes[..n]);
-    for (i, row) in rows[..n].iter_mut().enumerate() {
-        let stay = depths.stay::<KEEPS>(&mut cells[i]);
-        // The lowest byte of each.
-        let stays = _mm256_shuffle_epi8(stay, _mm256_set1_epi32(0x0C08_0400));
-        let stays = _mm_unpacklo_epi32(_mm256_castsi256_si128(stays), _mm256_extracti128_si256(stays, 1));
-        let before = _mm_cvtsi64_si128(i64::from_le_bytes(*row));
-        let after = _mm_cvtsi64_si128(i64::from_le_bytes(bytes[i]));
-        *row = _mm_cvtsi128_si64(_mm_blendv_epi8(after, before, stays)).to_le_bytes();
-        written += EIGHT as u32 - ones(stays);
-    }
-    written
-}
-
-/// How many of the lower eight bytes are −1, the others being 0.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn ones(bytes: __m128i) -> u32 {
-    let zero = _mm_setzero_si128();
-    _mm_cvtsi128_si32(_mm_sad_epu8(_mm_sub_epi8(zero, bytes), zero)).cast_unsigned()
-}
-
-/// Eight lanes that are set, and eight that are not.
-static SET_THEN_CLEAR: [i32; 2 * EIGHT] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
-
 /// The first `count` lanes set, at most eight.
-///
-/// (Loaded from memory, not computed by a comparison: from that the compiler knows that the cleared lanes are stored as
-/// they were read, and stores the others with `vpmaskmovd`, which takes 20 cycles on AMD processors.)
 #[inline]
 #[target_feature(enable = "avx2")]
 fn first_eight(count: usize) -> __m256i {
@@ -334,7 +226,7 @@ fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length
 /// not written, as a negative count.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own<'_>) -> __m256i {
+fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own) -> __m256i {
     let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
     let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     let (mut shades, next_shade) = match own {
@@ -350,7 +242,6 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
             let start = _mm256_set1_epi32(start.cast_signed());
             (_mm256_add_epi32(_mm256_mullo_epi32(steps, lanes), start), _mm256_slli_epi32(steps, 3))
         }
-        Own::Bytes(_) => (_mm256_setzero_si256(), _mm256_setzero_si256()),
     };
     let mut stayed = _mm256_setzero_si256();
     let (pixels, cells) = (row.as_chunks_mut::<EIGHT>().0, cells.as_chunks_mut::<EIGHT>().0);
@@ -361,10 +252,6 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
         // SAFETY: eight bytes; the load requires no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let after = match own {
-            Own::Bytes(own) => {
-                let own = own.as_chunks::<EIGHT>().0[i % (SpanBytes::LENGTH / EIGHT)];
-                _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(i64::from_le_bytes(own)))
-            }
             Own::Fixed16(..) => _mm256_srli_epi32(shades, 16),
             Own::Linear => _mm256_srli_epi32(shades, 8),
         };
@@ -430,12 +317,11 @@ fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m2
 /// Fills one span of up to four pixels where it is nearer.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own<'_>) -> __m128i {
+fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own) -> __m128i {
     let stay = four_stay::<true>(cells, depth.z, depth.dz, span.length as usize);
     let lanes = _mm_setr_epi32(0, 1, 2, 3);
     let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
     let after = match own {
-        Own::Bytes(&[a, b, c, d, ..]) => _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes([a, b, c, d]))),
         Own::Fixed16(start, step) => {
             let shades = _mm_mullo_epi32(_mm_set1_epi32(step.cast_signed()), lanes);
             _mm_srli_epi32(_mm_add_epi32(shades, _mm_set1_epi32(start.cast_signed())), 16)
