@@ -61,6 +61,32 @@ impl Drawn<'_> {
     }
 }
 
+/// Memory for the spans of picked triangles, kept because clearing it takes 6 % of the time of a small object.
+#[cfg(feature = "alloc")]
+#[derive(Debug)]
+pub(crate) struct SpanScratch(SpanList);
+
+#[cfg(feature = "alloc")]
+impl Default for SpanScratch {
+    fn default() -> Self {
+        Self(SpanList::NONE)
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<D: Cell> Raster<'_, D> {
+    /// [`picks`](Self::picks) in memory that the caller keeps.
+    pub(crate) fn picks_with(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: Picks<'_>,
+        interpolation: Interpolation,
+        SpanScratch(list): &mut SpanScratch,
+    ) -> DrawStats {
+        self.picks_by(triangles, picks, interpolation, list)
+    }
+}
+
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are those of
     /// calling [`triangle`](Self::triangle) for each.
@@ -69,6 +95,17 @@ impl<D: Cell> Raster<'_, D> {
         triangles: &Triangles<'_>,
         picks: Picks<'_>,
         interpolation: Interpolation,
+    ) -> DrawStats {
+        self.picks_by(triangles, picks, interpolation, &mut { SpanList::NONE })
+    }
+
+    #[inline]
+    fn picks_by(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: Picks<'_>,
+        interpolation: Interpolation,
+        list: &mut SpanList,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
@@ -104,11 +141,11 @@ impl<D: Cell> Raster<'_, D> {
             let place = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match (kind, &target.cells) {
-                (Some(kind), _) => draw_shaded(level, of, kind, place, target),
-                (None, Some(_)) if are_flat => draw_nearer_flat(level, of, place, target),
-                (None, None) if are_flat => draw_all_flat(level, of, place, target),
-                (None, Some(_)) => draw_nearer(level, of, place, target),
-                (None, None) => draw_all(level, of, place, target),
+                (Some(kind), _) => draw_shaded(level, of, kind, place, target, list),
+                (None, Some(_)) if are_flat => draw_nearer_flat(level, of, place, target, list),
+                (None, None) if are_flat => draw_all_flat(level, of, place, target, list),
+                (None, Some(_)) => draw_nearer(level, of, place, target, list),
+                (None, None) => draw_all(level, of, place, target, list),
             };
             first += together;
         }
@@ -132,59 +169,90 @@ pub(super) type Place = (FrameLayout, Rect);
 // Without type parameters, so that they are compiled in this crate, and not in each that draws.
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched.
-    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_all_by;
+    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_by;
 }
 
 #[inline(always)]
-fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
+fn draw_all_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched, where they are nearer than the cells.
-    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_nearer_by;
+    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_by;
 }
 
 #[inline(always)]
-fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
+fn draw_nearer_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched, with a single shade each.
-    fn draw_all_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_all_flat_by;
+    fn draw_all_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_flat_by;
 }
 
 #[inline(always)]
-fn draw_all_flat_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Flat, false, false>(s, of, place, target, &mut { Flat::NONE }, &mut { SpanList::NONE })
+fn draw_all_flat_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Flat, false, false>(s, of, place, target, &mut { Flat::NONE }, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched, with a single shade each, where they are nearer than the cells.
-    fn draw_nearer_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_nearer_flat_by;
+    fn draw_nearer_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_flat_by;
 }
 
 #[inline(always)]
-fn draw_nearer_flat_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Flat, true, true>(s, of, place, target, &mut { Flat::NONE }, &mut { SpanList::NONE })
+fn draw_nearer_flat_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Flat, true, true>(s, of, place, target, &mut { Flat::NONE }, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles with a shading other than a linear one in 8.8; if there are cells, only where they are nearer.
     #[inline(never)]
-    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats
+    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats
         = draw_shaded_by;
 }
 
 #[inline(always)]
-fn draw_shaded_by<S: Lanes8>(s: S, of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats {
+fn draw_shaded_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    kind: Kind,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
     // As in `draw_triangles`.
     if !HAS_F64 {
         return DrawStats::default();
     }
     let mut shades = Shaded8::new(kind, of.triangles, of.picks, place.0);
-    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, &mut { SpanList::NONE })
+    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, list)
 }
 
 /// Reads the corners of the first eight of these triangles.
