@@ -30,11 +30,19 @@ pub(super) struct Face {
     pub(super) back_facing: bool,
 }
 
-/// The point at which a flat-shaded face is lit: its middle, and its normal there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FacePoint {
-    normal: Vec3,
-    centre: Vec3,
+/// The points at which flat-shaded faces are lit: their middles, and their normals there.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FacePoints {
+    /// In a list of their own, since suns alone need nothing else.
+    normals: Vec<Vec3>,
+    centres: Vec<Vec3>,
+}
+
+impl FacePoints {
+    /// Its size in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        (self.normals.capacity() + self.centres.capacity()) * size_of::<Vec3>()
+    }
 }
 
 /// One object in one frame: what its faces are drawn from.
@@ -47,7 +55,7 @@ pub(super) struct Faces<'a> {
     pub(super) paints: &'a [SurfaceMaterial],
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
-    pub(super) face_points: &'a [FacePoint],
+    pub(super) face_points: Option<&'a FacePoints>,
     /// True if back faces are culled.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there are none. As a back
@@ -74,9 +82,16 @@ impl<'a> Faces<'a> {
         self.columns.triangles(&self.geometry)
     }
 
+    /// The normals and the middles of faces, if faces are lit.
+    #[inline(always)]
+    fn face_points(&self) -> (&'a [Vec3], &'a [Vec3]) {
+        self.face_points.map_or((&[], &[]), |points| (&points.normals, &points.centres))
+    }
+
     /// The single shade of a face, or its three channels: at its middle, by its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
-        let FacePoint { normal, centre } = self.face_points[face.index as usize];
+        let (normals, centres) = self.face_points();
+        let (normal, centre) = (normals[face.index as usize], centres[face.index as usize]);
         let paint = &self.paints[usize::from(face.surface)];
         if self.channels {
             let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
@@ -168,12 +183,13 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    let (of_faces, _) = faces.face_points();
     let mut normals = [[Vec3::ZERO; LANES]; CHUNK / LANES];
     for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
         // All are gathered before the first is used: vector loads stall when their elements have just been stored one
         // by one.
         for (normal, &pick) in normals.as_flattened_mut().iter_mut().zip(picks) {
-            *normal = faces.face_points[Pick(pick).index()].normal;
+            *normal = of_faces[Pick(pick).index()];
         }
         for (k, (eight, flat)) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)).enumerate() {
             let Some(surface) = faces.surface_of_all(eight) else {
@@ -206,12 +222,13 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    let (normals, centres) = faces.face_points();
     let mut points: [Points; CHUNK / LANES] = [[[0.0; LANES]; 6]; CHUNK / LANES];
     for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
         // As in `light_faces_by`.
         for (k, &pick) in picks.iter().enumerate() {
             let (pick, points, lane) = (Pick(pick), &mut points[k / LANES % (CHUNK / LANES)], k % LANES);
-            let FacePoint { normal, centre } = faces.face_points[pick.index()];
+            let (normal, centre) = (normals[pick.index()], centres[pick.index()]);
             // For the visible side.
             let side = if pick.side() == 0 { 1.0 } else { -1.0 };
             points[0][lane] = normal.x * side;
@@ -236,13 +253,18 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, p
 
 /// The points at which faces are lit. A face without area has no normal, but rounded it may still cover a pixel: it
 /// gets the normal of its first corner.
-pub(super) fn face_points(geometry: &Geometry<'_>, points: &mut Vec<FacePoint>) {
-    points.clear();
-    points.extend(geometry.triangles.iter().map(|indices| {
-        let [a, b, c] = three(*indices, |i| geometry.positions[i as usize]);
-        let normal = face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize]);
+pub(super) fn face_points(geometry: &Geometry<'_>, FacePoints { normals, centres }: &mut FacePoints) {
+    let corners = |indices: &[u32; 3]| three(*indices, |i| geometry.positions[i as usize]);
+    normals.clear();
+    normals.extend(geometry.triangles.iter().map(|indices| {
+        let [a, b, c] = corners(indices);
+        face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize])
+    }));
+    centres.clear();
+    centres.extend(geometry.triangles.iter().map(|indices| {
+        let [a, b, c] = corners(indices);
         // Each third separately: the sum of three might overflow.
-        FacePoint { normal, centre: a / 3.0 + b / 3.0 + c / 3.0 }
+        a / 3.0 + b / 3.0 + c / 3.0
     }));
 }
 
@@ -288,10 +310,10 @@ mod tests {
             suns in prop::collection::vec((vector(), -0.5_f32..2.0), 0..3),
             lamps in prop::collection::vec((vector(), 0.1_f32..2.0), 0..3),
         ) {
-            let face_points: Vec<FacePoint> = points
-                .iter()
-                .map(|&(normal, centre, _)| FacePoint { normal: normal.normalize_or(Vec3::X), centre })
-                .collect();
+            let face_points = FacePoints {
+                normals: points.iter().map(|(normal, ..)| normal.normalize_or(Vec3::X)).collect(),
+                centres: points.iter().map(|(_, centre, _)| *centre).collect(),
+            };
             let triangle_surfaces: Vec<u16> = points.iter().map(|&(.., second)| u16::from(is_mixed && second)).collect();
             let triangles = vec![[0; 3]; points.len()];
             let suns: Vec<Beam> =
@@ -324,7 +346,7 @@ mod tests {
                     lights: Lights { suns: &suns, lamps, eye: [0.3, 0.2, 5.0] },
                     paints: if is_mixed { &paints } else { &paints[..1] },
                     columns: &columns,
-                    face_points: &face_points,
+                    face_points: Some(&face_points),
                     culls: false,
                     twins: &[],
                     runs: false,
