@@ -78,7 +78,11 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
         plan.seen = plan.seen.hull(rules.reach.seen);
         farthest = farthest.max(rules.reach.farthest);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
-        plan.objects.push(rules.all(in_range));
+        // Made in place, because it is large.
+        plan.objects.push(ObjectPlan::new(rules.shading));
+        if let Some(plan) = plan.objects.last_mut() {
+            rules.all(in_range, plan);
+        }
     }
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
@@ -128,11 +132,11 @@ struct Rules<'a> {
 }
 
 impl Rules<'_> {
-    fn all(&self, lamps_in_range: usize) -> ObjectPlan {
-        let mut plan = ObjectPlan::new(self.shading);
+    /// Decides on all effects of a new plan.
+    fn all(&self, lamps_in_range: usize, plan: &mut ObjectPlan) {
         let mut overridden = [false; Effect::COUNT];
         for effect in Effect::ALL {
-            let mut decision = self.decision(effect, lamps_in_range, &plan);
+            let mut decision = self.decision(effect, lamps_in_range, plan);
             if effect.is_left_out() {
                 plan.set(effect, Decision::off(Reason::LeftOut));
                 continue;
@@ -151,10 +155,9 @@ impl Rules<'_> {
             plan.set(effect, decision);
         }
         if let Some(max_error) = self.max_error {
-            self.keep_within(max_error, &mut plan);
+            self.keep_within(max_error, plan);
         }
-        plan.stages = self.stages(&plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
-        plan
+        plan.stages = self.stages(plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
     }
 
     /// The stages of the object, from its decisions. `forced`: whether an effect is on only because it was switched by

@@ -61,7 +61,7 @@ mod setup_texture;
 #[cfg(feature = "alloc")]
 pub(crate) mod shade_trace;
 mod shaded;
-mod spans;
+pub(crate) mod spans;
 pub(crate) mod triangle;
 pub(crate) mod triangles;
 pub(crate) mod vertex;

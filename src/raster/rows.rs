@@ -9,10 +9,12 @@
 //! lies left of the other in exact arithmetic, and rounding up preserves their order.
 
 use super::frame::Rect;
-use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
+use super::setup::{Basis, Corners8, Edges, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
+#[cfg(simd_x86_64)]
+use crate::span::LargeTriangle;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
 /// The most rows of eight small triangles that are found row by row and sorted by triangle afterwards.
@@ -157,6 +159,8 @@ impl Batches {
 pub(super) trait Shades8 {
     /// True if a shade and its step are all that fills a span.
     const IS_LINEAR: bool;
+    /// True if each triangle has a single shade, so that nothing needs the planes of linear ones.
+    const IS_FLAT: bool = false;
 
     /// Further columns of eight spans.
     type Columns<S: Lanes8>: SpanColumns<S>;
@@ -191,6 +195,13 @@ pub(super) trait Shades8 {
 
     /// Completes the set-up of triangle `i` of the eight, which is not a small one.
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
+
+    /// Triangle `i` of the eight alone, if its shades are linear.
+    #[cfg(simd_x86_64)]
+    #[inline(always)]
+    fn large_triangle(&self, i: usize, setup: &TriangleSetup8, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
+        setup.large_triangle(i, layout, reseeds)
+    }
 
     /// Draws the spans of a list and empties it; with `DEPTHS` only where they are nearer than the target's cells.
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
@@ -239,6 +250,74 @@ impl Shades8 for Linear {
 
     #[inline(always)]
     fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
+
+    #[inline(always)]
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+        list.draw_by::<DEPTHS>(target);
+    }
+}
+
+/// A single shade for each triangle: no plane, and the same start for all of its rows.
+pub(super) struct Flat {
+    /// The shades with the half that rounds them; the steps, in the upper halves, are 0.
+    paint: Ints,
+}
+
+impl Flat {
+    pub(super) const NONE: Self = Self { paint: [0; LANES] };
+}
+
+impl Shades8 for Flat {
+    const IS_LINEAR: bool = true;
+    const IS_FLAT: bool = true;
+    type Columns<S: Lanes8> = ();
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn begin(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn set_up<S: Lanes8>(&mut self, s: S, _: &Basis<S>, corners: &Corners8, _: &TriangleSetup8) {
+        // At most 0xFF80.
+        s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
+    }
+
+    #[inline(always)]
+    fn fill_of<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        _: &TriangleSetup8,
+        _: (&RowEnds<S>, S::F64),
+        _: &Parts<S>,
+    ) -> (S::I32, ()) {
+        (lane.load_i32(s, &self.paint), ())
+    }
+
+    #[inline(always)]
+    fn append<S: Lanes8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        list: &mut SpanList,
+        spans: &Spans8<S, ()>,
+        dz: DepthSteps<S>,
+    ) {
+        list.append::<S, _, DEPTHS>(s, spans, dz);
+    }
+
+    #[inline(always)]
+    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
+
+    #[cfg(simd_x86_64)]
+    #[inline(always)]
+    fn large_triangle(&self, i: usize, setup: &TriangleSetup8, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
+        let shade = [self.paint[i % LANES].into(), 0.0, 1.0];
+        LargeTriangle { shade, per_column: 0.0, step: 0, ..setup.large_triangle(i, layout, reseeds) }
+    }
 
     #[inline(always)]
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {

@@ -74,14 +74,18 @@ impl Corners8 {
     pub(super) const NONE: Self =
         Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
 
-    /// Reads the first eight of these triangles, their depths only with `DEPTHS`.
+    /// Reads the first eight of these triangles, their depths only with `DEPTHS`. With `FLAT` all have a single shade.
     #[inline(always)]
-    pub(super) fn gather<const DEPTHS: bool>(&mut self, triangles: &Triangles<'_>, picks: &Picks<'_>) {
+    pub(super) fn gather<const DEPTHS: bool, const FLAT: bool>(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: &Picks<'_>,
+    ) {
         let Columns { at, depth, shade, .. } = triangles.columns;
         // Sliced to one length, so that a vertex's index is bounds-checked once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
-        self.are_flat = !picks.flat.is_empty();
+        self.are_flat = FLAT || !picks.flat.is_empty();
         for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
             let pick = Pick(pick);
             let indices = triangles.indices[pick.index()];
@@ -256,9 +260,9 @@ impl TriangleSetup8 {
     }
 
     /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones
-    /// too. Returns what other planes are set up from.
+    /// too, and without `FLAT` the shade planes. Returns what other planes are set up from.
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(
+    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool, const FLAT: bool>(
         &mut self,
         s: S,
         corners: &Corners8,
@@ -312,7 +316,9 @@ impl TriangleSetup8 {
         let area = s.xor_sign(signed, signed);
         let inverse = s.div(s.splat_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
-        if corners.are_flat {
+        if FLAT {
+            // A single shade needs no plane.
+        } else if corners.are_flat {
             self.shade.set_up_constant(s, &basis, &corners.shade[0]);
         } else {
             self.shade.set_up(s, &basis, &corners.shade);
@@ -498,6 +504,6 @@ mod tests {
 
     #[inline(always)]
     fn set_up_by<S: Lanes8>(s: S, setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) {
-        setup.set_up::<S, true>(s, corners, layout);
+        setup.set_up::<S, true, false>(s, corners, layout);
     }
 }

@@ -25,7 +25,7 @@ use super::interpolation::Interpolation;
 use super::pick::{MAX_WIDTH, Pick, SizeClass};
 use super::reference::depth::DepthPlane;
 use super::reference::shade::RESEED;
-use super::rows::{self, Linear, Shades8};
+use super::rows::{self, Flat, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
@@ -61,6 +61,32 @@ impl Drawn<'_> {
     }
 }
 
+/// Memory for the spans of picked triangles, kept because clearing it takes 6 % of the time of a small object.
+#[cfg(feature = "alloc")]
+#[derive(Debug)]
+pub(crate) struct SpanScratch(SpanList);
+
+#[cfg(feature = "alloc")]
+impl Default for SpanScratch {
+    fn default() -> Self {
+        Self(SpanList::NONE)
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<D: Cell> Raster<'_, D> {
+    /// [`picks`](Self::picks) in memory that the caller keeps.
+    pub(crate) fn picks_with(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: Picks<'_>,
+        interpolation: Interpolation,
+        SpanScratch(list): &mut SpanScratch,
+    ) -> DrawStats {
+        self.picks_by(triangles, picks, interpolation, list)
+    }
+}
+
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are those of
     /// calling [`triangle`](Self::triangle) for each.
@@ -70,13 +96,25 @@ impl<D: Cell> Raster<'_, D> {
         picks: Picks<'_>,
         interpolation: Interpolation,
     ) -> DrawStats {
+        self.picks_by(triangles, picks, interpolation, &mut { SpanList::NONE })
+    }
+
+    #[inline]
+    fn picks_by(
+        &mut self,
+        triangles: &Triangles<'_>,
+        picks: Picks<'_>,
+        interpolation: Interpolation,
+        list: &mut SpanList,
+    ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
         let (width, rows) = (self.frame.width(), self.frame.rows());
         let fits = self.fits_lists();
-        let kind = Kind::of(interpolation).filter(|_| picks.flat.is_empty());
+        let are_flat = !picks.flat.is_empty();
+        let kind = Kind::of(interpolation).filter(|_| !are_flat);
         let in_pieces = match interpolation {
-            Interpolation::GouraudReseeded if HAS_F64 && fits => picks.flat.is_empty(),
+            Interpolation::GouraudReseeded if HAS_F64 && fits => !are_flat,
             Interpolation::Gouraud | Interpolation::Flat(_) if HAS_F64 && fits => false,
             _ if HAS_F64 && fits && kind.is_some() => true,
             _ => {
@@ -103,9 +141,11 @@ impl<D: Cell> Raster<'_, D> {
             let place = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match (kind, &target.cells) {
-                (Some(kind), _) => draw_shaded(level, of, kind, place, target),
-                (None, Some(_)) => draw_nearer(level, of, place, target),
-                (None, None) => draw_all(level, of, place, target),
+                (Some(kind), _) => draw_shaded(level, of, kind, place, target, list),
+                (None, Some(_)) if are_flat => draw_nearer_flat(level, of, place, target, list),
+                (None, None) if are_flat => draw_all_flat(level, of, place, target, list),
+                (None, Some(_)) => draw_nearer(level, of, place, target, list),
+                (None, None) => draw_all(level, of, place, target, list),
             };
             first += together;
         }
@@ -129,39 +169,100 @@ pub(super) type Place = (FrameLayout, Rect);
 // Without type parameters, so that they are compiled in this crate, and not in each that draws.
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched.
-    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_all_by;
+    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_by;
 }
 
 #[inline(always)]
-fn draw_all_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
+fn draw_all_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles, none of which is unbatched, where they are nearer than the cells.
-    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats = draw_nearer_by;
+    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_by;
 }
 
 #[inline(always)]
-fn draw_nearer_by<S: Lanes8>(s: S, of: Drawn<'_>, place: Place, target: &mut Target<'_>) -> DrawStats {
-    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, &mut { SpanList::NONE })
+fn draw_nearer_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, list)
+}
+
+compiled_for_each_level! {
+    /// Draws triangles, none of which is unbatched, with a single shade each.
+    fn draw_all_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_flat_by;
+}
+
+#[inline(always)]
+fn draw_all_flat_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Flat, false, false>(s, of, place, target, &mut { Flat::NONE }, list)
+}
+
+compiled_for_each_level! {
+    /// Draws triangles, none of which is unbatched, with a single shade each, where they are nearer than the cells.
+    fn draw_nearer_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_flat_by;
+}
+
+#[inline(always)]
+fn draw_nearer_flat_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
+    draw_triangles::<S, Flat, true, true>(s, of, place, target, &mut { Flat::NONE }, list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles with a shading other than a linear one in 8.8; if there are cells, only where they are nearer.
     #[inline(never)]
-    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats
+    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats
         = draw_shaded_by;
 }
 
 #[inline(always)]
-fn draw_shaded_by<S: Lanes8>(s: S, of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>) -> DrawStats {
+fn draw_shaded_by<S: Lanes8>(
+    s: S,
+    of: Drawn<'_>,
+    kind: Kind,
+    place: Place,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
     // As in `draw_triangles`.
     if !HAS_F64 {
         return DrawStats::default();
     }
     let mut shades = Shaded8::new(kind, of.triangles, of.picks, place.0);
-    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, &mut { SpanList::NONE })
+    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, list)
+}
+
+/// Reads the corners of the first eight of these triangles.
+#[inline(always)]
+fn gather<P: Shades8, const DEPTHS: bool>(corners: &mut Corners8, triangles: &Triangles<'_>, picks: &Picks<'_>) {
+    if P::IS_FLAT {
+        corners.gather::<DEPTHS, true>(triangles, picks);
+    } else {
+        corners.gather::<DEPTHS, false>(triangles, picks);
+    }
 }
 
 /// Draws triangles, with `DEPTHS` where they are nearer than the target's cells; with `LISTED` the list has depths.
@@ -186,17 +287,21 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
     let count = picks.picks.len();
-    corners.gather::<DEPTHS>(triangles, &picks);
+    gather::<P, DEPTHS>(&mut corners, triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
             shades.draw::<S, LISTED>(s, list, target);
         }
         shades.begin(number * LANES);
-        let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout);
+        let basis = if P::IS_FLAT {
+            setup.set_up::<S, DEPTHS, true>(s, &corners, layout)
+        } else {
+            setup.set_up::<S, DEPTHS, false>(s, &corners, layout)
+        };
         shades.set_up(s, &basis, &corners, &setup);
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
-        corners.gather::<DEPTHS>(triangles, &picks.range(count.min((number + 1) * LANES), count));
+        gather::<P, DEPTHS>(&mut corners, triangles, &picks.range(count.min((number + 1) * LANES), count));
         setup.rows[eight.len().min(LANES)..].fill(0);
         if !list.has_room(LANES * LANES) {
             shades.draw::<S, LISTED>(s, list, target);
@@ -248,7 +353,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                 list.count_drawn(crate::span::fill_large(
                     avx512,
                     target.pixels,
-                    &setup.large_triangle(i, layout, of.in_pieces),
+                    &shades.large_triangle(i, &setup, layout, of.in_pieces),
                 ));
                 continue;
             }
@@ -266,4 +371,73 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
     let (spans, covered, nearer) = list.counts();
     let (pixels, tested) = if DEPTHS && has_cells { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::super::columns::{Columns, ScreenPos};
+    use super::super::cull::{PickList, cull, pick};
+    use super::*;
+    use crate::fixed::U8F8;
+    use crate::raster::frame::Frame;
+    use crate::raster::pick::CHUNK;
+    use crate::span::Kernel;
+
+    const SIDE: u32 = 150;
+
+    /// A corner, most of them close together, in 1/256 pixel, and its depth.
+    fn corner() -> impl Strategy<Value = (i32, i32, u32)> {
+        let at = || prop_oneof![6 => 2_000..6_000, 2 => -3_000..42_000, 1 => (0..150).prop_map(|i| i * 256 + 128)];
+        (at(), at(), prop_oneof![0..=1_u32 << 30, any::<u32>()])
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1_000))]
+        /// Bytes, depths and counts of triangles with a single shade each are those of one after another, at every
+        /// level.
+        #[test]
+        fn flat_triangles_are_each_its_own(
+            corners in prop::collection::vec(corner(), 3..30),
+            triangles in prop::collection::vec((any::<[u32; 3]>(), 0..=0xFF00_u16), 0..=CHUNK),
+            has_depth: bool,
+        ) {
+            let at: Vec<ScreenPos> = corners.iter().map(|&(x, y, _)| ScreenPos::new(x, y)).collect();
+            let depth: Vec<u32> = corners.iter().map(|&(_, _, depth)| depth).collect();
+            let shade = vec![[U8F8::from(3); 2]; corners.len()];
+            let indices: Vec<[u32; 3]> =
+                triangles.iter().map(|(indices, _)| indices.map(|i| i % corners.len() as u32)).collect();
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects: Default::default() };
+            let all = Triangles { columns, indices: &indices };
+            for kernel in Kernel::available() {
+                let draw = |are_together: bool| {
+                    let (mut bytes, mut cells) = (vec![9; (SIDE * SIDE) as usize], vec![0_u32; (SIDE * SIDE) as usize]);
+                    let frame = Frame::new(&mut bytes, SIDE, SIDE, SIDE as usize).expect("a legal frame");
+                    let buffer = DepthBuffer::new(&mut cells, &frame).expect("as long as the frame");
+                    let mut raster =
+                        Raster { clip: frame.bounds(), frame, depth: has_depth.then_some(buffer), kernel };
+                    let masks = cull(kernel.simd_level(), &at, &indices, raster.clip, false);
+                    let mut list = PickList::<{ CHUNK + LANES }>::new();
+                    pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
+                    let of_pick = |&pick: &u32| [U8F8::from_bits(triangles[Pick(pick).index()].1); 3];
+                    let flat: Vec<[U8F8; 3]> = list.as_slice().iter().map(of_pick).collect();
+                    let picks = Picks { picks: list.as_slice(), flat: &flat };
+                    let mut drawn = DrawStats::default();
+                    if are_together {
+                        drawn = raster.picks(&all, picks, Interpolation::Gouraud);
+                    } else {
+                        for k in 0..flat.len() {
+                            drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud);
+                        }
+                    }
+                    (drawn, bytes, cells)
+                };
+                prop_assert!(draw(true) == draw(false), "{}", kernel);
+            }
+        }
+    }
 }

@@ -7,13 +7,13 @@ use glam::Vec3;
 use super::columns::VertexColumns;
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::vertex::light_eight;
+use super::vertex::{light_eight, shade_of_intensities};
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, each, three};
+use crate::lanes::{LANES, Points, three};
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
 use crate::raster::columns::Triangles;
-use crate::raster::pick::Pick;
+use crate::raster::pick::{CHUNK, Pick};
 use crate::settings::Shading;
 use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
@@ -30,11 +30,19 @@ pub(super) struct Face {
     pub(super) back_facing: bool,
 }
 
-/// The point at which a flat-shaded face is lit: its middle, and its normal there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FacePoint {
-    normal: Vec3,
-    centre: Vec3,
+/// The points at which flat-shaded faces are lit: their middles, and their normals there.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FacePoints {
+    /// In a list of their own, since suns alone need nothing else.
+    normals: Vec<Vec3>,
+    centres: Vec<Vec3>,
+}
+
+impl FacePoints {
+    /// Its size in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        (self.normals.capacity() + self.centres.capacity()) * size_of::<Vec3>()
+    }
 }
 
 /// One object in one frame: what its faces are drawn from.
@@ -47,7 +55,7 @@ pub(super) struct Faces<'a> {
     pub(super) paints: &'a [SurfaceMaterial],
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
-    pub(super) face_points: &'a [FacePoint],
+    pub(super) face_points: Option<&'a FacePoints>,
     /// True if back faces are culled.
     pub(super) culls: bool,
     /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there are none. As a back
@@ -74,9 +82,16 @@ impl<'a> Faces<'a> {
         self.columns.triangles(&self.geometry)
     }
 
+    /// The normals and the middles of faces, if faces are lit.
+    #[inline(always)]
+    fn face_points(&self) -> (&'a [Vec3], &'a [Vec3]) {
+        self.face_points.map_or((&[], &[]), |points| (&points.normals, &points.centres))
+    }
+
     /// The single shade of a face, or its three channels: at its middle, by its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
-        let FacePoint { normal, centre } = self.face_points[face.index as usize];
+        let (normals, centres) = self.face_points();
+        let (normal, centre) = (normals[face.index as usize], centres[face.index as usize]);
         let paint = &self.paints[usize::from(face.surface)];
         if self.channels {
             let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
@@ -103,15 +118,20 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// The surface of eight faces, if they share one.
+    /// The surface of up to eight picked faces, if they share one.
     #[inline(always)]
-    pub(super) fn surface_of_all(&self, faces: &[Pick; LANES]) -> Option<u16> {
+    fn surface_of_all(&self, picks: &[u32]) -> Option<u16> {
         if self.paints.len() == 1 {
             return Some(0);
         }
-        let surface = |face: &Pick| self.geometry.triangle_surfaces[face.index()];
-        let first = surface(&faces[0]);
-        faces.iter().all(|face| surface(face) == first).then_some(first)
+        let surfaces = self.geometry.triangle_surfaces;
+        let first = surfaces[Pick(picks[0]).index()];
+        for &pick in picks {
+            if surfaces[Pick(pick).index()] != first {
+                return None;
+            }
+        }
+        Some(first)
     }
 
     /// The single shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
@@ -121,7 +141,7 @@ impl<'a> Faces<'a> {
                 *flat = self.flat(self.face(Pick(pick)));
             }
         } else if self.full {
-            self.shade_in_full_light(kernel, picks, flat);
+            light_faces_fully(kernel.simd_level(), self, kernel, picks, flat);
         } else if CULLS {
             light_faces::<false>(kernel.simd_level(), self, picks, flat);
         } else {
@@ -129,30 +149,24 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// [`shade_faces`](Self::shade_faces) with lamps and highlights.
-    fn shade_in_full_light(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-        for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
-            // Lanes without a face repeat the last one.
-            let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
-            let Some(surface) = self.surface_of_all(&of) else {
-                for (flat, &pick) in flat.iter_mut().zip(eight) {
-                    *flat = self.flat(self.face(Pick(pick)));
-                }
-                continue;
-            };
-            let paint = &self.paints[usize::from(surface)];
-            let mut points = [[0.0; LANES]; 6];
-            for (lane, face) in of.iter().enumerate() {
-                let FacePoint { normal, centre } = self.face_points[face.index()];
-                // For the visible side.
-                let n = normal * [1.0, -1.0][face.side()];
-                for (axis, value) in [n.x, n.y, n.z, centre.x, centre.y, centre.z].into_iter().enumerate() {
-                    points[axis][lane] = value;
-                }
-            }
-            let shades = paint.shade_of_eight(&self.lights.unit_front_of_one_channel(&paint.answer, &points, kernel));
-            for (flat, shade) in flat.iter_mut().zip(shades) {
-                *flat = [paint.respond(shade); 3];
+    /// Lights faces one by one.
+    #[cold]
+    #[inline(never)]
+    fn shade_each(&self, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+        for (flat, &pick) in flat.iter_mut().zip(picks) {
+            *flat = self.flat(self.face(Pick(pick)));
+        }
+    }
+
+    /// Stores the shades of up to eight faces of one surface.
+    #[inline(always)]
+    fn put(&self, paint: &SurfaceMaterial, shades: [u16; LANES], flat: &mut [[U8F8; 3]]) {
+        for (lane, flat) in flat.iter_mut().take(LANES).enumerate() {
+            *flat = [U8F8::from_bits(shades[lane]); 3];
+        }
+        if paint.response.is_some() {
+            for flat in flat {
+                *flat = [paint.respond(flat[0]); 3];
             }
         }
     }
@@ -169,34 +183,197 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-    for (eight, flat) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)) {
-        // Lanes without a face repeat the last one.
-        let of: [Pick; LANES] = each!(lane => Pick(eight[if lane < eight.len() { lane } else { eight.len() - 1 }]));
-        let Some(surface) = faces.surface_of_all(&of) else {
-            for (flat, &pick) in flat.iter_mut().zip(eight) {
-                *flat = faces.flat(faces.face(Pick(pick)));
+    let (of_faces, _) = faces.face_points();
+    let mut normals = [[Vec3::ZERO; LANES]; CHUNK / LANES];
+    for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
+        // All are gathered before the first is used: vector loads stall when their elements have just been stored one
+        // by one.
+        for (normal, &pick) in normals.as_flattened_mut().iter_mut().zip(picks) {
+            *normal = of_faces[Pick(pick).index()];
+        }
+        for (k, (eight, flat)) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)).enumerate() {
+            let Some(surface) = faces.surface_of_all(eight) else {
+                faces.shade_each(eight, flat);
+                continue;
+            };
+            let paint = &faces.paints[usize::from(surface)];
+            let shades = light_eight::<S, BOTH>(s, paint, &faces.lights, &normals[k % (CHUNK / LANES)]);
+            let mut fronts = s.low_words(shades);
+            if BOTH {
+                let backs = s.low_words(s.shr_i32(shades, 16));
+                for (lane, &pick) in eight.iter().take(LANES).enumerate() {
+                    fronts[lane] = if Pick(pick).side() == 0 { fronts[lane] } else { backs[lane] };
+                }
             }
-            continue;
-        };
-        let normals: [Vec3; LANES] = each!(lane => faces.face_points[of[lane].index()].normal);
-        let (paint, mut shades) = (&faces.paints[usize::from(surface)], [0; LANES]);
-        s.store_i32(light_eight::<S, BOTH>(s, paint, &faces.lights, &normals), &mut shades);
-        for (lane, flat) in flat.iter_mut().enumerate() {
-            // The front's shade is in the lower half.
-            let shade = U8F8::from_bits((shades[lane] >> if BOTH { 16 * of[lane].side() } else { 0 }) as u16);
-            *flat = [paint.respond(shade); 3];
+            faces.put(paint, fronts, flat);
+        }
+    }
+}
+
+compiled_for_each_level! {
+    /// The shades of picked flat-shaded faces, each by its own normal and at its middle: all light, on one channel.
+    fn light_faces_fully[][](
+        faces: &Faces<'_>,
+        kernel: Kernel,
+        picks: &[u32],
+        flat: &mut [[U8F8; 3]],
+    ) = light_faces_fully_by;
+}
+
+#[inline(always)]
+fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    let (normals, centres) = faces.face_points();
+    let mut points: [Points; CHUNK / LANES] = [[[0.0; LANES]; 6]; CHUNK / LANES];
+    for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
+        // As in `light_faces_by`.
+        for (k, &pick) in picks.iter().enumerate() {
+            let (pick, points, lane) = (Pick(pick), &mut points[k / LANES % (CHUNK / LANES)], k % LANES);
+            let (normal, centre) = (normals[pick.index()], centres[pick.index()]);
+            // For the visible side.
+            let side = if pick.side() == 0 { 1.0 } else { -1.0 };
+            points[0][lane] = normal.x * side;
+            points[1][lane] = normal.y * side;
+            points[2][lane] = normal.z * side;
+            points[3][lane] = centre.x;
+            points[4][lane] = centre.y;
+            points[5][lane] = centre.z;
+        }
+        for (k, (eight, flat)) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)).enumerate() {
+            let Some(surface) = faces.surface_of_all(eight) else {
+                faces.shade_each(eight, flat);
+                continue;
+            };
+            let paint = &faces.paints[usize::from(surface)];
+            let points = &points[k % (CHUNK / LANES)];
+            let light = faces.lights.unit_front_of_one_channel(&paint.answer, points, kernel);
+            faces.put(paint, s.low_words(shade_of_intensities(s, paint, s.load_f64(&light))), flat);
         }
     }
 }
 
 /// The points at which faces are lit. A face without area has no normal, but rounded it may still cover a pixel: it
 /// gets the normal of its first corner.
-pub(super) fn face_points(geometry: &Geometry<'_>, points: &mut Vec<FacePoint>) {
-    points.clear();
-    points.extend(geometry.triangles.iter().map(|indices| {
-        let [a, b, c] = three(*indices, |i| geometry.positions[i as usize]);
-        let normal = face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize]);
-        // Each third separately: the sum of three might overflow.
-        FacePoint { normal, centre: a / 3.0 + b / 3.0 + c / 3.0 }
+pub(super) fn face_points(geometry: &Geometry<'_>, FacePoints { normals, centres }: &mut FacePoints) {
+    let corners = |indices: &[u32; 3]| three(*indices, |i| geometry.positions[i as usize]);
+    normals.clear();
+    normals.extend(geometry.triangles.iter().map(|indices| {
+        let [a, b, c] = corners(indices);
+        face_normal(a, b, c).unwrap_or(geometry.normals[indices[0] as usize])
     }));
+    centres.clear();
+    centres.extend(geometry.triangles.iter().map(|indices| {
+        let [a, b, c] = corners(indices);
+        // Each third separately: the sum of three might overflow.
+        a / 3.0 + b / 3.0 + c / 3.0
+    }));
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::light::{Beam, Blend, LampBeam, Reflectance};
+    use crate::mesh::shapes;
+    use crate::palette::Ramp;
+    use crate::scene::{Camera, Object};
+    use crate::view::{Screen, View};
+
+    fn vector() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.5_f32..1.5).prop_map(Vec3::from)
+    }
+
+    fn paint() -> impl Strategy<Value = SurfaceMaterial> {
+        let specular = prop_oneof![Just(0.0), 0.0..1.0];
+        (0.0..0.5, 0.0..2.0, specular, 0_u8..200).prop_map(|(ambient, diffuse, specular, first)| SurfaceMaterial {
+            answer: Reflectance { ambient, diffuse, specular, shininess: 9.0, color: [1.0; 3], highlight: [1.0; 3] },
+            ramp: Ramp::new(first, 50).expect("a legal ramp"),
+            texture_size: None,
+            environment_size: None,
+            blend: Blend::Opaque,
+            has_effects: false,
+            response: None,
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(500))]
+        /// Every picked face has the same shade as alone, in suns or in all light, with one surface or several.
+        #[test]
+        fn picked_faces_are_lit_as_each_is_alone(
+            points in prop::collection::vec((vector(), vector(), any::<bool>()), 1..40),
+            picks in prop::collection::vec((any::<usize>(), any::<bool>()), 0..200),
+            paints in prop::array::uniform2(paint()),
+            is_mixed: bool,
+            suns in prop::collection::vec((vector(), -0.5_f32..2.0), 0..3),
+            lamps in prop::collection::vec((vector(), 0.1_f32..2.0), 0..3),
+        ) {
+            let face_points = FacePoints {
+                normals: points.iter().map(|(normal, ..)| normal.normalize_or(Vec3::X)).collect(),
+                centres: points.iter().map(|(_, centre, _)| *centre).collect(),
+            };
+            let triangle_surfaces: Vec<u16> = points.iter().map(|&(.., second)| u16::from(is_mixed && second)).collect();
+            let triangles = vec![[0; 3]; points.len()];
+            let suns: Vec<Beam> =
+                suns.into_iter().map(|(towards, intensity)| Beam { towards, intensity, channels: [0.0; 3] }).collect();
+            let lamp = |(position, intensity): (Vec3, f32)| LampBeam {
+                position: position.to_array().map(f64::from),
+                cone: None,
+                intensity,
+                channels: [0.0; 3],
+                inverse_square: 0.1,
+            };
+            let lamps: Vec<LampBeam> = lamps.into_iter().map(lamp).collect();
+            let camera = Camera::default();
+            let view = View::new(&camera, Screen::MODE_13H).expect("a legal camera");
+            let view = ObjectView::new(&view, &Object::new(shapes::cube()));
+            let columns = VertexColumns::default();
+            for full in [false, true] {
+                let lamps = if full { lamps.as_slice() } else { &[] };
+                let mut faces = Faces {
+                    shading: Shading::Flat,
+                    geometry: Geometry {
+                        positions: &[],
+                        normals: &[],
+                        texcoords: None,
+                        vertex_surfaces: &[],
+                        triangles: &triangles,
+                        triangle_surfaces: &triangle_surfaces,
+                    },
+                    view: &view,
+                    lights: Lights { suns: &suns, lamps, eye: [0.3, 0.2, 5.0] },
+                    paints: if is_mixed { &paints } else { &paints[..1] },
+                    columns: &columns,
+                    face_points: Some(&face_points),
+                    culls: false,
+                    twins: &[],
+                    runs: false,
+                    full,
+                    lit_by_face: true,
+                    channels: false,
+                    affine: false,
+                    lights_pixels: false,
+                    kernel: Kernel::PORTABLE,
+                };
+                for culls in [false, true] {
+                    faces.culls = culls;
+                    let picks: Vec<u32> = picks
+                        .iter()
+                        .map(|&(i, back)| (i % points.len()) as u32 | u32::from(back && !culls) << 31)
+                        .collect();
+                    let alone: Vec<_> = picks.iter().map(|&pick| faces.flat(faces.face(Pick(pick)))).collect();
+                    for kernel in Kernel::available() {
+                        let mut flat = vec![[U8F8::default(); 3]; picks.len()];
+                        match culls {
+                            true => faces.shade_faces::<true>(kernel, &picks, &mut flat),
+                            false => faces.shade_faces::<false>(kernel, &picks, &mut flat),
+                        }
+                        prop_assert_eq!(&flat, &alone);
+                    }
+                }
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@ use crate::raster::columns::{Picks, Triangles};
 use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::scan_line::Lists;
+use crate::raster::spans::SpanScratch;
 use crate::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
 use crate::scene::Scene;
 
@@ -20,6 +21,7 @@ use crate::scene::Scene;
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     depths: Vec<u32>,
+    spans: SpanScratch,
     effects: EffectScratch,
     pick: PickScratch,
     integer: IntegerScratch,
@@ -104,6 +106,7 @@ impl DeferredFace {
 struct Painter<'a, 'b> {
     pipelines: Pipelines<'a>,
     raster: &'a mut Raster<'b>,
+    spans: &'a mut SpanScratch,
     scratch: &'a mut EffectScratch,
 }
 
@@ -111,7 +114,7 @@ impl Painter<'_, '_> {
     /// Draws faces of one look, in order.
     fn draw(&mut self, object: usize, look: Look, triangles: &Triangles<'_>, picks: Picks<'_>) -> DrawStats {
         if !look.effects {
-            return self.raster.picks(triangles, picks, look.interpolation());
+            return self.raster.picks_with(triangles, picks, look.interpolation(), self.spans);
         }
         let Look { surface, shading, .. } = look;
         let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);
@@ -154,8 +157,19 @@ impl Renderer {
     /// Draws the prepared frame over the contents of `frame`.
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, frame: Frame<'_>) {
         let Self { kernel, cache, scratch, .. } = self;
-        let Scratch { depths, effects, pick, integer, faces, transparent, far_to_near, triangles, lists, counts } =
-            scratch;
+        let Scratch {
+            depths,
+            spans,
+            effects,
+            pick,
+            integer,
+            faces,
+            transparent,
+            far_to_near,
+            triangles,
+            lists,
+            counts,
+        } = scratch;
         let mut raster = Raster::new(frame).with_kernel(*kernel);
         let method = cache.plan.hidden_surfaces();
         if method == HiddenSurfaces::DepthBuffer {
@@ -183,7 +197,7 @@ impl Renderer {
         }
         let culler = Some(Culler { clip: raster.clip(), kernel: *kernel });
         let pipelines = cache.pipelines(scene, *kernel);
-        let mut painter = Painter { pipelines, raster: &mut raster, scratch: effects };
+        let mut painter = Painter { pipelines, raster: &mut raster, spans, scratch: effects };
         let mut drawn = DrawStats::default();
         let path = (culler, deferred);
         each_run(scene, cache, path, (integer, pick, counts), stats, &mut |object, run| {
@@ -259,7 +273,7 @@ fn scan_line(
         let vertices = face.triangles(scene, cache, added).vertices(&picks, 0);
         (vertices, if face.look.effects { Interpolation::default() } else { face.look.interpolation() })
     }));
-    let Painter { pipelines, raster, scratch } = painter;
+    let Painter { pipelines, raster, scratch, .. } = painter;
     // There is room for all.
     let drawn = raster.scan_line_with(triangles, lists.scratch(faces.len()), |i, row, pixels, kernel, drawn| {
         let face = &faces[i];

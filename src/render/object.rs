@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::Stats;
 use super::budget::Budget;
 use super::columns::VertexColumns;
-use super::faces::{FacePoint, Faces, face_points};
+use super::faces::{FacePoints, Faces, face_points};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::fill_normal_table;
@@ -155,8 +155,8 @@ pub(super) struct ObjectState {
     is_tessellated: bool,
     /// The mesh and the index of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
-    /// The normal of each face, and the mesh they belong to, if faces are lit.
-    face_points: Option<(Shared<Mesh>, Vec<FacePoint>)>,
+    /// Where each face is lit, and the mesh they belong to, if faces are lit.
+    face_points: Option<(Shared<Mesh>, FacePoints)>,
     /// One for each surface, with its inputs.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be computed from now.
@@ -479,7 +479,7 @@ impl ObjectState {
             lights: self.lights(plan),
             paints: &self.paints,
             columns: &self.columns,
-            face_points: self.face_points.as_ref().map_or(&[], |(_, points)| points),
+            face_points: self.face_points.as_ref().map(|(_, points)| points),
             culls: plan.stages().culls(),
             twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             runs: stages.interpolates(),
@@ -525,7 +525,7 @@ impl ObjectState {
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
-            + self.face_points.as_ref().map_or(0, |(_, points)| points.capacity() * size_of::<FacePoint>())
+            + self.face_points.as_ref().map_or(0, |(_, points)| points.bytes())
             + self.normal_tables.len() * Lut64K::BYTES
             + self.beams.capacity() * size_of::<Beam>()
             + self.budget.bytes()

@@ -103,6 +103,7 @@ pub(super) struct Culler {
 #[derive(Debug, Default)]
 pub(super) struct PickScratch {
     picks: PickList<{ ROOM + LANES }>,
+    /// The single shade of each pick, or its three channels, if faces are lit; the last picks may not be lit yet.
     flat: Vec<[U8F8; 3]>,
     /// The end of each run.
     runs: Vec<(usize, Look)>,
@@ -228,7 +229,9 @@ impl<'a> Picker<'a> {
     fn push_pending(&mut self) {
         if let Some((look, first)) = self.pending.take() {
             self.push_added(look, first, None);
-            self.make_space(&Triangles::NONE);
+            if self.is_full() {
+                self.finish(&Triangles::NONE);
+            }
         }
     }
 
@@ -243,18 +246,15 @@ impl<'a> Picker<'a> {
         &mut self.scratch.added
     }
 
-    /// Draws what is pending if there is no room for 64 more, or for the parts of one more face.
+    /// Returns whether there is no room for 64 more, or for the parts of one more face.
     #[inline]
-    fn make_space(&mut self, triangles: &Triangles<'_>) {
-        if self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
-        {
-            self.finish(triangles);
-        }
+    fn is_full(&self) -> bool {
+        self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
     }
 
-    /// Draws what is pending. `triangles` are the object's.
+    /// Draws what is pending, all of it lit. `triangles` are the object's.
     #[inline(never)]
-    pub(super) fn finish(&mut self, triangles: &Triangles<'_>) {
+    fn finish(&mut self, triangles: &Triangles<'_>) {
         let (mut first, mut keeps) = (0, self.keeps);
         let PickScratch { picks: list, flat, runs, added } = &mut *self.scratch;
         let picks = Picks { picks: list.as_slice(), flat };
@@ -291,7 +291,6 @@ impl Faces<'_> {
     #[inline(never)]
     fn each<const CULLS: bool>(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
         let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        let all = self.triangles();
         // Every shading that a budget chooses has exact coverage, and so has a single shade.
         let has_one_shade = self.lit_by_face || !self.runs;
         let exact_cover = budget.is_some() || has_one_shade || self.shading.interpolation().has_exact_cover();
@@ -310,12 +309,11 @@ impl Faces<'_> {
             linear += u64::from(of_common.count_ones());
             if let Some(look) = one_look.filter(|_| of_common == left) {
                 picker.add(look, first, &masks, left);
-                if self.lit_by_face {
-                    self.light_faces::<CULLS>(picker, stats);
-                }
-                picker.make_space(&all);
+                self.make_space::<CULLS>(picker, stats);
                 continue;
             }
+            // What follows is lit face by face.
+            self.light_pending::<CULLS>(picker, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -344,11 +342,11 @@ impl Faces<'_> {
                     let pick = masks.pick(at, first + at, face.back_facing);
                     counts.add(self.decided((face, pick), (budget, error), stats, picker), 1);
                 }
-                picker.make_space(&all);
+                self.make_space::<CULLS>(picker, stats);
             }
-            picker.make_space(&all);
+            self.make_space::<CULLS>(picker, stats);
         }
-        picker.finish(&all);
+        self.finish::<CULLS>(picker, stats);
         if budget.is_some() {
             stats.shares.add(LINEAR, linear);
             counts.add(LINEAR, linear);
@@ -407,7 +405,29 @@ impl Faces<'_> {
         Some(self.flat(face))
     }
 
-    /// Lights the most recently picked faces, each as a whole.
+    /// Draws what is pending if there is no room for more.
+    #[inline]
+    fn make_space<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        if picker.is_full() {
+            self.finish::<CULLS>(picker, stats);
+        }
+    }
+
+    /// Draws what is pending.
+    fn finish<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        self.light_pending::<CULLS>(picker, stats);
+        picker.finish(&self.triangles());
+    }
+
+    /// Lights the picked faces that are not lit yet, each as a whole, if faces are lit.
+    #[inline]
+    fn light_pending<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        if self.lit_by_face {
+            self.light_faces::<CULLS>(picker, stats);
+        }
+    }
+
+    /// [`light_pending`](Self::light_pending): many at a time, so that few lanes are without a face.
     #[inline(never)]
     fn light_faces<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);

@@ -214,10 +214,19 @@ pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
     if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front }
 }
 
-/// [`SurfaceMaterial::shade`] of these sums of light.
+/// The shades of these sums of light.
 #[inline(always)]
 fn shade<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
-    let light = s.add(s.splat_f64(paint.answer.ambient), s.mul(s.splat_f64(paint.answer.diffuse), light));
+    shade_of_intensities(
+        s,
+        paint,
+        s.add(s.splat_f64(paint.answer.ambient), s.mul(s.splat_f64(paint.answer.diffuse), light)),
+    )
+}
+
+/// [`SurfaceMaterial::shade`].
+#[inline(always)]
+pub(in crate::render) fn shade_of_intensities<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
     // For NaN the second of both: 0.
     let clamped = s.min_f32(s.max_f32(s.narrow(light), s.splat_f32(0.0)), s.splat_f32(1.0));
     let units = s.splat_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);

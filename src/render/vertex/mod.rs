@@ -18,7 +18,7 @@ use crate::view::ObjectView;
 
 mod lanes;
 
-pub(super) use lanes::light_eight;
+pub(super) use lanes::{light_eight, shade_of_intensities};
 
 /// Applies the response of each vertex's material to its shade.
 #[inline(never)]
