@@ -9,7 +9,9 @@
 //! lies left of the other in exact arithmetic, and rounding up preserves their order.
 
 use super::frame::Rect;
-use super::setup::{Basis, Corners8, Edges, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
+#[cfg(simd_x86_64)]
+use super::setup::FrameLayout;
+use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
