@@ -25,7 +25,9 @@
 
 mod batch;
 mod curve;
+mod destination;
 mod direct;
+mod fused;
 mod listing;
 mod lit;
 mod pipeline;
@@ -204,8 +206,8 @@ fn write(
         Some(Cells::U32(cells)) if kernel.has_wide_lanes() => {
             write_nearer(level, spans, (bytes, blend), (pixels, cells), keeps)
         }
-        Some(Cells::U32(cells)) => write_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
-        Some(Cells::U16(cells)) => write_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
+        Some(Cells::U32(cells)) => write_nearer_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
+        Some(Cells::U16(cells)) => write_nearer_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
         None => write_all(*kernel, *kernel, spans, (bytes, blend), pixels),
     }
 }
@@ -269,7 +271,7 @@ fn write_nearer_by<S: Lanes8>(
 
 /// [`write_nearer`] pixel by pixel, for depth buffers of 16 bits and for levels where vectors gain nothing.
 #[inline(never)]
-fn write_one_by_one<D: Cell>(
+fn write_nearer_one_by_one<D: Cell>(
     spans: &Spans<'_>,
     (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
     (pixels, cells): (&mut [u8], &mut [D]),

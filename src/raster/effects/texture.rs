@@ -4,9 +4,9 @@
 //! into the stages' buffer. Mispredicting the length of a row costs as much as several pixels, so the last few pixels
 //! of a span are written with a mask.
 
-use super::direct::{Direct, DirectTint};
+use super::destination::{Destination, InBuffer};
 use super::listing::FaceCorners;
-use super::pipeline::{PixelPipeline, TextureStage};
+use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
 use crate::fixed::IS_SMALL;
 use crate::lanes::LANES;
@@ -16,13 +16,7 @@ use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::depth::Cells;
-use crate::span::depth_test::{Masks, test_span};
-use crate::span::list::Target;
-use crate::span::texture::{
-    AffineLines, Blended, Fogged, Levels, Painted, PlacesAlong, Shown, StoredPlaces, Texels, Tint, Untextured,
-    perspective_along, show, show_along, show_masked,
-};
+use crate::span::texture::{AffineLines, Levels, Shown, StoredPlaces, Texels, Tint, perspective_along, show};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -34,79 +28,9 @@ const HAS_LEVELS: bool = !cfg!(mode13h_leave_out = "mipmaps");
 /// An image, with its levels if one of them is to be chosen.
 type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 
-impl Direct<'_> {
-    /// Shows the pixels of every span in the frame, fogged and blended as the pipeline says; if there are cells, only
-    /// where they are nearer. Returns the number of nearer pixels; `None`, with nothing shown, if there is no loop for
-    /// this pipeline.
-    pub(super) fn show(self, spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, target: &mut Target<'_>) -> Option<u32> {
-        let Target { pixels, cells, kernel } = target;
-        match (cells, pipeline.fog(), pipeline.blend()) {
-            (None, fog, None) => self.show_in(spans, fog, &mut InFrame(pixels), *kernel),
-            (None, None, Some(blend)) => self.show_blended(spans, blend, &mut InFrame(pixels), *kernel),
-            (Some(Cells::U32(cells)), fog, blend) => {
-                let mut to = WhereNearer { pixels, cells, keeps: pipeline.keeps_depth, nearer: 0 };
-                match (fog, blend) {
-                    (fog, None) => self.show_in(spans, fog, &mut to, *kernel)?,
-                    (None, Some(blend)) => self.show_blended(spans, blend, &mut to, *kernel)?,
-                    _ => return None,
-                }
-                return Some(to.nearer);
-            }
-            _ => None,
-        }?;
-        Some(0)
-    }
-
-    fn show_in(
-        self,
-        spans: &Spans<'_>,
-        fog: Option<&[u8; 65_536]>,
-        to: &mut impl Destination,
-        kernel: Kernel,
-    ) -> Option<()> {
-        let (image, tint) = match self {
-            Self::Shades => {
-                // Shades alone have kernels of their own. With narrow vectors stages are 3 % faster.
-                let fog = fog.filter(|_| kernel.has_wide_lanes())?;
-                show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to);
-                return Some(());
-            }
-            Self::Texture { image, is_perspective, tint } => ((image, is_perspective), tint),
-        };
-        match (tint, fog) {
-            (DirectTint::None, None) => show_texture(spans, image, (), to, kernel),
-            (DirectTint::Row(row), None) => show_texture(spans, image, row, to, kernel),
-            (DirectTint::Lit(table), None) => show_texture(spans, image, Painted(table), to, kernel),
-            (DirectTint::None, Some(fog)) => show_texture(spans, image, Fogged((), fog), to, kernel),
-            (DirectTint::Row(row), Some(fog)) => show_texture(spans, image, Fogged(row, fog), to, kernel),
-            (DirectTint::Lit(table), Some(fog)) => {
-                show_texture(spans, image, Fogged(Painted(table), fog), to, kernel);
-            }
-        }
-        Some(())
-    }
-
-    fn show_blended(
-        self,
-        spans: &Spans<'_>,
-        blend: &[u8; 65_536],
-        to: &mut impl Destination,
-        kernel: Kernel,
-    ) -> Option<()> {
-        // Shades are blended 14 % faster in stages.
-        let Self::Texture { image, is_perspective, tint } = self else { return None };
-        let image = (image, is_perspective);
-        match tint {
-            DirectTint::None => show_texture(spans, image, Blended((), blend), to, kernel),
-            DirectTint::Row(row) => show_texture(spans, image, Blended(row, blend), to, kernel),
-            DirectTint::Lit(table) => show_texture(spans, image, Blended(Painted(table), blend), to, kernel),
-        }
-        Some(())
-    }
-}
-
+/// Shows the texels of every span, linear on the face if the image is in perspective, otherwise on the screen.
 #[inline(always)]
-fn show_texture<T: Tint, D: Destination>(
+pub(super) fn show_texture<T: Tint, D: Destination>(
     spans: &Spans<'_>,
     (image, is_perspective): (Texels<'_>, bool),
     tint: T,
@@ -120,105 +44,6 @@ fn show_texture<T: Tint, D: Destination>(
     match is_perspective {
         false => show_affine::<T, D>(kernel.simd_level(), spans, image, tint, to),
         true => show_exact::<T, D>(kernel.simd_level(), spans, image, tint, to),
-    }
-}
-
-/// Where texels are shown.
-trait Destination {
-    /// Where the pixels of span `i` begin, how many there are, and how many of its first ones are left out.
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
-
-    /// Shows texels in the pixels of span `i`, from `at` on.
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        span: (&Spans<'_>, usize),
-        pixels: (usize, usize),
-        image: (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    );
-}
-
-/// The buffer of all pixels, hidden ones included.
-struct InBuffer<'a>(&'a mut [u8]);
-
-impl Destination for InBuffer<'_> {
-    #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        let (first, length) = spans.range(i);
-        (first, length, 0)
-    }
-
-    #[inline(always)]
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        span: (&Spans<'_>, usize),
-        pixels: (usize, usize),
-        image: (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    ) {
-        InFrame(self.0).show(s, span, pixels, image, places);
-    }
-}
-
-/// The frame.
-struct InFrame<'a>(&'a mut [u8]);
-
-impl Destination for InFrame<'_> {
-    #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        spans.in_frame(i)
-    }
-
-    #[inline(always)]
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        _: (&Spans<'_>, usize),
-        (at, length): (usize, usize),
-        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    ) {
-        if let Some(row) = self.0.get_mut(at..) {
-            show_along(s, (row, length), texels, (tint, along), places);
-        }
-    }
-}
-
-/// The frame where texels are nearer than the cells, which may store their depths.
-struct WhereNearer<'a> {
-    pixels: &'a mut [u8],
-    cells: &'a mut [u32],
-    keeps: bool,
-    nearer: u32,
-}
-
-impl Destination for WhereNearer<'_> {
-    #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        spans.in_frame(i)
-    }
-
-    #[inline(always)]
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        (spans, i): (&Spans<'_>, usize),
-        (at, length): (usize, usize),
-        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    ) {
-        let (cell, depths) = spans.depth(i);
-        let mut masks = Masks::default();
-        let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
-        if let (Some(row), Some(cells)) = (self.pixels.get_mut(at..), self.cells.get_mut(cell..)) {
-            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
-            self.nearer += nearer;
-            if nearer > 0 {
-                show_masked(s, (row, masks), texels, (tint, along), places);
-            }
-        }
     }
 }
 
@@ -295,25 +120,6 @@ compiled_for_each_level! {
     #[inline(never)]
     fn show_affine[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
         = show_affine_by;
-}
-
-compiled_for_each_level! {
-    /// Shows the shades of every span, tinted.
-    #[inline(never)]
-    fn show_shades[T: Tint, D: Destination][T, D](spans: &Spans<'_>, tint: T, to: &mut D) = show_shades_by;
-}
-
-#[inline(always)]
-fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, tint: T, to: &mut D) {
-    // There is none; here the compiler sees that.
-    if IS_SMALL {
-        return;
-    }
-    for i in 0..spans.count() {
-        let (at, length, skipped) = to.span(spans, i);
-        let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-        to.show(s, (spans, i), (at, length), (Texels::ONE, tint, along), StoredPlaces(s, &[]));
-    }
 }
 
 compiled_for_each_level! {

@@ -1,0 +1,108 @@
+//! Where the loops for spans show their pixels: in the buffer of the stages, in the frame, or in the frame where they are
+//! nearer.
+
+use super::spans::Spans;
+use crate::lanes::LANES;
+use crate::simd::Lanes8;
+use crate::span::depth_test::{Masks, test_span};
+use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_masked};
+
+/// Where the pixels of spans are shown.
+pub(super) trait Destination {
+    /// Where the pixels of span `i` begin, how many there are, and how many of its first ones are left out.
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
+
+    /// Shows texels in the pixels of span `i`, from `at` on.
+    fn show<S: Lanes8, T: Tint>(
+        &mut self,
+        s: S,
+        span: (&Spans<'_>, usize),
+        pixels: (usize, usize),
+        image: (Texels<'_>, T, &mut T::Along<S>),
+        places: impl PlacesAlong<S>,
+    );
+}
+
+/// The buffer of all pixels, hidden ones included.
+pub(super) struct InBuffer<'a>(pub(super) &'a mut [u8]);
+
+impl Destination for InBuffer<'_> {
+    #[inline(always)]
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
+        let (first, length) = spans.range(i);
+        (first, length, 0)
+    }
+
+    #[inline(always)]
+    fn show<S: Lanes8, T: Tint>(
+        &mut self,
+        s: S,
+        span: (&Spans<'_>, usize),
+        pixels: (usize, usize),
+        image: (Texels<'_>, T, &mut T::Along<S>),
+        places: impl PlacesAlong<S>,
+    ) {
+        InFrame(self.0).show(s, span, pixels, image, places);
+    }
+}
+
+/// The frame.
+pub(super) struct InFrame<'a>(pub(super) &'a mut [u8]);
+
+impl Destination for InFrame<'_> {
+    #[inline(always)]
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
+        spans.in_frame(i)
+    }
+
+    #[inline(always)]
+    fn show<S: Lanes8, T: Tint>(
+        &mut self,
+        s: S,
+        _: (&Spans<'_>, usize),
+        (at, length): (usize, usize),
+        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
+        places: impl PlacesAlong<S>,
+    ) {
+        if let Some(row) = self.0.get_mut(at..) {
+            show_along(s, (row, length), texels, (tint, along), places);
+        }
+    }
+}
+
+/// The frame where texels are nearer than the cells, which may store their depths.
+pub(super) struct WhereNearer<'a> {
+    pub(super) pixels: &'a mut [u8],
+    pub(super) cells: &'a mut [u32],
+    pub(super) keeps: bool,
+    /// Pixels that were nearer so far.
+    pub(super) nearer: u32,
+}
+
+impl Destination for WhereNearer<'_> {
+    #[inline(always)]
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
+        spans.in_frame(i)
+    }
+
+    #[inline(always)]
+    fn show<S: Lanes8, T: Tint>(
+        &mut self,
+        s: S,
+        (spans, i): (&Spans<'_>, usize),
+        (at, length): (usize, usize),
+        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
+        places: impl PlacesAlong<S>,
+    ) {
+        let (cell, depths) = spans.depth(i);
+        let mut masks = Masks::default();
+        let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
+        if let (Some(row), Some(cells)) = (self.pixels.get_mut(at..), self.cells.get_mut(cell..)) {
+            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+            self.nearer += nearer;
+            if nearer > 0 {
+                show_masked(s, (row, masks), texels, (tint, along), places);
+            }
+        }
+    }
+}
