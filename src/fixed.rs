@@ -30,6 +30,10 @@ const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 /// [`Float`](crate::raster::Interpolation::Float), which draw as `Gouraud` does.
 pub(crate) const IS_SMALL: bool = cfg!(mode13h_small);
 
+/// Whether the size of the program counts: in a build for size, and in WebAssembly, which is loaded over a network. Then
+/// a loop that gains a few per cent of time is left out.
+pub(crate) const IS_COMPACT: bool = IS_SMALL || cfg!(target_family = "wasm");
+
 internal! {
 /// The floor of n / d for a positive d, modulo 2⁶⁴.
 #[must_use]

@@ -29,7 +29,7 @@ use super::rows::{self, Flat, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
-use crate::fixed::HAS_F64;
+use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
@@ -142,8 +142,8 @@ impl<D: Cell> Raster<'_, D> {
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match (kind, &target.cells) {
                 (Some(kind), _) => draw_shaded(level, of, kind, place, target, list),
-                (None, Some(_)) if are_flat => draw_nearer_flat(level, of, place, target, list),
-                (None, None) if are_flat => draw_all_flat(level, of, place, target, list),
+                (None, Some(_)) if are_flat && !IS_COMPACT => draw_nearer_flat(level, of, place, target, list),
+                (None, None) if are_flat && !IS_COMPACT => draw_all_flat(level, of, place, target, list),
                 (None, Some(_)) => draw_nearer(level, of, place, target, list),
                 (None, None) => draw_all(level, of, place, target, list),
             };

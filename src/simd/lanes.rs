@@ -144,7 +144,9 @@ pub(crate) trait Lanes8: Copy {
 }
 
 /// The depth test pixel by pixel, which most levels do as fast as in vectors.
-#[inline(always)]
+// Not inlined where size counts, see `fixed::IS_COMPACT`.
+#[cfg_attr(any(mode13h_small, target_family = "wasm"), inline(never))]
+#[cfg_attr(not(any(mode13h_small, target_family = "wasm")), inline(always))]
 fn test_depths<const N: usize>(cells: &mut [u32; N], [mut z, dz]: [i64; 2], count: usize, keeps: bool) -> u64 {
     let (mut stays, mut k) = (u64::MAX, 0);
     while k < N && k < count {

@@ -14,6 +14,8 @@
 
 use core::fmt;
 
+#[cfg(feature = "alloc")]
+use crate::fixed::IS_COMPACT;
 use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::{BASELINE, Lanes8};
@@ -565,7 +567,7 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         rest = behind;
         // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case extracts its own
         // lanes: those of all, extracted before, would not fit into the registers.)
-        if stays == 0 {
+        if stays == 0 && !IS_COMPACT {
             let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
             let mut k = 0;
             while k < LANES {
@@ -855,7 +857,10 @@ pub(crate) fn perspective_places<S: Lanes8>(
     [[u, du], [v, dv]]: [[f64; 2]; 2],
     [d, dd]: [f64; 2],
 ) -> bool {
-    let Some(mut quotients) = Quotients::new(s, texels, [[u, du], [v, dv]], [d, dd], (0, n)) else { return false };
+    let mut quotients = Quotients::new(s, texels, [[u, du], [v, dv]], [d, dd], (0, n));
+    if quotients.unsure != 0 {
+        return false;
+    }
     for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
         s.store_i32(quotients.next(), block);
     }
@@ -863,25 +868,30 @@ pub(crate) fn perspective_places<S: Lanes8>(
 }
 
 /// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by the quotients of
-/// [`perspective_places`]. Where one of them cannot decide, `exact` stores the indices of eight texels, from the one
-/// with this number on. `None` if divisors differ too much.
+/// [`perspective_places`], if there are sums to begin with. Where a quotient cannot decide, `exact` stores the indices of
+/// eight texels, from the one with this number on.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
     s: S,
     texels: Texels<'_>,
-    (numerators, divisors): ([[f64; 2]; 2], [f64; 2]),
+    sums: Option<([[f64; 2]; 2], [f64; 2])>,
     range: (usize, usize),
     exact: impl Fn(usize, &mut [i32; LANES]),
-) -> Option<impl PlacesAlong<S>> {
-    let quotients = Quotients::new(s, texels, numerators, divisors, range)?;
-    Some(ExactAlong { quotients, first: range.0, exact })
+) -> impl PlacesAlong<S> {
+    let (numerators, divisors) = sums.unwrap_or_default();
+    let mut quotients = Quotients::new(s, texels, numerators, divisors, range);
+    let unsure = if sums.is_some() { quotients.unsure } else { u32::MAX };
+    quotients.unsure = unsure;
+    ExactAlong { quotients, unsure, first: range.0, exact }
 }
 
 /// Quotients, and what decides where they cannot.
 #[cfg(feature = "alloc")]
 struct ExactAlong<S: Lanes8, E> {
     quotients: Quotients<S>,
+    /// Not 0 if no quotient can decide.
+    unsure: u32,
     /// The number of the next texel.
     first: usize,
     exact: E,
@@ -897,7 +907,7 @@ impl<S: Lanes8, E: Fn(usize, &mut [i32; LANES])> PlacesAlong<S> for ExactAlong<S
         if self.quotients.unsure == 0 {
             return places;
         }
-        self.quotients.unsure = 0;
+        self.quotients.unsure = self.unsure;
         let mut eight = [0; LANES];
         (self.exact)(first, &mut eight);
         self.quotients.at.s.load_i32(&eight)
@@ -919,12 +929,12 @@ struct Quotients<S: Lanes8> {
     /// The indices of the next eight pixels, and the end of all.
     numbers: S::I32,
     end: S::I32,
-    /// A bit for each lane in which a quotient could not decide.
+    /// Not 0 if a quotient could not decide.
     unsure: u32,
 }
 
 impl<S: Lanes8> Quotients<S> {
-    /// The quotients of the pixels from `first` to `end` of a row, at most [`PIECE`]; `None` if divisors differ too
+    /// The quotients of the pixels from `first` to `end` of a row, at most [`PIECE`]; all unsure if divisors differ too
     /// much.
     #[inline(always)]
     fn new(
@@ -933,21 +943,21 @@ impl<S: Lanes8> Quotients<S> {
         numerators: [[f64; 2]; 2],
         [d, dd]: [f64; 2],
         (first, end): (usize, usize),
-    ) -> Option<Self> {
+    ) -> Self {
         // At most PIECE.
         let last = d + (end as i32 - 1) as f64 * dd;
         let (least, greatest) = if d < last { (d, last) } else { (last, d) };
         // False for NaN too.
         let is_sure = least * MAX_RATIO >= greatest;
-        is_sure.then(|| Self {
+        Self {
             at: PlaceLanes::new(s, texels),
             numerators,
             divisors: [d, dd],
             width: s.splat_i32(1 << texels.ubits),
             numbers: s.add_i32(s.splat_i32(first as i32), s.load_i32(&NUMBERS)),
             end: s.splat_i32(end as i32),
-            unsure: 0,
-        })
+            unsure: if is_sure { 0 } else { u32::MAX },
+        }
     }
 
     /// Leaves out the next eight.

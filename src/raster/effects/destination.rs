@@ -70,16 +70,17 @@ impl Destination for InFrame<'_> {
     }
 }
 
-/// The frame where texels are nearer than the cells, which may store their depths.
-pub(super) struct WhereNearer<'a> {
+/// The frame by masks: if there are cells, where pixels are nearer.
+pub(super) struct Masked<'a> {
     pub(super) pixels: &'a mut [u8],
-    pub(super) cells: &'a mut [u32],
+    pub(super) cells: Option<&'a mut [u32]>,
+    /// True if the cells store nearer depths.
     pub(super) keeps: bool,
     /// Pixels that were nearer so far.
     pub(super) nearer: u32,
 }
 
-impl Destination for WhereNearer<'_> {
+impl Destination for Masked<'_> {
     #[inline(always)]
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
         spans.in_frame(i)
@@ -94,15 +95,28 @@ impl Destination for WhereNearer<'_> {
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         places: impl PlacesAlong<S>,
     ) {
-        let (cell, depths) = spans.depth(i);
         let mut masks = Masks::default();
-        let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
-        if let (Some(row), Some(cells)) = (self.pixels.get_mut(at..), self.cells.get_mut(cell..)) {
-            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
-            self.nearer += nearer;
-            if nearer > 0 {
-                show_masked(s, (row, masks), texels, (tint, along), places);
+        let (Some(masks), Some(row)) = (masks.get_mut(..length.div_ceil(LANES)), self.pixels.get_mut(at..)) else {
+            return;
+        };
+        match &mut self.cells {
+            Some(cells) => {
+                let (cell, depths) = spans.depth(i);
+                let Some(cells) = cells.get_mut(cell..) else { return };
+                let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+                self.nearer += nearer;
+                if nearer == 0 {
+                    return;
+                }
             }
+            // All but what follows the last pixel.
+            None if length % LANES > 0 => {
+                if let Some(last) = masks.last_mut() {
+                    *last = u64::MAX << (8 * (length % LANES));
+                }
+            }
+            None => {}
         }
+        show_masked(s, (row, masks), texels, (tint, along), places);
     }
 }

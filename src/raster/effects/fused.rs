@@ -1,11 +1,11 @@
 //! One loop per span from start to frame, in place of stages: texture, light, fog, blending and the depth test.
 
-use super::destination::{Destination, InFrame, WhereNearer};
+use super::destination::{Destination, InFrame, Masked};
 use super::direct::{Direct, DirectTint};
 use super::pipeline::PixelPipeline;
 use super::spans::Spans;
 use super::texture::show_texture;
-use crate::fixed::IS_SMALL;
+use crate::fixed::{IS_COMPACT, IS_SMALL};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
@@ -13,74 +13,76 @@ use crate::span::list::Target;
 use crate::span::texture::{Blended, Fogged, Painted, StoredPlaces, Texels, Tint, Untextured};
 
 impl Direct<'_> {
-    /// Shows the pixels of every span in the frame, fogged and blended as the pipeline says; if there are cells, only
+    /// Shows the pixels of every span in the frame, fogged or blended as the pipeline says; if there are cells, only
     /// where they are nearer. Returns the number of nearer pixels; `None`, with nothing shown, if there is no loop for
     /// this pipeline.
     pub(super) fn show(self, spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, target: &mut Target<'_>) -> Option<u32> {
         let Target { pixels, cells, kernel } = target;
-        match (cells, pipeline.fog(), pipeline.blend()) {
-            (None, fog, None) => self.show_in(spans, fog, &mut InFrame(pixels), *kernel),
-            (None, None, Some(blend)) => self.show_blended(spans, blend, &mut InFrame(pixels), *kernel),
-            (Some(Cells::U32(cells)), ..) => return self.show_nearer(spans, pipeline, (pixels, cells), *kernel),
-            _ => None,
-        }?;
+        let (fog, keeps) = (pipeline.fog(), pipeline.keeps_depth);
+        match (cells, fog, pipeline.blend()) {
+            (None, None, None) => self.show_in(spans, &mut InFrame(pixels), *kernel)?,
+            (None, None, Some(blend)) if !IS_COMPACT => {
+                self.show_blended(spans, blend, &mut InFrame(pixels), *kernel)?
+            }
+            (None, Some(fog), None) => {
+                self.show_fogged(spans, fog, &mut Masked { pixels, cells: None, keeps, nearer: 0 }, *kernel)?;
+            }
+            (Some(Cells::U32(cells)), fog, None) => {
+                let mut to = Masked { pixels, cells: Some(cells), keeps, nearer: 0 };
+                self.show_nearer(spans, fog, &mut to, *kernel)?;
+                return Some(to.nearer);
+            }
+            _ => return None,
+        }
         Some(0)
     }
 
-    /// [`show`](Self::show) where pixels are nearer than the cells.
+    /// Shows pixels where they are nearer than the cells.
     #[inline(never)]
     fn show_nearer(
         self,
         spans: &Spans<'_>,
-        pipeline: &PixelPipeline<'_>,
-        (pixels, cells): (&mut [u8], &mut [u32]),
-        kernel: Kernel,
-    ) -> Option<u32> {
-        let mut to = WhereNearer { pixels, cells, keeps: pipeline.keeps_depth, nearer: 0 };
-        match (pipeline.fog(), pipeline.blend()) {
-            (fog, None) => self.show_in(spans, fog, &mut to, kernel)?,
-            (None, Some(blend)) => self.show_blended(spans, blend, &mut to, kernel)?,
-            _ => return None,
-        }
-        Some(to.nearer)
-    }
-
-    fn show_in(
-        self,
-        spans: &Spans<'_>,
         fog: Option<&[u8; 65_536]>,
-        to: &mut impl Destination,
+        to: &mut Masked<'_>,
         kernel: Kernel,
     ) -> Option<()> {
-        let (image, tint) = match self {
-            Self::Shades => {
-                // Shades alone have kernels of their own. With narrow vectors stages are 3 % faster.
-                let fog = fog.filter(|_| kernel.has_wide_lanes())?;
-                show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to);
-                return Some(());
-            }
-            Self::Texture { image, is_perspective, tint } => ((image, is_perspective), tint),
-        };
-        match (tint, fog) {
-            (DirectTint::None, None) => show_texture(spans, image, (), to, kernel),
-            (DirectTint::Row(row), None) => show_texture(spans, image, row, to, kernel),
-            (DirectTint::Lit(table), None) => show_texture(spans, image, Painted(table), to, kernel),
-            (DirectTint::None, Some(fog)) => show_texture(spans, image, Fogged((), fog), to, kernel),
-            (DirectTint::Row(row), Some(fog)) => show_texture(spans, image, Fogged(row, fog), to, kernel),
-            (DirectTint::Lit(table), Some(fog)) => {
-                show_texture(spans, image, Fogged(Painted(table), fog), to, kernel);
+        match fog {
+            None => self.show_in(spans, to, kernel),
+            Some(fog) => self.show_fogged(spans, fog, to, kernel),
+        }
+    }
+
+    fn show_in(self, spans: &Spans<'_>, to: &mut impl Destination, kernel: Kernel) -> Option<()> {
+        // Shades alone have kernels of their own.
+        let Self::Texture { image, is_perspective, tint } = self else { return None };
+        let image = (image, is_perspective);
+        match tint {
+            DirectTint::None => show_texture(spans, image, (), to, kernel),
+            DirectTint::Row(row) => show_texture(spans, image, row, to, kernel),
+            DirectTint::Lit(table) => show_texture(spans, image, Painted(table), to, kernel),
+        }
+        Some(())
+    }
+
+    #[inline(never)]
+    fn show_fogged(self, spans: &Spans<'_>, fog: &[u8; 65_536], to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
+        match self {
+            // With narrow vectors stages are 3 % faster.
+            Self::Shades if !kernel.has_wide_lanes() => return None,
+            Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
+            Self::Texture { image, is_perspective, tint } => {
+                let image = (image, is_perspective);
+                match tint {
+                    DirectTint::None => show_texture(spans, image, Fogged((), fog), to, kernel),
+                    DirectTint::Row(row) => show_texture(spans, image, Fogged(row, fog), to, kernel),
+                    DirectTint::Lit(table) => show_texture(spans, image, Fogged(Painted(table), fog), to, kernel),
+                }
             }
         }
         Some(())
     }
 
-    fn show_blended(
-        self,
-        spans: &Spans<'_>,
-        blend: &[u8; 65_536],
-        to: &mut impl Destination,
-        kernel: Kernel,
-    ) -> Option<()> {
+    fn show_blended(self, spans: &Spans<'_>, blend: &[u8; 65_536], to: &mut InFrame<'_>, kernel: Kernel) -> Option<()> {
         // Shades are blended 14 % faster in stages.
         let Self::Texture { image, is_perspective, tint } = self else { return None };
         let image = (image, is_perspective);

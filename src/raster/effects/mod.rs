@@ -52,7 +52,7 @@ use super::reference::cover::Row;
 use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
-use crate::fixed::HAS_F64;
+use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
 use crate::span::depth_test::copy_span;
@@ -364,8 +364,8 @@ impl<D: Cell> Raster<'_, D> {
                 let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
                 let (level, place) = (kernel.simd_level(), (layout, clip));
                 drawn += match target.cells {
-                    Some(_) => draw_effects::<true>(level, of, (&mut spans, list), place, target),
-                    None => draw_effects::<false>(level, of, (&mut spans, list), place, target),
+                    None if !IS_COMPACT => draw_effects::<false>(level, of, (&mut spans, list), place, target),
+                    _ => draw_effects::<true>(level, of, (&mut spans, list), place, target),
                 };
                 first += together;
                 continue;

@@ -16,7 +16,7 @@ use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{AffineLines, Levels, Shown, StoredPlaces, Texels, Tint, perspective_along, show};
+use crate::span::texture::{AffineLines, Levels, Shown, Texels, Tint, perspective_along, show};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -163,48 +163,37 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
 
 #[inline(always)]
 fn show_exact_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
+    let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
-        if spans.have_texture() {
+        let mut sums = None;
+        if has_sums {
             let ([u, v, d], [du, dv, dd]) = (spans.sums(i), spans.sum_steps(i));
-            let (sums, range) = (([[u, du], [v, dv]], [d, dd]), (skipped as usize, skipped as usize + length));
-            let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight(spans, i, image, first, eight);
-            if let Some(places) = perspective_along(s, image, sums, range, exact) {
-                let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-                to.show(s, (spans, i), (at, length), (image, tint, along), places);
-                continue;
-            }
+            sums = Some(([[u, du], [v, dv]], [d, dd]));
         }
-        show_one(s, (spans, i), (at, length, skipped), image, tint, to);
+        // At most 64.
+        let range = (skipped as usize, skipped as usize + length);
+        let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight(spans, i, image, first, eight);
+        let places = perspective_along(s, image, sums, range, exact);
+        let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
+        to.show(s, (spans, i), (at, length), (image, tint, along), places);
     }
 }
 
-/// The indices of eight texels of span `i`, from its pixel `first` on, where quotients cannot decide.
+/// The indices of eight texels of span `i`, from its pixel `first` on, where the list has no sums, or its quotients
+/// cannot decide.
 #[cold]
 #[inline(never)]
 fn exact_eight(spans: &Spans<'_>, i: usize, image: Texels<'_>, first: usize, eight: &mut [i32; LANES]) {
-    let span = spans.span(i);
+    let (span, plane) = (spans.span(i), perspective_texture(spans, i));
     let n = span.len.saturating_sub(first).min(LANES);
     // Below 64.
-    perspective_texture(spans, i).in_integers((image, 0), (span.x + first as i32, span.y), &mut eight[..n]);
-}
-
-/// Shows the texels of a span whose sums are not in the list, or whose divisors differ too much for quotients.
-#[inline(never)]
-fn show_one<S: Lanes8, T: Tint, D: Destination>(
-    s: S,
-    (spans, i): (&Spans<'_>, usize),
-    (at, length, skipped): (usize, usize, u32),
-    image: Texels<'_>,
-    tint: T,
-    to: &mut D,
-) {
-    let (span, mut places) = (spans.span(i), [0; LONGEST + LANES]);
-    let n = span.len.min(LONGEST);
-    perspective_texture(spans, i).exact(BASELINE, (image, 0), (span.x, span.y), (&mut places, n));
-    let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-    let places = StoredPlaces(s, &places[(skipped as usize).min(n)..]);
-    to.show(s, (spans, i), (at, length), (image, tint, along), places);
+    let at = (span.x + first as i32, span.y);
+    if spans.have_texture() {
+        plane.in_integers((image, 0), at, &mut eight[..n]);
+    } else {
+        plane.exact(BASELINE, (image, 0), at, (eight, n));
+    }
 }
 
 fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
