@@ -209,69 +209,20 @@ pub(super) trait Shades8 {
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
 }
 
-/// Linear shades in 8.8.
-pub(super) struct Linear;
-
-impl Shades8 for Linear {
-    const IS_LINEAR: bool = true;
-    type Columns<S: Lanes8> = ();
-
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn begin(&mut self, _: usize) {}
-
-    #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, _: S, _: &Basis<S>, _: &Corners8, _: &TriangleSetup8) {}
-
-    #[inline(always)]
-    fn fill_of<S: Lanes8>(
-        &self,
-        s: S,
-        lane: impl Lane<S>,
-        setup: &TriangleSetup8,
-        (ends, _): (&RowEnds<S>, S::F64),
-        parts: &Parts<S>,
-    ) -> (S::I32, ()) {
-        (ends.paint(s, lane, setup, parts.seed), ())
-    }
-
-    #[inline(always)]
-    fn append<S: Lanes8, const DEPTHS: bool>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, ()>,
-        dz: DepthSteps<S>,
-    ) {
-        list.append::<S, _, DEPTHS>(s, spans, dz);
-    }
-
-    #[inline(always)]
-    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
-
-    #[inline(always)]
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
-        list.draw_by::<DEPTHS>(target);
-    }
-}
-
-/// A single shade for each triangle: no plane, and the same start for all of its rows.
-pub(super) struct Flat {
-    /// The shades with the half that rounds them; the steps, in the upper halves, are 0.
+/// Linear shades in 8.8; with `FLAT` a single shade for each triangle, which needs no plane: all of its rows start with
+/// it.
+pub(super) struct Linear<const FLAT: bool> {
+    /// With `FLAT` the shades, with the half that rounds them; the steps, in the upper halves, are 0.
     paint: Ints,
 }
 
-impl Flat {
+impl<const FLAT: bool> Linear<FLAT> {
     pub(super) const NONE: Self = Self { paint: [0; LANES] };
 }
 
-impl Shades8 for Flat {
+impl<const FLAT: bool> Shades8 for Linear<FLAT> {
     const IS_LINEAR: bool = true;
-    const IS_FLAT: bool = true;
+    const IS_FLAT: bool = FLAT;
     type Columns<S: Lanes8> = ();
 
     #[inline(always)]
@@ -284,8 +235,10 @@ impl Shades8 for Flat {
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, _: &Basis<S>, corners: &Corners8, _: &TriangleSetup8) {
-        // At most 0xFF80.
-        s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
+        if FLAT {
+            // At most 0xFF80.
+            s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
+        }
     }
 
     #[inline(always)]
@@ -293,11 +246,11 @@ impl Shades8 for Flat {
         &self,
         s: S,
         lane: impl Lane<S>,
-        _: &TriangleSetup8,
-        _: (&RowEnds<S>, S::F64),
-        _: &Parts<S>,
+        setup: &TriangleSetup8,
+        (ends, _): (&RowEnds<S>, S::F64),
+        parts: &Parts<S>,
     ) -> (S::I32, ()) {
-        (lane.load_i32(s, &self.paint), ())
+        (if FLAT { lane.load_i32(s, &self.paint) } else { ends.paint(s, lane, setup, parts.seed) }, ())
     }
 
     #[inline(always)]
@@ -317,8 +270,11 @@ impl Shades8 for Flat {
     #[cfg(simd_x86_64)]
     #[inline(always)]
     fn large_triangle(&self, i: usize, setup: &TriangleSetup8, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
-        let shade = [self.paint[i % LANES].into(), 0.0, 1.0];
-        LargeTriangle { shade, per_column: 0.0, step: 0, ..setup.large_triangle(i, layout, reseeds) }
+        let linear = setup.large_triangle(i, layout, reseeds);
+        if !FLAT {
+            return linear;
+        }
+        LargeTriangle { shade: [self.paint[i % LANES].into(), 0.0, 1.0], per_column: 0.0, step: 0, ..linear }
     }
 
     #[inline(always)]

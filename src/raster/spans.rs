@@ -25,13 +25,13 @@ use super::interpolation::Interpolation;
 use super::pick::{MAX_WIDTH, Pick, SizeClass};
 use super::reference::depth::DepthPlane;
 use super::reference::shade::RESEED;
-use super::rows::{self, Flat, Linear, Shades8};
+use super::rows::{self, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::lanes::{LANES, three};
-use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
 /// Triangles, and whether their rows are split into pieces of 64 pixels, with which linear shades are reseeded.
@@ -61,7 +61,7 @@ impl Drawn<'_> {
     }
 }
 
-/// Memory for the spans of picked triangles, kept because clearing it takes 6 % of the time of a small object.
+/// Memory for the spans of picked triangles, reused because clearing it takes 6 % of the time of a small object.
 #[cfg(feature = "alloc")]
 #[derive(Debug)]
 pub(crate) struct SpanScratch(SpanList);
@@ -75,7 +75,7 @@ impl Default for SpanScratch {
 
 #[cfg(feature = "alloc")]
 impl<D: Cell> Raster<'_, D> {
-    /// [`picks`](Self::picks) in memory that the caller keeps.
+    /// [`picks`](Self::picks) with memory of the caller's.
     pub(crate) fn picks_with(
         &mut self,
         triangles: &Triangles<'_>,
@@ -140,12 +140,9 @@ impl<D: Cell> Raster<'_, D> {
             let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel };
             let place = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
-            drawn += match (kind, &target.cells) {
-                (Some(kind), _) => draw_shaded(level, of, kind, place, target, list),
-                (None, Some(_)) if are_flat && !IS_COMPACT => draw_nearer_flat(level, of, place, target, list),
-                (None, None) if are_flat && !IS_COMPACT => draw_all_flat(level, of, place, target, list),
-                (None, Some(_)) => draw_nearer(level, of, place, target, list),
-                (None, None) => draw_all(level, of, place, target, list),
+            drawn += match kind {
+                Some(kind) => draw_shaded(level, of, kind, place, target, list),
+                None => draw_linear(level, of, place, target, list),
             };
             first += together;
         }
@@ -166,69 +163,38 @@ impl<D: Cell> Raster<'_, D> {
 /// Where triangles are drawn: the pixels' layout, and the clip rectangle.
 pub(super) type Place = (FrameLayout, Rect);
 
-// Without type parameters, so that they are compiled in this crate, and not in each that draws.
+/// Draws triangles with linear shades, none of which is unbatched; if there are cells, only where they are nearer.
+///
+/// Without type parameters, as `draw_shaded`, so that it is compiled in this crate, and not in each that draws.
+#[inline(never)]
+fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
+    match (!of.picks.flat.is_empty() && !IS_COMPACT, target.cells.is_some()) {
+        (false, false) => draw_at_level::<false, false>(level, of, place, target, list),
+        (false, true) => draw_at_level::<false, true>(level, of, place, target, list),
+        (true, false) => draw_at_level::<true, false>(level, of, place, target, list),
+        (true, true) => draw_at_level::<true, true>(level, of, place, target, list),
+    }
+}
+
 compiled_for_each_level! {
-    /// Draws triangles, none of which is unbatched.
-    fn draw_all[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_by;
+    /// Draws triangles, with `FLAT` of a single shade each, with `DEPTHS` where they are nearer than the cells.
+    fn draw_at_level[const FLAT: bool, const DEPTHS: bool][FLAT, DEPTHS](
+        of: Drawn<'_>,
+        place: Place,
+        target: &mut Target<'_>,
+        list: &mut SpanList,
+    ) -> DrawStats = draw_by;
 }
 
 #[inline(always)]
-fn draw_all_by<S: Lanes8>(
+fn draw_by<S: Lanes8, const FLAT: bool, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
     place: Place,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    draw_triangles::<S, Linear, false, false>(s, of, place, target, &mut Linear, list)
-}
-
-compiled_for_each_level! {
-    /// Draws triangles, none of which is unbatched, where they are nearer than the cells.
-    fn draw_nearer[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_by;
-}
-
-#[inline(always)]
-fn draw_nearer_by<S: Lanes8>(
-    s: S,
-    of: Drawn<'_>,
-    place: Place,
-    target: &mut Target<'_>,
-    list: &mut SpanList,
-) -> DrawStats {
-    draw_triangles::<S, Linear, true, true>(s, of, place, target, &mut Linear, list)
-}
-
-compiled_for_each_level! {
-    /// Draws triangles, none of which is unbatched, with a single shade each.
-    fn draw_all_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_all_flat_by;
-}
-
-#[inline(always)]
-fn draw_all_flat_by<S: Lanes8>(
-    s: S,
-    of: Drawn<'_>,
-    place: Place,
-    target: &mut Target<'_>,
-    list: &mut SpanList,
-) -> DrawStats {
-    draw_triangles::<S, Flat, false, false>(s, of, place, target, &mut { Flat::NONE }, list)
-}
-
-compiled_for_each_level! {
-    /// Draws triangles, none of which is unbatched, with a single shade each, where they are nearer than the cells.
-    fn draw_nearer_flat[][](of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats = draw_nearer_flat_by;
-}
-
-#[inline(always)]
-fn draw_nearer_flat_by<S: Lanes8>(
-    s: S,
-    of: Drawn<'_>,
-    place: Place,
-    target: &mut Target<'_>,
-    list: &mut SpanList,
-) -> DrawStats {
-    draw_triangles::<S, Flat, true, true>(s, of, place, target, &mut { Flat::NONE }, list)
+    draw_triangles::<S, _, DEPTHS, DEPTHS>(s, of, place, target, &mut { Linear::<FLAT>::NONE }, list)
 }
 
 compiled_for_each_level! {

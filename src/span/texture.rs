@@ -877,7 +877,7 @@ pub(crate) fn perspective_along<S: Lanes8>(
     texels: Texels<'_>,
     sums: Option<([[f64; 2]; 2], [f64; 2])>,
     range: (usize, usize),
-    exact: impl Fn(usize, &mut [i32; LANES]),
+    exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl PlacesAlong<S> {
     let (numerators, divisors) = sums.unwrap_or_default();
     let mut quotients = Quotients::new(s, texels, numerators, divisors, range);
@@ -898,16 +898,19 @@ struct ExactAlong<S: Lanes8, E> {
 }
 
 #[cfg(feature = "alloc")]
-impl<S: Lanes8, E: Fn(usize, &mut [i32; LANES])> PlacesAlong<S> for ExactAlong<S, E> {
+impl<S: Lanes8, E: FnMut(usize, &mut [i32; LANES])> PlacesAlong<S> for ExactAlong<S, E> {
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
         let first = self.first;
         self.first += LANES;
-        let places = self.quotients.next();
-        if self.quotients.unsure == 0 {
-            return places;
+        // Without f64 no quotient decides, and each would take a chip thousands of instructions.
+        if HAS_F64 {
+            let places = self.quotients.next();
+            if self.quotients.unsure == 0 {
+                return places;
+            }
+            self.quotients.unsure = self.unsure;
         }
-        self.quotients.unsure = self.unsure;
         let mut eight = [0; LANES];
         (self.exact)(first, &mut eight);
         self.quotients.at.s.load_i32(&eight)
@@ -944,11 +947,14 @@ impl<S: Lanes8> Quotients<S> {
         [d, dd]: [f64; 2],
         (first, end): (usize, usize),
     ) -> Self {
-        // At most PIECE.
-        let last = d + (end as i32 - 1) as f64 * dd;
-        let (least, greatest) = if d < last { (d, last) } else { (last, d) };
-        // False for NaN too.
-        let is_sure = least * MAX_RATIO >= greatest;
+        let mut is_sure = HAS_F64;
+        if HAS_F64 {
+            // At most PIECE.
+            let last = d + (end as i32 - 1) as f64 * dd;
+            let (least, greatest) = if d < last { (d, last) } else { (last, d) };
+            // False for NaN too.
+            is_sure = least * MAX_RATIO >= greatest;
+        }
         Self {
             at: PlaceLanes::new(s, texels),
             numerators,

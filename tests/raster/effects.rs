@@ -553,7 +553,7 @@ fn without_effects_faces_are_plain_triangles() {
     assert!(long > 50, "{long} with long spans");
 }
 
-/// What is left of a look if one loop is to show its texels, without stages.
+/// A look without what needs stages, so that one loop shows its texels.
 fn fused(look: PixelPipeline<'_>) -> PixelPipeline<'_> {
     let source = match look.source {
         ShadeSource::Shaded(Interpolation::Flat(_) | Interpolation::Gouraud) => look.source,

@@ -12,15 +12,23 @@ pub(super) trait Destination {
     /// Where the pixels of span `i` begin, how many there are, and how many of its first ones are left out.
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
 
+    /// All pixels.
+    fn all(&mut self) -> &mut [u8];
+
     /// Shows texels in the pixels of span `i`, from `at` on.
+    #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
-        span: (&Spans<'_>, usize),
-        pixels: (usize, usize),
-        image: (Texels<'_>, T, &mut T::Along<S>),
+        _: (&Spans<'_>, usize),
+        (at, length): (usize, usize),
+        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         places: impl PlacesAlong<S>,
-    );
+    ) {
+        if let Some(row) = self.all().get_mut(at..) {
+            show_along(s, (row, length), texels, (tint, along), places);
+        }
+    }
 }
 
 /// The buffer of all pixels, hidden ones included.
@@ -34,15 +42,8 @@ impl Destination for InBuffer<'_> {
     }
 
     #[inline(always)]
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        span: (&Spans<'_>, usize),
-        pixels: (usize, usize),
-        image: (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    ) {
-        InFrame(self.0).show(s, span, pixels, image, places);
+    fn all(&mut self) -> &mut [u8] {
+        self.0
     }
 }
 
@@ -56,17 +57,8 @@ impl Destination for InFrame<'_> {
     }
 
     #[inline(always)]
-    fn show<S: Lanes8, T: Tint>(
-        &mut self,
-        s: S,
-        _: (&Spans<'_>, usize),
-        (at, length): (usize, usize),
-        (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
-    ) {
-        if let Some(row) = self.0.get_mut(at..) {
-            show_along(s, (row, length), texels, (tint, along), places);
-        }
+    fn all(&mut self) -> &mut [u8] {
+        self.0
     }
 }
 
@@ -84,6 +76,11 @@ impl Destination for Masked<'_> {
     #[inline(always)]
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
         spans.in_frame(i)
+    }
+
+    #[inline(always)]
+    fn all(&mut self) -> &mut [u8] {
+        self.pixels
     }
 
     #[inline(always)]

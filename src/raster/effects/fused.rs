@@ -103,7 +103,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, tint: T, to: &mut D) {
-    // There is none; here the compiler sees that.
+    // A build for size has no such pipeline; here the compiler sees that.
     if IS_SMALL {
         return;
     }

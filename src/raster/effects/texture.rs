@@ -37,7 +37,7 @@ pub(super) fn show_texture<T: Tint, D: Destination>(
     to: &mut D,
     kernel: Kernel,
 ) {
-    // There is none; here the compiler sees that.
+    // A build for size has no such pipeline; here the compiler sees that.
     if IS_SMALL {
         return;
     }
@@ -173,7 +173,9 @@ fn show_exact_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, im
         }
         // At most 64.
         let range = (skipped as usize, skipped as usize + length);
-        let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight(spans, i, image, first, eight);
+        // Set up for the first eight that need it.
+        let mut plane = None;
+        let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
         let places = perspective_along(s, image, sums, range, exact);
         let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
         to.show(s, (spans, i), (at, length), (image, tint, along), places);
@@ -184,8 +186,15 @@ fn show_exact_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, im
 /// cannot decide.
 #[cold]
 #[inline(never)]
-fn exact_eight(spans: &Spans<'_>, i: usize, image: Texels<'_>, first: usize, eight: &mut [i32; LANES]) {
-    let (span, plane) = (spans.span(i), perspective_texture(spans, i));
+fn exact_eight(
+    (spans, i): (&Spans<'_>, usize),
+    plane: &mut Option<PerspectiveTexture>,
+    image: Texels<'_>,
+    first: usize,
+    eight: &mut [i32; LANES],
+) {
+    let span = spans.span(i);
+    let plane = plane.get_or_insert_with(|| perspective_texture(spans, i));
     let n = span.len.saturating_sub(first).min(LANES);
     // Below 64.
     let at = (span.x + first as i32, span.y);
