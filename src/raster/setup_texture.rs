@@ -7,15 +7,17 @@
 //!
 //! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
 //! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
-//! its terms' magnitudes.
+//! its terms' magnitudes. Where its corners are close together, a triangle's coordinates begin at a whole texel nearby,
+//! its base, so that f32 resolves them.
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
 use super::rows::Lane;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, each};
 use crate::simd::Lanes8;
+use crate::span::texture::{PerspectiveSums, fits_singles};
 
 /// Texture coordinates u and v of each corner of up to eight triangles, in texels with 16 fraction bits; 0 in lanes
 /// without a triangle.
@@ -31,6 +33,14 @@ pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -
         }
     }
     gathered
+}
+
+/// The greatest difference between the corners, modulo 2³², and where it is below a limit.
+#[inline(always)]
+fn range_of<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3], limit: i32) -> (S::I32, S::Mask) {
+    // A difference of 2³¹ or more is negative.
+    let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
+    (range, s.and_not(s.is_greater(s.splat_i32(limit), range), s.is_greater(s.splat_i32(0), range)))
 }
 
 /// Planes of coordinates that are linear on the screen, of eight triangles.
@@ -70,11 +80,7 @@ impl AffinePlanes8 {
         let (pixel, magic) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC));
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
             let corners = [s.load_i32(a), s.load_i32(b), s.load_i32(c)];
-            let [a, b, c] = corners;
-            // Modulo 2³²: a difference of 2³¹ or more is negative.
-            let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
-            let is_near =
-                s.and_not(s.is_greater(s.splat_i32(Self::TOO_FAR), range), s.is_greater(s.splat_i32(0), range));
+            let (_, is_near) = range_of(s, corners, Self::TOO_FAR);
             self.fits &= s.to_bitmask(is_near);
             let [first, second, third] = basis.order.sort(s, corners);
             s.store_i32(first, &mut self.first[i]);
@@ -128,11 +134,26 @@ pub(super) struct PerspectivePlanes8 {
     values: [[Floats; 3]; 3],
     /// Change of the sums per pixel.
     step: [Floats; 3],
+    /// The base of u and v: what has been subtracted from the corners' coordinates, a whole number of texels.
+    base: [Ints; 2],
+    /// A bit for each triangle whose quotients may be taken in f32, see [`fits_singles`].
+    fits: u32,
+    /// The steps rounded to f32.
+    single_step: [[f32; LANES]; 3],
 }
 
 impl PerspectivePlanes8 {
-    pub(super) const NONE: Self =
-        Self { weights: [[[0.0; LANES]; 3]; 3], values: [[[0.0; LANES]; 3]; 3], step: [[0.0; LANES]; 3] };
+    pub(super) const NONE: Self = Self {
+        weights: [[[0.0; LANES]; 3]; 3],
+        values: [[[0.0; LANES]; 3]; 3],
+        step: [[0.0; LANES]; 3],
+        base: [[0; LANES]; 2],
+        fits: 0,
+        single_step: [[0.0; LANES]; 3],
+    };
+
+    /// The difference from which on corners have no base. It is too great for f32, see [`fits_singles`].
+    const TOO_FAR: i32 = 1 << 25;
 
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(
@@ -142,12 +163,17 @@ impl PerspectivePlanes8 {
         corners: &Corners8,
         coordinates: &[[Ints; 3]; 2],
     ) {
-        let [u, v] = coordinates;
         let [depth_a, depth_b, depth_c] = &corners.depth;
-        let u = basis.order.sort(s, [s.load_i32(&u[0]), s.load_i32(&u[1]), s.load_i32(&u[2])]);
-        let v = basis.order.sort(s, [s.load_i32(&v[0]), s.load_i32(&v[1]), s.load_i32(&v[2])]);
         let depth = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
         let one = s.splat_f64(1.0);
+        // A depth counts as at least 1.
+        let [a, b, c] = depth;
+        let depth =
+            [s.max(s.unsigned_to_f64(a), one), s.max(s.unsigned_to_f64(b), one), s.max(s.unsigned_to_f64(c), one)];
+        let ([u, v], range) = self.rebase(s, basis, coordinates);
+        let [a, b, c] = depth;
+        let ends = [s.min(s.min(a, b), c), s.max(s.max(a, b), c)];
+        self.fits = s.to_bitmask(fits_singles(s, range, ends));
         let mut sums = [s.splat_f64(0.0); 3];
         for corner in 0..3 {
             let (_, weight) = basis.weight(s, corner);
@@ -155,8 +181,7 @@ impl PerspectivePlanes8 {
                 s.store_f64(weight[i], to);
             }
             let [_, _, per_column] = weight;
-            // A depth counts as at least 1.
-            let depth = s.max(s.unsigned_to_f64(depth[corner]), one);
+            let depth = depth[corner];
             let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
             for i in 0..3 {
                 s.store_f64(values[i], &mut self.values[corner][i]);
@@ -165,7 +190,36 @@ impl PerspectivePlanes8 {
         }
         for (i, step) in self.step.iter_mut().enumerate() {
             s.store_f64(sums[i], step);
+            let step = &*step;
+            self.single_step[i] = each!(lane => step[lane] as f32);
         }
+    }
+
+    /// The coordinates of the corners, sorted, from the triangle's base on, and the greatest difference between two.
+    #[inline(always)]
+    fn rebase<S: Lanes8>(
+        &mut self,
+        s: S,
+        basis: &Basis<S>,
+        coordinates: &[[Ints; 3]; 2],
+    ) -> ([[S::I32; 3]; 2], S::F64) {
+        let mut sorted = [[s.splat_i32(0); 3]; 2];
+        let mut greatest = s.splat_f64(0.0);
+        for (i, [a, b, c]) in coordinates.iter().enumerate() {
+            let corners = basis.order.sort(s, [s.load_i32(a), s.load_i32(b), s.load_i32(c)]);
+            let (range, is_near) = range_of(s, corners, Self::TOO_FAR);
+            let base = s.and_i32(corners[0], s.splat_i32(!0xFFFF));
+            let base = s.select_i32(is_near, base, s.splat_i32(0));
+            s.store_i32(base, &mut self.base[i]);
+            let mut corner = 0;
+            while corner < 3 {
+                sorted[i][corner] = s.sub_i32(corners[corner], base);
+                corner += 1;
+            }
+            let range = s.select_i32(is_near, range, s.splat_i32(Self::TOO_FAR));
+            greatest = s.max(greatest, s.to_f64(range));
+        }
+        (sorted, greatest)
     }
 
     /// The sums of each lane at these columns of rows `j`. A product may be fused with a sum, which rounds less often.
@@ -183,10 +237,26 @@ impl PerspectivePlanes8 {
         sums
     }
 
-    /// Change of the sums of triangle `lane` per pixel.
+    /// The sums along a span of triangle `lane`, from those at its first pixel.
     #[inline(always)]
-    pub(super) fn step(&self, lane: usize) -> [f64; 3] {
-        let lane = lane % LANES;
-        [self.step[0][lane], self.step[1][lane], self.step[2][lane]]
+    pub(super) fn sums(&self, lane: usize, [u, v, d]: [f64; 3]) -> PerspectiveSums<f64> {
+        let (lane, [du, dv, dd]) = (lane % LANES, &self.step);
+        PerspectiveSums {
+            numerators: [[u, du[lane]], [v, dv[lane]]],
+            divisors: [d, dd[lane]],
+            base: [self.base[0][lane], self.base[1][lane]],
+        }
+    }
+
+    /// The sums rounded to f32, if quotients may be taken in f32.
+    #[inline(always)]
+    pub(super) fn singles(&self, lane: usize, sums: [f64; 3]) -> Option<PerspectiveSums<f32>> {
+        // Rounds.
+        let (lane, [u, v, d], [du, dv, dd]) = (lane % LANES, sums.map(|sum| sum as f32), &self.single_step);
+        (self.fits >> lane & 1 != 0).then_some(PerspectiveSums {
+            numerators: [[u, du[lane]], [v, dv[lane]]],
+            divisors: [d, dd[lane]],
+            base: [self.base[0][lane], self.base[1][lane]],
+        })
     }
 }

@@ -113,6 +113,7 @@ impl Singles128 for Neon {
         fn sub_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vsubq_f32(a, b) }
         fn mul_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vmulq_f32(a, b) }
         fn div_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vdivq_f32(a, b) }
+        fn nearest_f32(from: float32x4_t) -> int32x4_t { vcvtnq_s32_f32(from) }
         fn max_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vbslq_f32(vcgtq_f32(a, b), a, b) }
         fn min_f32(a: float32x4_t, b: float32x4_t) -> float32x4_t { vbslq_f32(vcltq_f32(a, b), a, b) }
         fn is_at_least(a: float32x4_t, b: float32x4_t) -> int32x4_t { vreinterpretq_s32_u32(vcgeq_f32(a, b)) }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{Lanes8, Portable};
-use crate::fixed::whole_part;
+use crate::fixed::{ROUND_MAGIC, whole_part};
 use crate::lanes::each;
 
 /// Operations on eight lanes of f32. Each rounds once, like the operation on a single number.
@@ -18,6 +18,13 @@ pub(crate) trait F32Lanes8: Lanes8 {
     fn sub_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
     fn mul_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
     fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// `a·b + c`, rounded like [`Lanes8::mul_add`].
+    #[inline(always)]
+    fn mul_add_f32(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32 {
+        self.add_f32(self.mul_f32(a, b), c)
+    }
+    /// The nearest integers of values within ±2³⁰; arbitrary for others.
+    fn nearest_f32(self, from: Self::F32) -> Self::I32;
     /// `a` where it is greater than `b`, otherwise `b`, also if one is NaN.
     fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// `a` where it is less than `b`, otherwise `b`, also if one is NaN.
@@ -65,6 +72,11 @@ impl F32Lanes8 for Portable {
     #[inline(always)]
     fn div_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
         each!(i => a[i] / b[i])
+    }
+    #[inline(always)]
+    fn nearest_f32(self, from: [f32; 8]) -> [i32; 8] {
+        // The low bits.
+        each!(i => (f64::from(from[i]) + ROUND_MAGIC).to_bits() as i32)
     }
     #[inline(always)]
     fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
@@ -158,6 +170,8 @@ macro_rules! singles_of_256_bits {
             fn sub_f32(a: __m256, b: __m256) -> __m256 { _mm256_sub_ps(a, b) }
             fn mul_f32(a: __m256, b: __m256) -> __m256 { _mm256_mul_ps(a, b) }
             fn div_f32(a: __m256, b: __m256) -> __m256 { _mm256_div_ps(a, b) }
+            fn mul_add_f32(a: __m256, b: __m256, c: __m256) -> __m256 { _mm256_fmadd_ps(a, b, c) }
+            fn nearest_f32(from: __m256) -> __m256i { _mm256_cvtps_epi32(from) }
             fn max_f32(a: __m256, b: __m256) -> __m256 { _mm256_max_ps(a, b) }
             fn min_f32(a: __m256, b: __m256) -> __m256 { _mm256_min_ps(a, b) }
             fn bits_of_f32(from: __m256) -> __m256i { _mm256_castps_si256(from) }

@@ -111,6 +111,7 @@ impl Singles128 for Sse2 {
         fn sub_f32(a: __m128, b: __m128) -> __m128 { _mm_sub_ps(a, b) }
         fn mul_f32(a: __m128, b: __m128) -> __m128 { _mm_mul_ps(a, b) }
         fn div_f32(a: __m128, b: __m128) -> __m128 { _mm_div_ps(a, b) }
+        fn nearest_f32(from: __m128) -> __m128i { _mm_cvtps_epi32(from) }
         fn max_f32(a: __m128, b: __m128) -> __m128 { _mm_max_ps(a, b) }
         fn min_f32(a: __m128, b: __m128) -> __m128 { _mm_min_ps(a, b) }
         fn is_at_least(a: __m128, b: __m128) -> __m128i { _mm_castps_si128(_mm_cmpge_ps(a, b)) }

@@ -252,6 +252,12 @@ fn check_singles<S: F32Lanes8>(s: S, name: &'static str) {
         c.f32s("sub_f32", s.sub_f32(fa, fb), p.sub_f32(a, b));
         c.f32s("mul_f32", s.mul_f32(fa, fb), p.mul_f32(a, b));
         c.f32s("div_f32", s.div_f32(fa, fb), p.div_f32(a, b));
+        // A sum that is exact, however often it is rounded.
+        let bytes = random.i32s().map(|n| (n >> 24) as f32);
+        let all = s.load_f32(&bytes);
+        c.f32s("mul_add_f32", s.mul_add_f32(all, all, all), p.mul_add_f32(bytes, bytes, bytes));
+        let eighths = random.i32s().map(|n| n as f32 / 8.0);
+        c.i32s("nearest_f32", s.nearest_f32(s.load_f32(&eighths)), p.nearest_f32(eighths));
         c.f32s("max_f32", s.max_f32(fa, fb), p.max_f32(a, b));
         c.f32s("min_f32", s.min_f32(fa, fb), p.min_f32(a, b));
         c.mask("is_at_least", s.is_at_least(fa, fb), p.is_at_least(a, b));

@@ -104,6 +104,7 @@ impl Singles128 for Simd128 {
         fn sub_f32(a: v128, b: v128) -> v128 { f32x4_sub(a, b) }
         fn mul_f32(a: v128, b: v128) -> v128 { f32x4_mul(a, b) }
         fn div_f32(a: v128, b: v128) -> v128 { f32x4_div(a, b) }
+        fn nearest_f32(from: v128) -> v128 { i32x4_trunc_sat_f32x4(f32x4_nearest(from)) }
         // `pmax(x, y)` is y if that is greater, otherwise x.
         fn max_f32(a: v128, b: v128) -> v128 { f32x4_pmax(b, a) }
         fn min_f32(a: v128, b: v128) -> v128 { f32x4_pmin(b, a) }

@@ -90,6 +90,7 @@ pub(crate) trait Singles128: Vector128 {
     fn sub_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn mul_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn div_f32(self, a: Self::S, b: Self::S) -> Self::S;
+    fn nearest_f32(self, from: Self::S) -> Self::I;
     fn max_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn min_f32(self, a: Self::S, b: Self::S) -> Self::S;
     fn is_at_least(self, a: Self::S, b: Self::S) -> Self::I;
@@ -472,6 +473,10 @@ impl<V: Singles128> F32Lanes8 for Wide128<V> {
     #[inline(always)]
     fn div_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {
         each2!(i => self.0.div_f32(a[i], b[i]))
+    }
+    #[inline(always)]
+    fn nearest_f32(self, from: Self::F32) -> Self::I32 {
+        each2!(i => self.0.nearest_f32(from[i]))
     }
     #[inline(always)]
     fn max_f32(self, a: Self::F32, b: Self::F32) -> Self::F32 {

@@ -507,6 +507,53 @@ fn triangles_with_effects_are_the_oracles() {
     assert!(pixels > 300_000, "{pixels} pixels were compared");
 }
 
+/// A texture whose coordinates are whole numbers of texels at every pixel, or 1/65,536 more or less: what rounding turns
+/// into the neighbouring texel first. By the loops that draw a span at once, with every kernel.
+#[test]
+fn texels_at_their_borders_are_the_oracles() {
+    let mut tried = Tried::new("texels_at_their_borders_are_the_oracles", 400);
+    let mut random = Random::named("borders");
+    let stock = Stock::new(&mut random);
+    let mut pixels = 0;
+    while tried.more() {
+        let distance = random.within(1, 1 << 30) as u32;
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into())
+            .map(|v| Vertex::new(v.x(), v.y(), v.shade(), distance).expect("the same place"));
+        let mut attributes = attributes(&mut random);
+        for i in 0..2 {
+            let [across, down] = [0, 1].map(|_| random.within(-3, 3));
+            let first = random.within(-300, 300) * 65_536 + random.within(-1, 1);
+            for (vertex, of) in vertices.iter().zip(&mut attributes) {
+                let from_centre = |at: I24F8| i64::from(at.to_bits() - 128) * 256;
+                let texture = first + across * from_centre(vertex.x()) + down * from_centre(vertex.y());
+                of.texture[i] = texture.try_into().expect("within the guard band");
+            }
+        }
+        let bits = random.within(0, 8) as u32;
+        let look = PixelPipeline {
+            source: ShadeSource::Shaded(Interpolation::GouraudReseeded),
+            texture: Some(TextureStage {
+                texels: Texels::new(&stock.texels[..256 << bits], bits, 8).expect("as many texels"),
+                levels: None,
+                mapping: random.one_of(&[Mapping::Perspective, Mapping::Perspective, Mapping::Affine]),
+                tables: [&stock.tables[0]; 3],
+            }),
+            ..PixelPipeline::PLAIN
+        };
+        let naive = Naive::new(SIZE, &vertices, &attributes, &look);
+        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+            continue;
+        }
+        let (expected, rows) = naive.frame();
+        pixels += rows.iter().flatten().map(|(first, last)| last + 1 - first).sum::<i32>();
+        for kernel in Kernel::available() {
+            let bytes = draw(SIZE, &vertices, &attributes, &look, None, kernel);
+            assert_eq!(bytes, expected, "{kernel}: {vertices:?}, {attributes:?}, {look:?}");
+        }
+    }
+    assert!(pixels > 50_000, "{pixels} pixels were compared");
+}
+
 /// A face without any effect has exactly the bytes of a plain triangle: whatever interpolates its shades, and its
 /// channels one by one; whole or within a clip rectangle; with every kernel.
 #[test]

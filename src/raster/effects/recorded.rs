@@ -13,6 +13,7 @@ use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
+use crate::span::texture::PerspectiveSums;
 
 /// A span and the starts of its values.
 pub(super) struct Recorded {
@@ -21,7 +22,7 @@ pub(super) struct Recorded {
     pub(super) span: Span,
     /// Start and step.
     pub(super) affine: Option<[[u32; 2]; 2]>,
-    pub(super) perspective: [[f64; 3]; 2],
+    pub(super) perspective: PerspectiveSums<f64>,
     pub(super) depth: [i64; 2],
 }
 
@@ -83,7 +84,7 @@ impl Shades8 for Recorder<'_> {
                     pick: listed.batches.first + listed.mark(first + i).face(),
                     span: spans.span(i),
                     affine: spans.fits_affine(i).then(|| spans.affine_start(i)),
-                    perspective: [spans.sums(i), spans.sum_steps(i)],
+                    perspective: spans.sums(i),
                     depth: spans.depth(i).1.map(|z| z >> 8),
                 });
             }

@@ -13,7 +13,7 @@ use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::SpanList;
-use crate::span::texture::{SpanValues, Tint};
+use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
 
 /// The most pixels of a span.
 pub(super) const LONGEST: usize = RESEED as usize;
@@ -196,17 +196,18 @@ impl<'a> Spans<'a> {
         self.listed.affine(self.first + i)
     }
 
-    /// The sums at the first pixel of span `i`, where the texture is linear on the face, ...
+    /// The sums along span `i`, where the texture is linear on the face.
     #[inline(always)]
-    pub(super) fn sums(&self, i: usize) -> [f64; 3] {
-        self.listed.sums(self.first + i)
+    pub(super) fn sums(&self, i: usize) -> PerspectiveSums<f64> {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.perspective.sums(lane, self.listed.sums(self.first + i))
     }
 
-    /// ... and their change per pixel.
+    /// [`sums`](Self::sums) in f32, if quotients may be taken in f32.
     #[inline(always)]
-    pub(super) fn sum_steps(&self, i: usize) -> [f64; 3] {
+    pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
         let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        planes.perspective.step(lane)
+        planes.perspective.singles(lane, self.listed.sums(self.first + i))
     }
 
     /// Returns whether the list has the coordinates, linear on the screen, of the face of span `i`.

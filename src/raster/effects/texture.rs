@@ -8,15 +8,15 @@ use super::destination::{Destination, InBuffer};
 use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
-use crate::fixed::IS_SMALL;
+use crate::fixed::{IS_COMPACT, IS_SMALL};
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
 use crate::raster::reference::level::{self, LevelPlane};
 use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
-use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
+use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{AffineLines, Levels, Shown, Texels, Tint, perspective_along, show};
+use crate::span::texture::{AffineLines, Levels, Shown, Texels, Tint, perspective_along, show, singles_along};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -162,22 +162,32 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
 }
 
 #[inline(always)]
-fn show_exact_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
+fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
+    s: S,
+    spans: &Spans<'_>,
+    image: Texels<'_>,
+    tint: T,
+    to: &mut D,
+) {
     let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
-        let mut sums = None;
-        if has_sums {
-            let ([u, v, d], [du, dv, dd]) = (spans.sums(i), spans.sum_steps(i));
-            sums = Some(([[u, du], [v, dv]], [d, dd]));
-        }
         // At most 64.
         let range = (skipped as usize, skipped as usize + length);
         // Set up for the first eight that need it.
         let mut plane = None;
         let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
-        let places = perspective_along(s, image, sums, range, exact);
         let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
+        if !IS_COMPACT
+            && has_sums
+            && let Some(sums) = spans.singles(i)
+        {
+            let places = singles_along(s, image, sums, range.0, exact);
+            to.show(s, (spans, i), (at, length), (image, tint, along), places);
+            continue;
+        }
+        let sums = if has_sums { Some(spans.sums(i)) } else { None };
+        let places = perspective_along(s, image, sums, range, exact);
         to.show(s, (spans, i), (at, length), (image, tint, along), places);
     }
 }
@@ -198,11 +208,7 @@ fn exact_eight(
     let n = span.len.saturating_sub(first).min(LANES);
     // Below 64.
     let at = (span.x + first as i32, span.y);
-    if spans.have_texture() {
-        plane.in_integers((image, 0), at, &mut eight[..n]);
-    } else {
-        plane.exact(BASELINE, (image, 0), at, (eight, n));
-    }
+    plane.exact(BASELINE, (image, 0), at, (eight, n));
 }
 
 fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
@@ -365,6 +371,7 @@ mod tests {
     use crate::raster::reference::texture::exact;
     use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
+    use crate::span::texture::PerspectiveSums;
 
     /// The definition in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
     fn defined(triangle: &SortedTriangle, coordinates: [i32; 3], level: u32, (x, y): (i32, i32)) -> u32 {
@@ -506,8 +513,7 @@ mod tests {
                             affine_is_right(triangle, texture, step, is_row, start, (x, y))?;
                         }
                         _ => {
-                            let [start, step] = found.perspective;
-                            sums_are_right(triangle, texture, start, step, (x, y))?;
+                            sums_are_right(triangle, texture, &found.perspective, (x, y))?;
                         }
                     }
                 }
@@ -600,15 +606,17 @@ mod tests {
     fn sums_are_right(
         triangle: &SortedTriangle,
         texture: &[[i32; 2]; 3],
-        start: [f64; 3],
-        step: [f64; 3],
+        &PerspectiveSums { numerators: [u, v], divisors, base }: &PerspectiveSums<f64>,
         (x, y): (i32, i32),
     ) -> Result<(), TestCaseError> {
+        prop_assert!(base.iter().all(|base| base % 65_536 == 0));
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
         let weights = Weights::new(triangle);
         for i in 0..3 {
-            let values = [0, 1, 2].map(|k| if i < 2 { i64::from(texture[k][i]) * depths[k] } else { depths[k] });
-            for (weights, sum) in [(weights.at(x, y), start[i]), (weights.per_column(), step[i])] {
+            let value = |k: usize, base: i32| (i64::from(texture[k][i]) - i64::from(base)) * depths[k];
+            let values = [0, 1, 2].map(|k| base.get(i).map_or(depths[k], |&base| value(k, base)));
+            let [start, step] = [u, v, divisors][i];
+            for (weights, sum) in [(weights.at(x, y), start), (weights.per_column(), step)] {
                 let terms: i128 = weights.iter().zip(values).map(|(w, v)| (i128::from(*w) * i128::from(v)).abs()).sum();
                 let off = sum as i128 - exact(weights, values);
                 // Four parts in 2⁵³ of the terms, and less than one for the fraction that `as` drops.
