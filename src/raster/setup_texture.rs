@@ -3,7 +3,9 @@
 //! Coordinates that are linear on the screen are set up like shades, with the quotients of [`setup`](super::setup).
 //! Where a triangle's coordinates differ by less than 2²², 64 texels, gradients are below 2³⁹, no sum of terms reaches
 //! 2⁵², and f64 holds all multiples of ½ below that. A quotient is below 2²² and off by 2⁻³⁰, its margin at least
-//! 2⁻²⁷·¹².
+//! 2⁻²⁷·¹². Where corners are farther apart, or a triangle is larger, each number is split into an integer and a remainder
+//! below the area of at most 2³⁴: with columns below 2¹⁰ and rows below 2¹², sums of remainders stay below 2⁴⁷, quotients
+//! below 2¹³, so they are off by less than 2⁻³⁷, with a margin of 2⁻³⁵.
 //!
 //! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
 //! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
@@ -12,6 +14,9 @@
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
+use super::reference::cover::SortedTriangle;
+use super::reference::quotient::Divisor;
+use super::reference::texture::AffinePlane;
 use super::rows::Lane;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
@@ -50,12 +55,13 @@ pub(super) struct AffinePlanes8 {
     per_row: [Floats; 2],
     per_column: [Floats; 2],
     inverse: Floats,
-    /// The coordinate of the first corner by height.
+    /// The coordinate of the first corner by height, or the integer at the first pixel, ...
     first: [Ints; 2],
+    /// ... and the integers per row and per column, which are 0 where no number is split.
+    whole_per_row: [Ints; 2],
+    whole_per_column: [Ints; 2],
     /// Change per pixel, where a row has more than one.
     step: [Ints; 2],
-    /// A bit for each triangle whose corners' coordinates are close enough together.
-    pub(super) fits: u32,
 }
 
 impl AffinePlanes8 {
@@ -65,23 +71,27 @@ impl AffinePlanes8 {
         per_column: [[0.0; LANES]; 2],
         inverse: [0.0; LANES],
         first: [[0; LANES]; 2],
+        whole_per_row: [[0; LANES]; 2],
+        whole_per_column: [[0; LANES]; 2],
         step: [[0; LANES]; 2],
-        fits: 0,
     };
 
     /// The difference from which on corners are too far apart.
     const TOO_FAR: i32 = 1 << 22;
 
+    /// Sets up eight triangles. Returns a bit for each small one whose corners' coordinates are close enough together.
+    /// The others have to be [split](Self::split).
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) {
+    pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) -> u32 {
         s.store_f64(basis.inverse, &mut self.inverse);
-        self.fits = u32::MAX;
+        (self.whole_per_row, self.whole_per_column) = ([[0; LANES]; 2], [[0; LANES]; 2]);
+        let mut fits = u32::MAX;
         let [x, y] = basis.first;
         let (pixel, magic) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC));
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
             let corners = [s.load_i32(a), s.load_i32(b), s.load_i32(c)];
             let (_, is_near) = range_of(s, corners, Self::TOO_FAR);
-            self.fits &= s.to_bitmask(is_near);
+            fits &= s.to_bitmask(is_near);
             let [first, second, third] = basis.order.sort(s, corners);
             s.store_i32(first, &mut self.first[i]);
             let differences = [s.to_f64(s.sub_i32(second, first)), s.to_f64(s.sub_i32(third, first))];
@@ -99,11 +109,42 @@ impl AffinePlanes8 {
             let step = s.mul_add(s.sub(per_column, half), basis.inverse, magic);
             s.store_i32(s.low_bits(step), &mut self.step[i]);
         }
+        fits
     }
 
-    /// The coordinates, u and v, of each lane at these columns of rows `j`.
+    /// Splits the numbers of triangle `lane`, given the coordinates of its corners, and the first pixel of its box.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn split(
+        &mut self,
+        lane: usize,
+        triangle: &SortedTriangle,
+        coordinates: [[i32; 3]; 2],
+        pixel: [i32; 2],
+    ) {
+        let (lane, area) = (lane % LANES, Divisor::new(triangle.area()));
+        for (i, coordinates) in coordinates.into_iter().enumerate() {
+            let plane = AffinePlane::new(triangle, area, coordinates);
+            let [first, per_column, per_row] = plane.parts(pixel);
+            (self.first[i][lane], self.whole_per_row[i][lane]) = (first.0, per_row.0);
+            self.whole_per_column[i][lane] = per_column.0;
+            // All below 2⁵³. The quotient's floor is the nearest integer of one that is less by ½ and 1 / (2·area) more.
+            self.n[i][lane] = first.1 as f64 - (area.get() as f64 * 0.5 - 0.5);
+            (self.per_row[i][lane], self.per_column[i][lane]) = (per_row.1 as f64, per_column.1 as f64);
+            // Modulo 2³².
+            self.step[i][lane] = plane.step() as i32;
+        }
+    }
+
+    /// The coordinates, u and v, of each lane at these columns of rows `j`, and the columns and rows as integers.
     #[inline(always)]
-    pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::I32; 2] {
+    pub(super) fn starts<S: Lanes8>(
+        &self,
+        s: S,
+        lane: impl Lane<S>,
+        (j, columns): (S::F64, S::F64),
+        [column, row]: [S::I32; 2],
+    ) -> [S::I32; 2] {
         let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));
         let inverse = lane.load_f64(s, &self.inverse);
         let mut starts = [s.splat_i32(0); 2];
@@ -112,7 +153,11 @@ impl AffinePlanes8 {
             let n = s.mul_add(lane.load_f64(s, &self.per_column[of]), i, n);
             // The low bits; the sum is modulo 2³².
             let change = s.low_bits(s.mul_add(n, inverse, s.splat_f64(ROUND_MAGIC)));
-            *start = s.add_i32(change, lane.load_i32(s, &self.first[of]));
+            let whole = s.add_i32(
+                s.mul_i32(lane.load_i32(s, &self.whole_per_column[of]), column),
+                s.mul_i32(lane.load_i32(s, &self.whole_per_row[of]), row),
+            );
+            *start = s.add_i32(s.add_i32(change, whole), lane.load_i32(s, &self.first[of]));
         }
         starts
     }

@@ -121,7 +121,16 @@ pub(super) struct Faces<'a> {
     pub(super) picks: Picks<'a>,
 }
 
-impl Faces<'_> {
+impl<'a> Faces<'a> {
+    /// Face `k`, and its corners' values.
+    fn corners(&self, k: usize) -> FaceCorners<'a> {
+        self.corners_of(self.sorted(k))
+    }
+
+    fn corners_of(&self, face: SortedFace) -> FaceCorners<'a> {
+        FaceCorners { triangle: face.triangle, face, columns: &self.triangles.columns.effects }
+    }
+
     /// Face `k` with its corners sorted by height, and where the values of its corners are.
     #[inline]
     pub(super) fn sorted(&self, k: usize) -> SortedFace {
@@ -266,8 +275,6 @@ pub(super) struct Listed<'a> {
     pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,
     coordinates: &'a mut SpanNumbers<COORDINATES>,
     sums: &'a mut SpanStarts<SUMS>,
-    /// True if texture coordinates are stored for the first pixel of every span.
-    pub(super) has_texture: bool,
     /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
     /// How pixels are shown by one loop per span, where possible.
@@ -298,11 +305,10 @@ impl Listed<'_> {
     /// A face, and its corners' values.
     #[inline]
     pub(super) fn corners(&self, face: usize) -> FaceCorners<'_> {
-        let face = match &self.walked {
-            Some(walked) => walked.face,
-            None => self.faces.sorted(self.batches.first + face),
-        };
-        FaceCorners { triangle: face.triangle, face, columns: &self.faces.triangles.columns.effects }
+        match &self.walked {
+            Some(WalkedFace { face, .. }) => self.faces.corners_of(*face),
+            None => self.faces.corners(self.batches.first + face),
+        }
     }
 
     /// The planes of a face's batch, and the face's lane.
@@ -330,20 +336,17 @@ impl<'a> EffectSpans<'a> {
     ) -> Self {
         let wanted = Wanted::by(pipeline);
         let direct = Direct::of(pipeline);
-        let (batches, has_texture) = (Batches::NONE, wanted.texture.is_some());
-        let walked = None;
-        let listed = Listed { faces, wanted, planes, batches, numbers, coordinates, sums, has_texture, walked, direct };
+        let (batches, walked) = (Batches::NONE, None);
+        let listed = Listed { faces, wanted, planes, batches, numbers, coordinates, sums, walked, direct };
         Self { listed, pipeline, buffers }
     }
 
     /// Begins face `k`, whose rows are added one by one.
     pub(super) fn walk(&mut self, k: usize) -> SortedTriangle {
-        let face = self.listed.faces.sorted(k);
-        let triangle = face.triangle;
-        let columns = &self.listed.faces.triangles.columns.effects;
-        let corners = FaceCorners { triangle, face, columns };
+        let corners = self.listed.faces.corners(k);
+        let triangle = corners.triangle;
         self.listed.walked = Some(WalkedFace {
-            face,
+            face: corners.face,
             shade: ShadePlane::of_values(&triangle, triangle.shades()),
             depth: DepthPlane::new(&triangle),
             values: self.listed.wanted.values.map(|value| {
@@ -351,7 +354,6 @@ impl<'a> EffectSpans<'a> {
                 Some(ShadePlane::of_values(&triangle, corners.value(value)))
             }),
         });
-        self.listed.has_texture = false;
         // Columns and rows are those of the frame.
         self.listed.batches = Batches::from_pick(k);
         (self.listed.planes[0].column, self.listed.planes[0].row) = ([0; LANES], [0; LANES]);
@@ -419,13 +421,13 @@ impl Shades8 for EffectSpans<'_> {
     #[inline(always)]
     fn begin(&mut self, first: usize) {
         self.listed.batches.begin(first);
-        // The spans of earlier batches have been drawn.
-        self.listed.has_texture |= self.listed.batches.current() == 0 && self.listed.wanted.texture.is_some();
     }
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        let Listed { faces: Faces { triangles, picks }, wanted, planes, batches, has_texture, .. } = &mut self.listed;
+        let Listed { faces, wanted, planes, batches, .. } = &mut self.listed;
+        let faces = *faces;
+        let Faces { triangles, picks } = faces;
         let first = batches.first_pick();
         let picks = &picks.range(first, picks.picks.len().min(first + LANES));
         let planes = &mut planes[batches.current()];
@@ -434,11 +436,13 @@ impl Shades8 for EffectSpans<'_> {
             let of_corners = texture_of_corners(triangles, picks);
             match mapping {
                 Mapping::Affine => {
-                    planes.affine.set_up(s, basis, &of_corners);
-                    // The sums of larger triangles do not fit in f64.
-                    for (lane, &pick) in picks.picks.iter().enumerate() {
-                        planes.affine.fits &= !(u32::from(Pick(pick).class() != SizeClass::Small) << lane);
-                        *has_texture &= planes.affine.fits >> lane & 1 != 0;
+                    let fits = planes.affine.set_up(s, basis, &of_corners);
+                    for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+                        if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
+                            let face = faces.corners(first + lane);
+                            let pixel = [setup.column[lane], setup.row[lane]];
+                            planes.affine.split(lane, &face.triangle, [face.texture(0), face.texture(1)], pixel);
+                        }
                     }
                 }
                 _ => planes.perspective.set_up(s, basis, corners, &of_corners),
@@ -493,7 +497,8 @@ impl Shades8 for EffectSpans<'_> {
         let planes = &self.listed.planes[self.listed.batches.current()];
         match texture {
             Some(Mapping::Affine) => {
-                let ([u, v], [du, dv]) = (planes.affine.starts(s, lane, j, parts.seed), planes.affine.steps(s, lane));
+                let [u, v] = planes.affine.starts(s, lane, (j, parts.seed), [seed, number]);
+                let [du, dv] = planes.affine.steps(s, lane);
                 coordinates = [u, v, du, dv];
             }
             Some(_) => {

@@ -21,7 +21,7 @@ pub(super) struct Recorded {
     pub(super) pick: usize,
     pub(super) span: Span,
     /// Start and step.
-    pub(super) affine: Option<[[u32; 2]; 2]>,
+    pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
     pub(super) depth: [i64; 2],
 }
@@ -83,7 +83,7 @@ impl Shades8 for Recorder<'_> {
                 self.recorded.push(Recorded {
                     pick: listed.batches.first + listed.mark(first + i).face(),
                     span: spans.span(i),
-                    affine: spans.fits_affine(i).then(|| spans.affine_start(i)),
+                    affine: spans.affine_start(i),
                     perspective: spans.sums(i),
                     depth: spans.depth(i).1.map(|z| z >> 8),
                 });

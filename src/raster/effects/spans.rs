@@ -184,10 +184,10 @@ impl<'a> Spans<'a> {
         self.listed.numbers.of(self.first + i, 2 + value.slot())
     }
 
-    /// Returns whether the list has the texture coordinates of all spans.
+    /// Returns whether the list has the texture coordinates of all spans; otherwise these are of a single face.
     #[inline(always)]
     pub(super) fn have_texture(&self) -> bool {
-        self.listed.has_texture
+        self.listed.walked.is_none()
     }
 
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
@@ -208,13 +208,6 @@ impl<'a> Spans<'a> {
     pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
         let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
         planes.perspective.singles(lane, self.listed.sums(self.first + i))
-    }
-
-    /// Returns whether the list has the coordinates, linear on the screen, of the face of span `i`.
-    #[inline(always)]
-    pub(super) fn fits_affine(&self, i: usize) -> bool {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        self.listed.walked.is_none() && planes.affine.fits >> lane & 1 != 0
     }
 
     /// Runs one stage: for every face `plane` computes what its values are over it, from its corners top to bottom; for

@@ -93,6 +93,17 @@ impl AffinePlane {
         Self { bias: [self.bias[0], upward], level: n, step: (self.step + upward) >> n, ..self }
     }
 
+    /// The coordinate at a pixel of level 0, its change per column, and per row: each the floor, modulo 2³², and the
+    /// remainder. With the floor of the remainders' sum, these make [`start`](Self::start) at any pixel.
+    pub(in crate::raster) fn parts(&self, [x, y]: [i32; 2]) -> [(i32, i64); 3] {
+        let ([gx, gy], area) = (self.gradient.map(i128::from), i128::from(self.area.get()));
+        let (dx, dy) =
+            (i128::from(x) * 256 - i128::from(self.corner[0]), i128::from(y) * 256 - i128::from(self.corner[1]));
+        let first = i128::from(self.coordinate) * area + gx * dx + gy * dy + i128::from(self.bias[0]);
+        // Modulo 2³²; below the area.
+        [first, gx * 256, gy * 256].map(|n| (n.div_euclid(area) as i32, n.rem_euclid(area) as i64))
+    }
+
     /// The coordinate at a pixel whose centre lies in the triangle; 16.16.
     #[cfg_attr(mode13h_small, inline(never))]
     #[cfg_attr(not(mode13h_small), inline)]
