@@ -185,6 +185,10 @@ pub(super) struct PerspectivePlanes8 {
     fits: u32,
     /// The steps rounded to f32.
     single_step: [[f32; LANES]; 3],
+    /// Change of the sums per row, for levels.
+    row_step: [Floats; 3],
+    /// A bit for each triangle whose levels may be estimated, see [`level`](Self::level).
+    fits_levels: u32,
 }
 
 impl PerspectivePlanes8 {
@@ -195,9 +199,11 @@ impl PerspectivePlanes8 {
         base: [[0; LANES]; 2],
         fits: 0,
         single_step: [[0.0; LANES]; 3],
+        row_step: [[0.0; LANES]; 3],
+        fits_levels: 0,
     };
 
-    /// The difference from which on corners have no base. It is too great for f32, see [`fits_singles`].
+    /// The difference from which on corners have no base.
     const TOO_FAR: i32 = 1 << 25;
 
     #[inline(always)]
@@ -207,6 +213,7 @@ impl PerspectivePlanes8 {
         basis: &Basis<S>,
         corners: &Corners8,
         coordinates: &[[Ints; 3]; 2],
+        has_levels: bool,
     ) {
         let [depth_a, depth_b, depth_c] = &corners.depth;
         let depth = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
@@ -219,7 +226,8 @@ impl PerspectivePlanes8 {
         let [a, b, c] = depth;
         let ends = [s.min(s.min(a, b), c), s.max(s.max(a, b), c)];
         self.fits = s.to_bitmask(fits_singles(s, range, ends));
-        let mut sums = [s.splat_f64(0.0); 3];
+        let zero = s.splat_f64(0.0);
+        let mut sums = [zero; 3];
         for corner in 0..3 {
             let (_, weight) = basis.weight(s, corner);
             for (i, to) in self.weights[corner].iter_mut().enumerate() {
@@ -238,9 +246,13 @@ impl PerspectivePlanes8 {
             let step = &*step;
             self.single_step[i] = each!(lane => step[lane] as f32);
         }
+        if has_levels {
+            self.set_up_levels(s, (range, basis.area), ends);
+        }
     }
 
-    /// The coordinates of the corners, sorted, from the triangle's base on, and the greatest difference between two.
+    /// The coordinates of the corners, sorted, from the triangle's base on, and the greatest difference between two. None
+    /// is greater than that and a texel.
     #[inline(always)]
     fn rebase<S: Lanes8>(
         &mut self,
@@ -261,7 +273,8 @@ impl PerspectivePlanes8 {
                 sorted[i][corner] = s.sub_i32(corners[corner], base);
                 corner += 1;
             }
-            let range = s.select_i32(is_near, range, s.splat_i32(Self::TOO_FAR));
+            // Without a base coordinates are below 2³¹.
+            let range = s.select_i32(is_near, range, s.splat_i32(i32::MAX));
             greatest = s.max(greatest, s.to_f64(range));
         }
         (sorted, greatest)
@@ -280,6 +293,62 @@ impl PerspectivePlanes8 {
             }
         }
         sums
+    }
+
+    /// Sets up what [`level`](Self::level) needs, from the greatest difference of coordinates, the area, and the depths.
+    #[inline(always)]
+    fn set_up_levels<S: Lanes8>(&mut self, s: S, (range, area): (S::F64, S::F64), ends: [S::F64; 2]) {
+        let zero = s.splat_f64(0.0);
+        let (mut sums, mut sides) = ([zero; 3], zero);
+        for (weights, values) in self.weights.iter().zip(&self.values) {
+            let (per_row, per_column) = (s.load_f64(&weights[1]), s.load_f64(&weights[2]));
+            // Their magnitudes.
+            sides = s.add(sides, s.add(s.xor_sign(per_row, per_row), s.xor_sign(per_column, per_column)));
+            for i in 0..3 {
+                sums[i] = s.mul_add(per_row, s.load_f64(&values[i]), sums[i]);
+            }
+        }
+        for (i, step) in self.row_step.iter_mut().enumerate() {
+            s.store_f64(sums[i], step);
+        }
+        let [least, greatest] = ends;
+        let (a, b) = (s.mul(area, least), s.mul(sides, greatest));
+        let q = s.add(range, s.splat_f64(65_536.0));
+        let most = s.mul(s.mul(a, a), s.splat_f64(4_398_046_511_104.0));
+        let is_accurate = s.is_less(s.mul(s.mul(q, b), s.add(a, b)), most);
+        self.fits_levels = s.to_bitmask(s.and(is_accurate, s.is_less(s.splat_f64(65_536.0), least)));
+    }
+
+    /// The level of a texture at pixel `k` of a span of triangle `lane`, from the sums at its first, or `None` where an
+    /// estimate cannot decide.
+    ///
+    /// With N and D the sums, ∂u/∂x = (∂N/∂x · D − N · ∂D/∂x) / D². So the level is the least n at which twice the length
+    /// of the longer step, G / D², is at most 2ⁿ · 2 · 181/128 texels: G / (185,344 · D²) ≤ 2ⁿ.
+    ///
+    /// [`LevelPlane`](super::reference::level::LevelPlane) takes the depth D / A in whole sixteenths, which are at least
+    /// 2²⁰ where depths are at least 2¹⁶: its square is off by 2⁻¹⁹ of itself. With Q the greatest coordinate from the base
+    /// on, and κ = B · (greatest depth) / (A · least depth), sums and their changes are off by 2⁻⁵¹ of Q·D and of Q·κ·D,
+    /// 64 steps by 64 times as much, and G by less than 3 · (5κ + 192κ²) · Q · 2⁻⁵¹ · D². Where Q·κ·(1 + κ) < 2⁴² that is
+    /// 1.2 · D², 2⁻¹⁷ of the least G above level 0. So the quotient is off by less than 2⁻¹⁶ of itself, or below 1.
+    #[inline(always)]
+    pub(super) fn level(&self, lane: usize, [u, v, d]: [f64; 3], k: f64, last: u32) -> Option<u32> {
+        let lane = lane % LANES;
+        let ([du, dv, dd], [eu, ev, ed]) = (&self.step, &self.row_step);
+        let (du, dv, dd, eu, ev, ed) = (du[lane], dv[lane], dd[lane], eu[lane], ev[lane], ed[lane]);
+        let magnitude = |x: f64| f64::from_bits(x.to_bits() & (u64::MAX >> 1));
+        let doubled = |u: f64, v: f64| {
+            let (u, v) = (magnitude(u), magnitude(v));
+            if u > v { 2.0 * u + v } else { 2.0 * v + u }
+        };
+        let across = doubled(du * d - u * dd, dv * d - v * dd);
+        let (u, v, d) = (u + k * du, v + k * dv, d + k * dd);
+        let down = doubled(eu * d - u * ed, ev * d - v * ed);
+        let quotient = if across > down { across } else { down } / (185_344.0 * d * d);
+        // The least n at which x is at most 2ⁿ, from its exponent.
+        let level = |x: f64| if x > 1.0 { ((x.to_bits() + ((1 << 52) - 1)) >> 52) as u32 - 1_023 } else { 0 };
+        let off = 1.0 / 65_536.0;
+        let (least, most) = (level(quotient * (1.0 - off)).min(last), level(quotient * (1.0 + off)).min(last));
+        (self.fits_levels >> lane & 1 != 0 && least == most).then_some(least)
     }
 
     /// The sums along a span of triangle `lane`, from those at its first pixel.

@@ -621,6 +621,9 @@ pub(crate) trait PlacesAlong<S: Lanes8> {
     }
 }
 
+/// The texels of a level, and its number.
+pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
+
 /// Computes indices of texels in vectors.
 #[derive(Clone, Copy)]
 struct PlaceLanes<S: Lanes8> {
@@ -628,6 +631,8 @@ struct PlaceLanes<S: Lanes8> {
     columns: S::I32,
     rows: S::I32,
     width: S::I32,
+    /// Fraction bits of coordinates: 16, and one for each level.
+    bits: i32,
 }
 
 impl<S: Lanes8> PlaceLanes<S> {
@@ -635,21 +640,32 @@ impl<S: Lanes8> PlaceLanes<S> {
     fn new(s: S, texels: Texels<'_>) -> Self {
         let columns = (1 << texels.ubits) - 1;
         let rows = ((1 << texels.vbits) - 1) << texels.ubits;
-        Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1) }
+        Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1), bits: 16 }
+    }
+
+    /// Indices in a level of an image, of coordinates in level 0.
+    #[inline(always)]
+    fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
+        Self { bits: 16 + level.cast_signed(), ..Self::new(s, texels) }
     }
 
     /// [`Texels::place`].
     #[inline(always)]
     fn at_coordinates(self, u: S::I32, v: S::I32) -> S::I32 {
-        // By a product, since shifts are by constants.
         self.at(u, self.s.mul_i32(v, self.width))
+    }
+
+    /// The bits of a coordinate inside its texel.
+    #[inline(always)]
+    fn fraction(self) -> S::I32 {
+        self.s.splat_i32((1 << self.bits) - 1)
     }
 
     /// [`Texels::place`] of u, and of v times the width: the masks clear all bits that this loses.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
-        s.or_i32(s.and_i32(s.shr_i32(v, 16), self.rows), s.and_i32(s.shr_i32(u, 16), self.columns))
+        s.or_i32(s.and_i32(s.shr_i32(v, self.bits), self.rows), s.and_i32(s.shr_i32(u, self.bits), self.columns))
     }
 }
 
@@ -868,7 +884,7 @@ pub(crate) fn perspective_places<S: Lanes8>(
     [d, dd]: [f64; 2],
 ) -> bool {
     let sums = PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base: [0; 2] };
-    let quotients = Quotients::new(s, texels, &sums, n);
+    let quotients = Quotients::new(s, (texels, 0), &sums, n);
     let (mut numbers, mut unsure) = (s.load_i32(&NUMBERS), false);
     for block in places.as_chunks_mut::<LANES>().0.iter_mut().take(n.div_ceil(LANES)) {
         let ([u, v], is_unsure) = quotients.coordinates(numbers);
@@ -900,7 +916,7 @@ impl PerspectiveSums<f64> {
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
     s: S,
-    texels: Texels<'_>,
+    texels: LevelTexels<'_>,
     sums: Option<PerspectiveSums<f64>>,
     range: (usize, usize),
     exact: impl FnMut(usize, &mut [i32; LANES]),
@@ -919,16 +935,16 @@ pub(crate) fn perspective_along<S: Lanes8>(
 #[inline(always)]
 pub(crate) fn singles_along<S: F32Lanes8>(
     s: S,
-    texels: Texels<'_>,
+    texels: LevelTexels<'_>,
     sums: PerspectiveSums<f32>,
     first: usize,
     exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl PlacesAlong<S> {
     const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let places = PlaceLanes::new(s, texels);
+    let quotients = Singles::new(PlaceLanes::of_level(s, texels), &sums);
     // At most 64.
     let numbers = s.add_f32(s.splat_f32(first as f32), s.load_f32(&NUMBERS));
-    PerspectiveAlong { places, quotients: Singles::new(s, &sums), numbers, first, exact }
+    PerspectiveAlong { places: quotients.places, quotients, numbers, first, exact }
 }
 
 /// Position along a span of [`perspective_along`].
@@ -979,7 +995,7 @@ trait QuotientsAlong<S: Lanes8> {
     fn next(&self, s: S, numbers: Self::Numbers) -> Self::Numbers;
 }
 
-/// The quotients of [`perspective_places`].
+/// The quotients of [`perspective_places`], of any level: its texels begin at fewer of the integers.
 struct Quotients<S: Lanes8> {
     places: PlaceLanes<S>,
     sums: PerspectiveSums<f64>,
@@ -992,7 +1008,7 @@ struct Quotients<S: Lanes8> {
 impl<S: Lanes8> Quotients<S> {
     /// The quotients of the first `end` pixels of a row, at most [`PIECE`].
     #[inline(always)]
-    fn new(s: S, texels: Texels<'_>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
+    fn new(s: S, texels: LevelTexels<'_>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
         let mut are_sure = HAS_F64;
         if HAS_F64 {
             let [d, dd] = sums.divisors;
@@ -1002,7 +1018,7 @@ impl<S: Lanes8> Quotients<S> {
             // False for NaN too.
             are_sure = least * MAX_RATIO >= greatest;
         }
-        Self { places: PlaceLanes::new(s, texels), sums: *sums, end: s.splat_i32(end as i32), are_sure }
+        Self { places: PlaceLanes::of_level(s, texels), sums: *sums, end: s.splat_i32(end as i32), are_sure }
     }
 
     /// The coordinates at pixels with these numbers, and whether one of them cannot decide.
@@ -1010,16 +1026,16 @@ impl<S: Lanes8> Quotients<S> {
     fn coordinates(&self, numbers: S::I32) -> ([S::I32; 2], bool) {
         let PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base, .. } = self.sums;
         let s = self.places.s;
-        let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), s.splat_i32(0xFFFF), s.splat_i32(0));
+        let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), self.places.fraction(), s.splat_i32(0));
         let k = s.to_f64(numbers);
         let reciprocal = s.div(s.splat_f64(1.0), s.mul_add(k, s.splat_f64(dd), s.splat_f64(d)));
         // Modulo 2³². Lanes beyond the last may hold anything.
         let u = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(du), s.splat_f64(u)), reciprocal, magic));
         let v = s.low_bits(s.mul_add(s.mul_add(k, s.splat_f64(dv), s.splat_f64(v)), reciprocal, magic));
-        let least = s.min_i32(s.and_i32(u, fraction), s.and_i32(v, fraction));
+        let at = [s.add_i32(u, s.splat_i32(base[0])), s.add_i32(v, s.splat_i32(base[1]))];
+        let least = s.min_i32(s.and_i32(at[0], fraction), s.and_i32(at[1], fraction));
         let is_there = s.is_greater(self.end, numbers);
         let unsure = s.to_bitmask(s.and(is_there, s.is_equal(least, zero)));
-        let at = [s.add_i32(u, s.splat_i32(base[0])), s.add_i32(v, s.splat_i32(base[1]))];
         (at, unsure != 0 || !self.are_sure)
     }
 }
@@ -1055,8 +1071,8 @@ const SINGLES_MARGIN: i32 = 16;
 /// 3. So the ratio is off by εQ·(6 + 4)R, another 2εQ for the reciprocal and the product, and t by ½. The sums in f64
 ///    are off by less than 2⁻²⁰ of this, and what is neglected here is less than εQ·(R + 1), since R < 400.
 ///
-/// Where Q·(11R + 3) ≤ 15·2²⁴ that is less than 16, the margin. Then a coordinate lies in the same texel as t + 16 if
-/// the fraction of t + 16 is at least 32.
+/// Where Q·(11R + 3) ≤ 15·2²⁴ that is less than 16, the margin. Then a coordinate lies in the same texel, of any level, as
+/// t + 16 if the fraction of t + 16 is at least 32.
 #[inline(always)]
 pub(crate) fn fits_singles<S: Lanes8>(s: S, range: S::F64, [least, greatest]: [S::F64; 2]) -> S::Mask {
     let texel = s.splat_f64(65_536.0);
@@ -1067,6 +1083,7 @@ pub(crate) fn fits_singles<S: Lanes8>(s: S, range: S::F64, [least, greatest]: [S
 /// Quotients in f32, where [`fits_singles`] allows them.
 #[cfg(feature = "alloc")]
 struct Singles<S: F32Lanes8> {
+    places: PlaceLanes<S>,
     numerators: [[S::F32; 2]; 2],
     divisors: [S::F32; 2],
     /// The base and the margin.
@@ -1076,10 +1093,12 @@ struct Singles<S: F32Lanes8> {
 #[cfg(feature = "alloc")]
 impl<S: F32Lanes8> Singles<S> {
     #[inline(always)]
-    fn new(s: S, sums: &PerspectiveSums<f32>) -> Self {
+    fn new(places: PlaceLanes<S>, sums: &PerspectiveSums<f32>) -> Self {
+        let s = places.s;
         let ([[u, du], [v, dv]], [d, dd]) = (sums.numerators, sums.divisors);
         let margin = s.splat_i32(SINGLES_MARGIN);
         Self {
+            places,
             numerators: [[s.splat_f32(u), s.splat_f32(du)], [s.splat_f32(v), s.splat_f32(dv)]],
             divisors: [s.splat_f32(d), s.splat_f32(dd)],
             more: [s.add_i32(s.splat_i32(sums.base[0]), margin), s.add_i32(s.splat_i32(sums.base[1]), margin)],
@@ -1099,7 +1118,7 @@ impl<S: F32Lanes8> QuotientsAlong<S> for Singles<S> {
         let u = s.nearest_f32(s.mul_f32(s.mul_add_f32(k, du, u), reciprocal));
         let v = s.nearest_f32(s.mul_f32(s.mul_add_f32(k, dv, v), reciprocal));
         let (u, v) = (s.add_i32(u, self.more[0]), s.add_i32(v, self.more[1]));
-        let fraction = s.splat_i32(0xFFFF);
+        let fraction = self.places.fraction();
         let least = s.min_i32(s.and_i32(u, fraction), s.and_i32(v, fraction));
         ([u, v], s.to_bitmask(s.is_greater(s.splat_i32(2 * SINGLES_MARGIN), least)) != 0)
     }
@@ -1119,7 +1138,8 @@ mod tests {
 
     /// How far the quotients in f32 are off at pixel `k` of a row, in 1/65,536 of a texel.
     fn off<S: F32Lanes8>(s: S, sums: &PerspectiveSums<f32>, k: usize, exact: [f64; 2]) -> f64 {
-        let quotients = Singles::new(s, sums);
+        let texels = Texels::new(&[0], 0, 0).expect("a texel");
+        let quotients = Singles::new(PlaceLanes::new(s, texels), sums);
         let ([u, v], is_unsure) = quotients.at(s, s.splat_f32(k as f32));
         let (mut lanes, mut most) = ([0; LANES], 0.0_f64);
         let mut is_near = false;

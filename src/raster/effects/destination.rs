@@ -15,12 +15,12 @@ pub(super) trait Destination {
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
 
-    /// Shows texels in the pixels of span `i`, from `at` on.
+    /// Shows texels in pixels of span `i` from `at` on, before which this many of its drawn ones lie.
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
-        _: (&Spans<'_>, usize),
+        _: (&Spans<'_>, usize, u32),
         (at, length): (usize, usize),
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         places: impl PlacesAlong<S>,
@@ -87,7 +87,7 @@ impl Destination for Masked<'_> {
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
-        (spans, i): (&Spans<'_>, usize),
+        (spans, i, before): (&Spans<'_>, usize, u32),
         (at, length): (usize, usize),
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         places: impl PlacesAlong<S>,
@@ -98,9 +98,10 @@ impl Destination for Masked<'_> {
         };
         match &mut self.cells {
             Some(cells) => {
-                let (cell, depths) = spans.depth(i);
-                let Some(cells) = cells.get_mut(cell..) else { return };
-                let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+                let (cell, [z, dz]) = spans.depth(i);
+                let Some(cells) = cells.get_mut(cell + before as usize..) else { return };
+                let z = z.wrapping_add(dz.wrapping_mul(before.into()));
+                let nearer = test_span(s, (cells, length), [z, dz], self.keeps, masks);
                 self.nearer += nearer;
                 if nearer == 0 {
                     return;

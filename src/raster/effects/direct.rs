@@ -1,18 +1,27 @@
 //! Pipelines whose pixels need no stage before fog and blending: one loop per span shows them.
 
 use super::pipeline::{PixelPipeline, ShadeSource};
-use crate::fixed::IS_SMALL;
+use crate::fixed::{IS_COMPACT, IS_SMALL};
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
-use crate::span::texture::Texels;
+use crate::span::texture::{Levels, Texels};
 
 /// How the pixels of faces are shown by one loop per span, with no buffer between.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Direct<'a> {
     /// Linear shades, to be fogged.
     Shades,
-    /// Texels of an image, linear on the face if it is in perspective, otherwise on the screen.
-    Texture { image: Texels<'a>, is_perspective: bool, tint: DirectTint<'a> },
+    /// Texels of an image.
+    Texture { image: DirectImage<'a>, tint: DirectTint<'a> },
+}
+
+/// An image, and how its texels are found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectImage<'a> {
+    pub(super) texels: Texels<'a>,
+    pub(super) is_perspective: bool,
+    /// Only in perspective.
+    pub(super) levels: Option<Levels<'a>>,
 }
 
 /// How texels are tinted.
@@ -47,7 +56,8 @@ impl<'a> Direct<'a> {
         let is_linear = pipeline.dither().is_none()
             && matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded));
         let Some(stage) = pipeline.texture() else { return is_linear.then_some(Self::Shades) };
-        if pipeline.levels().is_some() || stage.mapping == Mapping::Every16 {
+        let (is_perspective, levels) = (stage.mapping == Mapping::Perspective, pipeline.levels());
+        if stage.mapping == Mapping::Every16 || levels.is_some() && (IS_COMPACT || !is_perspective) {
             return None;
         }
         let table = stage.tables[0];
@@ -59,6 +69,6 @@ impl<'a> Direct<'a> {
             _ if is_linear => DirectTint::Lit(table),
             _ => return None,
         };
-        Some(Self::Texture { image: stage.texels, is_perspective: stage.mapping == Mapping::Perspective, tint })
+        Some(Self::Texture { image: DirectImage { texels: stage.texels, is_perspective, levels }, tint })
     }
 }

@@ -54,8 +54,7 @@ impl Direct<'_> {
 
     fn show_in(self, spans: &Spans<'_>, to: &mut impl Destination, kernel: Kernel) -> Option<()> {
         // Shades alone have kernels of their own.
-        let Self::Texture { image, is_perspective, tint } = self else { return None };
-        let image = (image, is_perspective);
+        let Self::Texture { image, tint } = self else { return None };
         match tint {
             DirectTint::None => show_texture(spans, image, (), to, kernel),
             DirectTint::Row(row) => show_texture(spans, image, row, to, kernel),
@@ -70,22 +69,18 @@ impl Direct<'_> {
             // With narrow vectors stages are 3 % faster.
             Self::Shades if !kernel.has_wide_lanes() => return None,
             Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
-            Self::Texture { image, is_perspective, tint } => {
-                let image = (image, is_perspective);
-                match tint {
-                    DirectTint::None => show_texture(spans, image, Fogged((), fog), to, kernel),
-                    DirectTint::Row(row) => show_texture(spans, image, Fogged(row, fog), to, kernel),
-                    DirectTint::Lit(table) => show_texture(spans, image, Fogged(Painted(table), fog), to, kernel),
-                }
-            }
+            Self::Texture { image, tint } => match tint {
+                DirectTint::None => show_texture(spans, image, Fogged((), fog), to, kernel),
+                DirectTint::Row(row) => show_texture(spans, image, Fogged(row, fog), to, kernel),
+                DirectTint::Lit(table) => show_texture(spans, image, Fogged(Painted(table), fog), to, kernel),
+            },
         }
         Some(())
     }
 
     fn show_blended(self, spans: &Spans<'_>, blend: &[u8; 65_536], to: &mut InFrame<'_>, kernel: Kernel) -> Option<()> {
         // Shades are blended 14 % faster in stages.
-        let Self::Texture { image, is_perspective, tint } = self else { return None };
-        let image = (image, is_perspective);
+        let Self::Texture { image, tint } = self else { return None };
         match tint {
             DirectTint::None => show_texture(spans, image, Blended((), blend), to, kernel),
             DirectTint::Row(row) => show_texture(spans, image, Blended(row, blend), to, kernel),
@@ -110,6 +105,6 @@ fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, t
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-        to.show(s, (spans, i), (at, length), (Texels::ONE, tint, along), StoredPlaces(s, &[]));
+        to.show(s, (spans, i, 0), (at, length), (Texels::ONE, tint, along), StoredPlaces(s, &[]));
     }
 }

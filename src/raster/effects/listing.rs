@@ -9,9 +9,9 @@
 //! [`Mark`].
 
 use super::direct::Direct;
-use super::pipeline::{PixelPipeline, ShadeSource};
+use super::pipeline::{PixelPipeline, ShadeSource, TextureStage};
 use super::{Buffers, draw_listed};
-use crate::fixed::{ROUND_MAGIC, U8F8};
+use crate::fixed::{IS_COMPACT, ROUND_MAGIC, U8F8};
 use crate::lanes::{LANES, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
@@ -227,6 +227,8 @@ impl Columns {
 struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
     texture: Option<Mapping>,
+    /// True if the image has levels.
+    levels: bool,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last one in use.
@@ -237,10 +239,13 @@ struct Wanted {
 
 impl Wanted {
     fn by(pipeline: &PixelPipeline<'_>) -> Self {
+        let levels = pipeline.levels().is_some();
         let texture = match pipeline.texture() {
             // Otherwise a stage sets up each face on its own.
-            Some(stage) if pipeline.levels().is_none() && stage.mapping != Mapping::Every16 => Some(stage.mapping),
-            _ => None,
+            Some(TextureStage { mapping: Mapping::Every16, .. }) => None,
+            Some(stage) if levels && (IS_COMPACT || stage.mapping == Mapping::Affine) => None,
+            Some(stage) => Some(stage.mapping),
+            None => None,
         };
         let mut values = [None; Value::MAX_COUNT];
         let mut want =
@@ -254,7 +259,7 @@ impl Wanted {
         }
         let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud));
         let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
-        Self { texture, values, slots, reseeds }
+        Self { texture, levels, values, slots, reseeds }
     }
 }
 
@@ -282,6 +287,11 @@ pub(super) struct Listed<'a> {
 }
 
 impl Listed<'_> {
+    #[cfg(test)]
+    pub(super) fn has_levels(&self) -> bool {
+        self.wanted.levels
+    }
+
     /// The mark of span `k` of the list.
     #[inline(always)]
     pub(super) fn mark(&self, k: usize) -> Mark {
@@ -445,7 +455,7 @@ impl Shades8 for EffectSpans<'_> {
                         }
                     }
                 }
-                _ => planes.perspective.set_up(s, basis, corners, &of_corners),
+                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.levels),
             }
         }
         for (planes, value) in planes.values.iter_mut().zip(wanted.values) {
@@ -466,7 +476,7 @@ impl Shades8 for EffectSpans<'_> {
     ) -> (S::I32, Marks8<S>) {
         let (row, seed) = (s.low_bits(parts.row), s.low_bits(parts.seed));
         let before = s.sub_i32(seed, row);
-        let Wanted { values: wanted, slots, reseeds, texture } = &self.listed.wanted;
+        let Wanted { values: wanted, slots, reseeds, texture, .. } = &self.listed.wanted;
         let begin = if *reseeds { parts.seed } else { parts.row };
         let mut paint = ends.paint(s, lane, setup, begin);
         if !reseeds {

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::listing::{Columns, EffectSpans, Faces, Marks8};
 use super::spans::{Span, Spans};
+use super::texture::exact_level;
 use super::{Buffers, PixelPipeline};
 use crate::raster::columns::{Picks, Triangles};
 use crate::raster::frame::Rect;
@@ -24,6 +25,12 @@ pub(super) struct Recorded {
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
     pub(super) depth: [i64; 2],
+    /// Levels of some pixels, if the image has them: the estimate, and the definition.
+    pub(super) levels: Vec<(Option<u32>, u32)>,
+}
+
+fn levels(spans: &Spans<'_>, i: usize, k: i32) -> (Option<u32>, u32) {
+    (spans.level(i, k, 8), exact_level(spans, i, k, 8))
 }
 
 struct Recorder<'a> {
@@ -86,6 +93,10 @@ impl Shades8 for Recorder<'_> {
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
                     depth: spans.depth(i).1.map(|z| z >> 8),
+                    levels: match listed.has_levels() {
+                        true => (0..=spans.last(i).min(63)).step_by(5).map(|k| levels(&spans, i, k)).collect(),
+                        false => Vec::new(),
+                    },
                 });
             }
             first += spans.count();

@@ -203,6 +203,19 @@ impl<'a> Spans<'a> {
         planes.perspective.sums(lane, self.listed.sums(self.first + i))
     }
 
+    /// The level of the image at pixel `k` of span `i`, whose texture is linear on the face, if an estimate decides.
+    #[inline(always)]
+    pub(super) fn level(&self, i: usize, k: i32, last: u32) -> Option<u32> {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.perspective.level(lane, self.listed.sums(self.first + i), f64::from(k), last)
+    }
+
+    /// The row's last pixel inside the frame, from the first one of span `i`.
+    #[inline(always)]
+    pub(super) fn last(&self, i: usize) -> i32 {
+        self.listed.mark(self.first + i).last()
+    }
+
     /// [`sums`](Self::sums) in f32, if quotients may be taken in f32.
     #[inline(always)]
     pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {

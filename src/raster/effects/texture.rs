@@ -5,6 +5,7 @@
 //! of a span are written with a mask.
 
 use super::destination::{Destination, InBuffer};
+use super::direct::DirectImage;
 use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
@@ -16,7 +17,9 @@ use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::texture::{AffinePlane, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
-use crate::span::texture::{AffineLines, Levels, Shown, Texels, Tint, perspective_along, show, singles_along};
+use crate::span::texture::{
+    AffineLines, LevelTexels, Levels, Shown, Texels, Tint, perspective_along, show, singles_along,
+};
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: usize = EVERY_WHOLE as usize;
@@ -32,7 +35,7 @@ type Image<'a> = (Texels<'a>, Option<Levels<'a>>);
 #[inline(always)]
 pub(super) fn show_texture<T: Tint, D: Destination>(
     spans: &Spans<'_>,
-    (image, is_perspective): (Texels<'_>, bool),
+    image: DirectImage<'_>,
     tint: T,
     to: &mut D,
     kernel: Kernel,
@@ -41,9 +44,13 @@ pub(super) fn show_texture<T: Tint, D: Destination>(
     if IS_SMALL {
         return;
     }
-    match is_perspective {
-        false => show_affine::<T, D>(kernel.simd_level(), spans, image, tint, to),
-        true => show_exact::<T, D>(kernel.simd_level(), spans, image, tint, to),
+    let (level, DirectImage { texels, is_perspective, levels }) = (kernel.simd_level(), image);
+    match (is_perspective, levels) {
+        (false, _) => show_affine::<T, D>(level, spans, texels, tint, to),
+        (true, Some(levels)) if HAS_LEVELS && !IS_COMPACT => {
+            show_levels::<T, D>(level, spans, (texels, levels), tint, to)
+        }
+        (true, _) => show_exact::<T, D>(level, spans, texels, tint, to),
     }
 }
 
@@ -66,6 +73,9 @@ impl Spans<'_> {
             }
             (Mapping::Perspective, None) if !IS_SMALL => {
                 show_exact(level, self, stage.texels, shown.tint(), &mut InBuffer(out));
+            }
+            (Mapping::Perspective, Some(levels)) if HAS_LEVELS && !IS_COMPACT => {
+                show_levels(level, self, (stage.texels, levels), shown.tint(), &mut InBuffer(out));
             }
             (Mapping::Affine, _) => self.affine_levels(shown, image, (out, places)),
             (Mapping::Perspective, _) => self.perspective_levels::<false>(shown, image, (out, places), kernel),
@@ -98,13 +108,8 @@ impl Spans<'_> {
                 show(shown, pixels, image, places);
             });
         };
-        let plane = |face: &FaceCorners<'_>| {
-            let depths = |corner: usize| i128::from(depth(&face.triangle, corner));
-            let texture = [face.texture(0), face.texture(1)];
-            let levels = LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)]);
-            (perspective(face), levels)
-        };
-        self.each(out, plane, |(plane, of_pixels), span, pixels| {
+        let planes = |face: &FaceCorners<'_>| (perspective(face), level_plane(face));
+        self.each(out, planes, |(plane, of_pixels), span, pixels| {
             plane.show_levels::<EVERY_16>(shown, (of_pixels, levels), image, span, (pixels, &mut *places), kernel);
         });
     }
@@ -127,6 +132,17 @@ compiled_for_each_level! {
     #[inline(never)]
     fn show_exact[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
         = show_exact_by;
+}
+
+compiled_for_each_level! {
+    /// Shows the texels of every span, linear on the face, from levels, one of which is chosen for every 16 pixels.
+    #[inline(never)]
+    fn show_levels[T: Tint, D: Destination][T, D](
+        spans: &Spans<'_>,
+        image: (Texels<'_>, Levels<'_>),
+        tint: T,
+        to: &mut D,
+    ) = show_levels_by;
 }
 
 #[inline(always)]
@@ -161,7 +177,7 @@ fn show_line<S: Lanes8, T: Tint, D: Destination>(
     }
     let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
     let lines = AffineLines::new(s, image, [du, dv]);
-    to.show(s, (spans, i), (at, length), (image, tint, along), lines.along(from));
+    to.show(s, (spans, i, 0), (at, length), (image, tint, along), lines.along(from));
 }
 
 #[inline(always)]
@@ -172,27 +188,95 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
-    let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
-        let range = (skipped as usize, skipped as usize + length);
-        // Set up for the first eight that need it.
-        let mut plane = None;
-        let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
-        let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-        if !IS_COMPACT
-            && has_sums
-            && let Some(sums) = spans.singles(i)
-        {
-            let places = singles_along(s, image, sums, range.0, exact);
-            to.show(s, (spans, i), (at, length), (image, tint, along), places);
-            continue;
-        }
-        let sums = if has_sums { Some(spans.sums(i)) } else { None };
-        let places = perspective_along(s, image, sums, range, exact);
-        to.show(s, (spans, i), (at, length), (image, tint, along), places);
+        show_part(s, (spans, i, 0), (at, length), skipped as usize, (image, 0), tint, to);
     }
+}
+
+#[inline(always)]
+fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
+    s: S,
+    spans: &Spans<'_>,
+    (image, levels): (Texels<'_>, Levels<'_>),
+    tint: T,
+    to: &mut D,
+) {
+    let mut texels = [image; Texels::MAX_BITS as usize + 1];
+    for level in 1..=levels.last() {
+        let to = &mut texels[level as usize % 9];
+        *to = levels.get(level).unwrap_or(image);
+    }
+    for i in 0..spans.count() {
+        let (at, length, skipped) = to.span(spans, i);
+        // At most 64, all of them.
+        let (mut first, end, last) = (skipped as usize, skipped as usize + length, spans.last(i));
+        // The middle one of 16 pixels decides, or the row's last inside the frame, whatever the clip rectangle.
+        let level_of_16 = |begin: usize| {
+            let (begin, middle) = (begin as i32, (begin + EVERY / 2) as i32);
+            let k = middle.min(last).max(begin);
+            match spans.level(i, k, levels.last()) {
+                Some(level) if spans.have_texture() => level,
+                _ => exact_level(spans, i, k, levels.last()),
+            }
+        };
+        let mut next = first / EVERY * EVERY;
+        let mut level = level_of_16(next);
+        while first < end {
+            let (shown, before) = (level, first - skipped as usize);
+            while level == shown && next < end {
+                next += EVERY;
+                if next < end {
+                    level = level_of_16(next);
+                }
+            }
+            let (place, n) = ((spans, i, before as u32), next.min(end) - first);
+            show_part(s, place, (at + before, n), first, (texels[shown as usize % 9], shown), tint, to);
+            first += n;
+        }
+    }
+}
+
+/// Shows texels of a level in pixels of a span, linear on the face: the first one is number `first` of the span.
+#[inline(always)]
+fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
+    s: S,
+    (spans, i, before): (&Spans<'_>, usize, u32),
+    (at, length): (usize, usize),
+    first: usize,
+    image: LevelTexels<'_>,
+    tint: T,
+    to: &mut D,
+) {
+    // Set up for the first eight that need it.
+    let mut plane = None;
+    let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
+    // At most 64.
+    let along = &mut tint.begin(s, spans.values::<T>(i, first as u32));
+    if !IS_COMPACT
+        && spans.have_texture()
+        && let Some(sums) = spans.singles(i)
+    {
+        let places = singles_along(s, image, sums, first, exact);
+        to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
+        return;
+    }
+    let sums = if spans.have_texture() { Some(spans.sums(i)) } else { None };
+    let places = perspective_along(s, image, sums, (first, first + length), exact);
+    to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
+}
+
+/// The level of an image at pixel `k` of span `i`, by its definition.
+#[cold]
+#[inline(never)]
+pub(super) fn exact_level(spans: &Spans<'_>, i: usize, k: i32, last: u32) -> u32 {
+    let span = spans.span(i);
+    let face = spans.corners(&span);
+    let (plane, of_pixels) = (perspective(&face), level_plane(&face));
+    // Below 64.
+    let x = span.x + k;
+    of_pixels.at(of_pixels.across(span.y), x, plane.denominator(x, span.y), last)
 }
 
 /// The indices of eight texels of span `i`, from its pixel `first` on, where the list has no sums, or its quotients
@@ -202,7 +286,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
 fn exact_eight(
     (spans, i): (&Spans<'_>, usize),
     plane: &mut Option<PerspectiveTexture>,
-    image: Texels<'_>,
+    image: LevelTexels<'_>,
     first: usize,
     eight: &mut [i32; LANES],
 ) {
@@ -211,7 +295,13 @@ fn exact_eight(
     let n = span.len.saturating_sub(first).min(LANES);
     // Below 64.
     let at = (span.x + first as i32, span.y);
-    plane.exact(BASELINE, (image, 0), at, (eight, n));
+    plane.exact(BASELINE, image, at, (eight, n));
+}
+
+fn level_plane(face: &FaceCorners<'_>) -> LevelPlane {
+    let depths = |corner: usize| i128::from(depth(&face.triangle, corner));
+    let texture = [face.texture(0), face.texture(1)];
+    LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)])
 }
 
 fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
@@ -519,6 +609,90 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Eight triangles with textures, some of them slivers, some with levels that only just differ.
+    fn leveled() -> impl Strategy<Value = Given> {
+        let depth = prop_oneof![4 => 16.0..30.0_f64, 1 => 0.0..16.0_f64];
+        let sliver = prop::option::of((0.0..1.0_f64, 0..3_i32));
+        let triangle = (1..30_000_i32, 1..30_000_i32, depth, 0.0..1.5_f64, 12.0..30.0_f64, sliver).prop_flat_map(
+            |(width, height, depth, ratio, reach, sliver)| {
+                let corner = (0..=width, 0..=height, 0.0..=ratio)
+                    .prop_map(move |(x, y, ratio)| (x, y, (depth + ratio).min(31.0).exp2() as u32));
+                let reach = reach.exp2() as i32;
+                let texture = prop::array::uniform3([0..=reach, 0..=reach]);
+                // The same scale for all, in powers of √2: levels that only just differ.
+                let even = prop::option::of((0..8_i32, any::<bool>()));
+                (prop::array::uniform3(corner), texture, any::<[i16; 2]>(), even, Just(sliver))
+            },
+        );
+        let triangle = triangle.prop_map(|(corners, texture, origin, even, sliver)| {
+            let mut corners = corners;
+            if let Some((along, off)) = sliver {
+                let [a, b, c] = &mut corners;
+                let between = |a: i32, b: i32| a + (f64::from(b - a) * along) as i32;
+                (c.0, c.1) = (between(a.0, b.0) + off, between(a.1, b.1));
+            }
+            let texture = match even {
+                None => texture.map(|uv| [0, 1].map(|i| uv[i] + i32::from(origin[i] / 4) * 65_536)),
+                Some((scale, is_odd)) => {
+                    let texels = f64::from(1 << scale) * if is_odd { 181.0 / 128.0 } else { 1.0 };
+                    let depth = corners[0].2;
+                    corners = corners.map(|(x, y, _)| (x, y, depth));
+                    corners.map(|(x, y, _)| [x, y].map(|at| (f64::from(at) * texels) as i32 * 256))
+                }
+            };
+            (corners, texture)
+        });
+        prop::array::uniform8(triangle.boxed())
+    }
+
+    /// Levels that an estimate decides are those of the definition, and it decides nearly all.
+    #[test]
+    fn estimated_levels_are_the_definition() {
+        let (decided, all) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
+        let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(3_000));
+        let found = runner.run(&leveled(), |given| {
+            let (mut at, mut depth, mut coordinates, mut indices) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            for (corners, texture) in &given {
+                let first = at.len() as u32;
+                indices.push([first, first + 1, first + 2]);
+                for (&(x, y, z), texture) in corners.iter().zip(texture) {
+                    at.push(ScreenPos::new(x, y));
+                    depth.push(z);
+                    coordinates.push(*texture);
+                }
+            }
+            let shade = std::vec![[U8F8::default(); 2]; at.len()];
+            let effects = EffectColumns { texture: &coordinates, ..EffectColumns::default() };
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
+            let all_triangles = Triangles { columns, indices: &indices };
+            let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
+            let (texels, levels) = (std::vec![0; 65_536], std::vec![0; Levels::length(8, 8)]);
+            let stage = TextureStage {
+                texels: Texels::new(&texels, 8, 8).expect("an image"),
+                levels: Some(Levels::new(&levels, 8, 8).expect("its levels")),
+                mapping: Mapping::Perspective,
+                tables: [&[0; 65_536]; 3],
+            };
+            let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
+            for kernel in Kernel::available() {
+                let masks = cull(kernel.simd_level(), &at, &indices, clip, false);
+                let mut list = PickList::<16>::new();
+                pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
+                for recorded in record(kernel, &all_triangles, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                    for (estimated, exact) in recorded.levels {
+                        all.set(all.get() + 1);
+                        decided.set(decided.get() + i32::from(estimated.is_some()));
+                        prop_assert!(estimated.is_none_or(|level| level == exact), "{estimated:?}, not {exact}");
+                    }
+                }
+            }
+            Ok(())
+        });
+        found.expect("each level that is decided");
+        let (decided, all) = (decided.get(), all.get());
+        assert!(all > 1_000_000 && decided > all / 2, "{decided} of {all}");
     }
 
     /// A face whose estimates are inconclusive at every pixel, since u is a whole number everywhere: stages that read
