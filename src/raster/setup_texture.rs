@@ -9,8 +9,8 @@
 //!
 //! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
 //! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
-//! its terms' magnitudes. Where its corners are close together, a triangle's coordinates begin at a whole texel nearby,
-//! its base, so that f32 resolves them.
+//! its terms' magnitudes. A triangle's coordinates begin at the texel of a corner, its base, so that f32 resolves
+//! them where the others are near.
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
@@ -40,14 +40,6 @@ pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -
     gathered
 }
 
-/// The greatest difference between the corners, modulo 2³², and where it is below a limit.
-#[inline(always)]
-fn range_of<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3], limit: i32) -> (S::I32, S::Mask) {
-    // A difference of 2³¹ or more is negative.
-    let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
-    (range, s.and_not(s.is_greater(s.splat_i32(limit), range), s.is_greater(s.splat_i32(0), range)))
-}
-
 /// Planes of coordinates that are linear on the screen, of eight triangles.
 #[derive(Clone, Debug)]
 pub(super) struct AffinePlanes8 {
@@ -57,7 +49,8 @@ pub(super) struct AffinePlanes8 {
     inverse: Floats,
     /// The coordinate of the first corner by height, or the integer at the first pixel, ...
     first: [Ints; 2],
-    /// ... and the integers per row and per column, which are 0 where no number is split.
+    /// ... and the integers per row and per column, which are 0 where no number is split, and read if any is.
+    is_split: bool,
     whole_per_row: [Ints; 2],
     whole_per_column: [Ints; 2],
     /// Change per pixel, where a row has more than one.
@@ -71,6 +64,7 @@ impl AffinePlanes8 {
         per_column: [[0.0; LANES]; 2],
         inverse: [0.0; LANES],
         first: [[0; LANES]; 2],
+        is_split: false,
         whole_per_row: [[0; LANES]; 2],
         whole_per_column: [[0; LANES]; 2],
         step: [[0; LANES]; 2],
@@ -84,13 +78,17 @@ impl AffinePlanes8 {
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) -> u32 {
         s.store_f64(basis.inverse, &mut self.inverse);
-        (self.whole_per_row, self.whole_per_column) = ([[0; LANES]; 2], [[0; LANES]; 2]);
+        self.is_split = false;
         let mut fits = u32::MAX;
         let [x, y] = basis.first;
         let (pixel, magic) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC));
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
             let corners = [s.load_i32(a), s.load_i32(b), s.load_i32(c)];
-            let (_, is_near) = range_of(s, corners, Self::TOO_FAR);
+            let [a, b, c] = corners;
+            // Modulo 2³²: a difference of 2³¹ or more is negative.
+            let range = s.sub_i32(s.max_i32(s.max_i32(a, b), c), s.min_i32(s.min_i32(a, b), c));
+            let is_near =
+                s.and_not(s.is_greater(s.splat_i32(Self::TOO_FAR), range), s.is_greater(s.splat_i32(0), range));
             fits &= s.to_bitmask(is_near);
             let [first, second, third] = basis.order.sort(s, corners);
             s.store_i32(first, &mut self.first[i]);
@@ -122,6 +120,10 @@ impl AffinePlanes8 {
         coordinates: [[i32; 3]; 2],
         pixel: [i32; 2],
     ) {
+        if !self.is_split {
+            (self.whole_per_row, self.whole_per_column) = ([[0; LANES]; 2], [[0; LANES]; 2]);
+            self.is_split = true;
+        }
         let (lane, area) = (lane % LANES, Divisor::new(triangle.area()));
         for (i, coordinates) in coordinates.into_iter().enumerate() {
             let plane = AffinePlane::new(triangle, area, coordinates);
@@ -153,11 +155,12 @@ impl AffinePlanes8 {
             let n = s.mul_add(lane.load_f64(s, &self.per_column[of]), i, n);
             // The low bits; the sum is modulo 2³².
             let change = s.low_bits(s.mul_add(n, inverse, s.splat_f64(ROUND_MAGIC)));
-            let whole = s.add_i32(
-                s.mul_i32(lane.load_i32(s, &self.whole_per_column[of]), column),
-                s.mul_i32(lane.load_i32(s, &self.whole_per_row[of]), row),
-            );
-            *start = s.add_i32(s.add_i32(change, whole), lane.load_i32(s, &self.first[of]));
+            *start = s.add_i32(change, lane.load_i32(s, &self.first[of]));
+            if self.is_split {
+                let per_column = s.mul_i32(lane.load_i32(s, &self.whole_per_column[of]), column);
+                let per_row = s.mul_i32(lane.load_i32(s, &self.whole_per_row[of]), row);
+                *start = s.add_i32(*start, s.add_i32(per_column, per_row));
+            }
         }
         starts
     }
@@ -203,9 +206,6 @@ impl PerspectivePlanes8 {
         fits_levels: 0,
     };
 
-    /// The difference from which on corners have no base.
-    const TOO_FAR: i32 = 1 << 25;
-
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(
         &mut self,
@@ -235,7 +235,7 @@ impl PerspectivePlanes8 {
             }
             let [_, _, per_column] = weight;
             let depth = depth[corner];
-            let values = [s.mul(s.to_f64(u[corner]), depth), s.mul(s.to_f64(v[corner]), depth), depth];
+            let values = [s.mul(u[corner], depth), s.mul(v[corner], depth), depth];
             for i in 0..3 {
                 s.store_f64(values[i], &mut self.values[corner][i]);
                 sums[i] = s.mul_add(per_column, values[i], sums[i]);
@@ -259,25 +259,19 @@ impl PerspectivePlanes8 {
         s: S,
         basis: &Basis<S>,
         coordinates: &[[Ints; 3]; 2],
-    ) -> ([[S::I32; 3]; 2], S::F64) {
-        let mut sorted = [[s.splat_i32(0); 3]; 2];
-        let mut greatest = s.splat_f64(0.0);
+    ) -> ([[S::F64; 3]; 2], S::F64) {
+        let zero = s.splat_f64(0.0);
+        let (mut rebased, mut greatest) = ([[zero; 3]; 2], zero);
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
-            let corners = basis.order.sort(s, [s.load_i32(a), s.load_i32(b), s.load_i32(c)]);
-            let (range, is_near) = range_of(s, corners, Self::TOO_FAR);
-            let base = s.and_i32(corners[0], s.splat_i32(!0xFFFF));
-            let base = s.select_i32(is_near, base, s.splat_i32(0));
+            let [a, b, c] = basis.order.sort(s, [s.load_i32(a), s.load_i32(b), s.load_i32(c)]);
+            let base = s.and_i32(a, s.splat_i32(!0xFFFF));
             s.store_i32(base, &mut self.base[i]);
-            let mut corner = 0;
-            while corner < 3 {
-                sorted[i][corner] = s.sub_i32(corners[corner], base);
-                corner += 1;
-            }
-            // Without a base coordinates are below 2³¹.
-            let range = s.select_i32(is_near, range, s.splat_i32(i32::MAX));
-            greatest = s.max(greatest, s.to_f64(range));
+            // Differences of i32 are exact in f64.
+            let (base, a, b, c) = (s.to_f64(base), s.to_f64(a), s.to_f64(b), s.to_f64(c));
+            greatest = s.max(greatest, s.sub(s.max(s.max(a, b), c), s.min(s.min(a, b), c)));
+            rebased[i] = [s.sub(a, base), s.sub(b, base), s.sub(c, base)];
         }
-        (sorted, greatest)
+        (rebased, greatest)
     }
 
     /// The sums of each lane at these columns of rows `j`. A product may be fused with a sum, which rounds less often.

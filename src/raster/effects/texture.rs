@@ -9,7 +9,7 @@ use super::direct::DirectImage;
 use super::listing::FaceCorners;
 use super::pipeline::TextureStage;
 use super::spans::{LONGEST, Span, Spans};
-use crate::fixed::{IS_COMPACT, IS_SMALL};
+use crate::fixed::{HAS_F64, IS_COMPACT, IS_SMALL};
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
 use crate::raster::reference::level::{self, LevelPlane};
@@ -188,10 +188,11 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
+    let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
-        show_part(s, (spans, i, 0), (at, length), skipped as usize, (image, 0), tint, to);
+        show_part(s, (spans, i, 0, has_sums), (at, length), skipped as usize, (image, 0), tint, to);
     }
 }
 
@@ -203,11 +204,12 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
-    let mut texels = [image; Texels::MAX_BITS as usize + 1];
+    const LEVELS: usize = Texels::MAX_BITS as usize + 1;
+    let mut texels = [image; LEVELS];
     for level in 1..=levels.last() {
-        let to = &mut texels[level as usize % 9];
-        *to = levels.get(level).unwrap_or(image);
+        texels[level as usize % LEVELS] = levels.get(level).unwrap_or(image);
     }
+    let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         // At most 64, all of them.
@@ -216,9 +218,10 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
         let level_of_16 = |begin: usize| {
             let (begin, middle) = (begin as i32, (begin + EVERY / 2) as i32);
             let k = middle.min(last).max(begin);
-            match spans.level(i, k, levels.last()) {
-                Some(level) if spans.have_texture() => level,
-                _ => exact_level(spans, i, k, levels.last()),
+            let estimated = if HAS_F64 && has_sums { spans.level(i, k, levels.last()) } else { None };
+            match estimated {
+                Some(level) => level,
+                None => exact_level(spans, i, k, levels.last()),
             }
         };
         let mut next = first / EVERY * EVERY;
@@ -231,18 +234,19 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
                     level = level_of_16(next);
                 }
             }
-            let (place, n) = ((spans, i, before as u32), next.min(end) - first);
-            show_part(s, place, (at + before, n), first, (texels[shown as usize % 9], shown), tint, to);
+            let (place, n) = ((spans, i, before as u32, has_sums), next.min(end) - first);
+            show_part(s, place, (at + before, n), first, (texels[shown as usize % LEVELS], shown), tint, to);
             first += n;
         }
     }
 }
 
-/// Shows texels of a level in pixels of a span, linear on the face: the first one is number `first` of the span.
+/// Shows texels of a level in pixels of a span, linear on the face: the first one is number `first` of the span. The list
+/// may have sums for it.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     s: S,
-    (spans, i, before): (&Spans<'_>, usize, u32),
+    (spans, i, before, has_sums): (&Spans<'_>, usize, u32, bool),
     (at, length): (usize, usize),
     first: usize,
     image: LevelTexels<'_>,
@@ -255,14 +259,14 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     // At most 64.
     let along = &mut tint.begin(s, spans.values::<T>(i, first as u32));
     if !IS_COMPACT
-        && spans.have_texture()
+        && has_sums
         && let Some(sums) = spans.singles(i)
     {
         let places = singles_along(s, image, sums, first, exact);
         to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
         return;
     }
-    let sums = if spans.have_texture() { Some(spans.sums(i)) } else { None };
+    let sums = if has_sums { Some(spans.sums(i)) } else { None };
     let places = perspective_along(s, image, sums, (first, first + length), exact);
     to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
 }
