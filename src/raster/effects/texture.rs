@@ -791,12 +791,14 @@ mod tests {
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
         let weights = Weights::new(triangle);
         for i in 0..3 {
-            let value = |k: usize, base: i32| (i64::from(texture[k][i]) - i64::from(base)) * depths[k];
-            let values = [0, 1, 2].map(|k| base.get(i).map_or(depths[k], |&base| value(k, base)));
+            let value =
+                |k: usize, base: i32| i128::from(i64::from(texture[k][i]) - i64::from(base)) * i128::from(depths[k]);
+            let values = [0, 1, 2].map(|k| base.get(i).map_or(depths[k].into(), |&base| value(k, base)));
             let [start, step] = [u, v, divisors][i];
             for (weights, sum) in [(weights.at(x, y), start), (weights.per_column(), step)] {
-                let terms: i128 = weights.iter().zip(values).map(|(w, v)| (i128::from(*w) * i128::from(v)).abs()).sum();
-                let off = sum as i128 - exact(weights, values);
+                let terms = [0, 1, 2].map(|k| i128::from(weights[k]) * values[k]);
+                let off = sum as i128 - terms.iter().sum::<i128>();
+                let terms: i128 = terms.iter().map(|term| term.abs()).sum();
                 // Four parts in 2⁵³ of the terms, and less than one for the fraction that `as` drops.
                 prop_assert!((off.abs() - 1) << 51 <= terms, "{} off of {}", off, terms);
             }
