@@ -901,7 +901,7 @@ pub(crate) fn perspective_places<S: Lanes8>(
 pub(crate) struct PerspectiveSums<F> {
     pub(crate) numerators: [[F; 2]; 2],
     pub(crate) divisors: [F; 2],
-    /// What is added to the quotients: whole numbers of texels.
+    /// Whole numbers of texels that are added to the quotients.
     pub(crate) base: [i32; 2],
 }
 
