@@ -47,10 +47,11 @@ pub(super) struct AffinePlanes8 {
     per_row: [Floats; 2],
     per_column: [Floats; 2],
     inverse: Floats,
-    /// The coordinate of the first corner by height, or the integer at the first pixel, ...
+    /// The coordinate of the first corner by height, or the integer at the first pixel of a split triangle.
     first: [Ints; 2],
-    /// ... and the integers per row and per column, which are 0 where no number is split, and read if any is.
+    /// True if any of the eight triangles is split. Otherwise the integers below are not read.
     is_split: bool,
+    /// The integers per row and per column, 0 for triangles that are not split.
     whole_per_row: [Ints; 2],
     whole_per_column: [Ints; 2],
     /// Change per pixel, where a row has more than one.

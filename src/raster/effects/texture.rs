@@ -651,7 +651,7 @@ mod tests {
         prop::array::uniform8(triangle.boxed())
     }
 
-    /// Levels that an estimate decides are those of the definition, and it decides nearly all.
+    /// Levels that an estimate decides are those of the definition, and it decides most.
     #[test]
     fn estimated_levels_are_the_definition() {
         let (decided, all) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
