@@ -15,8 +15,9 @@
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
 use super::reference::cover::SortedTriangle;
+use super::reference::level;
 use super::reference::quotient::Divisor;
-use super::reference::texture::AffinePlane;
+use super::reference::texture::{AffineLevel, AffinePlane};
 use super::rows::Lane;
 use super::setup::{Basis, Corners8, Floats, Ints};
 use crate::fixed::ROUND_MAGIC;
@@ -56,6 +57,10 @@ pub(super) struct AffinePlanes8 {
     whole_per_column: [Ints; 2],
     /// Change per pixel, where a row has more than one.
     step: [Ints; 2],
+    /// The level of each triangle, if the image has levels, ...
+    level: Ints,
+    /// ... and a bit for each whose u, or v, falls along a row.
+    falls: [u32; 2],
 }
 
 impl AffinePlanes8 {
@@ -69,20 +74,29 @@ impl AffinePlanes8 {
         whole_per_row: [[0; LANES]; 2],
         whole_per_column: [[0; LANES]; 2],
         step: [[0; LANES]; 2],
+        level: [0; LANES],
+        falls: [0; 2],
     };
 
     /// The difference from which on corners are too far apart.
     const TOO_FAR: i32 = 1 << 22;
 
-    /// Sets up eight triangles. Returns a bit for each small one whose corners' coordinates are close enough together.
-    /// The others have to be [split](Self::split).
+    /// Sets up eight triangles, with levels up to the last if the image has any. Returns a bit for each small one whose
+    /// corners' coordinates are close enough together. The others have to be [split](Self::split).
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, coordinates: &[[Ints; 3]; 2]) -> u32 {
+    pub(super) fn set_up<S: Lanes8>(
+        &mut self,
+        s: S,
+        basis: &Basis<S>,
+        coordinates: &[[Ints; 3]; 2],
+        last: Option<u32>,
+    ) -> u32 {
         s.store_f64(basis.inverse, &mut self.inverse);
         self.is_split = false;
         let mut fits = u32::MAX;
         let [x, y] = basis.first;
-        let (pixel, magic) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC));
+        let (pixel, magic, zero) = (s.splat_f64(256.0), s.splat_f64(ROUND_MAGIC), s.splat_f64(0.0));
+        let mut gradients = [[zero; 2]; 2];
         for (i, [a, b, c]) in coordinates.iter().enumerate() {
             let corners = [s.load_i32(a), s.load_i32(b), s.load_i32(c)];
             let [a, b, c] = corners;
@@ -96,10 +110,11 @@ impl AffinePlanes8 {
             let differences = [s.to_f64(s.sub_i32(second, first)), s.to_f64(s.sub_i32(third, first))];
             let [gx, gy] = basis.gradient(s, differences);
             // +0, not −0: its sign chooses the rounding.
-            let gx = s.add(gx, s.splat_f64(0.0));
+            let gx = s.add(gx, zero);
+            gradients[i] = [gx, gy];
             // `AffinePlane::start`: the floor, or the ceiling where coordinates fall.
             let half = s.xor_sign(s.mul_add(basis.area, s.splat_f64(0.5), s.splat_f64(-0.5)), gx);
-            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, s.splat_f64(0.0)));
+            let n = s.neg_mul_add(gx, x, s.neg_mul_add(gy, y, zero));
             s.store_f64(s.sub(n, half), &mut self.n[i]);
             s.store_f64(s.mul(gy, pixel), &mut self.per_row[i]);
             let per_column = s.mul(gx, pixel);
@@ -108,7 +123,33 @@ impl AffinePlanes8 {
             let step = s.mul_add(s.sub(per_column, half), basis.inverse, magic);
             s.store_i32(s.low_bits(step), &mut self.step[i]);
         }
+        if let Some(last) = last {
+            self.set_up_levels(s, basis.area, gradients, last);
+        }
         fits
+    }
+
+    /// [`level::of_face`] of eight triangles: all values are whole numbers below 2⁵².
+    #[inline(always)]
+    fn set_up_levels<S: Lanes8>(&mut self, s: S, area: S::F64, [u, v]: [[S::F64; 2]; 2], last: u32) {
+        let longest = s.max(doubled(s, u[0], v[0]), doubled(s, u[1], v[1]));
+        // `level::choose`: 64 · 256 times a gradient is a step, and 181 · 2¹⁶ the longest one of level 0.
+        let mut most = s.mul(area, s.splat_f64(724.0));
+        let mut level = s.splat_i32(0);
+        for _ in 0..last {
+            level = s.select_i32(s.is_less(most, longest), s.add_i32(level, s.splat_i32(1)), level);
+            most = s.add(most, most);
+        }
+        s.store_i32(level, &mut self.level);
+        let zero = s.splat_f64(0.0);
+        self.falls = [s.to_bitmask(s.is_less(u[0], zero)), s.to_bitmask(s.is_less(v[0], zero))];
+    }
+
+    /// The level of triangle `lane`.
+    #[inline(always)]
+    pub(super) fn level(&self, lane: usize) -> AffineLevel {
+        let lane = lane % LANES;
+        AffineLevel { level: self.level[lane].cast_unsigned(), falls: self.falls.map(|falls| falls >> lane & 1 != 0) }
     }
 
     /// Splits the numbers of triangle `lane`, given the coordinates of its corners, and the first pixel of its box.
@@ -120,14 +161,23 @@ impl AffinePlanes8 {
         triangle: &SortedTriangle,
         coordinates: [[i32; 3]; 2],
         pixel: [i32; 2],
+        last: Option<u32>,
     ) {
         if !self.is_split {
             (self.whole_per_row, self.whole_per_column) = ([[0; LANES]; 2], [[0; LANES]; 2]);
             self.is_split = true;
         }
         let (lane, area) = (lane % LANES, Divisor::new(triangle.area()));
-        for (i, coordinates) in coordinates.into_iter().enumerate() {
-            let plane = AffinePlane::new(triangle, area, coordinates);
+        let planes = coordinates.map(|coordinates| AffinePlane::new(triangle, area, coordinates));
+        if let Some(last) = last {
+            let AffineLevel { level, falls } = level::of_face(&planes, area.get(), last);
+            // At most 8.
+            self.level[lane] = level as i32;
+            for (bits, falls) in self.falls.iter_mut().zip(falls) {
+                *bits = *bits & !(1 << lane) | u32::from(falls) << lane;
+            }
+        }
+        for (i, plane) in planes.into_iter().enumerate() {
             let [first, per_column, per_row] = plane.parts(pixel);
             (self.first[i][lane], self.whole_per_row[i][lane]) = (first.0, per_row.0);
             self.whole_per_column[i][lane] = per_column.0;
@@ -171,6 +221,13 @@ impl AffinePlanes8 {
     pub(super) fn steps<S: Lanes8>(&self, s: S, lane: impl Lane<S>) -> [S::I32; 2] {
         [lane.load_i32(s, &self.step[0]), lane.load_i32(s, &self.step[1])]
     }
+}
+
+/// Twice the length of a step, as in [`level`].
+#[inline(always)]
+fn doubled<S: Lanes8>(s: S, u: S::F64, v: S::F64) -> S::F64 {
+    let (u, v) = (s.xor_sign(u, u), s.xor_sign(v, v));
+    s.add(s.add(u, v), s.max(u, v))
 }
 
 /// Coordinates that are linear on the face, of eight triangles: numerators and divisor are sums over the corners of weights

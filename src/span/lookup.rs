@@ -25,3 +25,12 @@ pub fn lookup(row: &mut [u8], high: &[u8], table: &[u8; 65_536]) {
         *pixel = table[usize::from(u16::from_be_bytes([high[k], *pixel]))];
     }
 }
+
+/// [`lookup`] that replaces the bytes which choose the row of the table: `rows[k] = table[rows[k] << 8 | low[k]]`.
+#[cfg(feature = "alloc")]
+#[inline]
+pub(crate) fn lookup_row(rows: &mut [u8], low: &[u8], table: &[u8; 65_536]) {
+    for (row, low) in rows.iter_mut().zip(low) {
+        *row = table[usize::from(u16::from_be_bytes([*row, *low]))];
+    }
+}

@@ -81,6 +81,8 @@ mod thresholds;
 mod x86;
 
 pub(crate) use lookup::lookup;
+#[cfg(feature = "alloc")]
+pub(crate) use lookup::lookup_row;
 
 /// The bare assembly entries, for the tests that call them with garbage in their registers and read their instructions.
 /// Not part of the interface.

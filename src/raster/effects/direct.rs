@@ -1,10 +1,9 @@
 //! Pipelines whose pixels need no stage before fog and blending: one loop per span shows them.
 
-use super::pipeline::{PixelPipeline, ShadeSource};
-use crate::fixed::{IS_COMPACT, IS_SMALL};
+use super::pipeline::{Image, PixelPipeline, ShadeSource};
+use crate::fixed::IS_SMALL;
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
-use crate::span::texture::{Levels, Texels};
 
 /// How the pixels of faces are shown by one loop per span, with no buffer between.
 #[derive(Clone, Copy, Debug)]
@@ -12,16 +11,7 @@ pub(super) enum Direct<'a> {
     /// Linear shades, to be fogged.
     Shades,
     /// Texels of an image.
-    Texture { image: DirectImage<'a>, tint: DirectTint<'a> },
-}
-
-/// An image, and how its texels are found.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct DirectImage<'a> {
-    pub(super) texels: Texels<'a>,
-    pub(super) is_perspective: bool,
-    /// Only in perspective.
-    pub(super) levels: Option<Levels<'a>>,
+    Texture { image: (Image<'a>, Mapping), tint: DirectTint<'a> },
 }
 
 /// How texels are tinted.
@@ -49,15 +39,14 @@ static IDENTITY: [u8; 256] = {
 impl<'a> Direct<'a> {
     /// The direct form of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
-        // A build for size has no loop for each tint: it finds the places of texels, and then looks these up.
+        // A build for size has no loop for each tint: it stores texels, and then looks these up.
         if IS_SMALL || pipeline.channels().is_some() {
             return None;
         }
         let is_linear = pipeline.dither().is_none()
             && matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded));
         let Some(stage) = pipeline.texture() else { return is_linear.then_some(Self::Shades) };
-        let (is_perspective, levels) = (stage.mapping == Mapping::Perspective, pipeline.levels());
-        if stage.mapping == Mapping::Every16 || levels.is_some() && (IS_COMPACT || !is_perspective) {
+        if stage.mapping == Mapping::Every16 {
             return None;
         }
         let table = stage.tables[0];
@@ -69,6 +58,6 @@ impl<'a> Direct<'a> {
             _ if is_linear => DirectTint::Lit(table),
             _ => return None,
         };
-        Some(Self::Texture { image: DirectImage { texels: stage.texels, is_perspective, levels }, tint })
+        Some(Self::Texture { image: (Image::new(stage), stage.mapping), tint })
     }
 }

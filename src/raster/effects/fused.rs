@@ -10,7 +10,7 @@ use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
 use crate::span::list::Target;
-use crate::span::texture::{Blended, Fogged, Painted, StoredPlaces, Texels, Tint, Untextured};
+use crate::span::texture::{Blended, FirstPlace, Fogged, Painted, Texels, Tint, Untextured};
 
 impl Direct<'_> {
     /// Shows the pixels of every span in the frame, fogged or blended as the pipeline says; if there are cells, only
@@ -105,6 +105,6 @@ fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, t
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-        to.show(s, (spans, i, 0), (at, length), (Texels::ONE, tint, along), StoredPlaces(s, &[]));
+        to.show(s, (spans, i, 0), (at, length), (Texels::ONE, tint, along), FirstPlace(s));
     }
 }

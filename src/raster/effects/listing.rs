@@ -9,9 +9,9 @@
 //! [`Mark`].
 
 use super::direct::Direct;
-use super::pipeline::{PixelPipeline, ShadeSource, TextureStage};
+use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
-use crate::fixed::{IS_COMPACT, ROUND_MAGIC, U8F8};
+use crate::fixed::{ROUND_MAGIC, U8F8};
 use crate::lanes::{LANES, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
@@ -25,6 +25,7 @@ use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, SpanStarts, Spans8, Starts8, Target};
+use crate::span::texture::Levels;
 
 /// Where a span lies in its face, packed into two u32.
 ///
@@ -227,8 +228,8 @@ impl Columns {
 struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
     texture: Option<Mapping>,
-    /// True if the image has levels.
-    levels: bool,
+    /// The last level of the image, if it has any.
+    last_level: Option<u32>,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last one in use.
@@ -239,14 +240,9 @@ struct Wanted {
 
 impl Wanted {
     fn by(pipeline: &PixelPipeline<'_>) -> Self {
-        let levels = pipeline.levels().is_some();
-        let texture = match pipeline.texture() {
-            // Otherwise a stage sets up each face on its own.
-            Some(TextureStage { mapping: Mapping::Every16, .. }) => None,
-            Some(stage) if levels && (IS_COMPACT || stage.mapping == Mapping::Affine) => None,
-            Some(stage) => Some(stage.mapping),
-            None => None,
-        };
+        // For every 16th pixel a stage sets up each face on its own.
+        let texture = pipeline.texture().map(|stage| stage.mapping).filter(|mapping| *mapping != Mapping::Every16);
+        let last_level = pipeline.levels().map(Levels::last);
         let mut values = [None; Value::MAX_COUNT];
         let mut want =
             |value: Value, is_wanted: bool| values[value.slot()] = is_wanted.then_some(value).or(values[value.slot()]);
@@ -259,7 +255,7 @@ impl Wanted {
         }
         let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud));
         let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
-        Self { texture, levels, values, slots, reseeds }
+        Self { texture, last_level, values, slots, reseeds }
     }
 }
 
@@ -287,9 +283,10 @@ pub(super) struct Listed<'a> {
 }
 
 impl Listed<'_> {
+    /// The mapping and the last level of an image with levels.
     #[cfg(test)]
-    pub(super) fn has_levels(&self) -> bool {
-        self.wanted.levels
+    pub(super) fn levels(&self) -> Option<(Option<Mapping>, u32)> {
+        Some((self.wanted.texture, self.wanted.last_level?))
     }
 
     /// The mark of span `k` of the list.
@@ -446,16 +443,17 @@ impl Shades8 for EffectSpans<'_> {
             let of_corners = texture_of_corners(triangles, picks);
             match mapping {
                 Mapping::Affine => {
-                    let fits = planes.affine.set_up(s, basis, &of_corners);
+                    let fits = planes.affine.set_up(s, basis, &of_corners, wanted.last_level);
                     for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
                         if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
                             let face = faces.corners(first + lane);
                             let pixel = [setup.column[lane], setup.row[lane]];
-                            planes.affine.split(lane, &face.triangle, [face.texture(0), face.texture(1)], pixel);
+                            let coordinates = [face.texture(0), face.texture(1)];
+                            planes.affine.split(lane, &face.triangle, coordinates, pixel, wanted.last_level);
                         }
                     }
                 }
-                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.levels),
+                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.last_level.is_some()),
             }
         }
         for (planes, value) in planes.values.iter_mut().zip(wanted.values) {

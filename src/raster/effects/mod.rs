@@ -57,8 +57,7 @@ use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
 use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
-use crate::span::texture::Shown;
-use crate::span::{Kernel, lookup};
+use crate::span::{Kernel, lookup, lookup_row};
 
 /// Memory of the stages: planes of faces, and what passes from stage to stage. Reusing it allocates nothing.
 #[derive(Clone, Debug, Default)]
@@ -79,29 +78,26 @@ struct Buffers {
     channels: [Vec<u8>; 3],
     /// One shade in 8.8, or three channels.
     shades: [Vec<u16>; 3],
-    /// Indices of texels in their image.
-    places: Vec<i32>,
 }
 
 impl Buffers {
     /// Makes room for the most pixels there can be.
     fn make_room(&mut self) {
-        let Self { bytes, other, channels, shades, places } = self;
+        let Self { bytes, other, channels, shades } = self;
         for bytes in [bytes, other].into_iter().chain(channels) {
             bytes.resize(ROOM, 0);
         }
         for shades in shades {
             shades.resize(ROOM, 0);
         }
-        places.resize(ROOM, 0);
     }
 
     /// Its size in bytes.
     fn bytes(&self) -> usize {
-        let Self { bytes, other, channels, shades, places } = self;
+        let Self { bytes, other, channels, shades } = self;
         let bytes = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
         let shades = shades.iter().map(Vec::capacity).sum::<usize>();
-        bytes + shades * size_of::<u16>() + places.capacity() * size_of::<i32>()
+        bytes + shades * size_of::<u16>()
     }
 }
 
@@ -302,11 +298,8 @@ fn mixed<'a>(
     let (first, at, length) = spans.drawn(i);
     let (row, bytes) = (pixels.get_mut(at..)?, &mut bytes[first..]);
     if let Some(table) = blend {
-        // The table's row is the face's own index.
-        let n = length.min(bytes.len()).min(row.len());
-        for (byte, there) in bytes[..n].iter_mut().zip(&row[..n]) {
-            table.show(byte, *there);
-        }
+        let n = length.min(bytes.len());
+        lookup_row(&mut bytes[..n], row, table);
     }
     Some((row, bytes))
 }

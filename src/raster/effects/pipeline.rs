@@ -105,6 +105,41 @@ pub struct TextureStage<'a> {
     pub tables: [&'a [u8; 65_536]; 3],
 }
 
+/// An image, with its levels if one of them is to be chosen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Image<'a> {
+    pub(super) texels: Texels<'a>,
+    pub(super) levels: Option<Levels<'a>>,
+}
+
+impl<'a> Image<'a> {
+    pub(super) fn new(stage: &TextureStage<'a>) -> Self {
+        // A build that leaves out mipmaps (`plan::Effect::is_left_out`) has none.
+        Self { texels: stage.texels, levels: stage.levels.filter(|_| !cfg!(mode13h_leave_out = "mipmaps")) }
+    }
+
+    /// The number of the last level.
+    pub(super) fn last(self) -> u32 {
+        self.levels.map_or(0, Levels::last)
+    }
+
+    /// The texels of every level; numbers beyond the last are not used.
+    #[inline]
+    pub(super) fn all(self) -> [Texels<'a>; LEVELS] {
+        let mut all = [self.texels; LEVELS];
+        if let Some(levels) = self.levels {
+            for level in 1..=levels.last() {
+                all[level as usize % LEVELS] = levels.get(level).unwrap_or(self.texels);
+            }
+        }
+        all
+    }
+}
+
+/// At least as many as the levels of an image, itself included: a power of two, so that a mask keeps indices in range.
+pub(super) const LEVELS: usize = 16;
+const _: () = assert!((Texels::MAX_BITS as usize) < LEVELS);
+
 /// Stages that the pixels of a triangle pass through.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPipeline<'a> {

@@ -4,10 +4,12 @@ use alloc::vec::Vec;
 
 use super::listing::{Columns, EffectSpans, Faces, Marks8};
 use super::spans::{Span, Spans};
-use super::texture::exact_level;
+use super::texture::{affine_texture, exact_level};
 use super::{Buffers, PixelPipeline};
+use crate::mapping::Mapping;
 use crate::raster::columns::{Picks, Triangles};
 use crate::raster::frame::Rect;
+use crate::raster::reference::texture::AffineLevel;
 use crate::raster::rows::{Lane, Parts, RowEnds, Shades8};
 use crate::raster::setup::{Basis, Corners8, FrameLayout, TriangleSetup8};
 use crate::raster::spans::{Drawn, draw_triangles};
@@ -25,12 +27,18 @@ pub(super) struct Recorded {
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
     pub(super) depth: [i64; 2],
-    /// Levels of some pixels, if the image has them: the estimate, and the definition.
-    pub(super) levels: Vec<(Option<u32>, u32)>,
+    /// Levels of some pixels, if the image has them: as found for eight triangles, and the definition.
+    pub(super) levels: Vec<(Option<AffineLevel>, AffineLevel)>,
 }
 
-fn levels(spans: &Spans<'_>, i: usize, k: i32) -> (Option<u32>, u32) {
-    (spans.level(i, k, 8), exact_level(spans, i, k, 8))
+/// The levels of span `i`, the last being `last`.
+fn levels(spans: &Spans<'_>, i: usize, mapping: Option<Mapping>, last: u32) -> Vec<(Option<AffineLevel>, AffineLevel)> {
+    if mapping == Some(Mapping::Affine) {
+        return Vec::from([(Some(spans.affine_level(i)), affine_texture(spans, i, Some(last)).1)]);
+    }
+    let of = |level: u32| AffineLevel { level, ..AffineLevel::default() };
+    let at = |k: i32| (spans.level(i, k, last).map(of), of(exact_level(spans, i, k, last)));
+    (0..=spans.last(i).min(63)).step_by(5).map(at).collect()
 }
 
 struct Recorder<'a> {
@@ -93,10 +101,7 @@ impl Shades8 for Recorder<'_> {
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
                     depth: spans.depth(i).1.map(|z| z >> 8),
-                    levels: match listed.has_levels() {
-                        true => (0..=spans.last(i).min(63)).step_by(5).map(|k| levels(&spans, i, k)).collect(),
-                        false => Vec::new(),
-                    },
+                    levels: listed.levels().map_or_else(Vec::new, |(mapping, last)| levels(&spans, i, mapping, last)),
                 });
             }
             first += spans.count();

@@ -5,14 +5,12 @@ use super::curve::CurvePlane;
 use super::listing::FaceCorners;
 use super::pipeline::{Mix, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
-use crate::fixed::IS_SMALL;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{to_bytes, to_nearest_bytes};
 use crate::span::channels::{mix_cube, mix_nearest};
 use crate::span::dither::Thresholds;
-use crate::span::texture::Shown;
-use crate::span::{Kernel, lookup};
+use crate::span::{Kernel, lookup, lookup_row};
 
 impl Spans<'_> {
     /// The bytes of all spans before fog and blending.
@@ -28,33 +26,18 @@ impl Spans<'_> {
             }
             return;
         };
-        let image = (stage, pipeline.levels());
-        if let Some(mix) = pipeline.channels() {
-            self.shade_channels(buffers, pipeline, kernel);
-            let Buffers { other, channels, places, .. } = &mut *buffers;
-            self.texels((), image, (other, places), kernel);
-            for (channel, table) in channels.iter_mut().zip(stage.tables) {
-                for (i, byte) in channel[..n].iter_mut().enumerate() {
-                    table.show(byte, other[i]);
-                }
-            }
-            return self.mix(buffers, mix, pipeline.dither());
+        let mix = pipeline.channels();
+        match mix {
+            Some(_) => self.shade_channels(buffers, pipeline, kernel),
+            None => self.shade_bytes(buffers, pipeline, kernel),
         }
-        let row = match pipeline.source() {
-            // The table's row. A build for size has one loop for both.
-            ShadeSource::Shaded(Interpolation::Flat(shade)) if !IS_SMALL => {
-                stage.tables[0].as_chunks::<256>().0.get(usize::from(shade))
-            }
-            _ => None,
-        };
-        if row.is_none() {
-            self.shade_bytes(buffers, pipeline, kernel);
+        let Buffers { bytes, other, channels, .. } = &mut *buffers;
+        self.texels(stage, other, kernel);
+        let Some(mix) = mix else { return lookup_row(&mut bytes[..n], other, stage.tables[0]) };
+        for (channel, table) in channels.iter_mut().zip(stage.tables) {
+            lookup_row(&mut channel[..n], other, table);
         }
-        let Buffers { bytes, places, .. } = buffers;
-        match row {
-            Some(row) => self.texels(row, image, (bytes, places), kernel),
-            None => self.texels(stage.tables[0], image, (bytes, places), kernel),
-        }
+        self.mix(buffers, mix, pipeline.dither());
     }
 
     /// The bytes of pixels with a single shade.

@@ -9,6 +9,7 @@ use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::shade::RESEED;
+use crate::raster::reference::texture::AffineLevel;
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
@@ -194,6 +195,13 @@ impl<'a> Spans<'a> {
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
         self.listed.affine(self.first + i)
+    }
+
+    /// The level of the face of span `i`, where the texture is linear on the screen.
+    #[inline(always)]
+    pub(super) fn affine_level(&self, i: usize) -> AffineLevel {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.affine.level(lane)
     }
 
     /// The sums along span `i`, where the texture is linear on the face.

@@ -18,6 +18,7 @@
 //! rounded down. Everything else is exact.
 
 use super::cover::SortedTriangle;
+use super::texture::{AffineLevel, AffinePlane};
 use crate::span::hyperbolic::floor_quotient;
 
 /// Twice the length of a step.
@@ -40,12 +41,14 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
     level
 }
 
-/// The level of a face whose coordinates are linear on the screen. `across` and `down` are their changes from one pixel
-/// of a row, and of a column, to the next, times the area.
-pub(in crate::raster) fn of_face(across: [i128; 2], down: [i128; 2], area: i64, last: u32) -> u32 {
-    let (across, down) = (doubled(across), doubled(down));
-    // Coordinates have 16 fraction bits. The area is at most 2⁴².
-    choose(across, down, u128::from(area.unsigned_abs()) << 16, last)
+/// The level of a face whose coordinates, u and v, are linear on the screen. Its doubled area is at most 2⁴².
+pub(in crate::raster) fn of_face(planes: &[AffinePlane; 2], area: i64, last: u32) -> AffineLevel {
+    let [[ux, uy], [vx, vy]] = planes.each_ref().map(AffinePlane::gradient);
+    // From one pixel to the next, times the area.
+    let step = |u: i64, v: i64| doubled([256 * i128::from(u), 256 * i128::from(v)]);
+    // Coordinates have 16 fraction bits.
+    let level = choose(step(ux, vx), step(uy, vy), u128::from(area.unsigned_abs()) << 16, last);
+    AffineLevel { level, falls: [ux < 0, vx < 0] }
 }
 
 /// Levels of a face with perspective-correct coordinates.

@@ -4,8 +4,7 @@ use super::cover::SortedTriangle;
 use super::quotient::Divisor;
 use super::weights::{Weights, in_f64};
 use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
-use crate::simd::Lanes8;
-use crate::span::texture::{Texels, exact_places, perspective_places};
+use crate::span::texture::PerspectiveSums;
 
 /// The depth of a corner, at least 1.
 #[inline]
@@ -26,8 +25,8 @@ pub(in crate::raster) fn depth(triangle: &SortedTriangle, corner: usize) -> i64 
 /// it is for triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms
 /// are.
 ///
-/// In level n, the sum of c and the rounded quotient is divided by 2ⁿ and rounded again, with the same result as
-/// rounding once.
+/// In level n of a mipmap, the coordinate and the step are divided by 2ⁿ and rounded again, which gives what rounding
+/// once would: see [`AffineLevel`].
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct AffinePlane {
     area: Divisor,
@@ -39,10 +38,8 @@ pub(in crate::raster) struct AffinePlane {
     gradient: [i64; 2],
     /// D·A is below 2⁶¹.
     fits: bool,
-    /// Added to the numerator and to the quotient so that they round up: A − 1 and 2ⁿ − 1, or 0.
-    bias: [i64; 2],
-    /// n.
-    level: u32,
+    /// Added to the numerator so that it rounds up: A − 1, or 0.
+    bias: i64,
     /// Change from one pixel to the next, rounded toward zero.
     step: i64,
 }
@@ -69,8 +66,7 @@ impl AffinePlane {
             corner: [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128],
             gradient: [gx, gy],
             fits,
-            bias: [if gx < 0 { area.get() - 1 } else { 0 }, 0],
-            level: 0,
+            bias: if gx < 0 { area.get() - 1 } else { 0 },
             step,
         }
     }
@@ -86,20 +82,13 @@ impl AffinePlane {
         self.step
     }
 
-    /// The coordinate in level n of the image.
-    pub(in crate::raster) fn of_level(self, n: u32) -> Self {
-        let bias = (1 << n) - 1;
-        let upward = if self.gradient[0] < 0 { bias } else { 0 };
-        Self { bias: [self.bias[0], upward], level: n, step: (self.step + upward) >> n, ..self }
-    }
-
-    /// The coordinate at a pixel of level 0, its change per column, and per row: each the floor, modulo 2³², and the
+    /// The coordinate at a pixel, its change per column, and per row: each the floor, modulo 2³², and the
     /// remainder. With the floor of the remainders' sum, these make [`start`](Self::start) at any pixel.
     pub(in crate::raster) fn parts(&self, [x, y]: [i32; 2]) -> [(i32, i64); 3] {
         let ([gx, gy], area) = (self.gradient.map(i128::from), i128::from(self.area.get()));
         let (dx, dy) =
             (i128::from(x) * 256 - i128::from(self.corner[0]), i128::from(y) * 256 - i128::from(self.corner[1]));
-        let first = i128::from(self.coordinate) * area + gx * dx + gy * dy + i128::from(self.bias[0]);
+        let first = i128::from(self.coordinate) * area + gx * dx + gy * dy + i128::from(self.bias);
         // Modulo 2³²; below the area.
         [first, gx * 256, gy * 256].map(|n| (n.div_euclid(area) as i32, n.rem_euclid(area) as i64))
     }
@@ -108,7 +97,7 @@ impl AffinePlane {
     #[cfg_attr(mode13h_small, inline(never))]
     #[cfg_attr(not(mode13h_small), inline)]
     pub(in crate::raster) fn start(&self, x: i32, y: i32) -> u32 {
-        let ([gx, gy], [bias, of_level]) = (self.gradient, self.bias);
+        let ([gx, gy], bias) = (self.gradient, self.bias);
         let (dx, dy) = (i64::from(x) * 256 - self.corner[0], i64::from(y) * 256 - self.corner[1]);
         let quotient = if self.fits {
             self.area.floor(gx.wrapping_mul(dx).wrapping_add(gy.wrapping_mul(dy)).wrapping_add(bias))
@@ -118,7 +107,25 @@ impl AffinePlane {
             floor_of_wide(n, self.area.get().into())
         };
         // Modulo 2³².
-        ((self.coordinate + quotient + of_level) >> self.level) as u32
+        (self.coordinate + quotient) as u32
+    }
+}
+
+/// The level of a mipmap that a face with coordinates linear on the screen is shown from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(in crate::raster) struct AffineLevel {
+    pub(in crate::raster) level: u32,
+    /// Which of u and v fall along a row, and so are rounded up.
+    pub(in crate::raster) falls: [bool; 2],
+}
+
+impl AffineLevel {
+    /// Coordinates or steps in the level, from those in level 0, modulo 2²⁴: no texel's index needs more bits.
+    #[inline(always)]
+    pub(in crate::raster) fn of(self, [u, v]: [u32; 2]) -> [u32; 2] {
+        let bias = |falls: bool| if falls { (1 << self.level) - 1 } else { 0 };
+        let at = |of: u32, falls: bool| of.wrapping_add(bias(falls)) >> self.level;
+        [at(u, self.falls[0]), at(v, self.falls[1])]
     }
 }
 
@@ -190,42 +197,11 @@ impl PerspectiveTexture {
         exact(self.weights.at(x, y), self.values[2])
     }
 
-    /// The indices of `n` texels of one level, from a pixel on, each exact.
-    #[inline(always)]
-    pub(in crate::raster) fn exact<S: Lanes8>(
-        &self,
-        s: S,
-        (texels, shift): (Texels<'_>, u32),
-        (x, y): (i32, i32),
-        (places, n): (&mut [i32], usize),
-    ) {
-        let weights = self.weights.at(x, y);
-        if HAS_F64 {
-            let at = in_f64(weights);
-            let mut sums = [[0.0; 2]; 3];
-            for (sum, (values, step)) in sums.iter_mut().zip(self.estimated.iter().zip(self.steps)) {
-                *sum = [estimate(at, *values), step];
-            }
-            let size = f64::from(1_u32 << shift);
-            let [u, v, [d, dd]] = sums;
-            if perspective_places(s, places, n, texels, [u, v], [d * size, dd * size]) {
-                return;
-            }
-        }
-        self.in_integers((texels, shift), (x, y), &mut places[..n]);
-    }
-
-    /// [`exact`](Self::exact) in integers, for pixels where an estimate cannot decide.
-    #[inline(never)]
-    pub(in crate::raster) fn in_integers(
-        &self,
-        (texels, shift): (Texels<'_>, u32),
-        (x, y): (i32, i32),
-        places: &mut [i32],
-    ) {
-        let (weights, step) = (self.weights.at(x, y), self.weights.per_column());
-        let [u, v, [d, dd]] = self.values.map(|values| [exact(weights, values), exact(step, values)]);
-        exact_places(places, texels, [u, v], [d << shift, dd << shift]);
+    /// The numerators and their divisor from a pixel on, in f64.
+    pub(in crate::raster) fn sums(&self, x: i32, y: i32) -> PerspectiveSums<f64> {
+        let at = in_f64(self.weights.at(x, y));
+        let [[u, v, d], [du, dv, dd]] = [self.estimated.map(|values| estimate(at, values)), self.steps];
+        PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base: [0; 2] }
     }
 
     /// The coordinates at a pixel, rounded down; 16.16.

@@ -1,0 +1,234 @@
+//! Loops over the texels of a span: where they lie in their image, and what is shown of them.
+
+use super::Texels;
+use super::tint::Tint;
+use crate::fixed::IS_COMPACT;
+use crate::lanes::{LANES, NUMBERS, each};
+use crate::simd::Lanes8;
+
+/// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next eight, in lanes. What
+/// follows those pixels does not change.
+#[inline(always)]
+pub(crate) fn show_along<S: Lanes8, T: Tint>(
+    s: S,
+    (row, length): (&mut [u8], usize),
+    texels: Texels<'_>,
+    (tint, along): (T, &mut T::Along<S>),
+    mut places: impl PlacesAlong<S>,
+) {
+    // Never true: it tells the compiler that there is a last texel, so that the masked index needs no check.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let last = texels.bytes.len() - 1;
+    let (mut rest, mut left) = (row, length);
+    while left > 0 {
+        let places = s.low_words(places.next());
+        let Some(pixels) = rest.first_chunk::<LANES>() else {
+            // At the frame's end.
+            let mut pixels = [0; LANES];
+            for (to, pixel) in pixels.iter_mut().zip(&*rest) {
+                *to = *pixel;
+            }
+            let rows = tint.rows(s, along, &pixels);
+            for (k, pixel) in rest.iter_mut().take(left).enumerate() {
+                *pixel = texel(tint, rows, places, (texels, last), k % LANES);
+            }
+            return;
+        };
+        let rows = tint.rows(s, along, pixels);
+        // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged.
+        if left <= FOUR
+            && let Some(row) = rest.first_chunk_mut()
+        {
+            let mask = u32::MAX >> (8 * (FOUR - left));
+            let bytes = u32::from_le_bytes([
+                texel(tint, rows, places, (texels, last), 0),
+                texel(tint, rows, places, (texels, last), 1),
+                texel(tint, rows, places, (texels, last), 2),
+                texel(tint, rows, places, (texels, last), 3),
+            ]);
+            *row = (bytes & mask | u32::from_le_bytes(*row) & !mask).to_le_bytes();
+            return;
+        }
+        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
+        if left < LANES {
+            let mask = u64::MAX >> (8 * (LANES - left));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, (texels, last), k));
+            *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
+            return;
+        }
+        let mut k = 0;
+        while k < LANES {
+            block[k] = texel(tint, rows, places, (texels, last), k);
+            k += 1;
+        }
+        (rest, left) = (behind, left - LANES);
+    }
+}
+
+/// [`show_along`] by the masks of [`depth_test`](super::depth_test), one for each block.
+#[inline(always)]
+pub(crate) fn show_masked<S: Lanes8, T: Tint>(
+    s: S,
+    (row, masks): (&mut [u8], &[u64]),
+    texels: Texels<'_>,
+    (tint, along): (T, &mut T::Along<S>),
+    mut places: impl PlacesAlong<S>,
+) {
+    // Never true: see `show_along`.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let image = (texels, texels.bytes.len() - 1);
+    let mut rest = row;
+    for &stays in masks {
+        if rest.len() < LANES {
+            // At the frame's end.
+            let rows = tint.rows(s, along, &[0; LANES]);
+            let places = s.low_words(places.next());
+            for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
+                if stay == 0 {
+                    *pixel = texel(tint, rows, places, image, k % LANES);
+                }
+            }
+            break;
+        }
+        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
+        rest = behind;
+        // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case extracts its own
+        // lanes: those of all, extracted before, would not fit into the registers.)
+        if stays == 0 && !IS_COMPACT {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let mut k = 0;
+            while k < LANES {
+                block[k] = texel(tint, rows, places, image, k);
+                k += 1;
+            }
+        } else if stays == u64::MAX {
+            tint.rows(s, along, block);
+            places.skip();
+        } else if stays >> 32 == u64::from(u32::MAX) {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let Some(four) = block.first_chunk_mut() else { break };
+            // The lower half.
+            let stay = stays as u32;
+            let bytes = u32::from_le_bytes([
+                texel(tint, rows, places, image, 0),
+                texel(tint, rows, places, image, 1),
+                texel(tint, rows, places, image, 2),
+                texel(tint, rows, places, image, 3),
+            ]);
+            *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+        } else {
+            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
+            *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
+        }
+    }
+}
+
+/// Texel `k` of eight as it is shown. `last` is the index of the last texel.
+#[inline(always)]
+fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
+    tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
+}
+
+/// Pixels that are shown at once if no more are left.
+const FOUR: usize = LANES / 2;
+
+/// Indices of texels, eight at a time.
+pub(crate) trait PlacesAlong<S: Lanes8> {
+    fn next(&mut self) -> S::I32;
+    /// Leaves out the next eight.
+    #[inline(always)]
+    fn skip(&mut self) {
+        self.next();
+    }
+}
+
+/// The texels of a level, and its number.
+pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
+
+/// Computes indices of texels in vectors.
+#[derive(Clone, Copy)]
+pub(super) struct PlaceLanes<S: Lanes8> {
+    pub(super) s: S,
+    columns: S::I32,
+    rows: S::I32,
+    width: S::I32,
+    /// Fraction bits of coordinates: 16, and one for each level.
+    bits: i32,
+}
+
+impl<S: Lanes8> PlaceLanes<S> {
+    /// Indices in a level of an image, of coordinates in level 0.
+    #[inline(always)]
+    pub(super) fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
+        let columns = (1 << texels.ubits) - 1;
+        let rows = ((1 << texels.vbits) - 1) << texels.ubits;
+        let bits = 16 + level.cast_signed();
+        Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1), bits }
+    }
+
+    /// [`Texels::place`].
+    #[inline(always)]
+    pub(super) fn at_coordinates(self, u: S::I32, v: S::I32) -> S::I32 {
+        self.at(u, self.s.mul_i32(v, self.width))
+    }
+
+    /// The bits of a coordinate inside its texel.
+    #[inline(always)]
+    pub(super) fn fraction(self) -> S::I32 {
+        self.s.splat_i32((1 << self.bits) - 1)
+    }
+
+    /// [`Texels::place`] of u, and of v times the width: the masks clear all bits that this loses.
+    #[inline(always)]
+    fn at(self, u: S::I32, v: S::I32) -> S::I32 {
+        let s = self.s;
+        s.or_i32(s.and_i32(s.shr_i32(v, self.bits), self.rows), s.and_i32(s.shr_i32(u, self.bits), self.columns))
+    }
+}
+
+/// Indices of texels along a line, as in [`fill_affine`](super::fill_affine).
+pub(crate) struct AffineAlong<S: Lanes8> {
+    places: PlaceLanes<S>,
+    /// u, and v times the width, of the next eight texels; and their change to the eight after these.
+    at: [S::I32; 2],
+    step: [S::I32; 2],
+}
+
+impl<S: Lanes8> AffineAlong<S> {
+    /// The texels from (`u`, `v`) on, with the change per pixel.
+    #[inline(always)]
+    pub(crate) fn new(s: S, texels: Texels<'_>, [[u, v], [du, dv]]: [[u32; 2]; 2]) -> Self {
+        let along = |first: u32, step: u32| {
+            let (first, step) = (first.cast_signed(), step.cast_signed());
+            let at = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
+            (at, s.splat_i32(step.wrapping_mul(LANES as i32)))
+        };
+        let (u, du) = along(u, du);
+        let (v, dv) = along(v << texels.ubits, dv << texels.ubits);
+        Self { places: PlaceLanes::of_level(s, (texels, 0)), at: [u, v], step: [du, dv] }
+    }
+}
+
+impl<S: Lanes8> PlacesAlong<S> for AffineAlong<S> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        let (s, [u, v], [du, dv]) = (self.places.s, self.at, self.step);
+        self.at = [s.add_i32(u, du), s.add_i32(v, dv)];
+        self.places.at(u, v)
+    }
+}
+
+/// The first texel again and again.
+pub(crate) struct FirstPlace<S>(pub(crate) S);
+
+impl<S: Lanes8> PlacesAlong<S> for FirstPlace<S> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        self.0.splat_i32(0)
+    }
+}

@@ -1,0 +1,166 @@
+//! What is shown for a texel: itself, lit, fogged or blended.
+
+use crate::lanes::{LANES, NUMBERS};
+use crate::simd::Lanes8;
+
+/// Values of a span that are linear along it: the first, with the step in the upper half.
+#[derive(Clone, Copy)]
+pub(crate) struct SpanValues {
+    /// The shade.
+    pub(crate) paint: u32,
+    /// The density of fog, if there is any.
+    pub(crate) fog: u32,
+    /// Pixels at the beginning that are skipped.
+    pub(crate) skipped: u32,
+}
+
+/// Turns the texels of a span into the bytes that are shown: as they are, lit, fogged or blended.
+pub(crate) trait Tint: Copy {
+    /// True if the density of fog is read.
+    const HAS_FOG: bool = false;
+    /// State that changes along a span.
+    type Along<S: Lanes8>: Copy;
+    /// Table rows of eight pixels.
+    type Rows: Copy;
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S>;
+    /// The table rows of the next eight pixels, whose present bytes are `pixels`; advances the state.
+    fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
+    /// The byte for a texel of pixel `k` of eight.
+    fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
+}
+
+/// A linear value of eight pixels in 8.8, and the step to the next eight.
+type Ramp8<S> = [<S as Lanes8>::I32; 2];
+
+#[inline(always)]
+fn ramp_from<S: Lanes8>(s: S, value: u32, skipped: u32) -> Ramp8<S> {
+    // The sums are modulo 2¹⁶; the bits above are not read.
+    let step = (value >> 16).cast_signed();
+    let first = value.cast_signed().wrapping_add(step.wrapping_mul(skipped.cast_signed()));
+    let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
+    [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
+}
+
+/// The integer parts of eight values, in the upper bytes: rows of a table. Advances to the next eight.
+#[inline(always)]
+fn rows_of<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
+    let rows = s.low_words(s.and_i32(*values, s.splat_i32(0xFF00)));
+    *values = s.add_i32(*values, *next);
+    rows
+}
+
+/// Texels as they are.
+impl Tint for () {
+    type Along<S: Lanes8> = ();
+    type Rows = ();
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    #[inline(always)]
+    fn show(self, (): (), _: usize, texel: u8) -> u8 {
+        texel
+    }
+}
+
+/// Texels looked up in one row of a table: one shade for all.
+impl Tint for &[u8; 256] {
+    type Along<S: Lanes8> = ();
+    type Rows = ();
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    #[inline(always)]
+    fn show(self, (): (), _: usize, texel: u8) -> u8 {
+        self[usize::from(texel)]
+    }
+}
+
+/// Texels lit by a table, with the shades of the span.
+#[derive(Clone, Copy)]
+pub(crate) struct Painted<'a>(pub(crate) &'a [u8; 65_536]);
+
+impl Tint for Painted<'_> {
+    type Along<S: Lanes8> = Ramp8<S>;
+    type Rows = [u16; LANES];
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
+        ramp_from(s, values.paint, values.skipped)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
+        rows_of(s, along)
+    }
+    #[inline(always)]
+    fn show(self, rows: [u16; LANES], k: usize, texel: u8) -> u8 {
+        self.0[usize::from(rows[k] | u16::from(texel))]
+    }
+}
+
+/// The shades of the span alone, whatever the texels.
+#[derive(Clone, Copy)]
+pub(crate) struct Untextured;
+
+impl Tint for Untextured {
+    type Along<S: Lanes8> = Ramp8<S>;
+    type Rows = [u8; LANES];
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
+        ramp_from(s, values.paint, values.skipped)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
+        let shades = s.low_bytes(s.shr_i32(*values, 8));
+        *values = s.add_i32(*values, *next);
+        shades
+    }
+    #[inline(always)]
+    fn show(self, shades: [u8; LANES], k: usize, _: u8) -> u8 {
+        shades[k]
+    }
+}
+
+/// Blends the bytes of another tint with those of the pixels, by a table with a row for each byte of the tint.
+#[derive(Clone, Copy)]
+pub(crate) struct Blended<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
+
+impl<T: Tint> Tint for Blended<'_, T> {
+    const HAS_FOG: bool = T::HAS_FOG;
+    type Along<S: Lanes8> = T::Along<S>;
+    type Rows = (T::Rows, [u8; LANES]);
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> T::Along<S> {
+        self.0.begin(s, values)
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
+        (self.0.rows(s, along, pixels), *pixels)
+    }
+    #[inline(always)]
+    fn show(self, (rows, pixels): Self::Rows, k: usize, texel: u8) -> u8 {
+        self.1[usize::from(self.0.show(rows, k, texel)) << 8 | usize::from(pixels[k])]
+    }
+}
+
+/// Fogs the bytes of another tint, by a table with a row for each level of fog.
+#[derive(Clone, Copy)]
+pub(crate) struct Fogged<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
+
+impl<T: Tint> Tint for Fogged<'_, T> {
+    const HAS_FOG: bool = true;
+    type Along<S: Lanes8> = (T::Along<S>, Ramp8<S>);
+    type Rows = (T::Rows, [u16; LANES]);
+    #[inline(always)]
+    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S> {
+        (self.0.begin(s, values), ramp_from(s, values.fog, values.skipped))
+    }
+    #[inline(always)]
+    fn rows<S: Lanes8>(self, s: S, (along, fog): &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
+        (self.0.rows(s, along, pixels), rows_of(s, fog))
+    }
+    #[inline(always)]
+    fn show(self, (rows, levels): Self::Rows, k: usize, texel: u8) -> u8 {
+        self.1[usize::from(levels[k] | u16::from(self.0.show(rows, k, texel)))]
+    }
+}
