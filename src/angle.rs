@@ -2,7 +2,8 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// An angle of any size, so two full turns differ from none. Made from degrees or radians, and stored in radians.
+/// An angle of any size (two full turns differ from none), made from degrees or radians and stored
+/// in radians.
 ///
 /// ```
 /// use mode13h::Angle;

@@ -1,4 +1,5 @@
-//! How errors print: `Debug` prints like `Display`, because a `main` that returns an error prints it by `Debug`.
+//! How errors print: `Debug` prints like `Display`, because a `main` that returns an error prints
+//! it with `Debug`.
 
 /// Implements `Debug` as `Display`.
 macro_rules! debug_as_display {

@@ -6,12 +6,12 @@
 //! | [`U8F8`] | a shade | 8 integer, 8 fraction | 1/256 shade |
 //! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 integer and sign, 16 fraction | 1/65,536 |
 //!
-//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. In fact `sar` rounds
-//! toward minus infinity and a division rounds toward zero, so narrowing has to say which it means. Here each narrowing
-//! conversion has its rounding in its name.
+//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. In
+//! fact `sar` rounds toward minus infinity and a division rounds toward zero, so narrowing has to
+//! specify which. Here the name of each narrowing conversion says how it rounds.
 
-/// Set on targets with IEEE double precision in hardware. On others the branch that uses floats is not compiled. (x87
-/// is excluded: its intermediate results have 64-bit mantissas.)
+/// Whether the target has IEEE double precision in hardware. If not, branches that use floats are
+/// compiled out. (x87 is excluded: its intermediate results have 64-bit mantissas.)
 pub(crate) const HAS_F64: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -19,19 +19,20 @@ pub(crate) const HAS_F64: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
-/// 1.5 · 2⁵²: added to a value within ±2⁵¹, the sum has the nearest integer, ties to even, in the low bits of its
-/// mantissa. The lower half of the constant's own bits is 0, so the lower half of the sum's bits is that integer modulo
-/// 2³².
+/// 1.5 · 2⁵²: adding it to a value within ±2⁵¹ leaves the nearest integer, ties to even, in the low
+/// bits of the mantissa. The low 32 bits of the constant are 0, so the low 32 bits of the sum are
+/// that integer modulo 2³².
 pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0;
 const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 
-/// Whether this is a build for size (`capi/build`), for machines with little memory: fewer loops draw the same bytes, and
-/// long functions are not inlined. It lacks the shadings [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and
+/// Whether this is a size-optimised build (`capi/build`), for machines with little memory: fewer
+/// loops draw the same bytes, and long functions are not inlined. It lacks the shadings
+/// [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and
 /// [`Float`](crate::raster::Interpolation::Float), which draw as `Gouraud` does.
 pub(crate) const IS_SMALL: bool = cfg!(mode13h_small);
 
-/// Whether the size of the program counts: in a build for size, and in WebAssembly, which is loaded over a network. Then
-/// a loop that gains a few per cent of time is left out.
+/// Whether code size matters: in a size-optimised build, and in WebAssembly, which is loaded over a
+/// network. Loops that would save only a few per cent of the time are then left out.
 pub(crate) const IS_COMPACT: bool = IS_SMALL || cfg!(target_family = "wasm");
 
 internal! {
@@ -60,7 +61,7 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
 pub(crate) fn whole_part(x: f64) -> i32 {
     // As in `nearest_whole`; if that rounded up, the result is one too large.
     let sum = x + ROUND_MAGIC;
-    // The lower half.
+    // The low 32 bits.
     let nearest = sum.to_bits() as i32;
     nearest.wrapping_sub(i32::from(sum - ROUND_MAGIC > x))
 }
@@ -133,14 +134,15 @@ impl I24F8 {
 
     /// `floor(256·pixels + ½)` of an f32, exactly, like [`round_from_f64`](Self::round_from_f64).
     ///
-    /// Every f32 is an f64.
+    /// The conversion to f64 is exact.
     #[must_use]
     #[inline]
     pub fn round_from_f32(pixels: f32) -> Option<Self> {
         Self::round_from_f64(f64::from(pixels))
     }
 
-    /// Rounds 16.16 pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64 bits.
+    /// Rounds a 16.16 coordinate in pixels: `floor(256·x + ½)`, exactly. The sum is taken in 64
+    /// bits.
     #[must_use]
     #[inline]
     pub const fn round_from_i16f16(pixels: I16F16) -> Self {
@@ -156,8 +158,8 @@ impl I24F8 {
     }
 }
 
-/// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 integer bits, 8 fractional bits. AX of the 1994 loop: AH is the byte
-/// that is written, AL the fraction.
+/// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 integer bits, 8 fractional bits. In the 1994 loop
+/// this is AX: AH is the byte that is written, AL the fraction.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 #[repr(transparent)]
 pub struct U8F8(u16);
@@ -228,7 +230,8 @@ impl U8F8 {
     }
 }
 
-/// A 16.16 number: the integer vertex path of the Hungarian tutorial, whose unit vectors have length 65,536.
+/// A 16.16 number, as in the Hungarian tutorial's integer vertex path, where unit vectors have
+/// length 65,536.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct I16F16(i32);
 
@@ -254,11 +257,12 @@ impl I16F16 {
         Self((whole as i32) << 16)
     }
 
-    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. For loading a mesh: nothing calls it
-    /// while drawing.
+    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. The renderer calls it
+    /// when it converts a mesh, and a few times per frame for the camera and the lights, never per
+    /// vertex.
     #[must_use]
     pub fn round_from_f64(x: f64) -> Option<Self> {
-        // The 1/256 rounding of a number 256 times as large; the product is exact.
+        // Rounds a number 256 times as large to 1/256; the product is exact.
         I24F8::round_from_f64(x * 256.0).map(|units| Self(units.0))
     }
 

@@ -1,7 +1,8 @@
-//! The engine's internals, for the laboratory, the conformance crate, tests and benchmarks: what drew each pixel, one
-//! triangle at a time; settings of a renderer that no game needs; the span loops, and the stages of the raster.
+//! The engine's internals, for the lab, the conformance crate, tests and benchmarks: what drew each
+//! pixel, one triangle at a time; renderer settings that no game needs; the span loops, and the
+//! stages of the raster.
 //!
-//! They may change with any version.
+//! They may change in any version.
 
 /// Makes modules that re-export the public items of those with the same names.
 macro_rules! modules {
@@ -23,7 +24,7 @@ pub mod span {
     pub use crate::span::lookup::lookup;
 
     modules! { span:
-        /// From red, green and blue to a palette index.
+        /// Conversion of red, green and blue to a palette index.
         channels
         /// Quadratic shades.
         curve
@@ -90,11 +91,11 @@ pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
 /// Passes every triangle that [`Renderer::draw`] would draw to `visit`, in the order of
-/// [`Renderer::for_each_triangle`], with everything that the raster would get. Returns the counts of the work, without
-/// the raster's. Nothing is drawn, and later frames are the same as without this call.
+/// [`Renderer::for_each_triangle`], with everything that the raster would get. Returns the work
+/// counts, except those of the raster. Nothing is drawn, and later frames are unaffected.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`], before the first triangle.
+/// The errors of [`Renderer::draw`], before the first triangle.
 pub fn each_triangle(
     renderer: &mut Renderer,
     scene: &Scene,
@@ -104,10 +105,10 @@ pub fn each_triangle(
     renderer.each_triangle(scene, screen, visit)
 }
 
-/// Makes the plan and the vertices of a frame without drawing it.
+/// Computes the plan and the vertices of a frame without drawing it.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
+/// The errors of [`Renderer::draw`].
 pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
     renderer.make_vertices(scene, screen)
 }
@@ -115,7 +116,7 @@ pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> 
 /// Prepares a frame for the 16.16 path without drawing it, stores it in the renderer and returns its numbers.
 ///
 /// # Errors
-/// Those of [`Renderer::draw`].
+/// The errors of [`Renderer::draw`].
 pub fn integer_frame<'a>(
     renderer: &'a mut Renderer,
     scene: &'a Scene,
@@ -124,8 +125,8 @@ pub fn integer_frame<'a>(
     renderer.integer_frame(scene, screen)
 }
 
-/// Shows the shades of one channel, 0 red, 1 green, 2 blue, where three would be combined to a palette entry; `None`,
-/// the default, combines them.
+/// Shows the shades of one channel (0 red, 1 green, 2 blue) instead of combining all three into a
+/// palette entry; `None`, the default, combines them.
 pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
     renderer.show_channel(channel);
 }
@@ -136,8 +137,8 @@ pub fn shared_mesh(object: &Object) -> &Shared<Mesh> {
     object.shared_mesh()
 }
 
-/// Copies an object with another mesh, whose vertices must each have one surface, and a material for each of its
-/// surfaces.
+/// Copies an object with another mesh and a material for each of its surfaces. No vertex of the
+/// mesh may be shared by two surfaces.
 #[must_use]
 pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) -> Object {
     object.with_mesh(mesh, materials)
@@ -146,7 +147,7 @@ pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) 
 /// Checks a light.
 ///
 /// # Errors
-/// A line that says what is wrong.
+/// A one-line message that says what is wrong.
 pub fn check_light(light: &Light) -> Result<(), &'static str> {
     light.check()
 }
@@ -154,7 +155,7 @@ pub fn check_light(light: &Light) -> Result<(), &'static str> {
 /// Checks an object, by its index.
 ///
 /// # Errors
-/// A line that says what is wrong.
+/// A one-line message that says what is wrong.
 pub fn check_object(scene: &Scene, index: usize) -> Result<(), &'static str> {
     scene.objects().get(index).map_or(Ok(()), Object::check)?;
     scene.check_parents(index)

@@ -2,23 +2,23 @@
 //! 256 colours, fixed-point arithmetic, and one inner loop, `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` /
 //! `jnz`.
 //!
-//! These are the stages from the bottom up. A module only uses those above it in the list.
+//! These are the modules from the bottom up. Each only uses those above it in the list.
 //!
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
 //! | [`palette`] | 256 colours, ramps of shades, file formats | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
-//! | [`span`] | the loop, and its assembly and vector versions, which give the same bytes | – |
+//! | [`span`] | the loop, and its assembly and vector versions, which draw the same bytes | – |
 //! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, built in | `alloc` |
-//! | [`raster`] | triangles: exact cover, shades in range, depth, clip rectangles, bands | – |
+//! | [`raster`] | triangles: exact coverage, shades in range, depth, clip rectangles, bands | – |
 //! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
 //! | [`scene`] | objects, camera, lights, fog, motion, preferences | `alloc` |
-//! | [`plan`] | from a scene to the effects it calls for, each with its reason | `alloc` |
-//! | [`render`] | a scene to a frame: vertices, clipping, faces, the raster; counts of the work | `alloc` |
+//! | [`plan`] | decides which effects a scene calls for, and why | `alloc` |
+//! | [`render`] | draws a scene: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
 //! | [`window`] | the frame loop of a game: [`window::run`] | `window` |
 //!
@@ -47,13 +47,14 @@
 //!
 //! # Angles, positions and colours
 //!
-//! Each of these has one type. An angle is an `Angle`, whatever it turns; on the 16.16 path it is an
-//! [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take anything that converts to
-//! one, such as `[0.0, 1.0, 0.0]`. A colour in a palette, a picture or fog is an [`Rgb`](palette::Rgb) of three bytes. A
-//! colour of a light or a surface is `[f32; 3]`: red, green and blue, usually 0 to 1. An `Rgb` converts to one by `into`.
+//! Each of these has one type. An angle is an `Angle` everywhere except on the 16.16 path, where it
+//! is an [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take
+//! anything that converts to one, such as `[0.0, 1.0, 0.0]`. A colour in a palette, a picture or
+//! fog is an [`Rgb`](palette::Rgb) of three bytes. The colour of a light or a surface is
+//! `[f32; 3]`: red, green and blue, usually 0 to 1. An `Rgb` converts to one with `into`.
 //!
-//! The feature `internals` opens the engine's internals to the laboratory, the conformance crate, tests and benchmarks.
-//! They may change with any version.
+//! The feature `internals` opens the engine's internals to the lab, the conformance crate, tests
+//! and benchmarks. They may change in any version.
 //!
 //! # Features
 //!
@@ -133,7 +134,8 @@ pub mod export;
 #[cfg(feature = "window")]
 pub mod window;
 
-// The random generator of all tests, by its file: unit tests that linked the crate would have the assembly twice.
+// The random number generator of all tests, included as a file: linking its crate into unit tests
+// would link the assembly twice.
 #[path = "../conformance/src/hash.rs"]
 #[cfg(test)]
 #[expect(unreachable_pub, reason = "public in a crate of its own")]

@@ -1,29 +1,32 @@
-//! Options selected by name: one table gives the enum, its names, and the error for an unknown name.
+//! Options selected by name: one table defines the enum, its names, and the error for an unknown
+//! name.
 
 use core::fmt;
 
-/// The number of kernels on all machines together.
+/// The number of kernels across all machines.
 pub(crate) const KERNELS: usize = 10;
 
-/// The error of an unknown name, or of a kernel that this machine or build lacks. Its text lists the available names.
+/// The error for an unknown name, or for a kernel that this machine or build lacks. Its text lists
+/// the available names.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct UnknownName(Unknown);
 
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 enum Unknown {
-    /// What is being selected, and its names.
+    /// The kind of thing that is selected, and its names.
     Of(&'static str, &'static [&'static str]),
     /// A kernel: its name if other machines or builds have it, and the names of those available here.
     Kernel(Option<&'static str>, [Option<&'static str>; KERNELS]),
 }
 
 impl UnknownName {
-    /// There is no `what` with that name.
+    /// Makes the error for a name that no `what` has.
     pub const fn of(what: &'static str, names: &'static [&'static str]) -> Self {
         Self(Unknown::Of(what, names))
     }
 
-    /// There is no such kernel here; `lacking` is its name if it exists elsewhere.
+    /// Makes the error for a kernel that is not available here; `lacking` is its name if it exists
+    /// elsewhere.
     pub(crate) const fn kernel(lacking: Option<&'static str>, here: [Option<&'static str>; KERNELS]) -> Self {
         Self(Unknown::Kernel(lacking, here))
     }

@@ -1,5 +1,5 @@
-//! Levels of the processor, as values. A token exists only if the processor has its level, so code that takes one needs
-//! no other proof.
+//! Instruction-set levels as values. A token exists only if the processor has its level, so code
+//! that takes one needs no other proof.
 //!
 //! The span kernels use the intrinsics of a level. Everything else is written once, over [`Lanes8`] or plain arrays of
 //! eight lanes, and compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
@@ -65,7 +65,7 @@ const fn words_of([low, high]: [i64; 2]) -> [u16; 8] {
     ]
 }
 
-/// What every processor of the target has.
+/// The level that every processor of the target has.
 #[cfg(simd_x86_64)]
 pub(crate) use SSE2 as BASELINE;
 #[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
@@ -193,11 +193,11 @@ impl Avx512 {
     }
 }
 
-/// A function that is also compiled for AVX2; its kernel says which version runs.
+/// A function that is also compiled for AVX2; its kernel argument selects the version.
 ///
-/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. What the body calls must be
-/// inlined. (This takes a body and not a closure: one of 3,000 instructions was not inlined, so it was compiled for no
-/// level.)
+/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. Functions that
+/// the body calls must be inlined. (It takes a body rather than a closure: a closure of 3,000
+/// instructions was not inlined, so it was only compiled for the baseline.)
 macro_rules! at_best_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {

@@ -36,7 +36,7 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// 320 × 200, pixels 5:6.
+    /// 320 × 200, with 5:6 pixels.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
 
     /// fx and fy, in pixels; the field of view is the vertical one.
@@ -164,8 +164,8 @@ pub(crate) struct ObjectView {
     size: (f64, f64),
 }
 
-/// The region of space and screen where an object may be visible, once the part in front of the near plane is clipped:
-/// slightly larger than what it covers.
+/// The region of space and screen where an object may be visible after near clipping: slightly
+/// larger than what it covers.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ScreenBounds {
     /// The least distance along the view; may be negative.
@@ -180,7 +180,7 @@ pub(crate) struct ScreenBounds {
     pub(crate) seen: Rect,
 }
 
-/// A vertex before its division: X, Y in pixels times W, W along the view.
+/// A vertex before the perspective division: X and Y in pixels times W; W along the view.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Homogeneous {
     pub(crate) x: f64,
@@ -271,7 +271,7 @@ impl ObjectView {
         Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
     }
 
-    /// The bounds on the screen of the box `bounds` of the object's mesh.
+    /// The bounds, in depth and on the screen, of the box `bounds` of the object's mesh.
     pub(crate) fn reach(&self, bounds: Bounds) -> ScreenBounds {
         let (matrix, offset) = &self.exact;
         let (min, max) = (widen(bounds.min), widen(bounds.max));
@@ -287,8 +287,8 @@ impl ObjectView {
             let w = at(2);
             nearest = nearest.min(w);
             farthest = farthest.max(w);
-            // Valid for a corner in front of the eye. If one is not, the object crosses the near plane, and these are
-            // not used.
+            // Only valid for corners in front of the eye. If one is not, the object crosses the
+            // near plane, and these are not used.
             for i in 0..2 {
                 low[i] = low[i].min(at(i) / w);
                 high[i] = high[i].max(at(i) / w);
@@ -296,15 +296,16 @@ impl ObjectView {
         }
         let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);
         let crosses_near = nearest <= f64::from(self.near) || nearest.is_nan();
-        // A box in front of the eye is projected into the convex hull of its corners. The error of x = X/W is that of X
-        // plus |x| times that of W, over W, plus a pixel for rounding.
+        // A box in front of the eye projects into the convex hull of its projected corners. The
+        // error of x = X/W is that of X plus |x| times that of W, over W, plus a pixel for
+        // rounding.
         let (centre, size) = ([f64::from(self.centre.0), f64::from(self.centre.1)], [self.size.0, self.size.1]);
         let ends = |i: usize| {
             let off = (slack[i] + low[i].abs().max(high[i].abs()) * slack[2]) / nearest + 1.0;
             (centre[i] + low[i] - off, centre[i] + high[i] + off)
         };
         let inside = |i: usize| ends(i).0 >= 0.0 && ends(i).1 <= size[i];
-        // On the screen, at most 4,096; NaN becomes the screen's edge.
+        // Clamped to the screen, at most 4,096 pixels; NaN becomes the screen's edge.
         let pixels = |i: usize| {
             let (from, to) = if crosses_near { (0.0, size[i]) } else { ends(i) };
             (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
@@ -319,8 +320,8 @@ impl ObjectView {
         }
     }
 
-    /// Projects a vertex of an object that neither crosses the near plane nor leaves the screen. The numbers equal
-    /// those of [`project`](Self::project).
+    /// Projects a vertex of an object that neither crosses the near plane nor leaves the screen.
+    /// The results equal those of [`project`](Self::project).
     #[inline]
     pub(crate) fn project_inside(&self, p: Vec3) -> Vertex {
         match self.fast {
@@ -357,7 +358,8 @@ impl ObjectView {
 
     /// The longer side of a pixel at a distance along the view, in units of the object's mesh.
     pub(crate) fn longest_pixel(&self, distance: f64) -> f64 {
-        // The length of each of the matrix's first two rows is that of a unit of the mesh at distance 1, in pixels.
+        // The lengths of the matrix's first two rows are the width and height in pixels of a mesh
+        // unit at distance 1.
         let [across, down, _] = self.exact.0.map(|row| libm::sqrt(dot(row, row)));
         distance / across.min(down)
     }
@@ -367,15 +369,15 @@ impl ObjectView {
         self.near
     }
 
-    /// The direction along the view, in the object's own space and per unit of distance, and the distance of its
-    /// origin.
+    /// The gradient of the distance along the view, in the object's own space, and the distance of
+    /// its origin.
     pub(crate) fn along_view(&self) -> ([f32; 3], f32) {
         let ([.., row], [.., offset]) = &self.exact;
         (row.map(|c| c as f32), *offset as f32)
     }
 
-    /// A vertex before its division. Its numbers do not depend on the triangle, so triangles that share the vertex
-    /// agree on its position.
+    /// A vertex before the perspective division. It does not depend on the triangle, so triangles
+    /// that share the vertex agree on its position.
     #[inline]
     pub(crate) fn homogeneous(&self, p: Vec3) -> Homogeneous {
         match self.fast {
@@ -411,8 +413,8 @@ impl ObjectView {
         }
     }
 
-    /// Projects a point that is not nearer than the near plane to a vertex on the screen; `None` if it is beyond the
-    /// limit.
+    /// Projects a point at or beyond the near plane to a vertex on the screen; `None` if it is
+    /// beyond the limit.
     #[inline]
     pub(crate) fn divide(&self, h: Homogeneous, shade: U8F8) -> Option<Vertex> {
         let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
@@ -436,14 +438,14 @@ impl ObjectView {
     /// The depth: round(2³⁰ · near / w).
     #[inline]
     fn depth(&self, w: f64) -> u32 {
-        // near ≤ w, so this is at most 2³⁰, apart from a clipped point's rounding; the cast truncates. There is no far
-        // plane: beyond 2³¹ times the near distance, where the formula gives the background's 0, a face is still in
-        // front of the background.
+        // near ≤ w, so this is at most 2³⁰, apart from a clipped point's rounding; the cast
+        // truncates. There is no far plane: beyond 2³¹ times the near distance the formula gives 0,
+        // the background's depth, and the maximum with 1 keeps faces in front of it.
         ((f64::from(self.near) / w * 1_073_741_824.0 + 0.5) as u32).max(1)
     }
 
-    /// The least and the greatest depth that a vertex within `bounds` may have, once the part in front of the near
-    /// plane is clipped; slightly wider than the true range.
+    /// The least and the greatest depth that a vertex within `bounds` may have after near clipping;
+    /// slightly wider than the true range.
     pub(crate) fn depths(&self, bounds: Bounds) -> (u32, u32) {
         let (row, offset) = (self.exact.0[2], self.exact.1[2]);
         let (min, max) = (widen(bounds.min), widen(bounds.max));

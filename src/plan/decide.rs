@@ -10,19 +10,19 @@ use crate::scene::{Object, Scene};
 use crate::settings::{DitherPattern, HiddenSurfaces, Mapping, Settings, Shading};
 use crate::view::{ObjectView, ScreenBounds};
 
-/// The max error of an affine mapping, in texels: half of one.
+/// The largest error of affine mapping that is tolerated, in texels.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
-/// The number of texels per pixel, seen straight on, above which an object gets mipmaps: half of the √2 up to which
-/// level 0 is used. A face tilted by 60° has twice as many.
+/// An object with more texels per pixel than this, seen head on, gets mipmaps. It is half of √2, up
+/// to which level 0 is used: a face tilted by 60° has twice as many texels per pixel.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// The inputs of decisions.
+/// The inputs to the decisions.
 pub(crate) struct Inputs<'a> {
     pub(crate) scene: &'a Scene,
     /// One view for each object.
     pub(crate) views: &'a [ObjectView],
-    /// One entry for each object: whether it was drawn before, and is unchanged.
+    /// For each object, how it changed since the last frame.
     pub(crate) change: &'a [Change],
     pub(crate) forced: &'a Overrides,
     /// The merged settings of the renderer and the scene.
@@ -33,7 +33,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) keeps: bool,
 }
 
-/// The change of an object since the last frame.
+/// How an object changed since the last frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Change {
     New,
@@ -44,7 +44,7 @@ pub(crate) enum Change {
 /// The least near / w at which a 30-bit depth still has ten significant bits.
 const LEAST_DEPTH: f64 = 1.0 / 1_048_576.0;
 
-/// Makes the plan of a frame, in place.
+/// Plans a frame, in place.
 #[inline(never)]
 pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [LampBeam], plan: &mut Plan) {
     let accuracy = inputs.settings.drawn_accuracy();
@@ -78,7 +78,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
         plan.seen = plan.seen.hull(rules.reach.seen);
         farthest = farthest.max(rules.reach.farthest);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
-        // Made in place, because it is large.
+        // Built in place, because it is large.
         plan.objects.push(ObjectPlan::new(rules.shading));
         if let Some(plan) = plan.objects.last_mut() {
             rules.all(in_range, plan);
@@ -86,13 +86,14 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     }
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
-    // The vintage method draws beyond a triangle's edges, and 16.16 clips in its own way.
+    // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
     if shading == Shading::GouraudVintage || is_integer {
         plan.seen = Rect::EVERYWHERE;
     }
 }
 
-/// Returns whether any of its materials has a custom response to light, for which no bound is known.
+/// Returns whether any of its materials has a custom response to light, whose error has no known
+/// bound.
 pub(crate) fn has_custom_response(object: &Object) -> bool {
     object.materials.iter().any(|material| material.response.is_some())
 }
@@ -125,8 +126,9 @@ struct Rules<'a> {
     is_integer: bool,
     /// The error budget, if there is one.
     max_error: Option<f32>,
-    /// The requested shading: on the 16.16 path one that it supports, with a budget the default. For an object without
-    /// an error bound, light at every pixel in place of a budget.
+    /// The shading to draw with: the requested one, or on the 16.16 path one that it supports, or
+    /// with a budget the default. An object without an error bound gets per-pixel lighting instead
+    /// of a budget.
     shading: Shading,
     way: (HiddenSurfaces, Reason),
 }
@@ -160,8 +162,8 @@ impl Rules<'_> {
         plan.stages = self.stages(plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
     }
 
-    /// The stages of the object, from its decisions. `forced`: whether an effect is on only because it was switched by
-    /// hand.
+    /// The stages of the object, from its decisions. `forced`: whether an effect is on only because
+    /// it was overridden.
     fn stages(&self, plan: &ObjectPlan, forced: impl Fn(Effect) -> bool) -> Stages {
         let is_on = |effect| plan.is_on(effect);
         let channels = is_on(Effect::RgbChannels);
@@ -214,7 +216,8 @@ impl Rules<'_> {
         }
     }
 
-    /// Returns whether light at every pixel would give each face a single shade, that of its own normal.
+    /// Returns whether per-pixel lighting would give each face a single shade, that of its own
+    /// normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
         self.object.mesh().is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
     }
@@ -377,7 +380,7 @@ impl Rules<'_> {
     }
 
     fn tessellation(&self, before: &ObjectPlan) -> Decision {
-        // Faces are split only for their shades.
+        // Faces are only split to improve their shades.
         if !before.is_on(Effect::Lighting) {
             Decision::off(before[Effect::Lighting].reason)
         } else if self.max_error.is_some() {
@@ -404,13 +407,14 @@ impl Rules<'_> {
         }
     }
 
-    /// A bound on the error, in texels, of any triangle's texture if it is mapped linearly on the screen.
+    /// A bound on the error, in texels, of affine mapping over any triangle.
     ///
-    /// Linear on the screen and linear on the face weigh the three corners differently: one by a, the other by a/w,
-    /// normalised to a sum of 1. The weight given to the wrong corners is at most (√ρ − 1) / (√ρ + 1), where ρ is the
-    /// greatest ratio of two w. (With mass m at the nearer end it is mρ/(mρ + 1 − m) − m, which is greatest at
-    /// m = 1/(1 + √ρ).) No two corners' texels are farther apart than the longest edge in the texture, and between two
-    /// vertices of a triangle w differs by at most the longest edge of the mesh.
+    /// Affine and perspective mapping weight the three corners differently: one by a, the other by
+    /// a/w, normalised to a sum of 1. The weight given to the wrong corners is at most (√ρ − 1) /
+    /// (√ρ + 1), where ρ is the greatest ratio of two w. (With weight m at the nearer end it is
+    /// mρ/(mρ + 1 − m) − m, which is greatest at m = 1/(1 + √ρ).) No two corners' texels are
+    /// farther apart than the longest edge in the texture, and between two vertices of a triangle w
+    /// differs by at most the longest edge of the mesh.
     fn affine_error(&self) -> f64 {
         let nearest = self.reach.nearest.max(f64::from(self.view.near()));
         let (edge, texture_edge) = self.object.mesh().longest_edges();
@@ -469,7 +473,7 @@ impl Rules<'_> {
 
     fn dither(&self, before: &ObjectPlan) -> Decision {
         let Some(pattern) = self.inputs.settings.dither else {
-            // Few palettes without ramps have many shades of one colour.
+            // Palettes without ramps rarely have many shades of one colour.
             if before.is_on(Effect::RgbChannels) && self.misses_ramp() {
                 return Decision::on(Reason::NoRamps).choosing(Choice::Dither(DitherPattern::default()));
             }
@@ -490,8 +494,8 @@ impl Rules<'_> {
     }
 }
 
-/// The choice for an effect that is switched by hand. Where the plan would map textures affinely, forcing perspective
-/// makes it exact at every pixel.
+/// The choice for an overridden effect. Where the plan would map textures affinely, forcing
+/// perspective makes the mapping exact at every pixel.
 fn forced_choice(on: bool, planned: Choice) -> Choice {
     match planned {
         _ if !on => Choice::Only,
@@ -509,9 +513,9 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
     }
 }
 
-/// The max number of texels of an object's images per pixel, counted along a side of the pixel, for a face parallel to
-/// the screen and at most `farthest` away along the view: the texels of an image's longer side, times the change of
-/// texture coordinates per unit, times a pixel's longer side.
+/// The largest number of texels along a pixel's side over all textures of an object, for a face
+/// parallel to the screen and at most `farthest` away along the view: the texels of a texture's
+/// longer side, times the change in texture coordinates per unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
     let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
     let steepest = images.filter_map(|(material, change)| {

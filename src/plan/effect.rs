@@ -7,9 +7,9 @@ named! {
     pub enum Effect, "effect" {
         /// Transforms and projects the object's vertices; otherwise the last frame's are reused.
         Transform = "transform",
-        /// Tests every vertex against the near plane; otherwise none.
+        /// Tests every vertex against the near plane; otherwise no vertex is tested.
         NearClipping = "near-clipping",
-        /// The raster clips rows at the frame's edges; otherwise it takes them as they are.
+        /// The raster clips rows at the frame's edges; otherwise rows are drawn unclipped.
         ScreenClipping = "screen-clipping",
         /// Skips back faces; otherwise both sides are drawn.
         BackFaceCulling = "back-face-culling",
@@ -20,13 +20,13 @@ named! {
         /// Lamps and spot lights in range: a distance, a direction and a fall-off for every vertex; otherwise only
         /// suns.
         PositionalLights = "positional-lights",
-        /// Highlights: a power for every vertex and light.
+        /// Specular highlights: a power for every vertex and light.
         Specular = "specular",
         /// Shades vary across faces; otherwise each face is a plain fill.
         Gouraud = "gouraud",
-        /// Distant surfaces fade, by a table.
+        /// Distant surfaces fade, through a lookup table.
         Fog = "fog",
-        /// Light at every pixel.
+        /// Per-pixel lighting.
         Phong = "phong",
         /// Faces are split along their edges.
         Tessellation = "tessellation",
@@ -38,9 +38,9 @@ named! {
         Texture = "texture",
         /// An image of the surroundings, reflected by the surface.
         EnvironmentMap = "environment-map",
-        /// A distant image is drawn from a smaller copy; otherwise its own texels are used everywhere.
+        /// Distant textures are drawn from smaller copies; otherwise level 0 is used everywhere.
         Mipmaps = "mipmaps",
-        /// Surfaces behind show through, by a table.
+        /// Surfaces behind show through, blended by a lookup table.
         Transparency = "transparency",
         /// Shades between two entries become a pattern of both.
         Dither = "dither",
@@ -49,18 +49,18 @@ named! {
     }
 }
 
-/// What leaving out an effect may change.
+/// The difference that leaving out an effect may make.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Class {
-    /// Nothing: always doing the full work gives the same bytes.
+    /// None: always doing the full work gives the same bytes.
     SavesWork,
-    /// The picture, where the scene calls for the effect.
+    /// The picture changes where the scene calls for the effect.
     ChangesPicture,
 }
 
 impl Effect {
-    /// Returns whether the effect keeps triangles within what the raster can draw: if it is called for, it cannot be
-    /// switched off.
+    /// Returns whether the effect keeps triangles within what the raster can draw. If so, it cannot
+    /// be switched off where it is called for.
     pub(super) const fn keeps_inside(self) -> bool {
         matches!(self, Self::NearClipping | Self::ScreenClipping)
     }
@@ -68,7 +68,7 @@ impl Effect {
     /// The number of effects.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// What leaving it out may change.
+    /// The difference that leaving it out may make.
     #[must_use]
     pub const fn class(self) -> Class {
         match self {
@@ -95,9 +95,9 @@ impl Effect {
         }
     }
 
-    /// Returns whether this build leaves the effect out: then it is off whatever a scene calls for, and the compiler
-    /// drops its stages. This serves the proof that a disabled effect costs nothing (`.ci/off_is_free`); no feature of
-    /// this crate enables it.
+    /// Returns whether this build leaves the effect out: it is then off whatever a scene calls for,
+    /// and the compiler drops its stages. Such builds prove that a disabled effect costs nothing
+    /// (`.ci/off_is_free`); no feature of this crate enables them.
     #[inline]
     pub(crate) const fn is_left_out(self) -> bool {
         match self {

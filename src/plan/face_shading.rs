@@ -1,4 +1,4 @@
-//! Shadings of single faces: what a budget chooses from, and the keys of its counts.
+//! Per-face shadings: those that a budget chooses from, and the keys of its counts.
 
 use core::fmt;
 
@@ -6,14 +6,15 @@ use crate::raster::Interpolation;
 use crate::raster::effects::SampleSpacing;
 use crate::settings::Shading;
 
-/// The shading of a face: one of the [`Shading`]s, or an approximation of per-pixel light that only an error budget
-/// chooses.
+/// The shading of a face: one of the [`Shading`]s, or an approximation of per-pixel lighting that
+/// only an error budget chooses.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum FaceShading {
     /// One of the shadings that can be requested.
     By(Shading),
-    /// Quadratic on the screen, through light at six points of the face: its corners and the midpoints of its edges.
+    /// Quadratic on the screen, interpolating light at six points of the face: its corners and the
+    /// midpoints of its edges.
     Quadratic,
     /// Light at every few pixels of a row, linear in between.
     PhongEvery(SampleSpacing),

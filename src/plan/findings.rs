@@ -9,13 +9,13 @@ use super::{Effect, FaceShading};
 use crate::raster::effects::SampleSpacing;
 use crate::settings::Shading;
 
-/// What was found out about an object while drawing it.
+/// Facts found out about an object while drawing it.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Findings {
     /// The number of its faces by shading, if an error budget chose the shading.
     pub face_counts: Option<FaceCounts>,
-    /// The max difference between linear shades and light at every pixel, in shades of 1/255 of full intensity, if it
-    /// is known.
+    /// The max difference between linear shades and per-pixel lighting, in shades of 1/255 of full
+    /// intensity, if it is known.
     pub linear_error: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ impl Findings {
 pub(crate) struct FaceCounts {
     /// Each shading in use, from cheap to exact, with the number of its faces.
     pub drawn: Vec<(FaceShading, u64)>,
-    /// The number of faces without a decision, because they are not visible.
+    /// The number of faces that needed no decision, because they are not visible.
     pub not_drawn: u64,
 }
 

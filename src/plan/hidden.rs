@@ -1,8 +1,8 @@
 //! Chooses the hidden-surface method for a scene: the cheapest that is correct.
 //!
-//! A single convex object hides nothing but its own back faces. Among several convex objects whose depths do not
-//! overlap, the nearer wholly hide the farther. Any other scene needs a depth for every pixel. Transparent objects are
-//! drawn last, far to near, over the others where these do not hide them.
+//! A single convex object needs only back-face culling. Several convex objects whose depths do not
+//! overlap can be painted far to near. Any other scene needs a depth for every pixel. Transparent
+//! objects are drawn last, far to near, wherever the others do not hide them.
 
 use alloc::vec::Vec;
 
@@ -54,10 +54,11 @@ pub(super) fn choose(
     }
 }
 
-/// Sorts the objects far to near if their depths do not overlap: if every vertex of one is nearer than all of the next,
-/// in the integer units that the depth buffer compares. Otherwise leaves `order` unchanged and returns `false`.
+/// Sorts the objects far to near if their depths do not overlap: if every vertex of one is farther
+/// than all of the next, in the integer units that the depth buffer compares. Otherwise leaves
+/// `order` unchanged and returns `false`.
 ///
-/// The depths are those of the objects' boxes: a few sums per object, however many vertices it has.
+/// Depths are those of the bounding boxes: a few sums per object, however many vertices it has.
 fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [usize]) -> bool {
     let depths = |i: usize| views[i].depths(objects[i].mesh().bounds());
     order.sort_unstable_by_key(|&i| (depths(i), i));
@@ -68,8 +69,9 @@ fn objects_far_to_near(objects: &[Object], views: &[ObjectView], order: &mut [us
     apart
 }
 
-/// Sorts faces far to near by the sum of the depths of their three vertices, which gives the same order as the mean; of
-/// equal ones the first submitted is painted first. Fills `order` with that sum and the index of each face.
+/// Sorts faces far to near by the sum of the depths of their three vertices, which gives the same
+/// order as the mean; ties are painted in the order of submission. Fills `order` with that sum and
+/// the index of each face.
 pub(crate) fn far_to_near(depths: impl Iterator<Item = u64>, order: &mut Vec<(u64, usize)>) {
     order.clear();
     order.extend(depths.zip(0..));

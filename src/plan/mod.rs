@@ -10,10 +10,10 @@
 //! | `decide` | the rules, a function per effect |
 //! | `hidden` | which hidden-surface method to use |
 //!
-//! A plan is made once per frame: some comparisons and a few products per object, nothing per vertex. The renderer
-//! follows [`ObjectPlan::is_on`]; [`Plan::rows`] reports the decisions as text. A disabled effect costs nothing per
-//! vertex, triangle, span or pixel, and no memory, except that the memory of an effect that was on before is retained
-//! for the next time.
+//! A plan is made once per frame: a few comparisons and products per object, nothing per vertex.
+//! The renderer follows [`ObjectPlan::is_on`]; [`Plan::rows`] reports the decisions as text. A
+//! disabled effect costs nothing per vertex, triangle, span or pixel, and no memory, except that
+//! memory allocated while it was on is retained for reuse.
 
 mod decide;
 mod effect;
@@ -88,7 +88,7 @@ impl Index<Effect> for ObjectPlan {
 }
 
 impl ObjectPlan {
-    /// A plan without decisions so far, for an object that is not drawn.
+    /// A plan without any decisions, as for an object that is not drawn.
     fn new(shading: Shading) -> Self {
         let stages = Stages {
             switches: Switches::default(),
@@ -124,8 +124,8 @@ impl ObjectPlan {
         self.shading
     }
 
-    /// The error budget by which each of its triangles gets the cheapest shading: the accepted error in shades. `None`
-    /// if there is no budget, or if one shading is known to be the cheapest for all.
+    /// The error budget, in shades, within which each of its triangles gets the cheapest shading.
+    /// `None` if there is no budget, or if one shading is known to be the cheapest for all.
     #[must_use]
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
@@ -136,7 +136,7 @@ impl ObjectPlan {
     }
 }
 
-/// Effects switched by hand: `None` leaves one to the plan.
+/// Manual overrides of effects: `None` leaves an effect to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Overrides {
     everywhere: [Option<bool>; Effect::COUNT],
@@ -176,7 +176,7 @@ impl Overrides {
 pub struct Plan {
     /// The hidden-surface method.
     pub(crate) hidden_surfaces: HiddenSurfaces,
-    /// Whether the plan chose the method, rather than being asked for it.
+    /// Whether the plan chose the method, rather than the settings.
     pub(crate) chosen: bool,
     pub(crate) objects: Vec<ObjectPlan>,
     /// The indices of the objects in drawing order.
@@ -221,8 +221,8 @@ impl Plan {
         if Effect::HiddenSurfaces.is_left_out() { HiddenSurfaces::BackFaces } else { self.hidden_surfaces }
     }
 
-    /// Returns whether the plan chose the hidden-surface method, without a request. If so, any object painted far to
-    /// near is convex, and its faces are drawn in any order.
+    /// Returns whether the plan chose the hidden-surface method itself, rather than on request. If
+    /// so, any object painted far to near is convex, and its faces are drawn in any order.
     #[must_use]
     pub fn is_chosen(&self) -> bool {
         self.chosen
@@ -246,7 +246,7 @@ impl Plan {
         self.rows_with(scene, |_| Findings::default())
     }
 
-    /// Every decision as text, with what was found out about each object while drawing.
+    /// Every decision as text, with the facts found out about each object while drawing.
     #[must_use]
     pub(crate) fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);

@@ -9,7 +9,7 @@ use crate::scene::{Object, Scene};
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Reason {
-    /// It was switched by hand.
+    /// It was overridden.
     Overrides,
     /// The first frame.
     FirstFrame,
@@ -93,7 +93,7 @@ pub enum Reason {
         /// Its index among the object's materials.
         material: usize,
     },
-    /// A material has a specular share, but none has a shininess above 0 with it.
+    /// A material is specular, but no such material has a shininess above 0.
     NoShininess {
         /// Its index among the object's materials.
         material: usize,
@@ -136,7 +136,7 @@ pub enum Reason {
         /// The error in texels.
         texels: f64,
     },
-    /// There are no texture coordinates to follow the perspective.
+    /// There is no texture, so nothing needs perspective correction.
     NoTexture,
     /// No material has a texture.
     NoImage,
@@ -150,7 +150,7 @@ pub enum Reason {
         /// Its index in the scene.
         light: usize,
     },
-    /// A material is coloured, or drawn in the nearest entries.
+    /// A material is coloured, or drawn in the nearest palette entries.
     ColoredMaterial {
         /// Its index among the object's materials.
         material: usize,
@@ -238,7 +238,7 @@ impl Reason {
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
             Self::NoTexture => "nothing follows the perspective".to_string(),
             Self::NoImage => "no material has a texture".to_string(),
-            // Rounded up, being a bound.
+            // Rounded up, because it is a bound.
             Self::TexelsToPixel { texels } => {
                 format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)
             }

@@ -50,8 +50,8 @@ pub(crate) enum VertexStage {
     Keep,
     /// Vertices are computed.
     Make,
-    /// Vertices are computed, together with everything cached beside them: because it was forced, or because nothing is
-    /// cached.
+    /// Vertices and everything cached with them are recomputed, because this was forced or because
+    /// nothing is cached.
     MakeAnew,
 }
 
@@ -83,21 +83,21 @@ pub(crate) enum LitAt {
 pub(crate) enum Lamps {
     None,
     InRange,
-    /// All lamps, in range or not, because it was forced.
+    /// All lamps, in range or not, because the effect was forced.
     All,
 }
 
-/// The dithering that replaces the constant half that is otherwise added to a shade.
+/// The dithering, in place of the constant half that is otherwise added to a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Dither {
     None,
     By(DitherPattern),
-    /// Thresholds that change nothing, because it was forced.
+    /// Thresholds that change nothing, because the effect was forced.
     Neutral,
 }
 
-/// Stages that an object may or may not go through, with the effects that call for them. In a build that leaves out the
-/// effect its stage is constantly `false`, so the compiler drops it as well.
+/// The optional stages, each with the effects that call for it. In a build without those effects
+/// the stage is constantly `false`, so the compiler drops it as well.
 macro_rules! switches {
     ($($(#[$doc:meta])* $name:ident: $first:ident $(| $other:ident)*;)+) => {
         /// The stages that an object goes through.
@@ -126,7 +126,7 @@ macro_rules! switches {
 }
 
 switches! {
-    /// Returns whether vertices may lie in front of the near plane or outside the guard band.
+    /// Returns whether vertices may be nearer than the near plane or outside the guard band.
     clips: NearClipping | ScreenClipping;
     /// Returns whether back faces are culled.
     culls: BackFaceCulling;
@@ -171,8 +171,10 @@ pub(crate) struct Stages {
     /// The mapping of texture coordinates.
     pub(crate) mapping: Mapping,
     pub(crate) dither: Dither,
-    /// Whether surfaces without an image get one that changes nothing, because it was forced.
+    /// Whether surfaces without an image get one that changes nothing, because the effect was
+    /// forced.
     pub(crate) neutral_image: bool,
-    /// Whether opaque surfaces go through a table that changes nothing, because it was forced.
+    /// Whether opaque surfaces go through a table that changes nothing, because the effect was
+    /// forced.
     pub(crate) neutral_blend: bool,
 }

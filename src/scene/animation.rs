@@ -1,4 +1,4 @@
-//! Colours that move while the picture stays: only the DAC is reloaded, and nothing is drawn.
+//! Palette animation: colours change while the picture stays, because only the DAC is reloaded.
 
 use core::ops::RangeInclusive;
 
@@ -15,7 +15,7 @@ pub enum PaletteAnimation {
     Fade {
         /// The other palette.
         to: Palette,
-        /// The time there and back, in seconds; above 0.
+        /// The time there and back again, in seconds; above 0.
         period: f64,
     },
     /// A range of entries rotates upward.

@@ -1,4 +1,5 @@
-//! Cameras that fit everything into the picture, computed from hulls: without bounding spheres or trial renderings.
+//! Cameras that fit everything into the picture, computed from hulls rather than from bounding
+//! spheres or trial renderings.
 //!
 //! The eye looks along −z from depth d and height c. A view whose half height is k at distance 1 contains the point (x,
 //! y, z) if −k·(d − z) ≤ y − c ≤ k·(d − z). This holds for every point of an object if and only if
@@ -7,8 +8,9 @@
 //! max(y + k·z) − k·d  ≤  c  ≤  k·d − max(−y + k·z)
 //! ```
 //!
-//! A suitable c exists if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The width has the same inequality. So the least
-//! distance follows from the object's extreme points in four directions, in one pass over its vertices.
+//! A suitable c exists if d ≥ (max(y + k·z) + max(−y + k·z)) / 2k. The same holds for the width. So
+//! the least distance follows from the object's extreme points in four directions, in one pass over
+//! its vertices.
 //!
 //! A vertex of an object that turns about an axis sweeps a ring. The ring's extreme point in direction n lies in the
 //! plane of n and the axis, and its product with n is r·|n⊥| + h·n∥, for the ring's radius r and height h.
@@ -25,7 +27,7 @@ use crate::angle::Angle;
 const FILL: f64 = 0.9;
 /// The aspect ratio of the picture: that of the screens of 1994.
 const ASPECT: f64 = 4.0 / 3.0;
-/// The min distance of the eye from the nearest point, as a fraction of the depth of everything.
+/// The min distance of the eye from the nearest point, as a fraction of the total depth.
 const CLEARANCE: f64 = 1.0 / 64.0;
 /// The max number of iterations until the picture is centred. Convergence is quadratic; two or three suffice.
 const ROUNDS: usize = 8;
@@ -39,7 +41,7 @@ pub enum Turning {
     Still,
     /// It turns about its own upward axis, which may be tilted.
     Upright,
-    /// It turns in another way: any direction may come to the front.
+    /// It turns freely: any side may come to the front.
     Free,
 }
 
@@ -51,13 +53,13 @@ pub struct Swept {
 
 /// The positions of the pivot.
 enum Places {
-    /// One point, or anything between two or more.
+    /// One point, or anywhere between two or more.
     Points(Vec<Row>),
     /// A circle: its centre, and two radius vectors.
     Round(Row, [Row; 2]),
 }
 
-/// The shape covered about the pivot.
+/// The shape swept around the pivot.
 enum Shape {
     Points(Vec<Row>),
     /// Rings about an axis: radius and height.
@@ -67,7 +69,8 @@ enum Shape {
 }
 
 impl Swept {
-    /// The space that `object` covers while it turns in this way, and moves along `path` if there is one.
+    /// The space that `object` sweeps while it turns in this way, and moves along `path` if there
+    /// is one.
     pub fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
             Turning::Still => Shape::Points(points(object, object.angles)),
@@ -136,8 +139,8 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// Returns the nearest camera with everything inside nine tenths of its picture; `None` if there is nothing to
-    /// show, or if it reaches beyond f32.
+    /// Returns the nearest camera with everything inside nine tenths of its picture; `None` if
+    /// there is nothing to show, or if f32 would overflow.
     pub fn camera(&self, everything: &[Swept]) -> Option<Camera> {
         let towards = unit(widen(self.direction)).unwrap_or([0.0, 0.0, 1.0]);
         let axes @ [right, up, towards] = axes(towards.map(|c| -c), widen(self.up))?;
@@ -165,7 +168,7 @@ impl Viewpoint {
         };
         let place = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
         let target = self.target.map_or(place(z), widen);
-        // Far enough away that in f32 the eye differs from the target.
+        // Far enough away that the eye differs from the target in f32.
         let least =
             target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
         let distance = (depth - z).max(least);
@@ -187,8 +190,9 @@ impl Viewpoint {
 /// The centre of the picture, to the right and up, for an eye at this depth, such that the margins on opposite sides
 /// are equal.
 ///
-/// A view of half height k that touches an upper and a lower point has its centre between them. The extreme points for
-/// it give the next k: Newton's method on a convex function whose root is the true k.
+/// A view of half height k that touches an upper and a lower point has its centre between them. The
+/// extreme points for that k give the next one: Newton's method on a convex function whose root is
+/// the true k.
 fn middle(everything: &[Swept], towards: Row, edges: [(Row, f64); 2], depth: f64) -> Option<[f64; 2]> {
     let (mut edges, mut middles) = (edges, [0.0; 2]);
     for _ in 0..ROUNDS {
@@ -313,9 +317,10 @@ pub fn tilt(object: &Object, least: Angle) -> Angle {
 }
 
 impl Camera {
-    /// Makes a camera looking along −z at an object that turns about its own up axis: its `angles` about x and z stay,
-    /// the one about y runs through the full circle. Over the whole turn the object fills nine tenths of a 4:3
-    /// picture's width or height, whichever it fills more, and stays centred.
+    /// Makes a camera looking along −z at an object that turns about its own up axis: its `angles`
+    /// about x and z stay fixed, and the one about y runs full circle. Over the whole turn the
+    /// object fills nine tenths of a 4:3 picture's width or height, whichever it fills more, and
+    /// stays centred.
     ///
     /// The fit uses the space swept by the object's hull, not a bounding sphere. That takes a few passes over the
     /// vertices.
@@ -371,8 +376,8 @@ mod tests {
     const MIN: f64 = FILL - 2e-5;
     const MAX: f64 = FILL + 2e-6;
 
-    /// The extent of the picture covered over a turn, −1 to 1 from edge to edge, the slow way: every vertex at every
-    /// angle. To the left, right, below and above.
+    /// The extent of the picture covered over a turn, −1 to 1 from edge to edge, to the left,
+    /// right, below and above. Computed the slow way: every vertex at every angle.
     fn reached(object: &Object, camera: &Camera) -> [f64; 4] {
         let towards = unit(added(widen(camera.eye), widen(camera.target), -1.0)).expect("a direction");
         let [right, up, _] = axes(towards.map(|c| -c), widen(camera.up)).expect("a view");

@@ -1,4 +1,4 @@
-//! Scenes: objects, a camera, lights, fog, a palette, their motions, and settings.
+//! Scenes: objects, camera, lights, fog, palette, motions, and settings.
 //!
 //! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it again. Errors in it
 //! (a position that is not finite, a camera without a direction) are reported when it is drawn.
@@ -10,7 +10,7 @@
 //! | `framing` | cameras that fit everything into the picture |
 //! | `fog` | [`Fog`] |
 //! | `motion` | [`Motion`]: positions and angles from absolute time |
-//! | `animation` | [`PaletteAnimation`]: colours that move while the picture stays |
+//! | `animation` | [`PaletteAnimation`]: colours that change while the picture stays |
 
 mod animation;
 mod camera;
@@ -57,8 +57,8 @@ pub struct Scene {
     pub ambient: f32,
     /// The palette index that the frame is cleared to.
     pub background: u8,
-    /// The colour that [`background`](Self::background) was chosen for, if any; in another palette its nearest entry
-    /// differs.
+    /// The colour that [`background`](Self::background) was chosen for, if any, so that its nearest
+    /// entry can be found in another palette.
     pub background_color: Option<Rgb>,
     /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
     /// no ramps, materials that name one are drawn with the nearest entries, dithered.
@@ -140,8 +140,8 @@ impl Scene {
         Self::showing_turned(object.into(), |_| [Self::TILT, Angle::default()])
     }
 
-    /// Makes a scene that [shows](Self::showing) an object with other initial angles about x and y. `angles` receives
-    /// the object once it is centred.
+    /// Makes a scene that [shows](Self::showing) an object with other initial angles about x and y.
+    /// `angles` is called with the object once it is centred.
     #[must_use]
     pub fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
         let mut object = object.centred();
@@ -258,7 +258,7 @@ impl Scene {
         &mut self.objects
     }
 
-    /// The lights, in the order in which they were added, which is the order of summation.
+    /// The lights, in the order in which they were added and are summed.
     #[must_use]
     pub fn lights(&self) -> &[Light] {
         &self.lights
@@ -323,7 +323,7 @@ impl Default for Scene {
     }
 }
 
-/// Panics, naming the line of the caller who indexed the scene.
+/// Panics with the location of the caller who indexed the scene.
 #[cold]
 #[track_caller]
 fn not_there(what: &str) -> ! {

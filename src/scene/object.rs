@@ -131,9 +131,9 @@ impl Object {
         &self.mesh
     }
 
-    /// Shows another mesh in the same place and with the same materials, one for each of its surfaces: the next pose of an
-    /// animation. The renderer computes everything it caches for the object again, even if the mesh is equal, so do not
-    /// call this while nothing moves.
+    /// Replaces the mesh and keeps the position and the materials, one for each of its surfaces:
+    /// the next pose of an animation. The renderer recomputes everything it caches for the object,
+    /// even if the mesh is equal, so do not call this while nothing moves.
     pub fn set_mesh(&mut self, mesh: impl Into<Shared<Mesh>>) {
         self.mesh = in_parts(mesh.into());
     }
@@ -216,7 +216,8 @@ impl Object {
         // The first row of x·y·z is (cy·cz, −cy·sz, sy).
         let cy = libm::hypot(at(0, 0), at(0, 1));
         let y = libm::atan2(at(0, 2), cy);
-        // At y = ±90° (gimbal lock), rotations about x and z coincide: all of it goes to x.
+        // At y = ±90° (gimbal lock), rotations about x and z coincide: the whole rotation goes to
+        // x.
         let z = if cy > 1e-6 { libm::atan2(-at(0, 1), at(0, 0)) } else { 0.0 };
         // The rotation that takes (sz, cz, 0) to (0, cx, sx): close to a right angle x makes up for the error of z.
         let (sz, cz) = libm::sincos(z);
@@ -281,7 +282,7 @@ impl Placement {
 }
 
 impl Scene {
-    /// The parent of an object, its parent, and so on; at most as many as there are objects.
+    /// An object's parent, the parent's parent, and so on; at most as many as there are objects.
     fn ancestors(&self, index: usize) -> impl Iterator<Item = &Object> {
         let parent = |object: &Object| object.parent.and_then(|id| self.get(id));
         let first = self.objects().get(index).and_then(parent);
@@ -315,7 +316,7 @@ impl Scene {
     }
 }
 
-/// The mesh, with every vertex in one surface.
+/// The mesh, with vertices split so that each belongs to one surface.
 fn in_parts(mesh: Shared<Mesh>) -> Shared<Mesh> {
     if mesh.has_one_surface_a_vertex() { mesh } else { Shared::new(mesh.with_one_surface_a_vertex()) }
 }
@@ -344,7 +345,8 @@ pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
 
 /// The product of two matrices by rows, each sum in the order of its terms.
 ///
-/// (By index: `map` of arrays in arrays becomes calls, a twelfth of the time of 500 small objects.)
+/// (Indexed, because nested array `map`s become calls, which take a twelfth of the time of 500
+/// small objects.)
 pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut product = [[0.0; 3]; 3];
     for (to, [x, y, z]) in product.iter_mut().zip(a) {
