@@ -61,7 +61,7 @@ impl ConeBeam {
     }
 }
 
-/// The number if it is above 0, otherwise, and for NaN, 0.
+/// Returns the number if it is above 0, and otherwise 0, also for NaN.
 fn positive(number: f64) -> f64 {
     if number > 0.0 { number } else { 0.0 }
 }
@@ -89,7 +89,7 @@ pub(crate) struct Reflectance {
     /// ka·Ia.
     pub(crate) ambient: f64,
     pub(crate) diffuse: f64,
-    /// 0 for a material without a highlight.
+    /// 0 if the material has no highlight.
     pub(crate) specular: f64,
     /// Above 0 if there is a highlight.
     pub(crate) shininess: f64,
@@ -107,11 +107,11 @@ impl Reflectance {
     }
 }
 
-/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that the unit `normal` points away from,
-/// and for the other side: only suns, on one channel, for a matt material.
+/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that the unit `normal`
+/// points out of, and for the other side: only suns, on one channel, for a matt material.
 ///
-/// The sum is taken in f64, in the order of the lights: a thousand lights of the greatest f32 stay finite there,
-/// whatever their signs.
+/// The sum is taken in f64, in the order of the lights, where even a thousand lights of `f32::MAX`
+/// stay finite, whatever their signs.
 #[inline]
 pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3) -> (f64, f64) {
     let (mut front, mut back) = (0.0, 0.0);
@@ -156,9 +156,9 @@ impl<const N: usize> Side<N> {
 }
 
 impl Lights<'_> {
-    /// Sums all light on one channel, not yet clamped, for the side that the unit `normal` points away from and for the
-    /// other: first the suns, then the lamps, each in their order. Without lamps and highlights, the results are those
-    /// of [`both_sides`].
+    /// Sums all light on one channel, not yet clamped, for the side that the unit `normal` points
+    /// out of and for the other: first the suns, then the lamps, each in their order. Without lamps
+    /// and highlights, the results are those of [`both_sides`].
     #[inline(never)]
     pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
@@ -234,7 +234,8 @@ impl Lights<'_> {
             if square >= 1.0 || square.is_nan() {
                 continue;
             }
-            // A lamp at the point itself is in the plane of any face through it, and lights none.
+            // A lamp at the point itself lies in the plane of any face through it, so it lights
+            // none.
             let Some(towards) = unit(to_lamp) else { continue };
             let cosine = dot(wide_normal, towards);
             let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);

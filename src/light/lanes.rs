@@ -1,12 +1,12 @@
 //! The sum of all light at eight points of a surface at a time.
 //!
-//! Each point gets the numbers that [`Lights::one_channel`] and [`Lights::three_channels`] give: the operations and
-//! their order are the same, and each of them (sum, product, quotient, square root) rounds the same in a vector as
-//! alone. If a light does not contribute to a point, zero is added, which changes no sum: none is −0, since each starts
-//! at +0.
+//! Each point gets the results of [`Lights::one_channel`] and [`Lights::three_channels`]: the
+//! operations and their order are the same, and each operation (sum, product, quotient, square
+//! root) rounds the same for vectors as for scalars. If a light does not contribute to a point,
+//! zero is added, which changes no sum: none is −0, since each starts at +0.
 //!
-//! Lanes stay in vectors ([`F32Lanes8`]): the compiler turned index loops over arrays partly into vectors and partly
-//! into scalars, and three coloured lamps took a sixth longer.
+//! Lanes stay in vectors ([`F32Lanes8`]): the compiler vectorised index loops over arrays only in
+//! part, and three coloured lamps took a sixth longer.
 
 use super::ConeBeam;
 use super::intensity::{Lights, Reflectance, Wide};
@@ -80,8 +80,8 @@ fn channels<const N: usize>(intensity: f32, colors: [f32; 3]) -> [f64; N] {
 }
 
 impl Lights<'_> {
-    /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of any length, point away
-    /// from.
+    /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of
+    /// any length, point out of.
     pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
         self.one::<false>(answer, points, kernel)
     }
@@ -137,7 +137,7 @@ impl Lights<'_> {
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(answer.shininess);
-        // Suns without highlights need neither.
+        // Suns without highlights need neither normals in f64 nor positions.
         let (mut normals, mut places) = ([zero; 3], [zero; 3]);
         if SHINES || !lamps.is_empty() {
             normals = [l.widen(narrow[0]), l.widen(narrow[1]), l.widen(narrow[2])];
@@ -149,7 +149,7 @@ impl Lights<'_> {
             let [x, y, z] = sun.towards.to_array();
             let sum = l.add_f32(l.mul_f32(narrow[0], l.splat_f32(x)), l.mul_f32(narrow[1], l.splat_f32(y)));
             let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.splat_f32(z)))));
-            // The contribution is zero then. Only highlights are worth a branch.
+            // Then the contribution is zero. Only highlights are worth a branch.
             if SHINES && l.is_zero(cosines) {
                 continue;
             }
@@ -274,7 +274,7 @@ fn positive<L: F32Lanes8>(l: L, values: L::F64) -> L::F64 {
     l.if_less(l.splat_f64(0.0), values, values)
 }
 
-/// [`ConeBeam::share`].
+/// The result of [`ConeBeam::share`] for each point.
 #[inline(always)]
 fn share<L: F32Lanes8>(l: L, cone: &ConeBeam, towards: &Vectors<L>) -> L::F64 {
     let back = [l.splat_f64(cone.back[0]), l.splat_f64(cone.back[1]), l.splat_f64(cone.back[2])];

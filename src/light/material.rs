@@ -9,13 +9,14 @@ use crate::palette::{Palette, Ramp, Rgb};
 use crate::shared::Shared;
 use crate::texture::Texture;
 
-/// Which palette entries hold a material's shades.
+/// The palette entries that hold a material's shades.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum RampChoice {
-    /// The palette's ramp with this number, modulo the number of ramps, so a palette with one ramp always gives that.
-    /// If the palette has no ramps, it acts as [`Nearest`](Self::Nearest); a white material is then drawn in the
-    /// colours of the mesh's surface, and dithered.
+    /// The palette's ramp with this number, modulo the number of ramps, so with a palette of one
+    /// ramp it is always that one. If the palette has no ramps, it acts as
+    /// [`Nearest`](Self::Nearest); a white material is then drawn in the colours of the mesh's
+    /// surface, and dithered.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
@@ -95,9 +96,9 @@ impl Material {
     /// The share of white light that a white surface reflects as ambient light; the rest is diffuse.
     const AMBIENT_SHARE: f32 = 0.15;
 
-    /// Makes a material from one of an MTL file, on one channel: the luminance of Kd and Ks, and a share of Kd as
-    /// ambient. `number` chooses the ramp. The texture is left to the caller, who can read files:
-    /// [`with_map`](Self::with_map).
+    /// Converts a surface of an MTL file to a material on one channel: the luminance of Kd and Ks,
+    /// and a share of Kd as ambient. `number` chooses the ramp. The texture is left to the caller,
+    /// who can read files: [`with_map`](Self::with_map).
     #[must_use]
     pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);

@@ -19,8 +19,9 @@ pub enum Light {
     /// A lamp: a light with a position that falls off with the distance (the Russian textbook: the flash of a shot on a
     /// wall).
     ///
-    /// At a distance d below `range` it has (1 − d²/range²)² of its intensity, and beyond it none: all of it at the
-    /// lamp itself, 9/16 at half the range. It fades out without an edge.
+    /// At a distance d below `range` the intensity is scaled by (1 − d²/range²)², which is 1 at the
+    /// lamp itself and 9/16 at half the range. Beyond `range` it is 0; it fades out without an
+    /// edge.
     Lamp {
         /// The lamp's position, in the world.
         position: Vec3,

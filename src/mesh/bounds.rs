@@ -37,12 +37,12 @@ impl Bounds {
             let away = sub(widen(p), widen(centre));
             square = square.max(dot(away, away));
         }
-        // Only the greatest square needs a root: it is monotonic.
+        // The root is monotonic, so only the greatest square needs one.
         Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
     }
 }
 
-/// Rounds to the next f32 that is not less, or to `f32::MAX`. `value` ≥ 0.
+/// Rounds `value` ≥ 0 up to an f32, at most `f32::MAX`.
 fn round_up(value: f64) -> f32 {
     // To the nearest, or to infinity beyond the range.
     let nearest = value as f32;

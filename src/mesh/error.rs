@@ -30,12 +30,12 @@ pub enum MeshError {
         /// The vertex.
         vertex: usize,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,
     },
-    /// A triangle names a surface that does not exist.
+    /// A triangle refers to a surface that does not exist.
     SurfaceOutOfRange {
         /// The triangle.
         triangle: usize,
@@ -44,7 +44,7 @@ pub enum MeshError {
     Factors,
     /// Two corresponding lists have different lengths.
     Count {
-        /// What the given list holds.
+        /// The contents of the given list.
         what: &'static str,
         /// Its length.
         given: usize,

@@ -17,7 +17,7 @@ pub(super) struct Facts {
     is_faceted: bool,
 }
 
-/// Facts follow from the mesh, so equal meshes have equal facts.
+/// Facts are derived from the mesh, so equal meshes have equal facts.
 impl PartialEq for Facts {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -31,7 +31,7 @@ impl Mesh {
         self
     }
 
-    /// Recomputes the facts. Every change to a mesh ends with this.
+    /// Recomputes the facts. Every change to a mesh must end with this.
     pub(super) fn find_facts(&mut self) {
         self.facts = Facts {
             vertex_surfaces: vertex_surfaces(self),
@@ -92,11 +92,12 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
             }
         }
     }
-    // Only the greatest squares need a root: it is monotonic.
+    // The root is monotonic, so only the greatest squares need one.
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
-/// For each surface, the max change of texture coordinates over one unit of its faces. Faces without area do not count.
+/// For each surface, the max change of texture coordinates over one unit of its faces. Faces
+/// without area are ignored.
 ///
 /// On a face with edges e and f, let a coordinate change by g along e and by h along f, and another by g' and h'. Then
 /// ∇·∇' = (gg'·f·f − (gh' + g'h)·e·f + hh'·e·e) / (e·e f·f − (e·f)²). One unit changes both coordinates together by at

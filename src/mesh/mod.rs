@@ -59,7 +59,7 @@ pub struct Mesh {
     closed: bool,
     outward: bool,
     convex: bool,
-    /// A bit for each triangle that lies back to back with another; empty if there is none.
+    /// A bit for each triangle that has a back-to-back twin; empty if none has.
     twins: Vec<u64>,
     facts: facts::Facts,
 }
@@ -105,8 +105,8 @@ impl Mesh {
     /// Makes a mesh with one plain [`Surface`] and the caller's normals, one for each vertex, which are normalised.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new); a different number of normals than of vertices; a normal that is zero or not
-    /// finite.
+    /// The errors of [`new`](Self::new); a different number of normals than of vertices; a normal
+    /// that is zero or not finite.
     pub fn with_normals(
         positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -165,8 +165,8 @@ impl Mesh {
         Self::assemble_welded(positions, normals, triangles, &points, &edges).with_facts()
     }
 
-    /// Does the work of [`assemble`](Self::assemble) when the points of the vertices and the edges are already known,
-    /// and leaves finding the other facts to the caller.
+    /// Does the work of [`assemble`](Self::assemble) for callers that already know the points of
+    /// the vertices and the edges, and leaves the other facts to them.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -174,7 +174,7 @@ impl Mesh {
         points: &[u32],
         edges: &topology::Edges,
     ) -> Self {
-        // Vectors filled by pushing may hold twice the memory they need, and a mesh lives long.
+        // Vectors grown by `push` may hold twice the memory they need, and meshes live long.
         positions.shrink_to_fit();
         normals.shrink_to_fit();
         triangles.shrink_to_fit();
@@ -237,7 +237,7 @@ impl Mesh {
         &self.surfaces
     }
 
-    /// The surfaces, to change them; their number is fixed.
+    /// The surfaces, mutably; their number is fixed.
     pub fn surfaces_mut(&mut self) -> &mut [Surface] {
         &mut self.surfaces
     }
@@ -270,9 +270,10 @@ impl Mesh {
     /// Returns whether the mesh is closed and faces outward everywhere. Then none of its back faces can be seen from
     /// outside.
     ///
-    /// No point of space may have a negative winding number, which is tested along 64 × 64 rays on each axis. An
-    /// inverted region counts only if some ray runs through it for more than 1/32 of the longest side of the mesh's
-    /// box: thinner ones are folds, as scans have them.
+    /// No point of space may have a negative winding number, which is tested along 64 × 64 rays on
+    /// each axis. An inverted region counts only if some ray runs through it for more than 1/32 of
+    /// the longest side of the mesh's box: thinner ones are taken for folds, which are common in
+    /// scans.
     #[must_use]
     pub fn is_outward(&self) -> bool {
         self.outward

@@ -1,4 +1,4 @@
-//! A mesh with its vertices elsewhere: stretched, or in the next pose of an animation.
+//! A mesh with moved vertices: stretched, or in the next pose of an animation.
 
 use alloc::vec::Vec;
 
@@ -7,8 +7,8 @@ use glam::Vec3;
 use super::{Mesh, MeshError};
 
 impl Mesh {
-    /// Copies the mesh with new positions and normals, one of each per vertex. Triangles, surfaces and texture coordinates
-    /// stay, and normals are normalized.
+    /// Copies the mesh with new positions and normals, one of each per vertex. Triangles, surfaces
+    /// and texture coordinates are kept, and normals are normalised.
     ///
     /// Whether the copy is closed, faces outward and is convex is determined again, because a bend may change all of it.
     /// That takes most of the time.

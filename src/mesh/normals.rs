@@ -1,10 +1,10 @@
 //! Normals of faces and of vertices.
 //!
-//! A face's normal is n = (p1 − p2) × (p1 − p3) (the Russian textbook, the Hungarian tutorial): outward for
-//! counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the normals of the faces around it (the
-//! Russian textbook, the Russian article, the Polish lecture). The Hungarian tutorial only divides by their number,
-//! which darkens a vertex, and the more so the sharper its corner: at a cube's corner the mean of three unit normals is
-//! 0.58 long.
+//! A face's normal is n = (p1 − p2) × (p1 − p3) (the Russian textbook, the Hungarian tutorial):
+//! outward for counter-clockwise corners. A vertex's is the **normalised**, weighted sum of the
+//! normals of the faces around it (the Russian textbook, the Russian article, the Polish lecture).
+//! The Hungarian tutorial only divides by their number, which darkens vertices, sharp corners most:
+//! at a cube's corner the mean of three unit normals is 0.58 long.
 //!
 //! Everything is computed in f64 and rounded once, so a normal's length is 1 within 2⁻²³ for any finite positions,
 //! including denormals and `f32::MAX`. Sums are in triangle order.
@@ -110,12 +110,12 @@ pub(super) struct Together<'a> {
     /// The index of each triangle's smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty if
     /// there are no groups.
     groups: &'a [u32],
-    /// The edges of a mesh that may be a scan; otherwise `None`.
+    /// The edges of the mesh if it may be a scan; otherwise `None`.
     edges: Option<topology::Edges>,
 }
 
 impl<'a> Together<'a> {
-    /// The group of faces that are averaged with no other.
+    /// The group of faces that are not averaged with any other.
     pub(super) const FLAT: u32 = 0;
     /// The group of faces whose group is unknown: the angle decides.
     pub(super) const NO_GROUP: u32 = u32::MAX;
@@ -135,9 +135,10 @@ impl<'a> Together<'a> {
         Self { edges: Some(edges), ..self }
     }
 
-    /// Returns whether sharp edges end anywhere, as noise makes them. On a designed model they run on until they meet
-    /// others or the mesh's rim: nearly all points with a sharp edge have two. On scans a third or more of these points
-    /// are ends; from an eighth on, edges count as scattered.
+    /// Returns whether sharp edges end at random, as noise makes them. On a designed model they
+    /// continue until they meet others or the mesh's rim: nearly all points on a sharp edge have
+    /// two. On scans a third or more of these points are ends; above an eighth, edges count as
+    /// scattered.
     fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
         const RIM: u8 = u8::MAX;
         let mut sharp = vec![0_u8; count];
@@ -170,10 +171,11 @@ impl<'a> Together<'a> {
 }
 
 impl Mesh {
-    /// Gives every vertex the weighted mean of the normals of the faces around its position; vertices at the same
-    /// position count as one. With a crease angle, two faces are averaged together if the angle between their normals
-    /// is at most that, directly or through other faces at this position. The angle is 0 if two faces lie in one plane.
-    /// Vertices are split where they must be.
+    /// Gives every vertex the weighted mean of the normals of the faces around its position;
+    /// vertices at the same position count as one. With a crease angle, two faces are averaged
+    /// together if the angle between their normals is at most that, directly or through other faces
+    /// at this position. The angle is 0 if two faces lie in one plane. Vertices are split where
+    /// necessary.
     ///
     /// Vertices keep their indices; new ones come at the end. If more than 64 faces share a position, not all pairs are
     /// compared.
@@ -185,7 +187,7 @@ impl Mesh {
         self.find_facts();
     }
 
-    /// Gives every face its own normal at all its corners. Vertices are split where they must be.
+    /// Gives every face its own normal at all its corners. Vertices are split where necessary.
     pub fn flat(&mut self) {
         let faces = self.faces();
         let normal = |corner: usize, _| {
@@ -251,8 +253,9 @@ impl Mesh {
                 *total += weight;
             }
         }
-        // A sum of at most a millionth of its weights is what opposite faces leave over, not a direction. Rounding is
-        // 2⁻⁵⁰ of the weights, so anything longer is exact to 2⁻³⁰.
+        // A sum of at most a millionth of its weights is the remainder of opposite faces that
+        // cancel, not a direction. Rounding is 2⁻⁵⁰ of the weights, so anything longer is exact to
+        // 2⁻³⁰.
         let mean = |(sum, total): &(Wide, f64)| {
             let long = length(*sum);
             (long > total * (1.0 / 1_048_576.0)).then(|| narrow(scale(*sum, 1.0 / long)))
@@ -275,7 +278,8 @@ impl Mesh {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
         let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
-        // If every face goes with the first one, nothing more has to be compared: true nearly everywhere on a scan.
+        // If every face matches the first one, no more comparisons are needed, as nearly everywhere
+        // on a scan.
         let mut first = vec![NONE; count];
         let mut is_divided = vec![false; count];
         let mut any = false;
@@ -306,7 +310,7 @@ impl Mesh {
             let face = |place: u32| here[place as usize].1 as usize / 3;
             parts.find(here.len() as u32, |a, b| together.are(faces, face(a), face(b)));
             for (place, &(_, corner)) in (0..).zip(here) {
-                // The first face of a part represents it, and comes before the others.
+                // The first face of a part comes before the others and represents it.
                 let stands = parts.sets.of(place);
                 classes[corner as usize] = if stands == place {
                     next += 1;

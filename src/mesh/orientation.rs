@@ -1,4 +1,4 @@
-//! The exact test for the side of a face on which a point lies.
+//! An exact test of which side of a face a point lies on.
 //!
 //! It is a determinant of differences, computed first in f64 with an error bound, and where that cannot decide, in
 //! exact expansions after J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
@@ -9,8 +9,8 @@ use core::cmp::Ordering;
 
 use glam::Vec3;
 
-/// Returns the side of the face `a`, `b`, `c` on which `d` lies: `Greater` in front (where the face is
-/// counter-clockwise), `Equal` in its plane, `Less` behind.
+/// Returns which side of the face `a`, `b`, `c` the point `d` lies on: `Greater` in front (where
+/// the face is counter-clockwise), `Equal` in its plane, `Less` behind.
 pub(super) fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Ordering {
     // Rows: b − a, c − a, d − a; each difference is exactly high + low.
     let rows = [b, c, d].map(|p| {

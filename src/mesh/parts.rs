@@ -46,12 +46,12 @@ pub struct Parts {
     /// The smoothing group of each triangle, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Normals are averaged
     /// within a group.
     pub groups: Vec<u32>,
-    /// The crease angle: two faces that differ by more have a sharp edge between them. It replaces the groups. With
-    /// `None` the groups decide, and without groups 40°, except that a scan, whose sharp edges end anywhere, is smooth
-    /// everywhere.
+    /// The crease angle: two faces that differ by more have a sharp edge between them. It replaces
+    /// the groups. With `None` the groups decide, and without groups 40°, except that a scan,
+    /// recognised by sharp edges that end at random, is smooth everywhere.
     pub crease: Option<Angle>,
-    /// Nothing is mended: triangles keep their number, their order and their corners, as whoever moves the vertices needs
-    /// it ([`Mesh::with_vertices`]).
+    /// Disables repairs: triangles keep their number, order and corners, which callers that move
+    /// the vertices rely on ([`Mesh::with_vertices`]).
     pub as_given: bool,
 }
 
@@ -73,10 +73,10 @@ pub struct Repairs {
 }
 
 impl Mesh {
-    /// Makes a mesh from the contents of a model file, and if it is closed, repairs two defects of scans. Pairs of
-    /// back-to-back triangles, with the same three points, are removed where other faces continue at their edges; and
-    /// solids that are inside out are flipped, unless they are cavities in others. Vertices that become unused are
-    /// dropped.
+    /// Makes a mesh from the contents of a model file. If the mesh is closed, two defects of scans
+    /// are repaired: pairs of back-to-back triangles, with the same three points, are removed where
+    /// other faces continue at their edges; and solids that are inside out are flipped, unless they
+    /// are cavities in others. Vertices that become unused are dropped.
     ///
     /// # Errors
     /// Those of [`Mesh::new`]; a list that is neither empty nor has one entry for each vertex or triangle; a pair of
@@ -120,7 +120,7 @@ impl Mesh {
         let mut repairs = Repairs::default();
         if !as_given && edges.balance() {
             let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
-            // A mesh that consists of nothing else stays as it is.
+            // A mesh that consists of nothing else is left unchanged.
             if !pairs.is_empty() && 2 * pairs.len() < triangles.len() {
                 repairs.pairs = pairs.len();
                 let mut keep = vec![true; triangles.len()];
@@ -176,7 +176,7 @@ fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
     list.retain(|_| keep.next().is_none_or(|&keep| keep));
 }
 
-/// Renumbers the triangles' vertices so that unused ones are skipped. Returns whether each vertex is used.
+/// Renumbers the triangles' vertices to skip unused ones. Returns whether each vertex is used.
 fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
     let mut used = vec![false; vertices];
     triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
@@ -190,9 +190,9 @@ fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
     used
 }
 
-/// Flips the faces that are inside out. If most of a solid's given normals then point inward, they are negated, too.
-/// Returns the vertices that need a copy because a face with negated normals shares them with one that keeps its own;
-/// the copies come at the end.
+/// Flips the faces that are inside out, and negates a solid's given normals if most of them then
+/// point inward. Returns the vertices that need a copy because a face with negated normals shares
+/// them with one that keeps its own; the copies come at the end.
 fn turn(
     inside_out: &InsideOut,
     triangles: &mut [[u32; 3]],

@@ -113,7 +113,7 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     (numbers, count as usize)
 }
 
-/// The volume of each shell; 0 if what it encloses is within rounding error.
+/// The volume of each shell; 0 if it is within rounding error.
 fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: usize) -> Vec<f64> {
     // Six times the volumes of the tetrahedra from each shell's first vertex: their sum, and the sum of their
     // magnitudes.
@@ -131,8 +131,9 @@ fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: 
     sums.into_iter().map(|(_, sum, size)| if sum.abs() > size * (1.0 / 4_194_304.0) { sum } else { 0.0 }).collect()
 }
 
-/// The shells that wind around a point of each shell in `wanted`: other shells, with their contributions to the winding
-/// number there, −1 or 1 for each of their faces that a ray crosses before it.
+/// For each shell in `wanted`, the other shells that wind around one of its points, with their
+/// contributions to the winding number there: −1 or 1 for each of their faces that a ray crosses
+/// before it.
 fn enclosing(
     positions: &[Vec3],
     triangles: &[[u32; 3]],

@@ -1,12 +1,12 @@
-//! Meshes with one surface per vertex. A vertex is lit once, with one material, so where two surfaces meet each needs
-//! its own.
+//! Meshes with one surface per vertex. A vertex is lit once, with one material, so where two
+//! surfaces meet, each needs its own vertex.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::Mesh;
 
-/// No triangle uses the vertex, or none so far.
+/// No triangle uses the vertex, or none has so far.
 const NONE: u32 = u32::MAX;
 
 impl Mesh {

@@ -1,5 +1,5 @@
-//! Topology of a mesh: which vertices are the same point, whether it is closed, whether it is convex. The plan skips
-//! work on the strength of these, so they are exact, and "no" when in doubt.
+//! Topology of a mesh: which vertices are the same point, whether it is closed, whether it is
+//! convex. The plan relies on these to skip work, so they are exact, and "no" when in doubt.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -70,8 +70,8 @@ fn weld_by_sorting(keys: impl Iterator<Item = [u32; 3]>) -> Vec<u32> {
     points
 }
 
-/// Returns whether a triangle has two corners at one point. Such a line draws nothing, two of its edges cancel, and it
-/// is not part of the surface.
+/// Returns whether a triangle has two corners at one point. Such a degenerate triangle draws
+/// nothing, two of its edges cancel, and it does not count as part of the surface.
 pub(super) fn is_line(triangle: [u32; 3]) -> bool {
     triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]
 }
@@ -144,7 +144,7 @@ impl Edges {
 
     /// Returns whether every edge is traversed equally often in both directions: the surface bounds one or more solids.
     pub(super) fn balance(&self) -> bool {
-        // Nearly all edges have two faces, and need no counting.
+        // Nearly all edges have two faces and need no counting.
         let balances = |faces: &[(u32, u32)]| match faces {
             [up, down] => up.0 & 1 == 0 && down.0 & 1 == 1,
             faces => 2 * faces.iter().filter(|face| face.0 & 1 == 1).count() == faces.len(),
@@ -174,8 +174,9 @@ impl Edges {
         self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
     }
 
-    /// Passes on the triangles that lie back to back, with the same three points and opposite winding: those wound one
-    /// way, and those wound the other. Neither list is empty; each is in ascending order.
+    /// Calls `found` for triangles that lie back to back, with the same three points and opposite
+    /// winding: those wound one way, and those wound the other. Neither list is empty; each is in
+    /// ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
         let (mut ups, mut downs) = (Vec::new(), Vec::new());
         let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
@@ -204,7 +205,7 @@ impl Edges {
     }
 }
 
-/// Returns whether a mesh is closed and convex, and wound so that its faces look outward.
+/// Returns whether a mesh is closed and convex, and wound so that its faces point outward.
 ///
 /// Each edge must have exactly two faces, which traverse it in opposite directions. Three further conditions together
 /// suffice:
@@ -244,8 +245,8 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
         return false;
     }
 
-    // Tested before the solid angles, which take longer: few meshes are convex, and nearly all others have a dent at
-    // one of the first edges.
+    // Tested before the solid angles, which take longer: few meshes are convex, and nearly all
+    // others have a dent at one of the first edges tested.
     let far = |corner: usize| positions[triangles[corner / 3][(corner + 2) % 3] as usize];
     let dented = edges.pairs().any(|[one, other]| {
         let [a, b, c] = triangles[one / 3].map(|vertex| positions[vertex as usize]);
@@ -262,7 +263,7 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
         let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
         2.0 * libm::atan2(dot(a, cross(b, c)), below)
     });
-    // The sum is a whole number of spheres, so half a sphere is margin enough.
+    // The sum is a multiple of 4π, so half a sphere is margin enough.
     solid_angle.sum::<f64>() <= 6.0 * core::f64::consts::PI
 }
 

@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use super::Mesh;
 use super::topology::Edges;
 
-/// Marks each triangle that lies back to back with another by a bit, 64 per word. Empty if there is none.
+/// Marks each triangle that has a back-to-back twin with a bit, 64 per word. Empty if none has.
 pub(super) fn mark(edges: &Edges, triangles: &[[u32; 3]], points: &[u32]) -> Vec<u64> {
     let mut twins = Vec::new();
     edges.opposites(triangles, points, |ups, downs| {
@@ -35,8 +35,9 @@ impl Mesh {
     }
 }
 
-/// The pairs of back-to-back triangles that a closed mesh has by mistake, as the indices of both: membranes inside a
-/// surface that is complete without them, and faces that exist a second time together with a reversed copy.
+/// The pairs of back-to-back triangles that a closed mesh has by mistake, as the indices of both:
+/// membranes inside a surface that is complete without them, and duplicated faces with a reversed
+/// copy.
 ///
 /// A **sheet** is intended: its pairs are joined at edges that no other face shares, and either have a free rim (an
 /// edge of a single pair), like a leaf or a fin, or touch nothing else, like a solid with every face in both
@@ -71,7 +72,7 @@ pub(super) fn mistaken(
         here.clear();
         here.extend(faces.map(|(_, corner)| pair_of[corner / 3]));
         here.sort_unstable();
-        // Both triangles of a pair are here.
+        // Both triangles of a pair share the edge.
         here.dedup();
         match *here.as_slice() {
             [NONE] => {}

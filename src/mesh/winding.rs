@@ -1,9 +1,10 @@
 //! Winding numbers of a closed surface, counted along rays.
 //!
-//! The **winding number** of a point counts how often the surface encloses it: 0 outside, 1 inside a solid, 2 where two
-//! solids overlap, −1 inside a solid whose faces look inward. Along a ray it grows by one at a face that looks back
-//! along the ray, and falls by one at a face that looks forward. If it is nowhere below 0, an eye outside (at 0) sees
-//! no face from behind: the first face on each ray must raise it.
+//! The **winding number** of a point counts how often the surface encloses it: 0 outside, 1 inside
+//! a solid, 2 where two solids overlap, −1 inside a solid whose faces point inward. Along a ray it
+//! rises by one at a face that points back along the ray, and falls by one at a face that points
+//! forward. If it is nowhere below 0, an eye outside (at 0) sees no face from behind: the first
+//! face on each ray must raise it.
 //!
 //! Rays run along the three axes, 64 × 64 along each, so narrower parts can be missed. A ray passes each edge on a side
 //! that both faces of the edge agree on: the point where an edge crosses a row of rays is computed from the edge's two
@@ -42,19 +43,19 @@ const MEETINGS_PER_FACE: u64 = 64;
 /// The number of intersections of a surface that crosses the box 64 times along each ray.
 const MAX_MEETINGS: u64 = 64 * RAYS as u64 * RAYS as u64;
 
-/// The number of intersections in memory at a time: per face, and on top of that.
+/// The number of intersections held in memory at a time: this many per face, plus [`HELD`].
 const HELD_PER_FACE: u64 = 2;
 const HELD: u64 = 256;
 
-/// Returns whether no point has a negative winding number, folds aside: then no back face of a closed mesh is visible
-/// from outside. Takes memory in proportion to the number of faces, and returns `false` if the answer would take too
-/// long.
+/// Returns whether no point has a negative winding number, folds aside: then no back face of a
+/// closed mesh is visible from outside. Memory is proportional to the number of faces, and the
+/// result is `false` if the answer would take too long.
 pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bounds) -> bool {
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     let sides = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     let longest = sides.into_iter().fold(0.0, f64::max);
-    // In units of the ray spacing: rays lie at the integers 1 to 64. The box is offset from them by no simple fraction,
-    // so that no ray lies in a plane of a symmetrical model.
+    // In units of the ray spacing: rays lie at the integers 1 to 64. The box's offset from them is
+    // no simple fraction, so that no ray lies in a plane of a symmetrical model.
     let scale = sides.map(|side| if side > 0.0 { f64::from(RAYS) / side } else { 0.0 });
     let part = [0.618_034, 0.414_214, 0.732_051];
     let scaled = |p: Vec3| {

@@ -1,8 +1,9 @@
 //! The 256 colours that the VGA BIOS loads for mode 13h.
 //!
-//! The BIOS does not store 768 numbers either, and the rule says more than the list would: the 16 colours of the text
-//! modes, 16 greys, then nine hue circles of 24 (three brightnesses of three saturations), then 8 black entries.
-//! Checked against the tables in DOSBox (`vga_palette` of `int10_modes.cpp`) and in KOS (`vp_gfx_256`), which agree.
+//! They are computed by a rule, which says more than a list of 768 numbers (the BIOS does not store
+//! one either): the 16 colours of the text modes, 16 greys, then nine hue circles of 24 (three
+//! brightnesses of three saturations), then 8 black entries. Checked against the tables in DOSBox
+//! (`vga_palette` of `int10_modes.cpp`) and in KOS (`vp_gfx_256`), which agree.
 
 use super::Palette;
 
@@ -12,7 +13,7 @@ pub const BIOS: Palette = Palette::from_dac(&entries());
 /// Entries 16 to 31, the same value for red, green and blue.
 const GREYS: [u8; 16] = [0, 5, 8, 11, 14, 17, 20, 24, 28, 32, 36, 40, 45, 50, 56, 63];
 
-/// The five levels from the least to the greatest channel of each hue circle.
+/// The five channel levels of each hue circle, from least to greatest.
 const CIRCLES: [[u8; 5]; 9] = [
     [0, 16, 31, 47, 63],
     [31, 39, 47, 55, 63],

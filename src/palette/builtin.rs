@@ -1,9 +1,9 @@
 //! The built-in palettes, by name.
 //!
-//! They are computed here in integers, at compile time, from key colours. The keys were shifted by a few units, by
-//! trial, so that the DAC's channels step one after the other: copper has 156 shades there instead of 141. The files in
-//! `palettes/` are written from these tables, and a test ensures that both are equal. All are our own work except
-//! `bios`.
+//! They are computed here in integers, at compile time, from key colours. The keys were tuned by a
+//! few units, by trial, so that the DAC's channels step one after the other: copper has 156
+//! distinct shades there instead of 141. The files in `palettes/` are written from these tables,
+//! and a test ensures that both are equal. All are our own work except `bios`.
 
 use super::gradient::{Stop, fill};
 use super::{BIOS, Palette, Ramp, Rgb, cube};
@@ -65,7 +65,7 @@ pub static ALL: [Builtin; 9] = [
     },
 ];
 
-/// The palette with a name, spelled as in [`ALL`]. Returns `None` if there is none.
+/// Looks up a palette by name, spelled as in [`ALL`]. Returns `None` if there is none.
 ///
 /// ```
 /// use mode13h::palette::builtin;

@@ -9,7 +9,7 @@ use super::{Palette, Rgb, dac6_to_8};
 /// The six levels of a channel, in the DAC's 6 bits: `63·k/5` rounded to the nearest.
 pub(crate) const LEVELS: [u8; 6] = [0, 13, 25, 38, 50, 63];
 
-/// The first of the greys.
+/// The index of the first grey.
 const FIRST_GREY: usize = 216;
 
 /// The cube with its greys. It has no ramps.
@@ -88,8 +88,9 @@ pub const fn nearest_mixture(color: Rgb) -> u8 {
 
 /// The entry of [`CUBE`] nearest to a colour: the result of [`Palette::nearest`], without a search.
 ///
-/// The squared distance to a grey v is 3·(v − m)² plus a term common to all greys, where m is the mean of the three
-/// channels. So only the grey nearest to m need be considered, or, because m is a number of thirds, the two around it.
+/// The squared distance to a grey v is 3·(v − m)² plus a term common to all greys, where m is the
+/// mean of the three channels. So only the grey nearest to m need be considered, or, because m is a
+/// multiple of a third, the two around it.
 #[must_use]
 #[inline]
 pub const fn nearest(color: Rgb) -> u8 {

@@ -21,10 +21,11 @@ impl Stop {
 
 /// Fills the entries of `ramp` by linear interpolation between keys, channel by channel.
 ///
-/// Entry `i` of `n` is at position `255·i/(n − 1)`, and a single entry at 255. A channel's value is rounded to the
-/// nearest of 0 to 255, halves upward, from the exact fraction. Before the first key and after the last, their colours
-/// continue. The keys must be in increasing order of [`Stop::at`]; a key that is not above the one before it is
-/// ignored. Without keys nothing changes.
+/// Entry `i` of `n` is at position `255·i/(n − 1)`, and a single entry at 255. A channel's value is
+/// rounded to the nearest of 0 to 255, halves upward, from the exact fraction. Before the first key
+/// and after the last, the colour is constant. The keys must be in increasing order of
+/// [`Stop::at`]; a key that is not above the one before it is ignored. Without keys nothing
+/// changes.
 ///
 /// ```
 /// use mode13h::palette::{Ramp, Rgb, gradient::{Stop, fill}};

@@ -1,4 +1,4 @@
-//! A map from 15-bit colours to the nearest palette entry, and the spread of dithering in it.
+//! A map from 15-bit colours to the nearest palette entry, and the dither amplitude that suits it.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -53,10 +53,10 @@ impl InverseColormap {
         self.entries[five(color.r) << 10 | five(color.g) << 5 | five(color.b)]
     }
 
-    /// The distance over which ordered dithering should move every channel, from its lowest threshold to its highest,
-    /// to reach from one palette colour to its neighbours: the median, over the distinct colours that the card shows,
-    /// of the distance to the nearest other one. In 1/255 of full intensity, at most 255; 0 if there are no two
-    /// distinct colours.
+    /// The amplitude of ordered dithering for every channel, from the lowest threshold to the
+    /// highest, that reaches from one palette colour to its neighbours: the median, over the
+    /// distinct colours that the card shows, of the distance to the nearest other one. In 1/255 of
+    /// full intensity, at most 255; 0 if there are no two distinct colours.
     ///
     /// In the colour cube this is the distance between two levels, just what ordered dithering needs there. In a
     /// palette of ramps it is a step along a ramp.
@@ -75,10 +75,11 @@ impl fmt::Debug for InverseColormap {
 
 /// See [`InverseColormap::spread`].
 ///
-/// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of 8 × 8 blocks are off, in the
-/// palette of 16 ramps, by 7.3 without dithering and 1.9 with this spread, 20; in the cube by 11.7 and 1.4, with 49. A
-/// larger spread reaches colours that are far from all entries, at the price of noise everywhere. The mean instead of
-/// the median would give the cube 41, since its greys are close together.
+/// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of 8 × 8 blocks
+/// are off by 7.3 without dithering and 1.9 with this spread (20) in the palette of 16 ramps, and
+/// by 11.7 and 1.4 in the cube (spread 49). A larger spread reaches colours that are far from all
+/// entries, at the price of noise everywhere. The mean instead of the median would give the cube
+/// 41, since its greys are close together.
 fn spread(palette: &Palette) -> u8 {
     let mut colors = *palette.on_dac().colors();
     colors.sort_unstable();

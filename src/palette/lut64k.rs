@@ -1,4 +1,4 @@
-//! Tables of 64 KiB, from two bytes to a third, for the pixel effects.
+//! Lookup tables of 64 KiB, from two bytes to a third, for the pixel effects.
 //!
 //! A row holds 256 bytes; `high` selects the row, `low` the column, and the byte is at `high << 8 | low`. Every colour
 //! in a table made from a palette is the nearest entry to an exact mixture rounded once, by the colours that the card
@@ -26,7 +26,8 @@ impl Lut64K {
     /// 64 KiB.
     pub(crate) const BYTES: usize = 65_536;
 
-    /// Makes a table with `byte(high, low)` at every row and column. Phong's table of shades is one.
+    /// Makes a table with `byte(high, low)` at every row and column, such as the shade table of
+    /// Phong shading.
     #[must_use]
     pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
@@ -55,8 +56,9 @@ impl Lut64K {
         })
     }
 
-    /// A table of fog. Row: the share of fog, from 0 for none to 255 for nothing else; column: the byte without fog.
-    /// The entry is the nearest to the mixture of that byte's colour with `fog`. Row 0 leaves every byte unchanged.
+    /// A table of fog. Row: the amount of fog, from 0 (none) to 255 (nothing but fog); column: the
+    /// byte without fog. The entry is the nearest to the mixture of that byte's colour with `fog`.
+    /// Row 0 leaves every byte unchanged.
     #[must_use]
     pub fn fog(palette: &Palette, fog: Rgb) -> Self {
         let shown = palette.on_dac();
@@ -67,9 +69,9 @@ impl Lut64K {
         })
     }
 
-    /// A table of glass. Row: the new byte; column: the old byte. The entry is the nearest to the mixture in which the
-    /// new one has the share `opacity`, 0 to 255: at 255 it is the new byte itself, at 0 the old one. A byte blended
-    /// over itself stays.
+    /// A table of glass. Row: the new byte; column: the old byte. The entry is the nearest to the
+    /// mixture in which the new one has the share `opacity`, 0 to 255: at 255 it is the new byte
+    /// itself, at 0 the old one. A byte blended over itself is unchanged.
     #[must_use]
     pub fn blend(palette: &Palette, opacity: u8) -> Self {
         let shown = palette.on_dac();
@@ -82,9 +84,10 @@ impl Lut64K {
         })
     }
 
-    /// A table of glenz, glass that shines: the entry nearest to the sum of both colours, each channel at most 255. Row
-    /// and column are as in [`blend`](Self::blend), but swapping them does not change the picture. A byte that shows
-    /// black adds nothing: the other byte stays, and if both are black, the old one.
+    /// A table of glenz, glass that shines: the entry nearest to the sum of both colours, each
+    /// channel at most 255. Row and column are as in [`blend`](Self::blend), but swapping them does
+    /// not change the picture. A byte that shows black adds nothing: the result is the other byte,
+    /// or the old one if both are black.
     #[must_use]
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();

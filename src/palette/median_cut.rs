@@ -1,9 +1,10 @@
 //! Median cut: reduces many colours to a few.
 //!
-//! After Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a box around all colours is cut
-//! in two, then one of the two, and so on; each box becomes the mean of its colours. Heckbert cuts the longest side of
-//! the fullest box at the median. Here the cut is made, out of all boxes, sides and positions, that lowers the sum of
-//! squared distances most (after Wu, "Efficient statistical computations for optimal color quantization", Graphics Gems
+//! After Heckbert ("Color image quantization for frame buffer display", SIGGRAPH 1982): a box
+//! around all colours is cut in two, then one of the two, and so on; each box becomes the mean of
+//! its colours. Heckbert cuts the longest side of the fullest box at the median. Here each cut is
+//! the one, among all boxes, axes and positions, that lowers the sum of squared distances most
+//! (after Wu, "Efficient statistical computations for optimal color quantization", Graphics Gems
 //! II, 1991).
 //!
 //! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, use randomness, or do not report the gain of
@@ -49,8 +50,8 @@ struct Moments {
 }
 
 impl MedianCut {
-    /// Makes one box around weighted colours. Colours without weight are dropped, and those beyond 2²⁴, so that no sum
-    /// exceeds 2⁶⁴.
+    /// Makes one box around weighted colours. Colours without weight are dropped, as are all beyond
+    /// the first 2²⁴, so that no sum exceeds 2⁶⁴.
     #[must_use]
     pub fn new(mut colors: Vec<(Rgb, u32)>) -> Self {
         colors.retain(|&(_, weight)| weight > 0);
@@ -66,8 +67,8 @@ impl MedianCut {
         cuts.reduce(|best, next| if next.1.gain > best.1.gain { next } else { best })
     }
 
-    /// The decrease of the sum of weight × squared distance to the mean by the next cut. `None` if every colour has a
-    /// box of its own.
+    /// The amount by which the next cut lowers the sum of weight × squared distance to the mean.
+    /// `None` if every colour has a box of its own.
     pub fn gain(&self) -> Option<f64> {
         self.best().map(|(_, cut)| cut.gain)
     }

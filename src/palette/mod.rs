@@ -10,7 +10,7 @@
 //! | [`BIOS`] | the initial colours of mode 13h |
 //! | [`builtin`] | the built-in palettes, by name |
 //! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
-//! | [`Lut64K`] | 64 KiB from two bytes to a third: shaded texels, fog, glass (`alloc`) |
+//! | [`Lut64K`] | 64 KiB tables from two bytes to a third: shaded texels, fog, glass (`alloc`) |
 //!
 //! A palette has 8 bits a channel, the card 6. A palette stores the 8 bits it was given, so a file is written as it was
 //! read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
@@ -78,9 +78,10 @@ impl Palette {
     /// The max number of ramps that [`from_colors`](Self::from_colors) looks for, each then of 8 entries.
     const MAX_RAMPS_FOUND: u16 = 32;
 
-    /// Makes a palette of 256 colours, and finds its ramps: the least of 1, 2, 4, 8, 16 and 32 equal ramps such that
-    /// within each ramp no entry is darker than the one before it, and the last is brighter than the first
-    /// ([`Rgb::brightness`]); 0 if none of these fits. [`with_ramps`](Self::with_ramps) overrides it.
+    /// Makes a palette of 256 colours, and finds its ramps: the smallest number, out of 1, 2, 4, 8,
+    /// 16 and 32, of equal ramps such that within each ramp no entry is darker than the one before
+    /// it, and the last is brighter than the first ([`Rgb::brightness`]); 0 if none of these fits.
+    /// [`with_ramps`](Self::with_ramps) overrides it.
     #[must_use]
     pub const fn from_colors(colors: [Rgb; 256]) -> Self {
         let mut ramps = 1;
@@ -158,7 +159,8 @@ impl Palette {
         best
     }
 
-    /// The colours that the card shows for these: each through 6 bits and back. The ramps are unchanged.
+    /// The palette as the card shows it: each colour reduced to 6 bits and expanded again. The
+    /// ramps are unchanged.
     #[must_use]
     pub const fn on_dac(&self) -> Self {
         let mut colors = self.colors;

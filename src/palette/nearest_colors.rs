@@ -18,7 +18,7 @@ const SIDE: usize = 8;
 /// The number of values of a channel in a box.
 const WIDTH: u8 = 32;
 
-/// A search for the nearest of some colours.
+/// A prepared search for the nearest of a set of colours.
 ///
 /// ```
 /// use mode13h::palette::{BIOS, Rgb, NearestColors};
@@ -64,7 +64,7 @@ struct Reach {
 }
 
 impl NearestColors {
-    /// Makes a search among the first 256 of `colors`.
+    /// Prepares a search among the first 256 of `colors`.
     #[must_use]
     pub fn new(colors: &[Rgb]) -> Self {
         let mut distinct: Vec<Candidate> = Vec::new();
@@ -89,7 +89,8 @@ impl NearestColors {
         search
     }
 
-    /// Makes a search among the colours that the card shows for a palette, so the nearest is nearest on the screen.
+    /// Prepares a search among the colours that the card shows for a palette, so the nearest is
+    /// nearest on the screen.
     #[must_use]
     pub fn of_shown(palette: &Palette) -> Self {
         Self::new(palette.on_dac().colors())

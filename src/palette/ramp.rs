@@ -30,7 +30,7 @@ impl Ramp {
         Some(Self { first, entries })
     }
 
-    /// A ramp of one entry, the index of every shade.
+    /// A ramp of one entry, which every shade maps to.
     #[must_use]
     #[inline]
     pub const fn single(entry: u8) -> Self {

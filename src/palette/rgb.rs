@@ -100,7 +100,7 @@ impl Rgb {
         [to_dac6(self.r), to_dac6(self.g), to_dac6(self.b)]
     }
 
-    /// The colour that the card shows for this one: through 6 bits and back.
+    /// The colour that the card shows for this one: reduced to 6 bits and expanded again.
     ///
     /// ```
     /// use mode13h::palette::Rgb;

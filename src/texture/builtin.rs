@@ -1,5 +1,6 @@
-//! The built-in textures, computed in integers from a hash, so the same on every machine. `checker` and `bricks` tile
-//! seamlessly; `crate` is one side of a box, and `sky` is looked up by a normal.
+//! The built-in textures, computed in integers from a hash, so they are the same on every machine.
+//! `checker` and `bricks` tile seamlessly; `crate` is one side of a box, and `sky` is looked up by
+//! a normal.
 
 use alloc::vec::Vec;
 use core::str::FromStr;

@@ -136,10 +136,10 @@ impl Texture {
 
     /// Makes a texture from a picture's pixels, row by row from its top row down.
     ///
-    /// Each side becomes the power of two up to 256 whose ratio to it is nearest to 1, by averaging over the area that
-    /// a texel covers, in exact fractions rounded once. (DAC values are averaged without gamma, as was usual then.)
-    /// More than 256 colours are reduced by median cut, and each pixel gets the nearest remaining one; up to 256 stay
-    /// unchanged.
+    /// Each side is resampled to the power of two up to 256 whose ratio to it is nearest to 1, by
+    /// averaging over the area that a texel covers, in exact fractions rounded once. (DAC values
+    /// are averaged without gamma, as was usual then.) More than 256 colours are reduced by median
+    /// cut, and each pixel gets the nearest remaining one; up to 256 stay unchanged.
     ///
     /// # Errors
     /// A side of 0 or above 4,096; a number of pixels other than `width·height`.

@@ -15,8 +15,8 @@ pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     bits.min(Texture::MAX_SIDE.ilog2())
 }
 
-/// The parts of a row's pixels that lie in texel `i` of `to`: each pixel with its share. A pixel is `to` and a texel
-/// `from` units long, so both rows are `from·to` long.
+/// The pixels of a row that overlap texel `i` of `to`, each with the length of its overlap. A pixel
+/// is `to` and a texel `from` units long, so both rows are `from·to` long.
 fn parts(i: usize, from: usize, to: usize) -> impl Iterator<Item = (usize, u32)> {
     let (start, end) = (i * from, (i + 1) * from);
     (start / to..end.div_ceil(to)).map(move |pixel| {

@@ -1,7 +1,8 @@
 //! Built-in shapes, each fitting into the unit sphere about the origin.
 //!
-//! Normals are analytic (the Polish lecture), except for the cube, which has face normals. Numbers of slices, stacks
-//! and segments are clamped to the least that makes the shape and to 4,096. Cube and wall have texture coordinates.
+//! Normals are analytic (the Polish lecture), except for the cube, which has face normals. Numbers
+//! of slices, stacks and segments are clamped to at least what the shape needs and at most 4,096.
+//! Cube and wall have texture coordinates.
 //!
 //! | shape | closed | convex | axis |
 //! |---|---|---|---|
@@ -37,7 +38,7 @@ pub use wall::wall;
 /// The max number of slices, stacks or segments.
 const MAX_PARTS: u32 = 4096;
 
-/// A name, and the shape in its usual subdivision.
+/// A name, and the shape at its usual subdivision.
 type Row = (&'static str, fn() -> Mesh);
 
 const TABLE: [Row; 7] = [
@@ -61,7 +62,8 @@ pub const NAMES: [&str; 7] = {
     names
 };
 
-/// A shape in its usual subdivision, at most 4,032 triangles; `None` if the name is not in [`NAMES`].
+/// A shape at its usual subdivision, at most 4,032 triangles; `None` if the name is not in
+/// [`NAMES`].
 ///
 /// ```
 /// use mode13h::mesh::shapes;

@@ -8,7 +8,7 @@ use super::{MAX_PARTS, quad, toward_zero};
 use crate::mesh::Mesh;
 use crate::mesh::wide::narrow;
 
-/// Cosine and sine of `i` `of`ths of a turn.
+/// The cosine and the sine of `i` / `of` turns.
 fn turn(i: f64, of: u32) -> (f64, f64) {
     let angle = 2.0 * core::f64::consts::PI * i / f64::from(of);
     (libm::cos(angle), libm::sin(angle))
@@ -19,8 +19,8 @@ fn around_y(radius: f64, y: f64, (cos, sin): (f64, f64)) -> Vec3 {
     Vec3::new(toward_zero(radius * cos), toward_zero(y), toward_zero(-radius * sin))
 }
 
-/// Adds the band of quads between two rings of `slices` vertices each, given by their first vertices; the last quad
-/// joins the first.
+/// Adds the band of quads between two rings of `slices` vertices each, given by their first
+/// vertices; it wraps around.
 fn band(positions: &[Vec3], slices: u32, lower: u32, upper: u32, triangles: &mut Vec<[u32; 3]>) {
     for i in 0..slices {
         let next = (i + 1) % slices;
@@ -103,7 +103,7 @@ pub fn torus(u: u32, v: u32) -> Mesh {
 pub fn cone(slices: u32, stacks: u32) -> Mesh {
     let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, 256));
     let radius = libm::sqrt(0.75);
-    // The unit normal's parts outward and up: the side falls by 3/2 over √¾.
+    // The unit normal's outward and upward components: the side falls by 3/2 over √¾.
     let (out, up) = (libm::sqrt(0.75), 0.5);
     let side_normal = |(cos, sin): (f64, f64)| narrow([out * cos, up, -out * sin]);
 

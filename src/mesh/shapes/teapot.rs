@@ -60,7 +60,7 @@ const HALVES: [[[Wide; 4]; 4]; 4] = [
 
 /// The centre of the surface's box: x from −3 to the spout's tip at 3.434, z from 0 to 3.15.
 const CENTRE: Wide = [0.217, 0.0, 1.575];
-/// The distance from there to the farthest point of the surface, rounded up.
+/// The distance from that centre to the farthest point of the surface, rounded up.
 const RADIUS: f64 = 3.3405;
 
 /// Control points: rows along v, columns along u; ∂u × ∂v points outward.
@@ -160,7 +160,8 @@ impl Builder {
     /// one point.
     fn finish(self) -> Mesh {
         let points = topology::weld(&self.positions);
-        // Neighbours' normals differ by rounding; at the edges of rim and lid they differ by much more.
+        // The normals of neighbouring patches differ by rounding; at the edges of rim and lid they
+        // differ by much more.
         let same = |a: Vec3, b: Vec3| a.dot(b) > 0.9999;
         let mut at_point: Vec<Vec<u32>> = alloc::vec![Vec::new(); points.len()];
         let mut positions: Vec<Vec3> = Vec::new();
