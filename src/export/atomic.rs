@@ -8,7 +8,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The error of a file that was not written. A previous file under its name is untouched.
+/// The error for a file that could not be written. A previous file of that name is untouched.
 #[non_exhaustive]
 pub struct ExportError {
     /// The file that was to be written.
@@ -138,8 +138,8 @@ pub fn write_atomically(
     }
 }
 
-/// Tests whether [`write_atomically`] could write a file with this name, apart from a full disk: a temporary file is
-/// created and removed. An existing file is left alone.
+/// Tests whether [`write_atomically`] could write a file of this name, apart from a full disk, by
+/// creating and removing a temporary file. An existing file is left alone.
 ///
 /// # Errors
 ///
@@ -219,7 +219,7 @@ impl AtomicFile {
         temporary.rename(&target).map_err(fail)
     }
 
-    /// Makes the error to report from an error of writing into the file.
+    /// Converts an error from writing into the file to the one to report.
     fn failed(&self, error: io::Error) -> ExportError {
         ExportError::new(&self.path, ExportErrorKind::from_writing(error))
     }

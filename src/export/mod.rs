@@ -1,7 +1,7 @@
 //! Pictures on disk: the frame as an indexed PNG or in true colour; files that are never half-written.
 //!
-//! Every file goes through an [`AtomicFile`]: it is written under a temporary name and then renamed, so a previous file
-//! with its name stays complete until the new one is.
+//! Every file goes through an [`AtomicFile`]: it is written under a temporary name and then
+//! renamed, so a previous file of that name stays intact until the new one is complete.
 
 mod atomic;
 #[cfg(any(feature = "png", feature = "window"))]

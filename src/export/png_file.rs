@@ -118,8 +118,8 @@ impl Png {
     }
 }
 
-/// A writer that stores its first error. For an error amid a picture's data the encoder only passes on the text, so a
-/// full disk would look like any other error.
+/// A writer that stores its first error. For an error within a picture's data the encoder only
+/// passes on the text, so a full disk would look like any other error.
 struct Remembered<'a> {
     out: &'a mut dyn Write,
     error: Option<io::Error>,

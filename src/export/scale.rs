@@ -11,14 +11,14 @@ use super::{MAX_SIDE, Picture, PictureError, PixelShape};
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Scale {
-    /// Every pixel once: a 320 × 200 frame gives 320 × 200.
+    /// No enlargement: a 320 × 200 frame stays 320 × 200.
     #[default]
     One,
     /// Every pixel 2 × 2, as the VGA scans every row twice: 640 × 400.
     Double,
     /// Every pixel 5 wide and 6 high: 1600 × 1200, exactly 4:3 in square pixels.
     FiveBySix,
-    /// Stretched to this size; each pixel is the one of the frame that contains its centre.
+    /// Stretched to this size; each pixel is the frame's pixel that contains its centre.
     To {
         /// The number of pixels in a row, 1 to [`MAX_SIDE`].
         width: u16,
@@ -134,7 +134,7 @@ impl<'a> Scaled<'a> {
         Ok(part)
     }
 
-    /// The picture itself, and which of its columns and rows the columns and rows of the result show.
+    /// The picture itself, and the source column and row of each column and row of the result.
     pub fn sources(&self) -> (&Picture<'a>, &[usize], &[usize]) {
         (&self.picture, &self.columns, &self.rows)
     }
@@ -147,7 +147,8 @@ impl<'a> Scaled<'a> {
         let y = u64::from(self.height) * u64::from(across) * self.picture.width as u64;
         let common = greatest_common_divisor(x, y);
         let (mut x, mut y) = (x / common, y / common);
-        // PNG numbers end at 2^31 − 1. Unusual shapes and sizes may need more; the ratio is then rounded.
+        // PNG integers end at 2^31 − 1. Unusual shapes and sizes may need more; the ratio is then
+        // rounded.
         const END: u64 = (1 << 31) - 1;
         while x > END || y > END {
             (x, y) = (x.div_ceil(2), y.div_ceil(2));

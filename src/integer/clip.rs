@@ -1,7 +1,7 @@
 //! Clipping in homogeneous space, in wide integers: the near plane first, then the guard band.
 //!
-//! Corners have 12 more fractional bits than vertices: an intersection is rounded, and one at the edge of the guard
-//! band, 4,096 pixels away, affects an edge across the whole picture.
+//! Corners have 12 more fractional bits than vertices: an intersection is rounded, and at the edge
+//! of the guard band, 4,096 pixels away, its rounding affects an edge across the whole picture.
 //!
 //! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the guard band
 //! is `a·W ± b·X` with a at most 2³¹ and b at most 2³²: below 2⁷⁷. An intersection multiplies it by a difference of
@@ -25,8 +25,8 @@ pub(super) struct Corner {
     w: i128,
     /// In 2⁻⁴⁰ shade.
     shade: i64,
-    /// The projected vertex, for a corner of the mesh that needs no clipping. It is passed through unchanged, because a
-    /// neighbour that needs no clipping either uses the same vertex.
+    /// The projected vertex, for a corner of the mesh that needs no clipping. It is passed through
+    /// unchanged, because neighbouring faces that need no clipping use the same vertex.
     vertex: Option<Vertex>,
 }
 

@@ -51,7 +51,7 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// The shades of both sides: first that of the side that the unit `normal` points away from.
+    /// The shades of both sides: first that of the side that the unit `normal` points out of.
     #[inline]
     pub(super) fn shades(&self, beams: &[Beam], normal: Vector) -> (U8F8, U8F8) {
         let normal = widen(normal);

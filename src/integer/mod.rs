@@ -1,10 +1,11 @@
 //! The integer vertex path: from a mesh in 16.16 to the raster without a float.
 //!
-//! The Hungarian tutorial uses fixed point throughout, with unit vectors of length 65,536. Here a whole frame is computed
-//! like that: rotation, projection, normals, light, clipping. The path needs neither `std` nor an allocator, and links no
-//! soft-float routine: meshes, paints and suns are borrowed slices, the caller provides storage for vertices, and
-//! triangles go to a closure. So a chip without a floating point unit draws what the f32 path of `render` draws, in the
-//! same stages and with the same conventions.
+//! The Hungarian tutorial uses fixed point throughout, with unit vectors of length 65,536. Here a
+//! whole frame is computed like that: rotation, projection, normals, light, clipping. The path
+//! needs neither `std` nor an allocator, and links no soft-float routine: meshes, paints and suns
+//! are borrowed slices, the caller provides storage for vertices, and triangles go to a closure. So
+//! a chip without a floating-point unit can draw what the f32 path of `render` draws, in the same
+//! stages and with the same conventions.
 //!
 //! | file | what |
 //! |---|---|
@@ -79,7 +80,7 @@ pub enum IntegerError {
     FieldOfView,
     /// The near distance is not above 0.
     Near,
-    /// The camera looks at the point where it is.
+    /// The camera's target is its own position.
     Direction,
     /// A scale is below 0.
     Scale,
@@ -116,7 +117,7 @@ pub enum IntegerError {
         /// The vertex.
         vertex: usize,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,

@@ -24,8 +24,8 @@ pub struct Object<'a, I: Index = u16> {
 /// Storage for a lit and projected vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LitVertex {
-    /// The vertex. Its shade is that of the front: the side that the normal points away from. If the vertex needs
-    /// clipping, only the shade is valid.
+    /// The vertex. Its shade is that of the front: the side that the normal points out of. If the
+    /// vertex needs clipping, only the shade is valid.
     vertex: Vertex,
     back: U8F8,
     needs_clipping: bool,
@@ -102,8 +102,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
         Ok(Self { shading: shading.in_integers(), object, view, beams, lit })
     }
 
-    /// Passes the faces to be drawn to `triangle`, clipped where necessary. Back faces are culled in a closed mesh and
-    /// in back-to-back pairs; elsewhere their back is drawn.
+    /// Passes the faces to be drawn to `triangle`, clipped where necessary. Back faces are culled
+    /// in a closed mesh and in back-to-back pairs; elsewhere they are drawn.
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
@@ -187,8 +187,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
     }
 }
 
-/// Returns whether the eye is behind the face, wherever its corners are: the sign of the volume between the eye and the
-/// three corners.
+/// Returns whether the eye is behind the face, wherever its corners are, from the sign of the
+/// volume between the eye and the three corners.
 fn is_turned_away(at: &[Homogeneous; 3]) -> bool {
     let [[ax, ay, aw], [bx, by, bw], [cx, cy, cw]] = at.map(|corner| corner.map(i128::from));
     // Coordinates are at most 2³²: below 6 · 2⁹⁶.

@@ -5,9 +5,9 @@
 //! x = cx + fx · X / W               y = cy + fy · Y / W     in pixels; fx, fy in 1/65,536 pixel
 //! ```
 //!
-//! **What is rounded (R13).** X, Y and W are integers: a sum of three products of 16.16 numbers, rounded to the nearest
-//! 1/65,536 once. The projected coordinate is then the exact rational `cx + fx·X / (65,536·W)`, which is rounded to
-//! floor(256·x + ½) exactly:
+//! **What is rounded.** X, Y and W are integers: a sum of three products of 16.16 numbers, rounded
+//! to the nearest 1/65,536 once. The projected coordinate is then the exact rational
+//! `cx + fx·X / (65,536·W)`, which is rounded to floor(256·x + ½) exactly:
 //!
 //! ```text
 //! floor(256·x + ½) = 256·cx + floor((fx·X + 128·W) / (256·W))       256·cx = 128·width: whole
@@ -114,7 +114,7 @@ impl View {
     /// Makes the view of `camera` through `lens`.
     ///
     /// # Errors
-    /// A camera that looks at the point where it is; a near distance that is not above 0.
+    /// The camera's target is its own position; the near distance is not above 0.
     pub fn new(camera: &Camera, lens: Lens) -> Result<Self, IntegerError> {
         let near = i64::from(camera.near.to_bits());
         if near <= 0 {
@@ -174,7 +174,8 @@ impl Default for Placement {
     }
 }
 
-/// A vertex before its division: X, Y and W in 1/65,536 of the scene's unit, within ±2³².
+/// A vertex before the perspective division: X, Y and W in 1/65,536 of the scene's unit, within
+/// ±2³².
 pub(super) type Homogeneous = Wide;
 
 /// The whole transform of an object, from its mesh to the screen.
@@ -224,7 +225,7 @@ impl ObjectView {
         if shift < 0 {
             return Err(IntegerError::TooFar);
         }
-        // Beyond 50 bits nothing is left of any sum: the object is a point.
+        // A shift by more than 50 bits leaves nothing of any sum: the object is a point.
         let shift = shift.min(62) as u32;
         let far = mesh.radius + square(placement.pivot).isqrt() + 1;
         // The max distance of a vertex from the pivot along any axis: at most 2³³ · (2¹⁷ + 2) < 2⁵¹. The rows exceed
@@ -233,8 +234,8 @@ impl ObjectView {
         if translation.iter().any(|c| c.abs() + reach >= Self::REACH) {
             return Err(IntegerError::TooFar);
         }
-        // The half unit that makes the shift round to the nearest is included in the offset. At most 2⁶¹ + 3 · 2¹⁷ ·
-        // 2³¹, and so for every vertex.
+        // The offset includes the half unit that makes the shift round to the nearest. It is at
+        // most 2⁶¹ + 3 · 2¹⁷ · 2³¹, and a vertex adds at most 3 · 2¹⁷ · 2³¹.
         let half = if shift == 0 { 0 } else { 1 << (shift - 1) };
         let pivot = widen(placement.pivot);
         let offset = matrix.map(|row| half - dot(row, pivot));
@@ -248,7 +249,7 @@ impl ObjectView {
         [0, 1, 2].map(|j| I16F16::from_bits(round_shift(dot(column(j), world), 2 * SINE_BITS - 16) as i32))
     }
 
-    /// A vertex before its division.
+    /// A vertex before the perspective division.
     #[inline]
     pub(super) fn homogeneous(&self, p: Vector) -> Homogeneous {
         let p = widen(p);
@@ -271,8 +272,8 @@ impl ObjectView {
     }
 }
 
-/// A vertex from coordinates in 1/256 pixel; `None` if they are beyond the limit. A quarter of a pixel is allowed on
-/// top, because rounding may move a clipped point off the limit.
+/// A vertex from coordinates in 1/256 pixel; `None` if they are beyond the limit. They may exceed
+/// it by a quarter of a pixel, because rounding may move a clipped point off the limit.
 #[inline]
 pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
     let limit = i128::from(ObjectView::LIMIT * 64 + 64);

@@ -10,20 +10,21 @@ named! {
     pub enum HiddenSurfaces, "way to hidden surfaces" {
         /// Back faces are culled, which is enough for a single convex object.
         BackFaces = "back-faces",
-        /// Far to near, each object over those before it. Correct for convex objects that lie one behind the other,
-        /// drawn object by object. If requested explicitly, it is the painter's algorithm by face, sorted by the mean
-        /// depth of a face's vertices: wrong where faces overlap cyclically or intersect.
+        /// Far to near, each object over those before it. Correct for convex objects that lie one
+        /// behind the other, drawn object by object. On explicit request, it is the painter's
+        /// algorithm by face, sorted by the mean depth of a face's vertices: wrong where faces
+        /// overlap cyclically or intersect.
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
-        /// All faces of the frame at once, row by row, each pixel written once (`raster::scan_line`). The bytes equal
-        /// those with the depth buffer.
+        /// All faces of the frame at once, row by row, each pixel written once
+        /// (`raster::scan_line`). Draws the same bytes as the depth buffer.
         ScanLine = "scan-line",
     }
 }
 
 named! {
-    /// A path from a mesh to projected vertices. From there on, the same raster draws both.
+    /// The arithmetic that takes a mesh to projected vertices. The same raster draws both.
     #[derive(Default)]
     pub enum VertexPath, "vertex path" {
         /// Vertices in f32.
@@ -40,13 +41,14 @@ named! {
 pub enum Accuracy {
     /// Every face gets this shading, with whatever error it has.
     Shading(Shading),
-    /// An error of at most this many shades, each 1/255 of full intensity: every face gets the cheapest shading known
-    /// to stay within it. A number that is not above 0 and finite is an error when a scene is drawn.
+    /// An error of at most this many shades, each 1/255 of full intensity: every face gets the
+    /// cheapest shading known to stay within it. A number that is not finite and above 0 is an
+    /// error when a scene is drawn.
     WithinError(f32),
 }
 
 impl Accuracy {
-    /// The shading; for an error budget the default, which faces get that need no decision.
+    /// The shading; for an error budget, the default, which faces get if they need no decision.
     #[must_use]
     pub fn shading(self) -> Shading {
         match self {
@@ -115,15 +117,16 @@ pub struct Settings {
     pub tessellation: Option<f32>,
     /// The dither pattern for shades between two entries of a ramp.
     pub dither: Option<DitherPattern>,
-    /// The arithmetic for vertices; f32 unless 16.16 is requested. 16.16 has no error budget and not every shading; it
-    /// uses the nearest one that it has.
+    /// The arithmetic for vertices; f32 unless 16.16 is requested. 16.16 has no error budget and
+    /// lacks some shadings; the default shading replaces them.
     pub vertex_path: Option<VertexPath>,
-    /// Bits after the point of projected vertices: 8, which are there, or fewer, to which they are rounded once more, half up.
-    /// 0 puts vertices on whole pixels, so that a model that moves slowly wobbles. Points that clipping makes keep their 8
-    /// bits, and so does the 16.16 path; shadings state their errors, and budgets prove theirs, for 8.
+    /// The number of fractional bits of projected vertices: 8, or fewer, to which they are rounded
+    /// once more, half up. 0 puts vertices on whole pixels, so that a slowly moving model wobbles.
+    /// Points made by clipping keep their 8 bits, and so does the 16.16 path; the stated errors of
+    /// shadings, and the errors that budgets prove, are for 8.
     pub vertex_bits: Option<u8>,
-    /// True to light every material on three channels and mix their light to the nearest colours, whether it is coloured or not.
-    /// For palettes of few colours: there dither reaches textures, too.
+    /// Whether to light every material on three channels and draw it in the nearest colours,
+    /// coloured or not. This suits palettes of few colours: there dithering reaches textures, too.
     pub channels: Option<bool>,
 }
 
@@ -147,7 +150,7 @@ impl Settings {
         }
     }
 
-    /// The accuracy that the vertex path can provide for the one requested.
+    /// The accuracy that the vertex path can provide in place of the one requested.
     #[must_use]
     pub fn drawn_accuracy(&self) -> Accuracy {
         match self.accuracy.unwrap_or_default() {
@@ -162,7 +165,7 @@ impl Settings {
         self.vertex_path == Some(VertexPath::Integer)
     }
 
-    /// Returns whether faces are to be split. An error budget makes shades follow the light in other ways.
+    /// Returns whether faces are to be split. An error budget limits the error by other means.
     pub(crate) fn tessellates(&self) -> bool {
         let accuracy = self.drawn_accuracy();
         let asks_for_splitting = accuracy.shading() == Shading::GouraudTessellated || self.tessellation.is_some();
@@ -222,7 +225,7 @@ mod tests {
         assert_eq!(of(Shading::GouraudTessellated.into(), Some(3.0)), (true, 3.0));
         assert_eq!(of(Shading::Phong.into(), Some(3.0)), (true, 3.0));
         assert_eq!(of(Shading::Phong.into(), None), (false, 1.0));
-        // If switched on by hand, faces are split to the scene's tolerance.
+        // If forced on, faces are split to the scene's tolerance.
         assert_eq!(of(Accuracy::WithinError(2.0), Some(3.0)), (false, 3.0));
     }
 }

@@ -9,8 +9,8 @@ named! {
     pub enum Shading, "shading" {
         /// One shade for each face.
         Flat = "flat",
-        /// The method printed in the sources: vertices on whole pixels, and for every span a step from a truncating
-        /// division. Its cover is not exact (`raster::vintage`).
+        /// The method printed in the sources: vertices on whole pixels, and for every span a step
+        /// from a truncating division. Its coverage is not exact (`raster::vintage`).
         GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, with each row of a triangle as one span.
         Gouraud88 = "gouraud-8.8",
@@ -66,7 +66,8 @@ impl Shading {
         self.interpolation().has_exact_cover()
     }
 
-    /// The shading used in its place on the 16.16 vertex path: itself, or the default if that path lacks it.
+    /// The shading that the 16.16 vertex path uses for it: itself, or the default if that path
+    /// lacks it.
     #[must_use]
     pub const fn in_integers(self) -> Self {
         match self {

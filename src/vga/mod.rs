@@ -150,8 +150,8 @@ impl Vga {
     /// Input status: bit 3 vertical retrace, bit 0 not displaying.
     const INPUT_STATUS: u16 = 0x3DA;
 
-    /// Advances the clock behind port 3DAh. Nothing is rounded: any number of calls has the same effect as one call
-    /// with their sum.
+    /// Advances the clock behind port 3DAh. Nothing is rounded: any number of calls has the same
+    /// effect as a single call with the sum of their times.
     pub const fn advance(&mut self, nanoseconds: u64) {
         self.beam.advance(nanoseconds);
     }

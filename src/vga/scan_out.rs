@@ -6,8 +6,8 @@ impl Vga {
     /// Writes the frame as 64,000 pixels `0x00RRGGBB`, row-major: each byte is ANDed with the pixel mask, looked up,
     /// and its 6 bits per channel are expanded to 8.
     ///
-    /// Fills as much of `out` as there is, from the start: all of a shorter buffer, the first 64,000 pixels of a longer
-    /// one; the rest is left alone.
+    /// `out` may have any length: a shorter buffer is filled, and in a longer one only the first
+    /// 64,000 pixels are written.
     ///
     /// ```
     /// use mode13h::vga::Vga;
@@ -36,9 +36,10 @@ impl Vga {
     /// Writes a row as 320 pixels of 5 bits red, 6 green, 5 blue (red on top), for a display that is fed row by row
     /// from a small buffer.
     ///
-    /// Fills as much of `out` as there is, like [`scan_out`](Self::scan_out). A row of 200 or more leaves `out` alone.
+    /// `out` may have any length, as in [`scan_out`](Self::scan_out). For a row of 200 or more
+    /// nothing is written.
     pub fn scan_out_row_rgb565(&self, row: usize, out: &mut [u16]) {
-        // Each colour is converted on the spot: a table of 256 would hardly pay for a row of 320.
+        // Each colour is converted on the spot: a table of 256 would hardly pay off for one row.
         let Some(pixels) = self.pixels().chunks_exact(Self::WIDTH).nth(row) else { return };
         for (color, &pixel) in out.iter_mut().zip(pixels) {
             *color = self.dac.color_of(pixel).to_rgb565();

@@ -41,7 +41,8 @@ impl Stamp {
 }
 
 impl Clone for Stamp {
-    /// The stamp of a copy: the memory is equal, so the stamp is, too; its next one comes from a block of its own.
+    /// The stamp of a copy is equal, because its memory is; its next one comes from a block of its
+    /// own.
     fn clone(&self) -> Self {
         Self { value: self.value, last: self.value }
     }

@@ -3,7 +3,7 @@
 use super::area::Area;
 use crate::palette::Rgb;
 
-/// The window's pixels, after the picture was stretched over them, as lent by
+/// The window's pixels with the picture stretched over them, as passed to the closure of
 /// [`Window::show_over`](super::Window::show_over).
 ///
 /// With the feature `embedded-graphics` it is a `DrawTarget` of `Rgb888`: text, lines and shapes at the window's own
@@ -73,8 +73,8 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Stretches a picture with `columns` pixels per row over a rectangle. Each pixel shows the one of the picture that
-    /// contains its centre.
+    /// Stretches a picture with `columns` pixels per row over a rectangle. Each pixel takes the
+    /// colour of the picture's pixel that contains its centre.
     pub fn stretch(&mut self, area: Area, colors: &[Rgb], columns: usize) {
         let rows = colors.len().checked_div(columns).unwrap_or(0);
         if rows == 0 {

@@ -32,8 +32,9 @@ impl Stretched {
         self.sizes[1]
     }
 
-    /// Stretches the picture that `vga` displays to a window of this size: 0x00RRGGBB, row by row, black beside the
-    /// picture. Each pixel shows the one of the picture that contains its centre.
+    /// Stretches the picture that `vga` displays to a window of this size: 0x00RRGGBB, row by row,
+    /// black beside the picture. Each pixel takes the colour of the picture's pixel that contains
+    /// its centre.
     pub(super) fn vga(&mut self, vga: &Vga, window: (usize, usize)) -> &[u32] {
         self.colors.resize(Vga::SHOWN, 0);
         vga.scan_out(&mut self.colors);

@@ -136,7 +136,7 @@ impl Events {
             middle: window.get_mouse_down(MouseButton::Middle),
             right: window.get_mouse_down(MouseButton::Right),
         };
-        // Also while the mouse is outside, with the button still down.
+        // Tracked outside the window, too, while the button is still down.
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);

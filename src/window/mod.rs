@@ -28,7 +28,8 @@ use input::Events;
 /// A frame of the VGA: 800 clocks × 449 lines at 25.175 MHz, 70.086 Hz.
 const FRAME: Duration = Duration::from_nanos(800 * 449 * 1_000_000 / 25_175);
 
-/// The interval at which [`Window::rest`] checks for input: a key is answered within a twentieth of a second.
+/// The interval at which [`Window::rest`] checks for input, so that a key press is answered within
+/// a twentieth of a second.
 const LOOK: Duration = Duration::from_millis(25);
 /// The interval at which [`Window::rest`] resends the picture.
 const RESEND: Duration = Duration::from_millis(500);
@@ -52,7 +53,7 @@ pub trait FrameResult {
     ///
     /// # Errors
     ///
-    /// That of the frame function.
+    /// The error of the frame function.
     fn flow(self) -> Result<Flow, Self::Error>;
 }
 
@@ -175,8 +176,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Opens a window: the largest of 4:3 that fits the screen, at most 960 × 720. The user may resize it; the picture
-    /// stays 4:3, with black bars beside it.
+    /// Opens a window: the largest 4:3 window that fits the screen, at most 960 × 720. The user may
+    /// resize it; the picture stays 4:3, with black bars beside it.
     ///
     /// The size of the screen is only known on X11. Elsewhere the window opens at 960 × 720.
     ///
@@ -249,8 +250,8 @@ impl Window {
         self.send()
     }
 
-    /// Shows a picture of any size, like [`show`](Self::show): as large as fits, its pixels in their aspect ratio,
-    /// black beside it.
+    /// Shows a picture of any size, like [`show`](Self::show): as large as fits, with its pixel
+    /// aspect ratio, and black bars beside it.
     ///
     /// # Errors
     ///
@@ -263,8 +264,8 @@ impl Window {
         self.send()
     }
 
-    /// Shows the picture like [`show`](Self::show), with what `over` draws on top, at the window's own resolution: text
-    /// that stays readable, panels that leave the frame itself unchanged.
+    /// Shows the picture like [`show`](Self::show), and lets `over` draw on top at the window's own
+    /// resolution: text that stays readable, panels that leave the frame itself unchanged.
     ///
     /// # Errors
     ///
@@ -277,8 +278,8 @@ impl Window {
         self.send()
     }
 
-    /// Leaves the last picture as it is, and waits until the user does something, at most for `longest`: next to no
-    /// work for a still picture. Input is checked every 25 ms.
+    /// Leaves the last picture as it is, and waits for user input, at most for `longest`, so that a
+    /// still picture costs next to nothing. Input is checked every 25 ms.
     ///
     /// A display may forget the contents of a covered window, so the picture is resent twice a second.
     ///
@@ -341,7 +342,7 @@ fn printable(title: &str) -> String {
     title.replace('\0', " ")
 }
 
-/// The error of a missing or lost display, or of a picture that no window can show.
+/// The error for a missing or lost display, or for a picture that no window can show.
 pub struct WindowError {
     reason: Reason,
 }
@@ -357,8 +358,8 @@ impl WindowError {
     }
 }
 
-/// The first line of another library's message, without a value that is printed with its fields, and without a full stop
-/// at its end.
+/// The first line of another library's message, without a trailing struct printed with its fields,
+/// and without a full stop at its end.
 fn first_line(said: &str) -> &str {
     let line = said.lines().next().unwrap_or_default();
     let clause = match line.split_once(" { ") {
@@ -390,7 +391,7 @@ impl Error for WindowError {}
 mod tests {
     use super::WindowError;
 
-    /// What minifb says on X11 without a server, and without the library.
+    /// The messages of minifb on X11 without a server, and without the library.
     #[test]
     fn a_missing_display_is_one_short_line() {
         for (why, due) in [
