@@ -11,14 +11,14 @@ use plotters::prelude::*;
 /// Curve of a value along a row: its name, its colour, and its height at a pixel.
 type Curve = (&'static str, RGBColor, fn(&Column) -> Option<f64>);
 
-/// Curves in the order of drawing: those that lie over others come later.
+/// Curves in drawing order: later ones lie over earlier ones.
 const CURVES: [Curve; 3] = [
     ("lit (the model at every pixel)", RGBColor(217, 95, 2), |column| column.lit),
     ("gouraud (linear, exact)", RGBColor(27, 120, 180), |column| column.gouraud),
     ("drawn (dots)", RGBColor(20, 20, 20), |column| column.drawn),
 ];
 
-/// Writes the chart: above the intensity, below the slope.
+/// Writes the chart: the intensity above, its slope below.
 pub(crate) fn svg(title: &str, row: &Row, path: &Path) -> Result<(), ExportError> {
     let mut text = String::new();
     let drawn = draw(title, row, SVGBackend::with_string(&mut text, (960, 640)).into_drawing_area());
@@ -69,19 +69,19 @@ fn panel<'a>(
     }
     mesh.draw()?;
     for ((name, color, _), values) in CURVES.iter().zip(curves) {
-        // Drawn slopes of whole bytes jump by halves: they stand back behind the true ones.
+        // Slopes of drawn bytes jump by halves, so they are faint, behind the true ones.
         let is_drawn = name.starts_with("drawn");
         let style = if is_drawn && is_lower {
             color.mix(0.25).stroke_width(1)
         } else {
             color.stroke_width(if is_drawn { 1 } else { 2 })
         };
-        // What is beyond the panel is drawn along its edge.
+        // Points beyond the panel are drawn along its edge.
         let runs = runs(values, columns).into_iter().map(|run| run.into_iter().map(|(x, y)| (x, y.clamp(low, high))));
         let mut is_named = false;
         for run in runs {
             if is_drawn && !is_lower {
-                // Bytes: a dot each.
+                // Each byte is a dot.
                 let dots = chart.draw_series(run.map(|at| Circle::new(at, 2, color.filled())))?;
                 if !is_named {
                     is_named = true;
@@ -118,8 +118,8 @@ fn shown(row: &Row) -> Range<usize> {
     }
 }
 
-/// Range from the least to the greatest value, with some room; 0 to 1 if there is none. For slopes, which are great
-/// where the intensity itself has a step, the eight tenths in the middle and as much again on both sides.
+/// Range from the least to the greatest value, with some margin; 0 to 1 if there is none. Slopes are huge where the
+/// intensity itself has a step, so theirs covers the middle eight tenths, and as much again on both sides.
 fn span(curves: &[Vec<Option<f64>>], columns: &Range<usize>, are_slopes: bool) -> (f64, f64) {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve[columns.clone()]).copied().flatten().collect();
     values.sort_by(f64::total_cmp);
@@ -146,8 +146,8 @@ fn runs(values: &[Option<f64>], columns: &Range<usize>) -> Vec<Vec<(f64, f64)>> 
 const ACROSS: usize = 90;
 const LINES: [usize; 2] = [15, 9];
 
-/// Draws a row's chart in characters. Above, `#` is drawn, and `o` is lit where that is elsewhere; below are slopes,
-/// `=` of the exact gouraud and `o` of lit.
+/// Draws a row's chart in characters. Above, `#` is the drawn intensity, and `o` is lit where that differs; below, `=`
+/// is the slope of exact gouraud and `o` that of lit.
 pub(crate) fn text(title: &str, row: &Row) -> String {
     let mut text = format!("{title}\n");
     let columns = shown(row);
@@ -189,7 +189,7 @@ fn plot(columns: &Range<usize>, curves: [(char, Vec<Option<f64>>); 2], lines: us
     text + &format!("{} +{}\n{}{}{right:>gap$}\n", " ".repeat(8), "-".repeat(across), " ".repeat(10), columns.start)
 }
 
-/// Words on the greatest jump of the slope of linear shades: between two faces, on both of which it is known.
+/// Describes the greatest jump in the slope of linear shades, between two faces on both of which it is known.
 fn bands(row: &Row) -> String {
     let columns = &row.columns;
     let slope = |a: usize, b: usize| {

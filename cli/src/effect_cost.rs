@@ -1,4 +1,4 @@
-//! Cost of an effect: measured on the spot, against the frame as the plan has it.
+//! Cost of an effect, measured on the spot against the frame as planned.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -11,20 +11,20 @@ use mode13h::vga::Vga;
 
 use crate::failure::Failure;
 
-/// The least and the most differences that a price is made from.
+/// The fewest and the most differences that a price is computed from.
 const ROUNDS: (usize, usize) = (15, 1_001);
 
-/// Times frames of a scene that moves: the two come in turn, each after the other.
+/// Times frames of a moving scene, which alternate between two.
 pub(crate) struct EffectCost<'a, Make: Fn() -> Renderer> {
-    /// Maker of renderers that draw as the user asked for.
+    /// Makes renderers that draw as the user asked.
     pub(crate) renderer: Make,
-    /// 1/35 s apart.
+    /// The two frames, 1/35 s apart.
     pub(crate) frames: &'a [Scene; 2],
     /// Time for which an effect is measured.
     pub(crate) time: Duration,
 }
 
-/// A renderer with its machine.
+/// A renderer with its VGA.
 struct Artist {
     renderer: Renderer,
     vga: Vga,
@@ -35,7 +35,8 @@ impl Artist {
         Artist { renderer, vga: Vga::new() }
     }
 
-    /// Nanoseconds for a frame. It is drawn even where nothing changed: else there would be nothing to measure.
+    /// Draws a frame and returns its time in nanoseconds. It is drawn even if nothing changed, so that there is
+    /// something to measure.
     fn draw(&mut self, scene: &Scene) -> Result<f64, Failure> {
         black_box(self.vga.pixels_mut());
         let start = Instant::now();
@@ -56,7 +57,7 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
     pub(crate) fn plan(&self) -> Result<f64, Failure> {
         const PLANS: usize = 10;
         let mut renderer = (self.renderer)();
-        // The vertices of the first are there; those of the second never.
+        // The vertices of the first frame are cached; those of the second never are.
         renderer.draw(&self.frames[0], &mut Vga::new()).map_err(Failure::from)?;
         let times = self.rounds(|_, _| {
             let start = Instant::now();
@@ -68,12 +69,12 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         Ok(median(times))
     }
 
-    /// Measures by how many nanoseconds a frame is longer with an effect on one object than without it. `on`: whether
-    /// it is on as the plan has it, for otherwise it is switched on. Hidden surfaces and palette animation are those of
-    /// all objects. `None` where it cannot be switched.
+    /// Measures how many nanoseconds longer a frame takes with an effect on one object than without it. `on` says
+    /// whether the plan has it on; otherwise it is switched on. Hidden surfaces and palette animation apply to all
+    /// objects. `None` if it cannot be switched.
     ///
-    /// The frame as it is and the frame with the effect switched are drawn in turn; the price is what [`above_noise`]
-    /// makes of the differences.
+    /// The frame as it is and the frame with the effect switched are drawn in turn; [`above_noise`] turns the
+    /// differences into the price.
     pub(crate) fn price(&self, object: usize, effect: Effect, on: bool) -> Result<Option<u64>, Failure> {
         let mut usual = Artist::new((self.renderer)());
         let mut switched = Artist::new((self.renderer)());
@@ -102,8 +103,8 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         Ok(Some(above_noise(differences)))
     }
 
-    /// Calls `measure` for the two frames in turn, over and over, as long as there is time. The first four
-    /// times do not count: tables and vertices are made then.
+    /// Calls `measure` for the two frames in turn, over and over, as long as there is time. The first four times do not
+    /// count, because tables and vertices are computed then.
     fn rounds(&self, mut measure: impl FnMut(&Scene, usize) -> Result<f64, Failure>) -> Result<Vec<f64>, Failure> {
         for round in 0..4 {
             measure(&self.frames[round % 2], round)?;
@@ -120,9 +121,9 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
 
 /// The median of differences, in whole nanoseconds, if they are more than noise; else 0.
 ///
-/// If two ways took the same time, each of n differences would be above 0 or below by chance, and half of them would be
-/// above, with a standard deviation of √n/2. Where no more are above 0 than half of them and three times that, the
-/// median is noise; so it is below 0.
+/// If both took the same time, each of n differences would be above or below 0 by chance, and half of them would be
+/// above, with a standard deviation of √n/2. If no more than half plus three times that are above 0, the median is
+/// noise; so is one below 0.
 fn above_noise(differences: Vec<f64>) -> u64 {
     let count = differences.len() as f64;
     let above = differences.iter().filter(|difference| **difference > 0.0).count() as f64;
@@ -135,7 +136,7 @@ fn nanoseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e9
 }
 
-/// The one in the middle. Of none it is 0.
+/// The median; 0 if there are no numbers.
 fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or_default()

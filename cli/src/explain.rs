@@ -93,7 +93,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// Finds a pixel or row that is not in the frame, if there is any.
+/// Finds a pixel or row that is outside the frame, if there is one.
 fn outside(pixel: Option<(u32, u32)>, row: Option<u32>, screen: Screen) -> Option<ExplainError> {
     let Screen { width, height, .. } = screen;
     match (pixel, row) {
@@ -216,7 +216,7 @@ fn account_json(shade_trace: &ShadeTrace) -> Value {
     };
     if let Value::Object(map) = &mut json {
         map.insert("byte".into(), shade_trace.byte.into());
-        // Numbers beyond 2^53, which many readers of JSON cut: as text.
+        // As text, because many JSON readers lose digits of numbers beyond 2^53.
         let exact = shade_trace.exact.map(|exact| {
             json!({
                 "numerator": exact.numerator.to_string(),

@@ -35,7 +35,7 @@ impl Failure {
         Failure::new(&reason, 1)
     }
 
-    /// The words on the command line, or what the input holds, are wrong: status 2.
+    /// The command line or the input is wrong: status 2.
     pub(crate) fn words(reason: impl fmt::Display) -> Failure {
         Failure::new(&reason, 2)
     }
@@ -115,8 +115,8 @@ fn is_unreadable(kind: &ModelFileErrorKind) -> bool {
     matches!(kind, ModelFileErrorKind::Read(_) | ModelFileErrorKind::Directory)
 }
 
-/// A text without line ends and other control characters. File names and the contents of files may hold them; an error
-/// is one line, and no terminal is sent what a file says.
+/// A text without line ends and other control characters. File names and the contents of files may have them, but an
+/// error is one line, and control characters from a file must not reach a terminal.
 pub(crate) fn on_one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

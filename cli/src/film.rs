@@ -1,4 +1,4 @@
-//! A film: frames drawn and compressed side by side, several at a time, and written in their order.
+//! A film: frames drawn and compressed in parallel, several at a time, and written in order.
 
 use std::io::{ErrorKind, Write};
 use std::ops::Range;
@@ -51,13 +51,13 @@ pub(crate) enum Kind {
     Stream,
 }
 
-/// Figures of a film's file: a line, and the same for programs.
+/// Figures of a film's file: a line of text, and the same as JSON.
 pub(crate) struct Figures {
     pub(crate) line: String,
     pub(crate) json: Value,
 }
 
-/// Film: its file, and how it is shown.
+/// A film: its file, and how it is shown.
 pub(crate) struct Film {
     kind: Kind,
     out: PathBuf,
@@ -110,9 +110,9 @@ impl Film {
         self.frames
     }
 
-    /// Draws the frames by `draw`, by as many renderer_pool at a time as there are threads in the pool it is called in, writes
-    /// them, and returns what was written, if it is a file. A frame is drawn from its number alone, so that the film is the same with
-    /// any number of threads. `fades`: whether its palette changes.
+    /// Draws the frames with `draw`, by as many artists at a time as there are threads in the current pool, writes
+    /// them, and returns the figures if the film is a file. A frame is drawn from its number alone, so the film is the
+    /// same with any number of threads. `fades` says whether its palette changes.
     pub(crate) fn write<Artist: Send>(
         &self,
         fades: bool,
@@ -206,9 +206,9 @@ impl Film {
         if nobody_reads { Ok(()) } else { result }
     }
 
-    /// Draws the frames, makes of each, beside the one before it and with the colours of the first, what is written, and
-    /// gives that to `add` in their order. While some frames are made ready and added, the next are drawn: these are all
-    /// that is in memory.
+    /// Draws the frames, has `make` encode each from itself, the frame before it and the first frame's colours, and
+    /// passes the results to `add` in order. While one batch is encoded and added, the next is drawn; no other frames
+    /// are in memory.
     fn each<Artist: Send, Made: Send>(
         &self,
         progress: &ProgressBar,
@@ -220,7 +220,7 @@ impl Film {
         let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));
         let draw_all =
             |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
-        // Some for each thread (of which there are at most 1,024): frames are not equally fast.
+        // Several for each thread (of which there are at most 1,024), as some frames are slower than others.
         let threads = rayon::current_num_threads() as u32;
         let batch = (16 * threads).min(256).max(threads);
         let batch_from = |first: u32| first.min(self.frames)..(first + batch).min(self.frames);

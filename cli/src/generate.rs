@@ -43,7 +43,7 @@ enum What {
     },
 }
 
-/// Prints or writes what was asked for of the whole program's command line.
+/// Prints or writes completions or man pages for the whole program's command line.
 pub(crate) fn run(options: &Options, mut all: clap::Command) -> Result<(), Failure> {
     match &options.what {
         What::Completions { shell } => {
@@ -70,7 +70,7 @@ fn write_pages(all: clap::Command, directory: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All commands, each of which knows its whole name: mode13h-render.
+/// All commands, each with its full name, such as mode13h-render.
 fn built(all: clap::Command) -> clap::Command {
     let mut all = all.disable_help_subcommand(true);
     all.build();
@@ -80,7 +80,7 @@ fn built(all: clap::Command) -> clap::Command {
 fn page(command: clap::Command) -> Result<Vec<u8>, Failure> {
     let mut page = Vec::new();
     Man::new(command).render(&mut page)?;
-    // What stands below the options of the help becomes sections of their own.
+    // Text below the options of the help becomes sections of its own.
     let page = String::from_utf8_lossy(&page)
         .replace(".SH EXTRA\n", "")
         .replace("Keys in the window:\n", ".SH KEYS IN THE WINDOW\n")

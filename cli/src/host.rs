@@ -19,7 +19,7 @@ pub(crate) fn host() -> Host {
     host
 }
 
-/// The processor as it, or the system, names it.
+/// The processor's name, as it or the system reports it.
 fn processor() -> String {
     let named = linux().or_else(macos).or_else(|| std::env::var("PROCESSOR_IDENTIFIER").ok());
     let name = named.as_deref().map(str::trim).filter(|name| !name.is_empty()).unwrap_or("unnamed processor");

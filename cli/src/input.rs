@@ -1,4 +1,4 @@
-//! Input: from the words INPUT and FILE|NAME to a scene or a mesh, and to a palette.
+//! Input: from the arguments INPUT and FILE|NAME to a scene or a mesh, and to a palette.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -32,11 +32,11 @@ use crate::{output, read_files, typo};
 pub(crate) struct Model {
     pub(crate) name: String,
     pub(crate) mesh: Mesh,
-    /// The textures that its file brings.
+    /// The textures in its file.
     textures: Embedded,
     /// The axis that points up, if its file says so.
     up: Option<UpAxis>,
-    /// The lights, the camera and the animations that its file brings.
+    /// The lights, the camera and the animations in its file.
     lights: Vec<Light>,
     camera: Option<Camera>,
     rig: Option<Rig>,
@@ -57,8 +57,8 @@ impl Model {
         Ok(())
     }
 
-    /// The stage on which it is shown, in greys. With an axis of the user's own the file's lights and camera are left out,
-    /// and with a camera of the user's own the file's.
+    /// The stage on which it is shown, in greys. If the user gives an axis, the file's lights and camera are left out;
+    /// if the user gives a camera, the file's camera is.
     pub(crate) fn stage(self, up: Option<UpAxis>, has_camera: bool) -> Result<Turntable, Failure> {
         if self.is_shape {
             return Ok(Turntable::of_shape(self.mesh, up));
@@ -104,8 +104,8 @@ pub(crate) fn long_help() -> String {
     )
 }
 
-/// An INPUT that is not a plain file of its own: standard input, or a packed file. Its bytes, the name to call it by, and
-/// whether it is a scene.
+/// An INPUT that is not a plain file: standard input, or a compressed file. Holds its bytes, the name to call it by,
+/// and whether it is a scene.
 struct Stream {
     bytes: Box<dyn BufRead>,
     path: PathBuf,
@@ -140,7 +140,7 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     Ok(Some(Stream { bytes, path: name, is_scene }))
 }
 
-/// Whether bytes are a scene and no model: text with a list of objects.
+/// Returns whether bytes are a scene rather than a model: text with a list of objects.
 fn is_scene(bytes: &[u8]) -> bool {
     let has_objects = |text: &str| {
         let mut lines = text.lines().map(str::trim_start);
@@ -149,10 +149,10 @@ fn is_scene(bytes: &[u8]) -> bool {
     str::from_utf8(bytes).is_ok_and(has_objects)
 }
 
-/// All of standard input, which is read when first asked for: a pipe gives its bytes once.
+/// All of standard input, read when first asked for, because a pipe gives its bytes only once.
 fn standard_input() -> io::Result<&'static [u8]> {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
-    // Who holds the lock reads, and others find what was read.
+    // The thread that holds the lock reads; others find the bytes already read.
     let mut input = io::stdin().lock();
     if BYTES.get().is_none() {
         let mut bytes = Vec::new();
@@ -180,7 +180,7 @@ pub(crate) fn name_of(words: &OsStr) -> String {
     Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
 }
 
-/// The scene or the model of a file or of a name; of a name that both have, the scene. Warnings go to standard error, a
+/// The scene or the model in a file or with a name; if both have that name, the scene. Warnings go to standard error, a
 /// line each.
 pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> {
     let stream = stream(words)?;
@@ -208,7 +208,7 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
     Ok(Input::Scene { name: name_of(words), scene: Box::new(scene), look, playbacks })
 }
 
-/// No scene is longer; what is, is refused as too long.
+/// No scene is longer. Longer input is not read to its end, and is rejected as too long.
 const LONGEST_SCENE: u64 = 1 << 25;
 
 /// The model of a stream. Warnings go to standard error, a line each.
@@ -229,19 +229,19 @@ fn of_file(name: String, loaded: model_file::Loaded) -> Model {
     Model { name, mesh, textures, up, lights, camera, rig, clip: 0, is_shape: false }
 }
 
-/// Says a line on standard error.
+/// Prints a line on standard error.
 fn warn(warning: impl Display) {
     eprintln!("mode13h: {}", on_one_line(&warning.to_string()));
 }
 
-/// The model of a file or the shape of a name. Warnings go to standard error, a line each.
+/// The model in a file or the shape with a name. Warnings go to standard error, a line each.
 pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> {
     model_or(words, options, &format!("models are {} files", Format::extensions()), &|| {
         format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
     })
 }
 
-/// A model; `kinds` says what files there are, `known` what names, where it is none of them.
+/// A model. If INPUT is neither, `kinds` says what files can be read, and `known` what names there are.
 fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     if let Some(stream) = stream(words)?.filter(|stream| !stream.is_scene) {
         return model_of(stream, options);
@@ -274,21 +274,21 @@ fn format_of_contents(path: &Path) -> Option<Format> {
     Format::of_bytes(&bytes)
 }
 
-/// Reads the texture of each surface of a model, if it names one that can be read and the model says where it lies.
-/// Warnings go to standard error, a line each. Files named by several surfaces are read once.
+/// Reads the texture of each surface of a model, if it names one that can be read and the model has texture
+/// coordinates. Warnings go to standard error, a line each. Files named by several surfaces are read once.
 fn textures(mesh: &Mesh, embedded: &Embedded) -> Vec<Option<Shared<Texture>>> {
     let (textures, warnings) = model::textures(mesh, embedded);
     warnings.iter().for_each(warn);
     textures
 }
 
-/// Loads a model; if that takes longer than a moment and standard error is a terminal, with a bar there.
+/// Loads a model, with a progress bar if that takes longer than a moment and standard error is a terminal.
 fn load(path: &Path, options: &Options) -> Result<model_file::Loaded, ModelFileError> {
     const MOMENT: Duration = Duration::from_millis(300);
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(reading());
     let (done, waits) = mpsc::channel::<()>();
     let loaded = thread::scope(|scope| {
-        // Beside the reading, as making the mesh may take most of the time and says nothing meanwhile.
+        // In a thread of its own, as making the mesh may take most of the time and reports nothing meanwhile.
         let bar = &bar;
         scope.spawn(move || {
             if waits.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) && !output::is_quiet() {
@@ -324,7 +324,7 @@ pub(crate) fn percent_read() -> Option<u64> {
     Some(PERCENT.load(Ordering::Relaxed)).filter(|percent| *percent != UNKNOWN)
 }
 
-/// The bar of a model that is read.
+/// The progress bar of a model that is being read.
 fn reading() -> ProgressStyle {
     ProgressStyle::with_template("{spinner} {bar:40} {bytes} of {total_bytes} read{msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
@@ -354,7 +354,7 @@ pub(crate) fn palette_extensions() -> String {
 /// The name of the palette that is made for what is seen.
 pub(crate) const AUTO: &str = "auto";
 
-/// The palette of a name or a file, and what to call it; or the one that is made for what is seen.
+/// The palette with a name or in a file, and what to call it; or the one that is made for what is seen.
 pub(crate) fn colors(words: &OsStr) -> Result<(String, Colors), Failure> {
     if words == AUTO {
         return Ok((AUTO.to_string(), Colors::Auto));
@@ -362,7 +362,7 @@ pub(crate) fn colors(words: &OsStr) -> Result<(String, Colors), Failure> {
     palette(words).map(|(name, palette)| (name, palette.into()))
 }
 
-/// The palette of a name or a file, and what to call it.
+/// The palette with a name or in a file, and what to call it.
 pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
     if let Some(builtin) = words.to_str().and_then(builtin::by_name) {
         return Ok((builtin.name.to_string(), builtin.palette.clone()));
@@ -378,7 +378,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
                 |name| format!("did you mean {name}? (mode13h palette lists them)"),
             );
             let reason = format!("{shown}: neither a file nor a built-in palette; {known}");
-            // A word without an extension is a name that there is not.
+            // A word without an extension is an unknown name.
             if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
         }
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::IsADirectory => {

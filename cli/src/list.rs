@@ -75,7 +75,7 @@ fn as_json(what: What) -> Value {
     }
 }
 
-/// A line for each name, with what is said of it in a column of its own.
+/// A line for each name, with its description in a column of its own.
 fn table<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let rows: Vec<(&str, String)> = rows.into_iter().collect();
     let widest = rows.iter().map(|(name, _)| name.len()).max().unwrap_or_default();

@@ -1,14 +1,13 @@
-//! Names of rows of files, with a number for each.
+//! Names of numbered series of files.
 
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::read_files;
 
-/// The names of a row of files.
+/// The names of a series of files.
 pub(crate) struct Names {
-    /// Text before and behind the number, and the number's least count of digits; nothing if the name holds
-    /// no number.
+    /// Text before and after the number, and the number's least count of digits; `None` if the name has no number.
     numbered: Option<(String, usize, String)>,
     out: PathBuf,
 }
@@ -42,8 +41,7 @@ impl Names {
     }
 }
 
-/// Splits a name at `%d` or `%04d` (any one digit): what stands before it, the least count of digits, what stands
-/// behind.
+/// Splits a name at `%d` or `%04d` (any one digit): the text before it, the least count of digits, the text after it.
 pub(crate) fn number_in(name: &str) -> Option<(String, usize, String)> {
     name.match_indices('%').find_map(|(at, _)| {
         let behind = &name[at + 1..];

@@ -1,4 +1,4 @@
-//! Options that several commands share, and what may stand behind them.
+//! Options that several commands share, and the values that they take.
 
 mod shading;
 
@@ -249,8 +249,8 @@ impl Drawing {
         Ok(input)
     }
 
-    /// Makes the stage of INPUT for a single picture: a model file is framed as it stands there, unless `--camera` says
-    /// from where.
+    /// Makes the stage of INPUT for a single picture: a model file is framed by its pose there, unless `--camera`
+    /// places the camera.
     pub(crate) fn still(&self, input: Input) -> Result<Turntable, Failure> {
         let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
         let mut stage = self.stage(input)?;
@@ -382,7 +382,7 @@ fn factor(words: &str) -> Result<f64, String> {
     }
 }
 
-/// A camera's place, and what it looks at, on the command line.
+/// A camera's position and its target, on the command line.
 fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
     let point = |words: &str| {
         let numbers: Option<Vec<f32>> = words.split(',').map(|word| word.trim().parse().ok()).collect();

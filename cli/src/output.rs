@@ -1,4 +1,4 @@
-//! Output of the program: standard output, pictures, and the end by Ctrl-C.
+//! Output of the program: standard output, pictures, and how Ctrl-C ends it.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -42,25 +42,25 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
-/// Makes Ctrl-C, and what else asks a program to end, wait for the files that are being written: each is then whole
-/// under its name, or gone if it takes long, and none is left beside it.
+/// Makes Ctrl-C, and other signals to end, wait for the files that are being written: each is then whole under its
+/// name, or removed if it takes long, and no temporary file is left behind.
 pub(crate) fn finish_files_when_interrupted() {
     let end = || {
         INTERRUPTED.store(true, Ordering::Relaxed);
-        // First the long file, which ends by the flag: while it does, others may still be begun.
+        // First wait for the long file, which the flag ends; meanwhile others may still be started.
         let _no_long = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
-        // No file is begun from here on; those begun are waited for. The locks are never given back.
+        // No file is started from here on, and those already started are waited for. The locks are never released.
         let _none = WRITING.write().unwrap_or_else(PoisonError::into_inner);
         eprintln!("mode13h: interrupted");
-        // 128 + SIGINT, as shells count.
+        // 128 + SIGINT, as in shells.
         std::process::exit(130);
     };
-    // Without a handler the program ends as the system has it, at once.
+    // Without a handler the system ends the program at once.
     let _ = ctrlc::set_handler(end);
 }
 
-/// Writes a file, for all commands. Never overwrites what this command has read or written, whatever name leads to it.
-/// The file is whole even if the program is interrupted meanwhile.
+/// Writes a file, for all commands. Never overwrites a file that this command has read or written, whatever name leads
+/// to it. The file is whole even if the program is interrupted meanwhile.
 pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, Failure> {
     read_files::spare(path)?;
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
@@ -69,16 +69,16 @@ pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Res
     Ok(written)
 }
 
-/// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` looks at
-/// [`is_interrupted`] every moment, and gives the file up then: in that case this never returns, and the program ends as
-/// interrupted.
+/// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` checks
+/// [`is_interrupted`] all the time, and then gives the file up: in that case this never returns, and the program ends
+/// as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
     let writing = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
     let result = write();
     drop(writing);
     while is_interrupted() {
-        // The thread that was told ends the program.
+        // The thread that handles the signal ends the program.
         std::thread::park();
     }
     result
@@ -94,11 +94,11 @@ pub(crate) fn picture(picture: &Picture<'_>, path: &Path, rgb: bool, scale: Scal
     file(path, || Png { scale, rgb }.save(picture, path))
 }
 
-/// Writes what `vga` shows under the first name that is free of `mode13h-0001.png`, `mode13h-0002.png` and so on in
-/// the current directory. Nothing is overwritten.
+/// Writes what `vga` shows under the first free name of `mode13h-0001.png`, `mode13h-0002.png` and so on in the current
+/// directory. Nothing is overwritten.
 pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, Failure> {
     let mut names = (1_u64..).map(|number| PathBuf::from(format!("mode13h-{number:04}.png")));
-    // Some number below 2⁶⁴ is free, as no directory holds so many files.
+    // Some number below 2⁶⁴ is free, as no directory has that many files.
     let path = names.find(|path| path.symlink_metadata().is_err()).unwrap_or_default();
     picture(&Picture::mode_13h(vga.pixels(), &vga.palette()), &path, false, Scale::One)?;
     Ok(path)
@@ -125,7 +125,7 @@ pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// A failure if a file of this name exists. For names that the user did not give: `--force` overwrites those.
+/// Fails if a file of this name exists, unless `force` is set. For names that the user did not give.
 pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure> {
     if force || path.symlink_metadata().is_err() {
         return Ok(());
@@ -133,7 +133,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     Err(Failure::file(format!("{}: exists already; --force overwrites it, and -o names another place", path.display())))
 }
 
-/// Returns whether a person sees what [`print`] prints, with colours.
+/// Returns whether [`print`] prints to a terminal that shows colours.
 pub(crate) fn is_colored_terminal() -> bool {
     io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

@@ -82,7 +82,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// What a built-in palette holds, and where it is from.
+/// What a built-in palette holds, and where it comes from.
 pub(crate) fn summary(builtin: &Builtin) -> String {
     format!("{}. {}", ramps(builtin.palette), builtin.provenance).trim_end().to_string()
 }
@@ -113,12 +113,13 @@ struct Made {
 impl Made {
     fn line(&self) -> String {
         let Made { material, what, first, last } = self;
-        // A name may hold anything; no terminal is sent it.
+        // A name may contain anything, so it is not sent to a terminal as it is.
         on_one_line(&format!("{material}: {what}, entries {first} to {last}")) + "\n"
     }
 }
 
-/// A palette for a model, to be written to `out`: what to call it, the palette, and what is where in it.
+/// Makes a palette for a model, to be written to `out`. Returns what to call it, the palette, and what its entries are
+/// for.
 fn make(
     model: &OsStr,
     up: Option<Up>,
@@ -180,7 +181,7 @@ fn ramps(palette: &Palette) -> String {
     }
 }
 
-/// The palette as text: what it is, and its colours; painted where the terminal can.
+/// The palette as text: what it is, and its colours, painted if the terminal can show them.
 fn look(name: &str, palette: &Palette) -> String {
     let provenance = builtin::by_name(name).map_or("", |builtin| builtin.provenance);
     let mut text = format!("{name}: {}. {provenance}", ramps(palette)).trim_end().to_string() + "\n";

@@ -1,4 +1,4 @@
-//! `mode13h plan`: what a scene calls for, object by object, and reason.
+//! `mode13h plan`: what a scene needs, object by object, and why.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -20,7 +20,7 @@ use crate::{input, output};
 /// Time from one frame to the next, in seconds: films have 35 a second.
 const STEP: f64 = 1.0 / 35.0;
 
-/// Time of measuring all prices together, and of one at least and at most.
+/// Time for measuring all prices together, and the least and most for one.
 const TIME: Duration = Duration::from_secs(6);
 const TIME_OF_ONE: (Duration, Duration) = (Duration::from_millis(5), Duration::from_millis(100));
 
@@ -86,7 +86,7 @@ fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) ->
     };
     let mut prices: Vec<Option<u64>> = Vec::with_capacity(rows.len());
     for row in rows {
-        // Those of all objects are measured once.
+        // Effects that apply to all objects are measured once.
         let of_all = matches!(row.effect, Effect::HiddenSurfaces | Effect::PaletteAnimation);
         let measured = rows.iter().zip(&prices).find(|(other, _)| of_all && other.effect == row.effect);
         prices.push(match measured {
@@ -189,7 +189,7 @@ impl Head<'_> {
     }
 }
 
-/// What to say of a camera whose near distance is too small for depths. Three digits, rounded up, are enough.
+/// The warning about a camera whose near distance is too small for depths. Three digits, rounded up, are enough.
 fn near_warning(needed: f32) -> String {
     let needed = f64::from(needed);
     let unit = 10_f64.powf(needed.log10().floor() - 2.0);
@@ -203,18 +203,18 @@ fn near_warning(needed: f32) -> String {
 /// Columns of text.
 const WIDTH: usize = 100;
 
-/// The widths of a table's columns but the last.
+/// The widths of a table's columns, except the last.
 struct Widths {
     effect: usize,
     choice: usize,
     price: usize,
 }
 
-/// Objects of which the same is to be said, by name, and what that is: decisions, each with its words.
+/// Objects that share a table, by name, and its contents: decisions, each with its text.
 type Group<'a> = (Vec<String>, Vec<(&'a Row, String)>);
 
-/// A table for each object. If there are several and nothing was measured, what is the same for all comes first, and
-/// objects with the same rest share a table.
+/// A table for each object. If there are several and nothing was measured, rows common to all come first, and objects
+/// whose other rows are equal share a table.
 fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
     let priced: Vec<(&Row, String)> = rows
         .iter()
@@ -290,7 +290,7 @@ fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
     text
 }
 
-/// Words in lines that end before `width`. All begin at `indent`; the first stands behind what is there.
+/// Wraps words into lines that end before `width`. All begin at `indent`; the first follows the text already there.
 fn wrapped(words: &str, indent: usize, width: usize) -> String {
     let indentation = " ".repeat(indent);
     let options = textwrap::Options::new(width)

@@ -1,4 +1,4 @@
-//! The files that were read, and those that were written. None of them is ever written over, by whatever name.
+//! The files that were read, and those that were written. None of them is ever overwritten, whatever name leads to it.
 
 use std::cell::RefCell;
 use std::fs;
@@ -13,7 +13,7 @@ static USED: Mutex<Vec<(Identity, PathBuf, &str)>> = Mutex::new(Vec::new());
 /// A file itself, whatever name leads to it.
 #[derive(PartialEq, Eq)]
 enum Identity {
-    /// Device and number of the file: links of both kinds lead to the same.
+    /// Device and number of the file, which are the same through links of both kinds.
     #[cfg(unix)]
     Node(u64, u64),
     /// The path without links.
@@ -22,8 +22,8 @@ enum Identity {
 }
 
 impl Identity {
-    /// Identity of an ordinary file. A device or a pipe is not replaced by writing to it; a file that does not exist is
-    /// lost by nothing.
+    /// Identity of an ordinary file; `None` for anything else. Writing to a device or a pipe does not replace it, and a
+    /// file that does not exist cannot be lost.
     fn of(path: &Path) -> Option<Identity> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         #[cfg(unix)]
@@ -40,7 +40,7 @@ impl Identity {
 }
 
 thread_local! {
-    /// The files that this thread reads or looks for, while somebody wants to know.
+    /// The files that this thread reads or looks for, while they are being noted.
     static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
 }
 
@@ -51,13 +51,13 @@ pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
     (result, NOTED.replace(outer).unwrap_or_default())
 }
 
-/// Keeps in mind that a file is read.
+/// Records that a file is read.
 pub(crate) fn add(path: &Path) {
     NOTED.with_borrow_mut(|noted| noted.iter_mut().for_each(|noted| noted.push(path.to_path_buf())));
     note(path, "read");
 }
 
-/// Keeps in mind that a file was written.
+/// Records that a file was written.
 pub(crate) fn add_written(path: &Path) {
     note(path, "written just now");
 }
@@ -71,13 +71,14 @@ fn note(path: &Path, what: &'static str) {
     }
 }
 
-/// Keeps in mind that files are read.
+/// Records that files are read.
 pub(crate) fn add_all(paths: &[PathBuf]) {
     paths.iter().for_each(|path| add(path));
 }
 
-/// A failure if writing under this name would replace a file that was read, or written by this command.
-/// [`output::file`](crate::output::file) asks; a command that takes long asks before it begins, too, once all is read.
+/// Fails if writing under this name would replace a file that this command has read or written.
+/// [`output::file`](crate::output::file) checks this; a command that takes long also checks it before it begins, once
+/// everything is read.
 pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
     let Some(identity) = Identity::of(out) else { return Ok(()) };
     let used = USED.lock().unwrap_or_else(PoisonError::into_inner);

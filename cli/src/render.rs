@@ -124,7 +124,7 @@ impl Options {
             }
             let name = input::name_of(&self.input);
             let number = if self.frames.is_some_and(|frames| frames > 1) { "-%04d" } else { "" };
-            // A % of its own would be taken for the place of a number.
+            // A % of its own would be taken for the position of a number.
             format!("{}{number}.png", name.replace('%', "_")).into()
         })
     }
@@ -242,7 +242,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// A failure that says which pictures of a row were written before it.
+/// A failure that says which pictures of a series were written before it.
 fn saying_which(failure: Failure, names: &Names, mut written: Vec<u32>) -> Failure {
     if written.is_empty() {
         return failure;
@@ -322,7 +322,7 @@ impl Out {
             let rate = fps.map_or(Ok(FrameRate::default()), FrameRate::try_from).map_err(|error| wrong(&error))?;
             Ok(Out::Film(Film::new(kind, out, *frames, rate, (*size, *scale))))
         } else {
-            // What ffmpeg makes of a stream.
+            // Formats that ffmpeg can make from a stream.
             let films = ["mp4", "webm", "mkv", "mov", "avi", "webp"];
             let shown = out.display();
             Err(match films.into_iter().any(ends_in) {
@@ -350,7 +350,7 @@ impl Out {
         }
     }
 
-    /// A failure if a file that was read would be overwritten.
+    /// Fails if a file that was read would be overwritten.
     fn spare(&self) -> Result<(), Failure> {
         match self {
             Out::Pictures(names, frames) => names.spare(*frames),
@@ -400,7 +400,7 @@ impl Motion {
         Motion { frames, turn: options.turn.or(whole_turn), at, rate }
     }
 
-    /// The time and the pose in a frame. From the frame's number alone: nothing adds up.
+    /// The time and the pose in a frame, from its number alone, so that no errors add up.
     fn of(&self, number: u32, stage: &Turntable) -> (f64, Pose) {
         let Motion { frames, turn, at, rate } = *self;
         let number = f64::from(number);
@@ -431,13 +431,13 @@ impl fmt::Display for Timed {
     }
 }
 
-/// Errors that the frames are drawn within. Where they are to fit in a time, every frame was drawn once for that, one
-/// after the other, before the first is written.
+/// Errors that the frames are drawn within. If they have to fit in a time, every frame is drawn once to find its error,
+/// one after the other, before the first is written.
 #[derive(Default)]
 struct Run {
-    /// Errors of all frames, or none where the renderer is set otherwise.
+    /// Errors of all frames; empty if no time was asked for.
     errors: Vec<f32>,
-    /// Times of all frames, or none.
+    /// Times of all frames; empty if no time was asked for.
     timed: Vec<Timed>,
 }
 
@@ -470,12 +470,12 @@ impl Run {
     }
 }
 
-/// Artist: draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it:
-/// that is why the order, and the number of threads, change nothing.
+/// Draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it, so
+/// neither the order nor the number of threads changes anything.
 struct Artist {
     renderer: Renderer,
     stage: Turntable,
-    /// The machine: its frame, unless that is of another size, and its palette.
+    /// The VGA: its frame, unless frames have another size, and its palette.
     vga: Vga,
     square: Option<SquareFrame>,
 }

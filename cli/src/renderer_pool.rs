@@ -1,8 +1,8 @@
-//! Pool of renderers, as many as work at a time. Each keeps what it has made, tables and memory, for the next frame.
+//! A pool of as many renderers as work at a time. Each keeps its tables and memory for the next frame.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Artists, and how another is made when all are at work.
+/// Idle artists, and how another is made when all are busy.
 pub(crate) struct RendererPool<Artist, Make> {
     make: Make,
     idle: Mutex<Vec<Artist>>,
@@ -13,7 +13,7 @@ impl<Artist, Make: Fn() -> Artist> RendererPool<Artist, Make> {
         Self { make, idle: Mutex::default() }
     }
 
-    /// Lets one that is idle work.
+    /// Has an idle artist do the work, or a new one if all are busy.
     pub(crate) fn work<Done>(&self, work: impl FnOnce(&mut Artist) -> Done) -> Done {
         let idle = self.idle().pop();
         let mut artist = idle.unwrap_or_else(&self.make);
@@ -23,7 +23,7 @@ impl<Artist, Make: Fn() -> Artist> RendererPool<Artist, Make> {
     }
 
     fn idle(&self) -> MutexGuard<'_, Vec<Artist>> {
-        // Of artists none is half there: the list is sound even after a panic.
+        // No artist is ever half in the list, so it is intact even after a panic.
         self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -11,7 +11,7 @@ use mode13h::window::Key;
 
 use crate::turntable::Turntable;
 
-/// The state of what is not drawn.
+/// The state of an effect that is not drawn.
 const OFF: &str = "off";
 
 /// Switches of the keys.
@@ -61,8 +61,8 @@ impl Switch {
         if (was, is) == (OFF, OFF) { format!("no {name} here") } else { format!("{name} {is}") }
     }
 
-    /// Switches off what was on in the last frame: images by taking them away, the rest by force. Otherwise makes the
-    /// scene need it, so that the plan switches it on. Dither goes through its patterns before it is off.
+    /// Switches an effect off if it was on in the last frame: images by removing them, the rest by force. Otherwise
+    /// makes the scene need it, so that the plan switches it on. Dither goes through its patterns before it is off.
     pub(crate) fn turn(self, stage: &mut Turntable, renderer: &mut Renderer) -> Result<(), RenderError> {
         let was_on = self.state(renderer) != OFF;
         if self == Switch::Dither {
@@ -95,15 +95,15 @@ fn dither(plan: &Plan) -> Option<DitherPattern> {
     })
 }
 
-/// A scene in the dark gets a sun.
+/// Gives a scene in the dark a sun.
 fn light(scene: &mut Scene) {
     if scene.lights().iter().all(|light| light.intensity() == 0.0) {
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
     }
 }
 
-/// A scene with no fog, or none that anything reaches into, gets some, in the colour of its background: from where the
-/// nearest object begins to a little beyond where the farthest ends.
+/// Gives fog to a scene that has none, or none that anything reaches into. It has the colour of the background, and
+/// extends from where the nearest object begins to a little beyond where the farthest ends.
 fn fog(scene: &mut Scene) {
     let ends = scene.objects().iter().map(|object| depths(scene, object));
     let (nearest, farthest) = ends.fold((f32::MAX, 0.0_f32), |(near, far), (a, b)| (near.min(a), far.max(b)));
@@ -116,8 +116,8 @@ fn fog(scene: &mut Scene) {
     scene.fog = Some(Fog { color, start: nearest, end: farthest + 0.2 * (farthest - nearest) });
 }
 
-/// Depths at which an object begins and ends along the view, in the scene's units: the ball about it. Nothing is seen
-/// behind the near plane.
+/// Depths at which an object's bounding sphere begins and ends along the view, in the scene's units. Nothing nearer
+/// than the near plane is seen.
 fn depths(scene: &Scene, object: &Object) -> (f32, f32) {
     let bounds = object.mesh().bounds();
     let centre: Vec3 = object.position + object.rotation() * (bounds.centre - object.pivot) * object.scale;
@@ -155,7 +155,7 @@ mod tests {
         for (name, scene) in all_scenes() {
             for (_, switch) in Switch::KEYS {
                 let mut stage = Turntable::of_scene(scene.clone());
-                // The flash's lamp comes by.
+                // The flash's lamp passes.
                 stage.show(0.3 * scene.duration, Pose::FIRST);
                 let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                 let mut draw = |scene: &Scene, renderer: &mut Renderer| {

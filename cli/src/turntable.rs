@@ -29,19 +29,19 @@ impl From<Palette> for Colors {
     }
 }
 
-/// Pose into which the user has turned what is shown, and its nearness, beyond what the clock does.
+/// How the user has turned and enlarged the picture, in addition to the motion by the clock.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
     /// About its own upward axis, counter-clockwise seen from above, in radians.
     pub(crate) turn: f64,
     /// Its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
-    /// Factor of its size to that at first.
+    /// Its size relative to that at first.
     pub(crate) zoom: f64,
 }
 
 impl Pose {
-    /// The pose with which every picture begins.
+    /// The pose that every picture begins in.
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
@@ -79,7 +79,7 @@ pub(crate) struct Turntable {
     dither: Option<Option<DitherPattern>>,
     /// The look whose colours an automatic palette gets.
     look: Option<Look>,
-    /// Made when first asked for.
+    /// The automatic palette, made when first asked for.
     automatic: Option<AutomaticPalette>,
     /// Colours that were chosen last.
     pub(crate) colors: Option<Colors>,
@@ -87,9 +87,9 @@ pub(crate) struct Turntable {
 
 #[derive(Clone, Copy)]
 enum Shown {
-    /// One model, which turns under a light that stands still, as in a hand.
+    /// One model, which turns under a fixed light, as if held in a hand.
     Model,
-    /// A scene with its own motion, which the camera goes round.
+    /// A scene with its own motion, which the camera circles.
     Scene,
 }
 
@@ -104,7 +104,7 @@ impl Turntable {
         Turntable::new(Scene::showing(object), Shown::Model)
     }
 
-    /// A model in the [`studio`], in greys. One that moves by itself stands still otherwise.
+    /// A model in the [`studio`], in greys. One that moves by itself does not turn as well.
     pub(crate) fn of_model(
         object: Object,
         up: Option<UpAxis>,
@@ -137,7 +137,7 @@ impl Turntable {
         Ok(stage)
     }
 
-    /// A clip of a rig, played by the only object; a round takes as long.
+    /// Has the only object play a clip of a rig; a round takes as long as the clip.
     fn play(&mut self, moving: Option<(Rig, usize)>, lights: bool, camera: bool) -> Option<Playback> {
         let (rig, clip) = moving?;
         let playback = Playback::new(rig, clip, &self.scene, *self.scene.object_ids().first()?)?;
@@ -188,8 +188,8 @@ impl Turntable {
         self.scene.duration
     }
 
-    /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself time goes on, 360 degrees being one
-    /// round; round a scene that stands still the camera moves.
+    /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself time goes on, 360
+    /// degrees being one round; around a scene that stands still the camera circles.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
@@ -199,7 +199,7 @@ impl Turntable {
         }
     }
 
-    /// Puts everything where it is at a time, in seconds, seen as `pose` says.
+    /// Moves everything to where it is at a time, in seconds, seen in a pose.
     pub(crate) fn show(&mut self, seconds: f64, pose: Pose) {
         let Pose { turn, tilt, zoom } = pose;
         self.scene.camera = self.camera;
@@ -227,7 +227,7 @@ impl Turntable {
         }
     }
 
-    /// Frames a model as it stands in each picture, for a single one, instead of over the whole turn.
+    /// Frames a model by its pose in each picture instead of over the whole turn, for single pictures.
     pub(crate) fn frame_still(&mut self) {
         self.frames_still = true;
     }
@@ -270,8 +270,8 @@ impl Turntable {
         self.own_dither = self.scene.settings.dither;
     }
 
-    /// Images on or off. Where there are none, each surface gets a chequered one: by the mesh's texture coordinates, or
-    /// else as what the surface mirrors. An automatic palette is made again.
+    /// Switches images on or off. If there are none, each surface gets a chequered one: by the mesh's texture
+    /// coordinates, or else as its environment map. An automatic palette is made again.
     pub(crate) fn set_images(&mut self, on: bool) -> Result<(), RenderError> {
         self.has_images = on;
         self.automatic = None;
@@ -309,9 +309,9 @@ impl Turntable {
         materials
     }
 
-    /// Other colours. What the frame is cleared to stays the colour it was chosen for. Where a palette has no ramps,
-    /// objects are drawn in the nearest entries to their own colours, or to those of the ramps that they had, with dither, as
-    /// no palette for everything has many shades of one colour.
+    /// Changes the colours. The background keeps the colour that it was chosen for. If a palette has no ramps, objects
+    /// are drawn in the entries nearest to their own colours, or to those of the ramps that they had, with dither,
+    /// because a general-purpose palette has few shades of any one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dither = self.own_dither;
         let shown = self.materials_shown();
@@ -371,7 +371,7 @@ impl Turntable {
         scene
     }
 
-    /// Leaves out what the 16.16 path does not draw, so that no palette is made for it.
+    /// Leaves out effects that the 16.16 path does not draw, so that no palette is made for them.
     pub(crate) fn only_what_integers_draw(&mut self) {
         (self.scene.fog, self.scene.settings.channels) = (None, None);
         for light in self.scene.lights_mut() {
@@ -396,11 +396,11 @@ fn has_colors(object: &Object, materials: &[Material]) -> bool {
         || materials.iter().any(|material| material.texture.is_some())
 }
 
-/// Enlarges a camera's picture. To enlarge it, the view is narrowed, as going nearer would end inside the model; to
-/// make it smaller the camera goes farther away, as a wider view would bend it.
+/// Scales a camera's picture. To enlarge it, the view is narrowed, because going nearer would end inside the model; to
+/// shrink it, the camera goes farther away, because a wider view would distort it.
 fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
     let half = camera.field_of_view.to_radians() / 2.0;
-    // Rounded to f32: the pictures stay what they were.
+    // Rounded to f32, so that pictures stay as they were.
     let narrowed = (2.0 * libm::atan(libm::tan(half) / zoom.max(1.0))) as f32;
     camera.field_of_view = Angle::from_radians(narrowed.into());
     if zoom < 1.0 {
@@ -409,12 +409,12 @@ fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
     camera
 }
 
-/// A camera that has gone round its target: what it sees seems to have turned by `turn` about the camera's upward axis,
+/// A camera that has moved around its target: the scene seems to have turned by `turn` about the camera's upward axis,
 /// and its upper end to have come nearer by `tilt`.
 fn gone_round(mut camera: Camera, turn: f64, tilt: f64) -> Camera {
     let up = camera.up.normalize_or(Vec3::Y);
     let out = camera.eye - camera.target;
-    // Where it looks along its upward axis any axis across will do.
+    // If it looks along its upward axis, any axis perpendicular to that will do.
     let right = up.cross(out).normalize_or(up.any_orthonormal_vector());
     let turned = |v: Vec3| about(up, -turn, about(right, -tilt, v));
     camera.eye = camera.target + turned(out);
@@ -454,7 +454,7 @@ mod tests {
         assert!(near(gone_round(camera, TAU, TAU).eye, camera.eye));
     }
 
-    /// The scene of the torus is the model of the torus as it was always shown.
+    /// The torus scene looks the same as the torus model.
     #[test]
     fn the_scene_of_the_torus_is_the_model_on_its_stage() {
         let mesh = mode13h::mesh::shapes::by_name("torus").expect("a shape");

@@ -28,7 +28,7 @@ pub(crate) fn mistyped_command(word: &OsStr) -> Option<&'static str> {
     COMMANDS.into_iter().find(|name| *name == nearest)
 }
 
-/// Says what INPUT should be, where it is neither a file nor a name: with the nearest name, if one is near.
+/// Says what INPUT should be if it is neither a file nor a name, with the nearest name if one is near.
 pub(crate) fn no_input(word: &str) -> String {
     let near = match nearest(word, inputs().chain(COMMANDS)) {
         Some(name) if COMMANDS.contains(&name) => format!("; did you mean the command {name}?"),

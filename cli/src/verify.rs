@@ -1,4 +1,4 @@
-//! `mode13h verify`: whether this machine draws what every machine draws.
+//! `mode13h verify`: whether this machine draws the same frames as every other.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -54,10 +54,10 @@ fn kernels() -> Vec<&'static str> {
     Kernel::available().map(Kernel::name).collect()
 }
 
-/// A frame that is not that of every machine.
+/// A frame that differs from the one on every other machine.
 struct Wrong {
     name: String,
-    /// Where it differs from the portable kernel's; `None` if that one draws it so, too.
+    /// Where it differs from the portable kernel's; `None` if that kernel draws the same.
     difference: Option<Difference>,
     /// The error of a frame that could not be drawn.
     error: Option<String>,
@@ -73,7 +73,7 @@ impl std::fmt::Display for Wrong {
     }
 }
 
-/// The frames by one kernel.
+/// The frames drawn by one kernel.
 struct ByKernel {
     kernel: Kernel,
     count: usize,
@@ -96,7 +96,7 @@ fn chosen(prefix: Option<&str>) -> Vec<Frame> {
 
 fn draw(kernel: Kernel, prefix: Option<&str>) -> ByKernel {
     let mut drawn = ByKernel { kernel, count: 0, hash: START, wrong: Vec::new() };
-    // One renderer for all frames: what it keeps from one to the next must not show.
+    // One renderer for all frames: what it caches from one to the next must not show.
     let mut renderer = Renderer::new();
     for frame in chosen(prefix) {
         drawn.count += 1;
@@ -167,7 +167,7 @@ fn picture(options: &Options, chosen: &[Frame], by_kernel: &[ByKernel]) -> Resul
     };
     let path = options.out.clone().unwrap_or_else(|| format!("verify-{}.png", name.replace('/', "-")).into());
     if options.out.is_none() && path.symlink_metadata().is_ok() {
-        // An earlier one, or something else: it is not worth a second failure.
+        // The file exists, perhaps from an earlier run; that is not worth a second failure.
         return Ok(None);
     }
     let Some(frame) = chosen.iter().find(|frame| frame.name == name) else { return Ok(None) };
@@ -239,7 +239,7 @@ fn as_text(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture
     text
 }
 
-/// No more frames of a kernel are named in text: one fault shows in many.
+/// The most frames of a kernel that are named in text, as one fault shows in many.
 const MOST_NAMED: usize = 8;
 
 fn as_json(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture: Option<&Path>) -> String {
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!((failure.status(), failure.to_string().as_str()), (1, "2 checks failed"));
     }
 
-    /// A wrong byte is told by kernel, frame and pixel, in text and as JSON.
+    /// A wrong byte is reported by kernel, frame and pixel, in text and as JSON.
     #[test]
     fn a_wrong_frame_is_named_with_its_pixel() {
         let frames = chosen(Some("canvas/bands/plain"));

@@ -1,4 +1,4 @@
-//! The words of the command line: the commands there are, and what is said where they are wrong.
+//! The command line: its commands, and the messages about mistakes.
 
 use std::ffi::OsString;
 
@@ -77,7 +77,7 @@ enum Command {
 /// All commands and options: what is parsed, and what help, completions and man pages are made from.
 pub(crate) fn command() -> clap::Command {
     let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::help_on_keys(WIDTH));
-    // What stands behind an option is its value, with a minus, too.
+    // The word after an option is its value, even with a minus.
     let takes_negative = |arg: clap::Arg| match arg.is_positional() || !arg.get_action().takes_values() {
         true => arg,
         false => arg.allow_negative_numbers(true),
@@ -98,7 +98,7 @@ pub(crate) fn command() -> clap::Command {
         .after_long_help(keys_and_status)
 }
 
-/// Parses what was typed; where that is help or a failure, returns what has become of it.
+/// Parses the command line; if it asks for help or is wrong, deals with that and returns the outcome.
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
         return Err(Err(Failure::words(format!("{word}: an empty word names nothing ({} shows the options)", help()))));

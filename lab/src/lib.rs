@@ -1,4 +1,4 @@
-//! The laboratory of [mode13h]: what measures, checks and explains the engine.
+//! The laboratory of [mode13h], which measures, checks and explains the engine.
 //!
 //! | module | holds |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The files of a study: checked before it is made, and not lost when they cannot be written after it.
+//! The files of a study: checked before it is made, and not lost if they cannot be written afterwards.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -13,19 +13,19 @@ use crate::{output, read_files};
 const NAMES: [&str; 4] = ["samples.csv", "cost.json", "chart.svg", REPORT];
 pub(super) const REPORT: &str = "report.html";
 
-/// What the first bytes of each hold, which tells it from a file of another origin.
+/// Text at the start of each file, by which it is recognized as a study's.
 const MARKS: [&str; NAMES.len()] =
     ["round,order,kind,name,frames,ns", "\"schema\"", "<svg width=\"860\"", "content=\"mode13h cost\""];
 
-/// Returns whether a file begins as that of a study does.
+/// Returns whether a file begins like one of a study.
 fn is_of_a_study(path: &Path, mark: &str) -> bool {
     let mut beginning = Vec::new();
     let read = fs::File::open(path).and_then(|file| file.take(512).read_to_end(&mut beginning));
     read.is_ok() && String::from_utf8_lossy(&beginning).contains(mark)
 }
 
-/// Checks that they can be written into a directory, which need not exist yet, and that none of them was read. Files of an
-/// earlier study are overwritten if the user named the directory, others by force alone.
+/// Checks that the files can be written into a directory, which need not exist yet, and that none of them was read.
+/// Files of an earlier study are overwritten if the user named the directory, others only by force.
 pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
         return Err(Failure::file(format!("{}: is no directory", directory.display())));
@@ -43,13 +43,13 @@ pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<()
             export::check_writable(&path).map_err(Failure::from)
         });
     }
-    // The first directory that is missing stands in one that exists.
+    // The outermost missing directory is inside one that exists.
     let missing = directory.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
     missing.last().map_or(Ok(()), export::check_writable).map_err(Failure::from)
 }
 
-/// Writes them, or where that fails, as on a disk that has become full, into a directory for temporary files. Returns where
-/// they are, if anywhere, and the failure.
+/// Writes the files or, if that fails, say because the disk has filled up, writes them into a directory for temporary
+/// files. Returns where they are, if anywhere, and the failure.
 pub(super) fn write(
     directory: &Path,
     input: &str,

@@ -1,8 +1,8 @@
 //! Instructions, counted by valgrind's callgrind: a figure without noise.
 //!
-//! The program runs itself under callgrind, with the same words and one more. There it draws each shading's frames in a
-//! call of [`draw_counted`], after it has drawn them once. Callgrind collects inside of that function only, and
-//! writes what it has collected before each call of [`shading_is_done`].
+//! The program runs itself under callgrind, with the same arguments and one more. There it draws each shading's frames
+//! in a call of [`draw_counted`], after drawing them once. Callgrind counts only inside that function, and writes its
+//! counts before each call of [`shading_is_done`].
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -21,13 +21,13 @@ use mode13h_lab::cost::Study;
 use crate::failure::Failure;
 use crate::output;
 
-/// The function that counts, as callgrind looks for it.
+/// Pattern for the function inside which callgrind counts.
 const COUNTED: &str = "*draw_counted*";
 
-/// The function before which it writes what it has collected.
+/// Pattern for the function before which callgrind writes its counts.
 const DONE: &str = "*shading_is_done*";
 
-/// Instructions of a frame, by shading.
+/// Instructions per frame, by shading.
 pub(super) struct Counts {
     /// The kernel that ran, by the name that forces it.
     pub(super) kernel: String,
@@ -42,7 +42,7 @@ impl Counts {
     }
 }
 
-/// Draws all frames by each shading, and says which kernel did: what callgrind looks at.
+/// Draws all frames with each shading, for callgrind to count, and prints which kernel drew them.
 pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
     let mut vga = Vga::new();
     let mut kernel = renderer().kernel;
@@ -74,7 +74,7 @@ fn shading_is_done(shading: &Shading) {
     black_box(shading);
 }
 
-/// Counts the instructions of every shading, this program being run again with the words that it was run with.
+/// Counts the instructions of every shading by running this program again with its own arguments.
 pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
     let directory = Temporary::new()?;
     let program = env::current_exe().map_err(Failure::from)?;
@@ -107,7 +107,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
     Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })
 }
 
-/// The instructions that a file of callgrind's comes to, if it has any.
+/// The total instructions in a callgrind file, if it has any.
 fn sum(text: &str) -> Option<u64> {
     let of = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok());
     of("totals:").or_else(|| of("summary:")).filter(|sum| *sum > 0)
@@ -127,7 +127,7 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         let directory: &Path = &self.0;
-        // What is left in the temporary directory hurts nobody.
+        // Files left in the temporary directory do no harm.
         let _ = fs::remove_dir_all(directory);
     }
 }

@@ -21,7 +21,7 @@ use crate::options::{Drawing, Quiet, finite, shading_of};
 use crate::turntable::Turntable;
 use crate::{host, input, output};
 
-/// Frames that follow each other 0.25° apart, for what swims.
+/// Number of frames 0.25° apart, for measuring swim.
 const STEPS: u32 = 5;
 
 #[derive(Args)]
@@ -104,7 +104,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;
-    // A look rounds vertices, and what shadings promise is for those that are not rounded. With rounding, too, it is measured.
+    // A look rounds vertices, but shadings make their promises for unrounded ones. Rounding is measured separately.
     stage.scene.settings.vertex_bits = None;
     let frames = turned(&mut stage, *frames, 360.0 / f64::from(*frames));
     let steps = turned(&mut stage, STEPS, 0.25);
@@ -156,7 +156,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             files::write(directory, &name, &contents)
         }
     };
-    // Whatever became of the files, what was found out is not lost.
+    // The results are printed whatever became of the files.
     let place = written.as_ref().map_or(String::new(), |directory| format!("\nwritten to {}\n", directory.display()));
     output::say(&if *json { as_json } else { report::text(&study) + &place })?;
     result?;
@@ -168,7 +168,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     verdict(&study)
 }
 
-/// Fails where a budget or a shading is less accurate than it promises.
+/// Fails if a budget or a shading is less accurate than it promises.
 fn verdict(study: &Study) -> Result<(), Failure> {
     match cost::promises_are_kept(study) {
         true => Ok(()),
@@ -249,8 +249,8 @@ mod tests {
 
     use super::*;
 
-    /// A study in which all promises are kept, then with the promise of a budget or of a shading broken by hand: each is
-    /// one warning more, in the JSON too, and the exit status 1. A budget that takes long is a warning alone.
+    /// A study in which all promises are kept, then with the promise of a budget or of a shading broken by hand: each
+    /// is one warning more, in the JSON too, and the exit status 1. A slow budget is only a warning.
     #[test]
     fn a_broken_promise_of_a_budget_or_a_shading_is_a_warning_and_status_1() {
         let frames = [Scene::showing(shapes::wall(3, 2))];
@@ -258,7 +258,7 @@ mod tests {
         let mut settings = Settings { shadings: vec![Shading::Gouraud88], ..Settings::default() };
         (settings.choices, settings.claims, settings.seconds, settings.at_most) = (false, false, 0.0, true);
         let (mut kept, _) = cost::measure(&subject, &settings, &|_, _| {}).expect("a legal scene");
-        // How long this machine takes is no matter here.
+        // How long this machine takes does not matter here.
         kept.budget.iter_mut().for_each(|row| row.ratio = Some((1.0, (1.0, 1.0))));
         assert!(cost::warnings(&kept).is_empty() && verdict(&kept) == Ok(()));
         let beyond = kept.shadings[0].excess.expect("a shading that is linear on the screen has a bound");

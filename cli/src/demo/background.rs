@@ -1,20 +1,20 @@
-//! Work that the picture does not wait for: a thread that is asked, and the last answer that it gave.
+//! Work that the picture does not wait for: a thread that answers questions, and its latest answer.
 //!
-//! It is handed over one question at a time. A newer one takes the place of one that nobody has begun with, so that the
-//! thread never falls behind by more than the one it is at, however fast questions come. An answer may come in several
-//! stages, each better than the one before; the thread can ask whether a newer question makes the rest needless.
+//! Questions are handed over one at a time. A newer question replaces one that has not been started, so the thread
+//! never falls behind by more than the one it is working on, however fast they come. An answer may come in several
+//! stages, each better than the one before; the thread can check whether a newer question makes the rest pointless.
 
 use std::io;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-/// A thread at work. Once this is dropped the thread ends as soon as it is done with what it has begun; nobody
-/// waits for that.
+/// A background thread. Once this is dropped, the thread ends as soon as it has finished the question it is working on;
+/// nobody waits for that.
 pub(super) struct Background<Question, Answer> {
     desk: Arc<Desk<Question, Answer>>,
 }
 
-/// Desk for questions and answers. It is locked for moving one, never while one is worked on.
+/// Desk for questions and answers. It is locked only to move one, never while one is being worked on.
 pub(super) struct Desk<Question, Answer> {
     papers: Mutex<Papers<Question, Answer>>,
     asked: Condvar,
@@ -27,12 +27,12 @@ struct Papers<Question, Answer> {
 }
 
 impl<Question, Answer> Desk<Question, Answer> {
-    /// A thread that panicked leaves whole papers behind: nothing but moves happens under the lock.
+    /// Locks the papers. They are intact even if a thread has panicked, as only moves happen under the lock.
     fn papers(&self) -> MutexGuard<'_, Papers<Question, Answer>> {
         self.papers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for a question. `None` when there will be no more.
+    /// Waits for a question; `None` if there will be no more.
     fn next(&self) -> Option<Question> {
         let idle = |papers: &mut Papers<Question, Answer>| papers.question.is_none() && !papers.closed;
         let waited = self.asked.wait_while(self.papers(), idle);
@@ -40,14 +40,14 @@ impl<Question, Answer> Desk<Question, Answer> {
         if papers.closed { None } else { papers.question.take() }
     }
 
-    /// Gives an answer, in place of one that nobody has taken.
+    /// Gives an answer, replacing one that nobody has taken.
     pub(super) fn give(&self, answer: Answer) {
         let before = self.papers().answer.replace(answer);
-        // Not under the lock: freeing a picture takes its time.
+        // Not under the lock, since freeing a picture takes a while.
         drop(before);
     }
 
-    /// Returns whether there is a newer question, or nobody who waits for an answer.
+    /// Returns whether there is a newer question, or nobody is waiting for an answer any more.
     pub(super) fn is_overtaken(&self) -> bool {
         let papers = self.papers();
         papers.question.is_some() || papers.closed
@@ -55,7 +55,7 @@ impl<Question, Answer> Desk<Question, Answer> {
 }
 
 impl<Question: Send + 'static, Answer: Send + 'static> Background<Question, Answer> {
-    /// Starts the thread, which gives its answers to the desk. There may be none to be had.
+    /// Starts the thread, which gives its answers to the desk. Fails if the system has no thread left.
     pub(super) fn start(
         name: &str,
         mut work: impl FnMut(Question, &Desk<Question, Answer>) + Send + 'static,
@@ -71,15 +71,15 @@ impl<Question: Send + 'static, Answer: Send + 'static> Background<Question, Answ
         Ok(Background { desk })
     }
 
-    /// Asks, in place of what was asked before and has not been begun with.
+    /// Asks a question, replacing the one before if that has not been started.
     pub(super) fn ask(&self, question: Question) {
         let before = self.desk.papers().question.replace(question);
         self.desk.asked.notify_one();
-        // Not under the lock: freeing a scene takes its time.
+        // Not under the lock, since freeing a scene takes a while.
         drop(before);
     }
 
-    /// The last answer, once.
+    /// Takes the latest answer, if it has not been taken.
     pub(super) fn answer(&self) -> Option<Answer> {
         self.desk.papers().answer.take()
     }
@@ -101,13 +101,13 @@ mod tests {
     /// Longer than any thread here takes, even on a busy machine.
     const LONG: Duration = Duration::from_secs(60);
 
-    /// A thread that says what it begins with, and does not finish before it is let go on.
+    /// A thread that reports each question it starts on, and does not finish it until told to.
     fn held_up() -> (Background<u32, u32>, Receiver<u32>, Sender<()>) {
         let (begins, begun) = channel();
         let (go_on, gone_on) = channel::<()>();
         let work = move |question, desk: &Desk<u32, u32>| {
             begins.send(question).expect("the test listens");
-            // A test that is over lets it go on too.
+            // It also goes on when the test is over.
             let _ = gone_on.recv();
             desk.give(question * 10 + u32::from(desk.is_overtaken()));
         };
@@ -146,7 +146,7 @@ mod tests {
         let (background, begun, _go_on) = held_up();
         drop(background);
         assert!(begun.recv_timeout(LONG).is_err());
-        // At work, with another question waiting that is not begun with.
+        // Busy, with another question waiting that has not been started.
         let (background, begun, go_on) = held_up();
         background.ask(1);
         assert_eq!(begun.recv_timeout(LONG), Ok(1));

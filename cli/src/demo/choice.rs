@@ -1,13 +1,13 @@
 //! One of a list.
 
-/// A list, one of which is chosen.
+/// A list of which one entry is chosen.
 pub(super) struct Choice<T> {
     list: Vec<T>,
     at: usize,
 }
 
 impl<T> Choice<T> {
-    /// `first` is chosen. It is put in front if the list does not hold it.
+    /// Chooses `first`, which is put in front if the list does not contain it.
     pub(super) fn new(list: impl IntoIterator<Item = T>, first: T, same: fn(&T, &T) -> bool) -> Choice<T> {
         let mut list: Vec<T> = list.into_iter().collect();
         let at = list.iter().position(|entry| same(entry, &first)).unwrap_or_else(|| {
@@ -21,7 +21,7 @@ impl<T> Choice<T> {
         &self.list[self.at]
     }
 
-    /// Chooses the first of which this is true. Whether there is one.
+    /// Chooses the first entry that is wanted. Returns whether there is one.
     pub(super) fn choose(&mut self, is_wanted: impl FnMut(&T) -> bool) -> bool {
         let found = self.list.iter().position(is_wanted);
         self.at = found.unwrap_or(self.at);

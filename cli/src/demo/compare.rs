@@ -1,8 +1,7 @@
 //! Two shadings side by side: the picture of one left of a divider, that of the other right of it.
 //!
-//! Both are drawn whole, each by a renderer of its own and one after the other. So each one's time is what it takes
-//! alone, and what is seen of it does not matter. The divider is where the mouse is; a click fixes it there, and another
-//! lets it go.
+//! Both are drawn whole, one after the other, each by its own renderer. So each one's time is what it takes alone,
+//! however much of it is visible. The divider follows the mouse; a click fixes it, and another click releases it.
 
 use mode13h::palette::Rgb;
 use mode13h::settings::Shading;
@@ -17,8 +16,7 @@ pub(super) const KEYS: Keys = &[
     ("X", "Swap the two shadings"),
 ];
 
-/// Greatest way of the mouse while its button is down, in pixels of the frame, for a click. Beyond that it turns the
-/// model.
+/// How far the mouse may move in a click, in pixels of the frame. Beyond that it turns the model.
 const CLICK: f32 = 2.0;
 
 impl Panel for Divider {
@@ -53,7 +51,7 @@ impl Panel for Divider {
                 (true, false) => "the divider follows the mouse".to_string(),
             }
         };
-        // Another picture, if only of the right half.
+        // The picture is a new one, if only in its right half.
         show.number += 1;
         show.say(said);
         Ok(())
@@ -83,7 +81,7 @@ impl Panel for Divider {
     }
 }
 
-/// Opposite of a shading: light at every pixel, or where that is the shading itself the default.
+/// The shading to compare with: light at every pixel, or the default if that is the shading itself.
 fn opposite(left: &ShadingChoice) -> ShadingChoice {
     let exact = ShadingChoice::new(Shading::Phong, None);
     if left.to_string() == exact.to_string() { ShadingChoice::new(Shading::default(), None) } else { exact }
@@ -95,7 +93,7 @@ pub(super) struct Divider {
     /// 0 to 320.
     column: usize,
     is_fixed: bool,
-    /// Way of the mouse since its button went down, while it is down.
+    /// How far the mouse has moved since its button went down, while it is down.
     dragged: Option<f32>,
 }
 
@@ -106,7 +104,7 @@ impl Default for Divider {
 }
 
 impl Divider {
-    /// Follows the mouse, or not. Whether a click changed that.
+    /// Follows the mouse unless it is fixed. Returns whether a click changed that.
     fn follow_mouse(&mut self, input: &Input) -> bool {
         let mut is_click = false;
         if input.buttons.left {
@@ -141,7 +139,7 @@ mod tests {
             follow(&mut divider, x, false, (0.0, 0.0));
             assert_eq!(divider.column, column);
         }
-        // A drag turns the model, and the divider stays meanwhile.
+        // A drag turns the model; meanwhile the divider stays.
         follow(&mut divider, 100.0, true, (0.0, 0.0));
         follow(&mut divider, 130.0, true, (30.0, 0.0));
         assert_eq!(divider.column, 100);

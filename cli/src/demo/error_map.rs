@@ -1,12 +1,12 @@
-//! Error map of a frame, pixel by pixel, worked out in the background and laid over the picture.
+//! Error map of a frame, pixel by pixel, computed in the background and laid over the picture.
 //!
-//! The picture under it is another machine's: its palette has 32 entries of brightness in each of eight colours. So
-//! what is shown stays recognizable, and E costs a table look-up a pixel.
+//! The picture under it is shown in greys: the map's palette has 128 of them, and a colour for each level of error. So
+//! the picture stays recognizable, and E costs one table look-up per pixel.
 //!
-//! A map is laid over the frame that it was worked out for and over no other. While the picture moves on, the map is shown
-//! in a corner, small, over its own frame. First every fourth pixel of every fourth row is judged; that is always
-//! finished, so that the map keeps up with what moves. Then the picture is refined tile by tile, from the mouse
-//! outwards, until it changes.
+//! A map is only ever laid over the frame that it was computed for. While the picture moves on, the map is shown small
+//! in a corner, over its own frame. First every fourth pixel of every fourth row is judged; that always finishes, so
+//! the map keeps up with motion. Then the map is refined tile by tile, from the mouse outwards, until the picture
+//! changes.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,13 +24,13 @@ use super::background::{Background, Desk};
 use crate::failure::Failure;
 use crate::overlay::{Row, Sheet, Side as Edge};
 
-/// The level of pixels that show another face than they should: it is behind those of the report and the page.
+/// The level of pixels that show the wrong face. It comes after those of the report and the page.
 const OTHER_FACE: u8 = error_levels::ALL.len() as u8;
 const LEVELS: u8 = OTHER_FACE + 1;
-/// Greys in which the picture itself is seen where it is right, the first level.
+/// Number of greys that show the picture itself where it is right, which is the first level.
 const GREYS: u8 = 128;
 
-/// The colour of a level in the legend, and what stands beside it.
+/// The colour of a level in the legend, and its label.
 fn level(index: u8) -> (Rgb, &'static str) {
     let (color, label) = match error_levels::ALL.get(usize::from(index)) {
         Some(level) => (level.color, level.label),
@@ -40,11 +40,11 @@ fn level(index: u8) -> (Rgb, &'static str) {
     (if index == 0 { Rgb::WHITE } else { Rgb::new(r, g, b) }, label)
 }
 
-/// Columns and rows from one pixel to the next that the first map judges.
+/// Distance between the pixels that the first map judges, in columns and in rows.
 const COARSE: u32 = 4;
 /// The least time from one refined map to the next.
 const REPORT: Duration = Duration::from_millis(60);
-/// The small picture's share of the large one's sides.
+/// Sides of the small picture, as a share of the large one's.
 const SMALL: f32 = 0.3;
 
 /// A pixel of the frame.
@@ -57,7 +57,7 @@ pub(super) struct Pixel {
 }
 
 impl Pixel {
-    /// The one that a point of the picture lies in, if it is on the picture; x and y in pixels of the frame.
+    /// The pixel that contains a point, if that is on the picture; x and y are in pixels of the frame.
     pub(super) fn at((x, y): (f32, f32)) -> Option<Pixel> {
         let on_picture = (0.0..Vga::WIDTH as f32).contains(&x) && (0.0..Vga::HEIGHT as f32).contains(&y);
         // Whole numbers within the ranges above.
@@ -69,9 +69,9 @@ impl Pixel {
 pub(super) struct Frame {
     pub(super) snapshot: Snapshot,
     pub(super) scene: Scene,
-    /// Renderers that are set as the ones that drew it, from the left.
+    /// Renderers with the settings of those that drew it, from the left.
     pub(super) renderers: Vec<Renderer>,
-    /// The pixel from which on it is refined.
+    /// The pixel from which refinement starts.
     pub(super) mouse: Pixel,
 }
 
@@ -83,9 +83,9 @@ pub(super) struct Snapshot {
     /// Time at which it is shown, in seconds.
     pub(super) seconds: f64,
     pub(super) picture: Vga,
-    /// The column from which on the second renderer's picture is seen.
+    /// The column at which the second renderer's picture begins.
     pub(super) divider: usize,
-    /// Shading of each.
+    /// Shading of each side.
     pub(super) shadings: Vec<String>,
 }
 
@@ -98,13 +98,13 @@ struct Measured {
 struct Found {
     /// One for each renderer.
     sides: Vec<Side>,
-    /// Part of it that is refined, 0 to 1.
+    /// Share of it that has been refined, 0 to 1.
     refined: f64,
 }
 
 /// Errors of a renderer's picture against the truth.
 struct Side {
-    /// The level of each pixel; `None` where there is no face, nor should be.
+    /// The level of each pixel; `None` where there is no face and should be none.
     levels: Vec<Option<u8>>,
     errors: ErrorMap,
     figures: Figures,
@@ -119,8 +119,8 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// Asks for the frame of this number to be measured, unless that was asked already, and takes what has been found
-    /// since.
+    /// Asks for the frame with this number to be measured, unless that has been asked already, and takes any new
+    /// results.
     pub(super) fn follow(&mut self, number: u64, frame: impl FnOnce() -> Frame) -> Result<(), Failure> {
         let thread = match &mut self.thread {
             Some(thread) => thread,
@@ -140,13 +140,13 @@ impl Map {
         Ok(())
     }
 
-    /// Results for the frame of this number.
+    /// Results for the frame with this number.
     fn of(&self, number: u64) -> Option<&Found> {
         let measured = self.last.as_ref().filter(|measured| measured.snapshot.number == number)?;
         measured.found.as_ref().ok()
     }
 
-    /// Figures of a side's errors in the frame of this number; `None` until all of its pixels were judged.
+    /// Figures of a side's errors in the frame with this number; `None` until all of its pixels have been judged.
     pub(super) fn errors_of(&self, number: u64, side: usize) -> Option<Figures> {
         let found = self.of(number).filter(|found| found.refined == 1.0)?;
         Some(found.sides.get(side)?.figures)
@@ -181,8 +181,8 @@ impl Map {
         }
     }
 
-    /// Lays it over what `vga` shows, if it is the map of that: of the frame of this number, whose second side begins at
-    /// a column. [`legend`](Self::legend) says what the colours mean.
+    /// Lays it over what `vga` shows, if it is the map of that frame: the one with this number, whose second side
+    /// begins at column `divider`. [`legend`](Self::legend) says what the colours mean.
     pub(super) fn lay_over(&self, vga: &mut Vga, number: u64, divider: usize) {
         if let Some(found) = self.of(number) {
             let entries = found.entries(vga, divider);
@@ -251,7 +251,7 @@ fn grey(color: Rgb) -> u8 {
     (color.brightness() * u32::from(GREYS) / 255_001) as u8
 }
 
-/// Greys, and behind them the colours of the levels.
+/// Greys, followed by the colours of the levels.
 fn palette() -> Palette {
     let mut colors = [Rgb::BLACK; 256];
     for grey in 0..GREYS {
@@ -272,8 +272,8 @@ fn measure(probe: &mut Probe, frame: Frame, desk: &Desk<Frame, Measured>) {
     found.unwrap_or_else(|reason| say(Err(reason)));
 }
 
-/// Judges a frame and says what it finds: all of it coarsely, and then, as long as no other waits, tile by tile, which it
-/// says now and then and in the end.
+/// Judges a frame and reports the results: first all of it coarsely, then, as long as no other frame is waiting, tile
+/// by tile, with a report now and then and at the end.
 fn find(
     probe: &mut Probe,
     scene: &Scene,
@@ -314,7 +314,7 @@ fn find(
     Ok(())
 }
 
-/// The tiles in which there is anything, from the mouse outwards.
+/// The tiles that show anything, from the mouse outwards.
 fn order(tiles: &Tiles<'_, '_>, shown: &[Shown], mouse: Pixel) -> Vec<usize> {
     let is_drawn = |tile: usize| {
         let [columns, rows] = tiles.area(tile);
@@ -364,7 +364,7 @@ impl Judged {
         }
     }
 
-    /// Measures the pictures' errors against it.
+    /// Measures the pictures' errors against the truth, as far as it is known.
     fn found(&self, refined: f64) -> Result<Found, String> {
         let side = |(known, faces): (&Shown, &Vec<Option<Face>>)| {
             let errors = ErrorMap::new(&self.right, known).ok_or("the frames differ in size")?;
@@ -380,8 +380,8 @@ impl Judged {
         Ok(Found { sides: self.known.iter().zip(&self.faces).map(side).collect::<Result<_, String>>()?, refined })
     }
 
-    /// Gives a face's pixels that are not known yet the level of the one that was judged for all of them. Errors of cover
-    /// are of single pixels, and are not spread.
+    /// Gives pixels that are not known yet the level of the one that was judged for their block. Errors of cover
+    /// concern single pixels, and are not spread.
     fn spread(&self, levels: &mut [Option<u8>], faces: &[Option<Face>]) {
         for i in (0..levels.len()).filter(|&i| !self.is_known[i] && faces[i].is_some()) {
             let coarse = COARSE as usize;
@@ -466,7 +466,7 @@ mod tests {
         }
         assert!(map.errors_of(4, 0).is_none() && map.errors_of(3, 2).is_none());
         let found = map.of(3).expect("it came");
-        // Of each colour as many pixels as there are errors in its range.
+        // Each colour has as many pixels as there are errors in its range.
         let errors = errors(&scene, Shading::Flat);
         for index in 0..OTHER_FACE {
             let expected = errors.errors().flatten().filter(|error| level_of(*error) == index).count();
@@ -474,7 +474,7 @@ mod tests {
         }
         let other = found.sides[0].levels.iter().filter(|level| **level == Some(OTHER_FACE)).count();
         assert_eq!(other, errors.cover_errors());
-        // And laid over its picture, each side of the divider its own: the bright pixels in their colours.
+        // Laid over its picture, each side of the divider shows its own map: the bright pixels in their colours.
         let mut vga = Vga::new();
         let white = vga.palette().nearest(Rgb::WHITE);
         vga.pixels_mut().fill(white);
@@ -485,7 +485,7 @@ mod tests {
             let level = found.sides[usize::from(x >= 150)].levels[place].unwrap_or(0);
             assert_eq!(vga.pixels()[place], if level == 0 { GREYS - 1 } else { GREYS + level });
         }
-        // Over another picture it is not laid.
+        // It is not laid over another picture.
         let mut other = plain.clone();
         map.lay_over(&mut other, 4, 150);
         assert!(other.pixels() == plain.pixels() && other.palette() == plain.palette());
@@ -495,7 +495,7 @@ mod tests {
     fn a_map_is_coarse_at_first_and_right_where_it_was_judged() {
         let scene = Scene::showing(shapes::torus(24, 12));
         let errors: Vec<Option<f64>> = errors(&scene, Shading::Flat).errors().collect();
-        // Overtaken at once: what moves is judged coarsely all the same.
+        // Overtaken at once: a moving picture is judged coarsely all the same.
         let found = all_found(&scene, &[Shading::Flat], true);
         assert_eq!(found.len(), 1);
         let levels = &found[0].sides[0].levels;

@@ -1,5 +1,5 @@
-//! The inputs that the command line names, loaded in the background: the first, another when it is asked for, and the one
-//! that is shown when a file of it has changed.
+//! The inputs named on the command line, loaded in the background: the first one, another on request, and the one on
+//! show again when one of its files has changed.
 
 use std::ffi::OsString;
 use std::fs;
@@ -14,13 +14,13 @@ use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::turntable::Turntable;
 use crate::{input, read_files};
 
-/// Time between two looks at the files.
+/// Time between two checks of the files.
 const PERIOD: Duration = Duration::from_millis(250);
-/// Looks for which a change must rest before it is believed: a file may be half written. One that is gone is waited
-/// for longer, as there are editors that put a new one in its place.
+/// Number of checks that files must rest for before a change counts, as one may be half written. A file that is gone
+/// gets longer, because some editors replace it with a new one.
 const REST: u32 = 1;
 const REST_GONE: u32 = 4;
-/// Greatest lag of the time of a file's change behind the clock.
+/// Greatest lag of a file's modification time behind the clock.
 const LAG: Duration = Duration::from_millis(20);
 
 /// Inputs to be loaded, and how they are to be drawn.
@@ -38,9 +38,9 @@ impl Inputs {
     }
 }
 
-/// An input that was loaded, or reason it was not, and the files that it depends on.
+/// An input that was loaded, or the reason why it was not, and the files that it depends on.
 pub(super) struct Loading {
-    /// Its place in the list of inputs.
+    /// Its index in the list of inputs.
     pub(super) at: usize,
     /// True if it was loaded because a file changed.
     pub(super) is_again: bool,
@@ -48,7 +48,7 @@ pub(super) struct Loading {
     watch: Watch,
 }
 
-/// Loads an input. `known` are the files that it depended on before, which it does still if it cannot be loaded.
+/// Loads an input. `known` are the files that it depended on before; if it cannot be loaded, it still does.
 pub(super) fn load(inputs: &Inputs, at: usize, known: &[PathBuf]) -> Loading {
     let begun = SystemTime::now();
     let words = &inputs.words[at];
@@ -60,7 +60,7 @@ pub(super) fn load(inputs: &Inputs, at: usize, known: &[PathBuf]) -> Loading {
     files.push(PathBuf::from(words));
     if result.is_err() {
         files.extend_from_slice(known);
-        // A file that was missing may come.
+        // A missing file may appear.
         let folders: Vec<PathBuf> = files.iter().filter_map(|file| file.parent().map(Path::to_path_buf)).collect();
         let folders = folders.into_iter().map(|folder| if folder.as_os_str().is_empty() { ".".into() } else { folder });
         files.extend(folders);
@@ -77,7 +77,7 @@ pub(super) struct Loader {
 }
 
 impl Loader {
-    /// Begins to load the first input, and then to watch its files.
+    /// Starts loading the first input, then watches its files.
     pub(super) fn start(inputs: Arc<Inputs>) -> Result<Loader, Failure> {
         let (wanted, asked) = channel();
         let (answers, loaded) = channel();
@@ -85,7 +85,7 @@ impl Loader {
             let (mut at, mut watch) = (0, Watch::new(Vec::new(), SystemTime::now()));
             loop {
                 let wanted = match asked.recv_timeout(PERIOD) {
-                    // Those that were leafed through meanwhile are not loaded.
+                    // Inputs that were passed over meanwhile are not loaded.
                     Ok(next) => Some(asked.try_iter().last().unwrap_or(next)),
                     Err(RecvTimeoutError::Timeout) => None,
                     Err(RecvTimeoutError::Disconnected) => return,
@@ -109,13 +109,13 @@ impl Loader {
         Ok(loader)
     }
 
-    /// Asks for the input at this place to be loaded.
+    /// Asks for the input at this index to be loaded.
     pub(super) fn ask(&self, at: usize) {
         // The thread ends after this.
         let _ = self.wanted.send(at);
     }
 
-    /// Waits until an input has been loaded, for so long at most.
+    /// Waits until an input has been loaded, for at most this long.
     pub(super) fn wait(&self, most: Duration) -> Option<Loading> {
         self.loaded.recv_timeout(most).ok()
     }
@@ -141,12 +141,12 @@ struct Watch {
     /// The stamp of each file as it was loaded; `None` if the file changed meanwhile.
     loaded: Vec<Option<Stamp>>,
     seen: Vec<Stamp>,
-    /// Number of looks in which nothing has changed.
+    /// Number of checks in which nothing has changed.
     rested: u32,
 }
 
 impl Watch {
-    /// Watches files that were loaded from the time `begun` on.
+    /// Watches files that were loaded after the time `begun`.
     fn new(files: Vec<PathBuf>, begun: SystemTime) -> Watch {
         let seen: Vec<Stamp> = files.iter().map(|file| stamp(file)).collect();
         let is_older = |stamp: &Stamp| stamp.is_none_or(|(changed, _)| changed + LAG < begun);
@@ -154,7 +154,7 @@ impl Watch {
         Watch { files, loaded, seen, rested: 0 }
     }
 
-    /// Looks at all files. Returns whether they are others than were loaded, and have been so for a while.
+    /// Checks all files. Returns whether they differ from those that were loaded, and have rested for a while.
     fn has_changed(&mut self) -> bool {
         let now: Vec<Stamp> = self.files.iter().map(|file| stamp(file)).collect();
         self.rested = if now == self.seen { self.rested + 1 } else { 0 };
@@ -186,7 +186,7 @@ mod tests {
         Arc::new(Inputs { moment: Moment::default(), drawing, shading, words })
     }
 
-    /// The next that the loader gives, which takes a second or so.
+    /// The loader's next result, which takes a second or so.
     fn next(loader: &Loader) -> Loading {
         loader.wait(Duration::from_secs(60)).expect("nothing was loaded")
     }
@@ -200,7 +200,7 @@ mod tests {
         loading.result.as_ref().err().map(ToString::to_string).unwrap_or_default()
     }
 
-    /// Loads the first input, of which no file has changed just now.
+    /// Loads the first input, none of whose files has just changed.
     fn start_at_rest(inputs: &Arc<Inputs>) -> (Loader, Loading) {
         thread::sleep(2 * LAG);
         let loader = Loader::start(Arc::clone(inputs)).expect("a thread");

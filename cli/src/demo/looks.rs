@@ -133,7 +133,8 @@ impl Panel for Looks {
     }
 }
 
-/// The effects that are on: each with its choice, unless the rows above say that, and, if not for all objects, for how many.
+/// The effects that are on, each with its choice unless the rows above give it, and with the number of objects if not
+/// all.
 fn effects_on(renderer: &Renderer) -> Vec<String> {
     let objects = renderer.plan().objects();
     let entry = |effect: Effect| {
@@ -152,17 +153,17 @@ fn effects_on(renderer: &Renderer) -> Vec<String> {
     Effect::ALL.into_iter().filter_map(entry).collect()
 }
 
-/// The palettes that P goes through, of which the stage's is chosen.
+/// The palettes that P steps through, with the stage's chosen.
 fn palettes(stage: &Turntable, drawing: &Drawing) -> Choice<(String, Colors)> {
-    // A palette without ramps has no order of shades: what has no colours of its own is shown in such a one only if that
-    // was asked for.
+    // A palette without ramps has no order of shades, so a stage without colours of its own is shown in one only on
+    // request.
     let has_colors = stage.has_colors();
     let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
     let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
     let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
     // A scene that has none leaves the DAC alone.
     let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-    // Under its own name, if it has one, it does not stand twice in the list.
+    // It is listed under its own name, if it has one, so that it is not listed twice.
     let usual = match &colors {
         Colors::Auto => input::AUTO,
         Colors::Palette(palette) => {

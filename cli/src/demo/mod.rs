@@ -75,7 +75,8 @@ trait Panel {
     /// Follows the user's input.
     fn follow(&mut self, input: &Input, show: &mut Show) -> Result<(), Failure>;
 
-    /// Adapts to another stage. If that `keeps` what keys have changed, it is changed again; otherwise all starts over.
+    /// Adapts to another stage. If that `keeps` the changes made by keys, they are made again; otherwise all starts
+    /// over.
     fn renew(&mut self, _show: &mut Show, _keeps: bool) -> Result<(), Failure> {
         Ok(())
     }
@@ -85,7 +86,7 @@ trait Panel {
         Vec::new()
     }
 
-    /// Lays over the picture what it shows.
+    /// Lays what it has to show over the picture.
     fn lay_over(&self, _show: &Show, _sheet: &mut Sheet) {}
 }
 
@@ -173,22 +174,22 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// The inputs behind the first one.
+    /// The inputs after the first one.
     pub(crate) fn more_inputs(&self) -> &[OsString] {
         self.inputs.get(1..).unwrap_or_default()
     }
 }
 
-/// Seconds for which the words stand on where a picture was saved.
+/// Seconds for which the demo says where a picture was saved.
 const SAVED: f64 = 3.0;
 
 /// Time that the first input may take to load before a window opens that says so.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Time for which nothing changes in what stands still.
+/// Time without a change after which a picture counts as still.
 const STILL: Duration = Duration::from_millis(500);
-/// Longest time in which nothing is done but wait for the user: where all stands still, and where something moves so
-/// slowly that now and then two frames are the same.
+/// Longest time spent just waiting for the user: when everything stands still, and when something moves so slowly that
+/// two frames are now and then the same.
 const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
@@ -209,7 +210,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = inputs.drawing.kernel()?;
     let loader = Loader::start(Arc::clone(&inputs))?;
     let mut demo = Demo::new(inputs, kernel);
-    // Most faults of an input are found at once, and then no window need open.
+    // Most faults of an input are found at once, so that no window need open.
     if let Some(first) = loader.wait(PATIENCE) {
         demo.put_on(first)?;
     }
@@ -224,7 +225,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let mut title = String::new();
-    // What is shown, and when that last changed.
+    // The picture on show, and when it last changed.
     let (mut shown, mut changed) = (None, 0.0);
     loop {
         let (input, at) = (window.input(), demo.panels.scenes.at);
@@ -287,9 +288,9 @@ impl Demo {
         Demo { show: Show::new(inputs, [left, right]), panels }
     }
 
-    /// Shows what was loaded, unless something else has been asked for since. Loaded again, it keeps pose, time and what
-    /// keys have chosen. What could not be loaded leaves what is shown, or, the first time, an empty picture; that is a
-    /// failure if there is no other input.
+    /// Shows an input that was loaded, unless another has been asked for since. A reloaded one keeps its pose, its time
+    /// and the choices made by keys. If it could not be loaded, the picture stays, or is empty the first time; that is
+    /// a failure if there is no other input.
     fn put_on(&mut self, loading: Loading) -> Result<(), Failure> {
         let Loading { at, is_again, result, .. } = loading;
         let Demo { show, panels } = self;
@@ -298,7 +299,8 @@ impl Demo {
             return Ok(());
         }
         scenes.is_loading = false;
-        // A renderer of its own finds out whether the scene can be drawn; this one's plan is for what is shown.
+        // A separate renderer finds out whether the scene can be drawn; this one keeps its plan for the picture on
+        // show.
         let checked = result.and_then(|stage| {
             let mut renderer = show.halves[0].renderer.with_same_settings();
             renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
@@ -422,7 +424,8 @@ impl Demo {
         sheet
     }
 
-    /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown and ends nothing.
+    /// Saves the picture as it is on the screen, without the text and the panels over it. A failure is shown, and does
+    /// not end the demo.
     fn save(&mut self) {
         let notice = match output::numbered_picture(&self.show.screen) {
             Ok(path) => format!("saved {}", path.display()),
@@ -440,7 +443,7 @@ impl Demo {
         }
     }
 
-    /// The words at the lower edge: what is being loaded, or a notice, and, as long as it lasts, that the time stands still.
+    /// The text at the lower edge: what is being loaded, or a notice, and, while it is stopped, that time stands still.
     fn said(&self) -> Option<String> {
         let notice = self.show.notice.as_ref().map(|(notice, _)| notice.clone());
         self.panels.scenes.loading(&self.show).or(match (notice, self.panels.motion.is_stopped()) {
@@ -451,12 +454,12 @@ impl Demo {
     }
 }
 
-/// Rows that a key opens, leafs through and closes.
+/// Rows that a key opens, pages through and closes.
 #[derive(Default)]
 struct Pages {
     is_open: bool,
     page: usize,
-    /// Number of pages when it was laid last.
+    /// Number of pages when it was last laid out.
     pages: usize,
 }
 
@@ -587,7 +590,7 @@ mod tests {
             })
             .into();
         assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
-        // The same again is the same picture.
+        // Drawn again, it is the same picture.
         demo.draw().expect("a legal scene");
         assert!(demo.title().contains("not drawn again"), "{}", demo.title());
         assert_eq!(demo.show.halves[0].timing.frame, times[1]);

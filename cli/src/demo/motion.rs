@@ -12,7 +12,7 @@ pub(super) const KEYS: Keys =
 pub(super) const STOPPED: &str = "stopped";
 /// Speed of turning by the arrow keys, in radians a second.
 const ARROW_SPEED: f64 = 2.0;
-/// Angle by which one press of an arrow key turns at once, in radians: a tap shorter than a frame shows too.
+/// Angle by which one press of an arrow key turns at once, in radians, so that a tap shorter than a frame shows too.
 pub(super) const ARROW_TAP: f64 = 0.05;
 /// Angle by which a drag over one pixel of the frame turns, in radians: half a turn over its width.
 const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
@@ -22,14 +22,14 @@ const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f6
 pub(super) const NOTCH: f64 = 1.1;
 /// The least and the greatest enlargement.
 const ZOOM: (f64, f64) = (0.25, 8.0);
-/// The longest time that a key counts as held for in one frame, in seconds: nothing is caught up with after a pause.
+/// The longest time that a key counts as held for in one frame, in seconds, so that nothing jumps after a pause.
 const LONGEST_FRAME: f64 = 0.1;
 
 /// Motion: the scene's time, by the clock unless it is stopped, and what the user has turned.
 pub(super) struct Motion {
     /// The scene's time at the time `change`, in seconds.
     time: f64,
-    /// Time at which the clock began to move it, in seconds; nothing while it is stopped.
+    /// Time at which the clock began to move it, in seconds; `None` while it is stopped.
     change: Option<f64>,
     pub(super) pose: Pose,
     /// Time of the last frame.
@@ -41,7 +41,7 @@ impl Motion {
         Motion { time: 0.0, change: Some(0.0), pose: Pose::FIRST, now: 0.0 }
     }
 
-    /// Puts the scene's time to `seconds`; it goes on from there.
+    /// Sets the scene's time to `seconds`; it goes on from there.
     pub(super) fn go_to(&mut self, seconds: f64) {
         self.time = seconds;
         self.change = self.change.map(|_| self.now);
@@ -57,7 +57,7 @@ impl Motion {
         self.pose.zoom = (self.pose.zoom * factor).clamp(ZOOM.0, ZOOM.1);
     }
 
-    /// Moves by what the user did until the time `seconds`. What that changed, in words.
+    /// Moves by the user's input up to the time `seconds`. Returns what that changed, in words.
     fn move_by(&mut self, input: &Input, seconds: f64) -> Option<String> {
         let was = (self.change.is_some(), self.pose);
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);
@@ -88,7 +88,7 @@ impl Motion {
         } else if notches != 0.0 {
             Some(format!("zoom {zoom:.2}"))
         } else {
-            // What is turned on and on comes to less than a turn.
+            // However far it has been turned, less than a full turn is shown.
             let [turn, tilt] = [turn, tilt].map(|angle| angle.to_degrees() % 360.0);
             (self.pose != was.1).then(|| format!("turned {turn:.0}°, tilted {tilt:.0}°"))
         }

@@ -1,4 +1,4 @@
-//! Panels for what the picture itself has: its shading, and its error map.
+//! Panels for the picture itself: its shading and its error map.
 
 use mode13h::render::Stats;
 

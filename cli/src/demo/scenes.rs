@@ -13,7 +13,7 @@ pub(super) fn counted(number: usize, thing: &str) -> String {
 
 /// The input that is shown or being loaded.
 pub(super) struct Scenes {
-    /// Its place in the list.
+    /// Its index in the list.
     pub(super) at: usize,
     pub(super) is_loading: bool,
     /// Name of the one on show.
@@ -23,7 +23,7 @@ pub(super) struct Scenes {
 }
 
 impl Scenes {
-    /// Words on the input that is being loaded.
+    /// Text about the input that is being loaded.
     pub(super) fn loading(&self, show: &Show) -> Option<String> {
         let count = show.inputs.words.len();
         let number = if count > 1 { format!("{} of {count}: ", self.at + 1) } else { String::new() };

@@ -1,4 +1,4 @@
-//! Choice of the shades by keys: a shading, a budget of error, or a time for a frame.
+//! Choice of the shading by keys: a shading, an error budget, or a time for each frame.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,16 +9,16 @@ use mode13h::window::{Input, Key};
 
 use crate::options::pace;
 
-/// The budgets that B goes through, in shades of 1/255 of full intensity.
+/// The budgets that B steps through, in shades of 1/255 of full intensity.
 pub(super) const BUDGETS: [f32; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 /// The budget of a scene that asks for none.
 const USUAL: f32 = 2.0;
 
-/// The times that F goes through, in milliseconds, and that of a scene that asks for none.
+/// The times that F steps through, in milliseconds, and that of a scene that asks for none.
 const TIMES: [f32; 7] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25];
 const USUAL_TIME: f32 = 1.0;
 
-/// The keys 1 to 9, in the top row and in the number pad, and what they type. The tenth shading has no digit.
+/// The keys 1 to 9, in the top row and on the number pad, and what they type. The tenth shading has no digit.
 const DIGITS: [(Key, Key, char); 9] = [
     (Key::Key1, Key::NumPad1, '1'),
     (Key::Key2, Key::NumPad2, '2'),
@@ -31,7 +31,7 @@ const DIGITS: [(Key, Key, char); 9] = [
     (Key::Key9, Key::NumPad9, '9'),
 ];
 
-/// Request of a key.
+/// A key's request.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Wish {
     /// This shading.
@@ -42,21 +42,21 @@ enum Wish {
     Dearer,
     /// The budget.
     Budget,
-    /// The budget, or where that is on a smaller error.
+    /// The budget, or a smaller error if that is on already.
     Less,
-    /// The budget, or where that is on a greater error.
+    /// The budget, or a greater error if that is on already.
     More,
-    /// The time, or where that is on a shorter one.
+    /// The time, or a shorter one if that is on already.
     Shorter,
-    /// The time, or where that is on a longer one.
+    /// The time, or a longer one if that is on already.
     Longer,
 }
 
-/// Finds the user's request, if there is any, for the picture, or for the right half of one: the same keys with Shift.
+/// Finds the user's request, if there is any, for the picture or, with the same keys and Shift, for its right half.
 fn wish(input: &Input, is_right: bool) -> Option<Wish> {
     let typed = |character: char| input.typed.contains(character);
     let is_down = |&(key, pad, character): &(Key, Key, char)| match is_right {
-        // Where digits are typed with Shift, as in France, a key of the top row means what it types, to the left half.
+        // Where digits are typed with Shift, as in France, a key in the top row means what it types, for the left half.
         true => input.pressed_with_shift(key) && !typed(character),
         false => input.pressed(pad) || typed(character) || (input.pressed(key) && input.typed.is_empty()),
     };
@@ -87,7 +87,7 @@ fn more(list: &[f32], than: f32) -> f32 {
     list.iter().copied().rfind(|&entry| entry > than).unwrap_or(than)
 }
 
-/// Means by which shades are chosen.
+/// How shades are chosen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum By {
     Shading,
@@ -155,7 +155,7 @@ impl ShadingChoice {
         }
     }
 
-    /// Sets a renderer to draw the next frame by it.
+    /// Sets a renderer to draw the next frame this way.
     pub(super) fn set(&self, renderer: &mut Renderer, pacing: &mut Pacing) {
         let accuracy = match self.by {
             By::Shading => Accuracy::Shading(self.shading),
@@ -168,32 +168,32 @@ impl ShadingChoice {
         renderer.settings.accuracy = Some(accuracy);
     }
 
-    /// The error that is or would be accepted, in shades. A time chooses it: then that of the last frame.
+    /// The error that is or would be accepted, in shades; with a time, which chooses it, that of the last frame.
     pub(super) fn budget(&self, last: Option<&Stats>) -> f32 {
         let chosen = if self.by == By::Time { last.and_then(|stats| stats.max_error) } else { None };
         chosen.unwrap_or(self.budget)
     }
 }
 
-/// The pace of frames that are to fit in a time, and the time and the greatest error that it is of.
+/// The pace of frames that should fit in a time, with that time and the greatest error.
 #[derive(Default)]
 pub(super) struct Pacing(Option<((f32, f32), Pace)>);
 
 impl Pacing {
-    /// The pace of this time and this greatest error.
+    /// The pace for this time and this greatest error.
     fn of(&mut self, time: f32, max_error: f32) -> &Pace {
         let known = self.0.take().filter(|(of, _)| *of == (time, max_error));
         &self.0.insert(known.unwrap_or_else(|| ((time, max_error), pace(time, max_error)))).1
     }
 
-    /// Takes how long the last frame took.
+    /// Records how long the last frame took.
     pub(super) fn report(&mut self, stats: &Stats, time: Duration) {
         if let Some((_, pace)) = &mut self.0 {
             pace.report(stats, time);
         }
     }
 
-    /// Returns whether frames fit, if they are to fit in a time.
+    /// Returns whether frames fit, if they should fit in a time.
     pub(super) fn fits(&self) -> Option<bool> {
         self.0.as_ref().map(|(_, pace)| pace.fits())
     }

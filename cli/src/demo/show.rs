@@ -15,13 +15,13 @@ use super::timing::Timing;
 use crate::failure::Failure;
 use crate::turntable::Turntable;
 
-/// Words at first, and their time in seconds.
+/// The first message, and how long it is shown, in seconds.
 const HINT: &str = "H help, I figures";
 const HINT_SECONDS: f64 = 3.0;
-/// Seconds for which the words stand on what a key has changed.
+/// Seconds for which a message says what a key has changed.
 const NOTICE: f64 = 1.0;
 
-/// A shading, what draws by it, and what it drew.
+/// A shading, the renderer that uses it, and its picture.
 pub(super) struct Half {
     pub(super) shading: ShadingChoice,
     /// True if a key chose it, and not the command line or the scene.
@@ -49,15 +49,15 @@ impl Half {
         self.forget_times();
     }
 
-    /// Something has changed that changes how long frames take.
+    /// Forgets earlier times, after a change that affects how long frames take.
     pub(super) fn forget_times(&mut self) {
         (self.timing, self.planning) = <(Timing, Timing)>::default();
     }
 
-    /// Draws a frame, and measures its plan alone if that is shown. Whether it is another picture than before.
+    /// Draws a frame, and measures its plan alone if that is shown. Returns whether the picture is a new one.
     pub(super) fn draw(&mut self, scene: &Scene, seconds: f64, plans: bool) -> Result<bool, RenderError> {
         self.shading.set(&mut self.renderer, &mut self.pacing);
-        // While a picture stands still the time for its plan stays, too.
+        // While the picture stands still, so does the time for its plan.
         if plans && (self.timing.is_redrawn || self.planning.frame == 0.0) {
             let start = Instant::now();
             self.renderer.make_plan(scene, Screen::MODE_13H)?;
@@ -68,7 +68,7 @@ impl Half {
         let taken = start.elapsed();
         self.pacing.report(&stats, taken);
         self.timing.add(stats.redrawn.then_some(taken.as_secs_f64()), seconds);
-        // A frame that was there already keeps its counts.
+        // A frame that was already there keeps its counts.
         let is_new = stats.redrawn || self.stats.is_none();
         if is_new {
             self.stats = Some(stats);
@@ -80,11 +80,11 @@ impl Half {
 /// State shared by all panels.
 pub(super) struct Show {
     pub(super) inputs: Arc<Inputs>,
-    /// Scene on show; without objects until something could be loaded.
+    /// Scene on show; without objects until something has been loaded.
     pub(super) stage: Turntable,
     /// The picture, and the other one while two shadings are compared.
     pub(super) halves: [Half; 2],
-    /// While two are compared, the column of the frame from which on the other is seen.
+    /// While two are compared, the column of the frame at which the other begins.
     pub(super) divider: Option<usize>,
     /// The picture as it is shown, without text.
     pub(super) screen: Vga,
@@ -94,14 +94,14 @@ pub(super) struct Show {
     pub(super) map: Map,
     pub(super) figures: Pages,
     pub(super) help: Pages,
-    /// Words at the lower edge, and until when.
+    /// Message at the lower edge, and until when it is shown.
     pub(super) notice: Option<(String, f64)>,
     /// Time of this frame.
     pub(super) seconds: f64,
 }
 
 impl Show {
-    /// Nothing to show yet: two halves, and an empty scene.
+    /// The state with nothing to show yet: two halves, and an empty scene.
     pub(super) fn new(inputs: Arc<Inputs>, halves: [Half; 2]) -> Show {
         Show {
             inputs,
@@ -123,17 +123,17 @@ impl Show {
         self.stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum()
     }
 
-    /// The halves of which something is seen, from the left.
+    /// The visible halves, from the left.
     pub(super) fn seen(&self) -> &[Half] {
         if self.divider.is_some() { &self.halves } else { &self.halves[..1] }
     }
 
-    /// The column from which on the right half is seen.
+    /// The column at which the right half begins.
     pub(super) fn column(&self) -> usize {
         self.divider.unwrap_or(Vga::WIDTH)
     }
 
-    /// Sets the right half's renderer as the left one's.
+    /// Gives the right half's renderer the settings of the left one's.
     pub(super) fn renew_right(&mut self) {
         let renderer = self.halves[0].renderer.with_same_settings();
         self.halves[1].renew(renderer);
@@ -147,7 +147,7 @@ impl Show {
         }
     }
 
-    /// Says something for a moment.
+    /// Shows a message for a moment.
     pub(super) fn say(&mut self, what: impl Into<String>) {
         self.notice = Some((what.into(), self.seconds + NOTICE));
     }
@@ -164,7 +164,7 @@ impl Show {
         Ok(())
     }
 
-    /// Has the picture's errors measured, from a pixel on.
+    /// Has the picture's errors measured, starting at a pixel.
     pub(super) fn measure(&mut self, mouse: Pixel) -> Result<(), Failure> {
         let mut map = std::mem::take(&mut self.map);
         let followed = map.follow(self.number, || Frame {

@@ -19,20 +19,20 @@ use crate::turntable::Turntable;
 /// The time from one frame to the next: 35 a second.
 const PERIOD: Duration = Duration::from_nanos(1_000_000_000 / 35);
 
-/// The sizes of a frame in square pixels, the larger first; a larger one would take the line to the terminal too long.
+/// The sizes of a frame in square pixels, the larger first; sending an even larger one would take too long.
 const SIZES: [(u16, u16); 2] = [(640, 480), (320, 240)];
 
 /// How a frame is sent, and how many are.
 pub(super) struct Sending {
-    /// The terminal's protocol, if it was said.
+    /// The terminal's protocol, if it was given.
     pub(super) to: Option<Protocol>,
     pub(super) scale: Option<Scale>,
-    /// The number of frames, or until a key ends it.
+    /// The number of frames; without one, a key ends it.
     pub(super) frames: Option<u32>,
 }
 
 impl Sending {
-    /// A failure if nothing could end it.
+    /// Fails if nothing could end it.
     pub(super) fn check(&self, inputs: &[impl AsRef<OsStr>]) -> Result<(), Failure> {
         if inputs.len() > 1 {
             return Err(Failure::words("--terminal shows one INPUT, not several"));
@@ -47,7 +47,7 @@ impl Sending {
 
     /// Shows a stage from the time `seconds` on.
     pub(super) fn run(&self, stage: Turntable, renderer: Renderer, seconds: f64) -> Result<(), Failure> {
-        // Whoever tells the program to end waits until the terminal is restored.
+        // A signal to end waits until the terminal is restored.
         output::long_file(None, || {
             let protocol = self.to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)));
             let scale = self.scale.unwrap_or_else(scale_that_fits);
@@ -91,7 +91,7 @@ impl Sending {
             stage.show(motion.seconds(), motion.pose);
             renderer.draw(&stage.scene, &mut vga).map_err(Failure::from)?;
             let frame = (vga.pixels().to_vec(), vga.palette());
-            // What stands still is sent once.
+            // A still picture is sent once.
             if shown.as_ref() != Some(&frame) {
                 let picture = Picture::mode_13h(&frame.0, &frame.1);
                 match send(&screen.protocol.frame(&picture, scale).map_err(Failure::from)?) {
@@ -103,7 +103,7 @@ impl Sending {
             if self.frames.is_some_and(|frames| number >= frames) {
                 return Ok(());
             }
-            // Nothing is caught up with: where the line is slow, fewer frames are sent.
+            // Lost time is not made up: on a slow line, fewer frames are sent.
             due = (due + PERIOD).max(Instant::now());
             std::thread::sleep(due - Instant::now());
         }
@@ -117,7 +117,7 @@ fn send(text: &str) -> io::Result<()> {
     out.flush()
 }
 
-/// The greatest of the sizes that leaves the terminal a line; the least, if it does not say how large it is.
+/// The largest size that leaves the terminal a line; the smallest if the terminal does not say how large it is.
 fn scale_that_fits() -> Scale {
     let [.., least] = SIZES;
     let (across, down) = room().unwrap_or_default();
@@ -153,7 +153,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // A picture that an error cut off is ended first. A terminal that is gone needs none of it.
+        // A picture cut off by an error is ended first. If the terminal is gone, none of this matters.
         let _ = send(&format!("\x1b\\\x1b[?2026l{}\x1b[?25h\x1b[?1049l", self.protocol.after_frames()));
     }
 }
@@ -195,7 +195,7 @@ impl Drop for Keys {
     fn drop(&mut self) {
         use rustix::termios::{OptionalActions, tcsetattr};
         if let Some(before) = &self.before {
-            // What was typed meanwhile is not for the shell. A terminal that is gone needs no restoring.
+            // Keys typed meanwhile are not for the shell. A terminal that is gone needs no restoring.
             let _ = tcsetattr(io::stdin(), OptionalActions::Flush, before);
         }
     }
@@ -212,7 +212,7 @@ impl Keys {
     }
 }
 
-/// What a key asks for.
+/// A key's request.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Key {
     End,
@@ -224,7 +224,7 @@ enum Key {
     Zoom(f64),
 }
 
-/// The keys that a terminal's bytes stand for. Others are left out.
+/// The keys that a terminal's bytes stand for, without unknown ones.
 fn keys(mut bytes: &[u8]) -> Vec<Key> {
     const CTRL_C: u8 = 3;
     const ESCAPE: u8 = 0x1b;

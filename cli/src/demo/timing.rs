@@ -1,13 +1,13 @@
 //! Times that change slowly enough to be read.
 
-/// The time that drawing a frame takes, and how many are shown, steady enough to be read.
+/// The time that drawing a frame takes and the frame rate, steady enough to read.
 #[derive(Default)]
 pub(super) struct Timing {
     sum: f64,
     drawn: u32,
     frames: u32,
     change: f64,
-    /// Seconds for a frame that was drawn, over the last period in which one was.
+    /// Seconds per frame drawn, over the last period in which any was.
     pub(super) frame: f64,
     /// Frames a second, drawn or not, over the last period.
     pub(super) rate: f64,
@@ -19,7 +19,8 @@ impl Timing {
     /// The least time from one figure to the next, in seconds.
     const PERIOD: f64 = 0.5;
 
-    /// A frame was shown at the time `now`. It was drawn in `taken` seconds, or, with `None`, was there already.
+    /// Records that a frame was shown at the time `now`. It was drawn in `taken` seconds or, with `None`, was already
+    /// there.
     pub(super) fn add(&mut self, taken: Option<f64>, now: f64) {
         self.is_redrawn = taken.is_some();
         self.sum += taken.unwrap_or(0.0);

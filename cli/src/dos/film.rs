@@ -8,16 +8,16 @@ use mode13h::settings::Shading;
 
 use super::player::MAGIC;
 
-/// A mesh that is in the film already: two objects that share one are the same to the byte.
+/// A mesh already in the film, as bytes: objects whose meshes are equal to the byte share one.
 #[derive(PartialEq)]
 struct Written(Vec<u8>);
 
-/// A film that grows by a frame at a time.
+/// A film to which frames are added one at a time.
 pub(super) struct Writer {
     shading: Option<Shading>,
     meshes: Vec<Written>,
     frames: Vec<Vec<u8>>,
-    /// The max number of vertices of a mesh.
+    /// The largest number of vertices in a mesh.
     pub(super) vertices: usize,
 }
 
@@ -26,7 +26,7 @@ impl Writer {
         Writer { shading: None, meshes: Vec::new(), frames: Vec::new(), vertices: 0 }
     }
 
-    /// Adds a frame. Says what is too much for a film, if anything is.
+    /// Adds a frame. The error says what is too much for a film.
     pub(super) fn push(&mut self, frame: &IntegerFrame<'_>) -> Result<(), String> {
         self.shading = Some(frame.shading);
         let mut out = Bytes::default();

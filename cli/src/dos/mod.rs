@@ -1,8 +1,8 @@
 //! `mode13h dos`: a scene as a program for DOS, which draws it in the mode 13h of a real VGA.
 //!
-//! The program is a header of DOS, a stub of 16 bits, a flat image of the engine for a 386, and a film: one round of the
-//! scene in 16.16 ([`player`]), packed ([`unpack`]). Stub and image are at hand as bytes, so that no assembler is needed here; their source is
-//! in `machines/dos`, whose `build` rebuilds the bytes.
+//! The program is a DOS header, a 16-bit stub, a flat image of the engine for a 386, and a film: one round of the scene
+//! in 16.16 ([`player`]), packed ([`unpack`]). Stub and image are included as bytes, so no assembler is needed here;
+//! their source is in `machines/dos`, whose `build` rebuilds the bytes.
 
 mod film;
 mod player;
@@ -32,7 +32,7 @@ use crate::{output, read_files};
 /// Stub and image, as `machines/dos/build` makes them.
 static PLAYER: &[u8] = include_bytes!("player.bin");
 
-/// The first sector of a floppy, and where in it the number of sectors behind it stands.
+/// The first sector of a floppy, and the offset in it of the number of sectors that follow.
 static BOOT: &[u8; 512] = include_bytes!("boot.bin");
 const SECTORS: usize = 4;
 /// Bytes of a floppy.
@@ -40,7 +40,7 @@ const FLOPPY: usize = 2 * 80 * 18 * 512;
 
 /// Bytes of the stub's table in `PLAYER`: offset and length of the film, the stack's top, the extended memory in KB.
 const TABLE: usize = 4;
-/// Bytes of a program, at most: DOS loads it below 640 KB.
+/// Most bytes that a program may have, as DOS loads it below 640 KB.
 const MAX_SIZE: usize = 500_000;
 /// Bytes of stack behind the program, half of it for real mode.
 const STACK: usize = 0x1_0000;
@@ -110,7 +110,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let packed = pack(&film);
     let body = body(&packed, film.len(), vertices)?;
     let program = if ends_in(&out, "img") { floppy(&body) } else { program(&body) };
-    // What is drawn is what the program unpacks.
+    // The frames are drawn from what the program unpacks.
     let sum = unpack(&packed)
         .and_then(|film| hash_of(&film))
         .ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
@@ -118,7 +118,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     output::say(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
 }
 
-/// What the film leaves out of a scene, if anything: effects that it calls for and that 16.16 does not know.
+/// Describes what the film leaves out of a scene, if anything: effects that it needs and the 16.16 path lacks.
 fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Failure> {
     let mut renderer = like.with_same_settings();
     stage.show(0.0, Pose::FIRST);
@@ -133,14 +133,14 @@ fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Fail
     Ok((!lost.is_empty()).then(|| format!("left out, because the program computes in 16.16: {}", lost.join(", "))))
 }
 
-/// A name that DOS can have: at most eight letters, digits and a few signs.
+/// A name that DOS allows: at most eight letters, digits and a few signs.
 fn short_name(name: &str) -> String {
     let fits = |c: &char| c.is_ascii_alphanumeric() || "_-".contains(*c);
     let short: String = name.chars().filter(fits).take(8).collect::<String>().to_ascii_uppercase();
     if short.is_empty() { "SCENE".into() } else { short }
 }
 
-/// One round of a scene as a film, and the max number of vertices of a mesh.
+/// One round of a scene as a film, and the largest number of vertices in a mesh.
 fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Result<(Vec<u8>, usize), Failure> {
     let mut writer = film::Writer::new();
     for number in 0..frames {
@@ -153,7 +153,7 @@ fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Resul
     Ok((writer.finish(palette).map_err(Failure::words)?, vertices))
 }
 
-/// Puts a scene where it is in a frame of its round. Painter's order by faces is no way of a film.
+/// Moves a scene to a frame of its round. A film cannot draw in painter's order, so it uses a depth buffer instead.
 fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16) {
     let (seconds, pose) = stage.turned(0.0, 360.0 * f64::from(number) / f64::from(frames));
     stage.show(seconds, pose);
@@ -163,7 +163,7 @@ fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16
     }
 }
 
-/// Packs bytes, less than 4 GB: [`unpack`](unpack()) says how.
+/// Packs less than 4 GB of bytes in the format of [`unpack`](unpack()).
 fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut packed = (bytes.len() as u32).to_le_bytes().to_vec();
     packed.extend(compress_to_vec(bytes, CompressionLevel::UberCompression as u8));
@@ -177,8 +177,7 @@ fn body(film: &[u8], unpacked: usize, vertices: usize) -> Result<Vec<u8>, Failur
     let start = body.len();
     body.extend(film);
     body.resize(body.len().next_multiple_of(16), 0);
-    // The film is unpacked, and its meshes are taken apart with two copies of their indices. A vertex takes less than 64
-    // bytes.
+    // For the unpacked film, and for its meshes with two copies of their indices. A vertex takes less than 64 bytes.
     let heap = 4 * unpacked + 5 * PIXELS + 64 * vertices + 65_536;
     if body.len() > MAX_SIZE {
         let line = format!("the program would have {} bytes, and DOS has room for {MAX_SIZE}", body.len());
@@ -192,7 +191,7 @@ fn body(film: &[u8], unpacked: usize, vertices: usize) -> Result<Vec<u8>, Failur
     Ok(body)
 }
 
-/// A floppy that starts it.
+/// A bootable floppy with the program.
 fn floppy(body: &[u8]) -> Vec<u8> {
     let mut floppy = BOOT.to_vec();
     floppy[SECTORS..SECTORS + 2].copy_from_slice(&(body.len().div_ceil(512) as u16).to_le_bytes()); // at most 977
@@ -248,7 +247,7 @@ mod tests {
 
     use super::*;
 
-    /// Every shipped scene is drawn by the film as by the renderer, and a film that is broken off is refused.
+    /// A film draws every shipped scene as the renderer does, and a truncated film is rejected.
     #[test]
     fn a_film_is_drawn_as_the_scene_is() {
         for shipped in &shipped::ALL {
@@ -270,7 +269,7 @@ mod tests {
         }
     }
 
-    /// Every shipped scene is a program of at most 250 kB, whose film is unpacked to the byte.
+    /// Every shipped scene makes a program of at most 250 kB, whose film unpacks to the same bytes.
     #[test]
     fn shipped_scenes_are_small() {
         for shipped in &shipped::ALL {
@@ -283,7 +282,8 @@ mod tests {
         }
     }
 
-    /// A packed film that is cut short, extended or altered is refused or unpacks to as many other bytes: no panic.
+    /// A packed film that is truncated, extended or altered is rejected or unpacks to as many other bytes, without a
+    /// panic.
     #[test]
     fn broken_films_are_refused() {
         let words = (0..4000_u32).flat_map(|i| (i * i / 7).to_le_bytes());
@@ -302,7 +302,7 @@ mod tests {
         assert!(unpack(&[0xFF; 100]).is_none());
     }
 
-    /// DOS and the boot sector load all that there is, and what DOS cannot load is refused.
+    /// DOS and the boot sector load the whole program, and one that DOS cannot load is rejected.
     #[test]
     fn headers_say_what_follows() {
         let bytes = body(b"a film", 6, 3).unwrap();
@@ -323,7 +323,7 @@ mod tests {
         assert!(body(&vec![0; MAX_SIZE], 0, 0).is_err());
     }
 
-    /// A film has each of its shadings, and there is no other that integers draw.
+    /// A film supports each of its shadings, and the integer path draws no others.
     #[test]
     fn every_shading_of_integers_is_drawn() {
         assert!(Shading::ALL.into_iter().filter(|shading| shading.in_integers() == *shading).eq(SHADINGS));
@@ -340,7 +340,7 @@ mod tests {
             assert!(pixels == *vga.pixels(), "{shading}");
             hashes.push(fnv_1a(START, &pixels));
         }
-        // On this torus, spans are too short for 8.8 to drift and to be started anew.
+        // On this torus, spans are too short for 8.8 to drift and to be reseeded.
         hashes.dedup();
         assert_eq!(hashes.len(), 5, "{hashes:x?}");
     }

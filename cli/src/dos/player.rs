@@ -1,7 +1,7 @@
 //! A film of projected scenes: one round of a scene in 16.16, drawn without a float and without a standard library. The
 //! program for DOS includes this file, and the tests here compare its frames with the renderer's.
 //!
-//! The file is little-endian. `u32` unless said otherwise; slices of 16 bits are filled up to four bytes.
+//! The file is little-endian. Numbers are `u32` unless noted; slices of 16 bits are padded to four bytes.
 //!
 //! ```text
 //! MAGIC, index of the shading, meshes, frames
@@ -63,7 +63,7 @@ impl<'a> Input<'a> {
     }
 
     fn vectors(&mut self, count: usize) -> Option<Vec<Vector>> {
-        // So many bytes are there, before room is made for them, and no more room than that.
+        // The bytes are known to be there before memory is allocated, and no more is allocated than they need.
         let mut bytes = Input(self.bytes(count.checked_mul(12)?)?);
         let mut vectors = Vec::with_capacity(count);
         for _ in 0..count {
@@ -126,7 +126,7 @@ impl Numbers {
     }
 }
 
-/// A film that was read, from bytes that were unpacked.
+/// A film that was read from unpacked bytes.
 pub(crate) struct Film<'a> {
     shading: Shading,
     /// The DAC: 256 entries of red, green and blue, 6 bits each.
@@ -136,7 +136,7 @@ pub(crate) struct Film<'a> {
 }
 
 impl<'a> Film<'a> {
-    /// Reads a film; `None` if it is none, or broken off.
+    /// Reads a film; `None` if it is not one, or is truncated.
     pub(crate) fn read(bytes: &'a [u8]) -> Option<Self> {
         let mut input = Input(bytes);
         if input.word()? != MAGIC {
@@ -173,7 +173,7 @@ pub(crate) struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// Makes room for all that any frame needs; `None` if a mesh is not sound.
+    /// Allocates everything that any frame needs; `None` if a mesh is invalid.
     pub(crate) fn new(film: &'a Film<'a>, kernel: Kernel) -> Option<Self> {
         let meshes = film.meshes.iter().map(Numbers::mesh).collect::<Option<Vec<_>>>()?;
         let vertices = meshes.iter().map(|mesh| mesh.parts().positions.len()).max().unwrap_or(0);
@@ -182,7 +182,7 @@ impl<'a> Player<'a> {
         Some(Self { film, kernel, meshes, lit, beams: Vec::with_capacity(16), suns, paints, depths })
     }
 
-    /// Draws a frame, counted from 0 and round again, into 320 × 200 bytes; `None` if it is broken.
+    /// Draws a frame, counted from 0 and wrapping around, into 320 × 200 bytes; `None` if it is invalid.
     pub(crate) fn draw(&mut self, number: usize, pixels: &mut [u8]) -> Option<()> {
         let mut input = self.film.frames[number % self.film.frames.len()];
         let background = input.word()?.to_le_bytes()[0];

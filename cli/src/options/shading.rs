@@ -77,21 +77,21 @@ impl ShadingOptions {
         self.max_time
     }
 
-    /// The pace of the frames of this renderer, if a time was asked for and its vertices know budgets.
+    /// The pace of the frames of this renderer, if a time was asked for and its vertex path supports budgets.
     pub(crate) fn pace(&self, renderer: &Renderer) -> Option<Pace> {
         let knows_budgets = renderer.settings.vertex_path != Some(VertexPath::Integer);
         let max_error = self.max_error.unwrap_or(Pace::MAX_ERROR);
         self.max_time.filter(|_| knows_budgets).map(|milliseconds| pace(milliseconds, max_error))
     }
 
-    /// A renderer that is set as the command line says.
+    /// A renderer with the settings of the command line.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
         renderer.settings.accuracy = self.accuracy();
         renderer
     }
 
-    /// Where the error is to fit in a time, finds it for this scene, says so, and has the renderer draw within it.
+    /// If frames have to fit in a time, finds the error for this scene, prints it, and has the renderer draw within it.
     pub(crate) fn settle(&self, renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
         let (Some(max_time), Some(mut pace)) = (self.max_time, self.pace(renderer)) else { return Ok(()) };
         calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock()).map_err(Failure::from)?;

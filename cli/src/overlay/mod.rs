@@ -1,7 +1,7 @@
 //! Overlay on the picture, at the window's own resolution: panels of text, blocks, lines and small pictures.
 //!
-//! A [`Sheet`] is a list of things to draw, laid out for a window of one size. Equal sheets look the same, which tells
-//! whether a picture that stands still has to be shown again. Nothing is drawn before [`Sheet::draw`].
+//! A [`Sheet`] is a list of things to draw, laid out for a window of one size. Equal sheets look the same, so comparing
+//! them tells whether a still picture has to be shown again. Nothing is drawn before [`Sheet::draw`].
 
 mod text;
 
@@ -18,27 +18,27 @@ use mode13h::window::{Area, Canvas};
 use text::{Head, Laid, MIN_SIZE, laid};
 pub(crate) use text::{Letters, Row, wrapped};
 
-/// Text of its own weight.
+/// Colour of ordinary text.
 pub(crate) const TEXT: Rgb = Rgb::new(0xF0, 0xF0, 0xF0);
-/// Colour of a name of the text beside it.
+/// Colour of a row's head, the name of the text beside it.
 pub(crate) const HEAD: Rgb = Rgb::new(0xFF, 0xD0, 0x60);
 /// Colour of a fault.
 pub(crate) const WRONG: Rgb = Rgb::new(0xFF, 0x90, 0x80);
-/// Paper of panels under their text, and how much of 255 of it is seen: the picture shines through.
+/// Background colour of panels and its opacity, of 255: the picture shows through.
 const PANEL: (Rgb, u8) = (Rgb::new(0x08, 0x08, 0x10), 176);
 /// Pixels between a panel's edge and its text, and between a panel and the window's edge.
 const PADDING: usize = 4;
-/// Side on which a panel stands.
+/// The side of the window that a panel is on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Side {
     Left,
     Right,
 }
 
-/// A thing on a sheet.
+/// An item on a sheet.
 #[derive(Clone, PartialEq, Debug)]
 enum Thing {
-    /// A rectangle; `share` of 255 of it is seen.
+    /// A rectangle with an opacity of `share` in 255.
     Block {
         area: Area,
         color: Rgb,
@@ -64,7 +64,7 @@ enum Thing {
     },
 }
 
-/// Things that are laid over the picture in a window of one size.
+/// Items to be laid over the picture in a window of one size.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Sheet {
     width: usize,
@@ -72,7 +72,7 @@ pub(crate) struct Sheet {
     picture: Area,
     letters: Letters,
     things: Vec<Thing>,
-    /// Rows that are free for panels, at the left and at the right.
+    /// Rows that are free for panels, on the left and on the right.
     free: [(usize, usize); 2],
 }
 
@@ -94,7 +94,7 @@ impl Sheet {
         self.free[0].1.min(self.free[1].1)
     }
 
-    /// Fills a rectangle; `share` of 255 of the colour is seen, the rest is what is below.
+    /// Fills a rectangle with a colour, whose opacity is `share` in 255.
     pub(crate) fn block(&mut self, area: Area, color: Rgb, share: u8) {
         self.things.push(Thing::Block { area, color, share });
     }
@@ -109,7 +109,7 @@ impl Sheet {
         self.things.push(Thing::Line { from, to, color, thickness });
     }
 
-    /// A line of text whose upper left corner is given, on nothing: it is for the caller to see that it fits.
+    /// A line of text with this upper left corner, without a background. The caller must make sure that it fits.
     pub(crate) fn text(&mut self, at: (usize, usize), letters: Letters, color: Rgb, text: impl Into<String>) {
         let text = text.into();
         if !text.is_empty() {
@@ -117,7 +117,7 @@ impl Sheet {
         }
     }
 
-    /// A message at the lower edge, in the middle, above those that stand there. Panels that are laid later keep clear of
+    /// A message at the lower edge, in the middle, above those already there. Panels that are laid later keep clear of
     /// it.
     pub(crate) fn message(&mut self, color: Rgb, text: &str) {
         let letters = self.letters;
@@ -141,9 +141,9 @@ impl Sheet {
         }
     }
 
-    /// A translucent panel at a side, below those that stand there: no wider than half the window, or, if it `is_alone`,
-    /// than the whole, and in smaller letters where it has to be. What still does not fit stands on further pages, which
-    /// `key` turns. Returns the number of pages; without room for any, 0.
+    /// A translucent panel at a side, below those already there: no wider than half the window, or than the whole
+    /// window if it `is_alone`, and in smaller letters if it has to be. Text that still does not fit goes on further
+    /// pages, which `key` turns. Returns the number of pages; 0 if there is no room for any.
     pub(crate) fn panel(&mut self, side: Side, rows: &[Row], is_alone: bool, page: usize, key: &str) -> usize {
         let (top, bottom) = self.free[side as usize];
         let room = (bottom.saturating_sub(top)).saturating_sub(2 * PADDING);
@@ -155,7 +155,7 @@ impl Sheet {
             let columns = width / letters.width();
             (columns >= MIN_SIZE.0).then(|| laid(rows, columns)).filter(|lines| lines.len() * letters.line() <= room)
         };
-        // In large letters it may be half as wide as the window; before it is wider, letters are smaller.
+        // In large letters it may be half as wide as the window; smaller letters are tried before it gets wider.
         let ways = sets().flat_map(|letters| widths[..2].iter().map(move |&width| (letters, width)));
         let smallest = sets().last().unwrap_or(self.letters);
         let ways = ways.chain(widths[2..].iter().map(|&width| (smallest, width)));
@@ -238,7 +238,7 @@ fn write<Target: DrawTarget<Color = Rgb888>>(
     text: &str,
 ) {
     let style = MonoTextStyle::new(letters.font(), rgb888(color));
-    // A canvas takes every pixel: there is no error to make.
+    // A canvas takes every pixel, so drawing cannot fail.
     let _ = Text::with_baseline(text, Point::new(x as i32, y as i32), style, Baseline::Top).draw(target);
 }
 
@@ -250,7 +250,7 @@ pub(crate) mod tests {
     pub(crate) const WINDOWS: [(usize, usize); 5] = [(960, 720), (640, 480), (333, 251), (320, 240), (1920, 1080)];
 
     impl Sheet {
-        /// Every word that stands on it.
+        /// Every word on it.
         pub(crate) fn words(&self) -> Vec<String> {
             let texts = self.things.iter().filter_map(|thing| match thing {
                 Thing::Text { text, .. } => Some(text.as_str()),
@@ -259,8 +259,8 @@ pub(crate) mod tests {
             texts.flat_map(str::split_whitespace).map(str::to_string).collect()
         }
 
-        /// Faults of its text: letters that reach beyond the window, that the font lacks, or that stand on those
-        /// of another line.
+        /// Faults of its text: letters that reach beyond the window, that the font lacks, or that overlap those of
+        /// another line.
         pub(crate) fn faults(&self) -> Vec<String> {
             let boxes = self.things.iter().filter_map(|thing| match thing {
                 Thing::Text { at: (x, y), letters, text, .. } if !text.is_empty() => {
@@ -325,7 +325,7 @@ pub(crate) mod tests {
                     };
                     let (pages, _) = lay(0);
                     assert!(pages > 0 || size.0 < 200 || size.1 < 150, "no room in {size:?}");
-                    // The pages together say all, and each which it is.
+                    // Together the pages have all the text, and each says which one it is.
                     let mut said = String::new();
                     for page in 0..pages {
                         let (_, mut panel) = lay(page);
@@ -357,7 +357,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Tests that in each set of letters the full stop is a rectangle, and no small cross.
+    /// Tests that in each set of letters the full stop is a rectangle, not a small cross.
     #[test]
     fn a_full_stop_is_a_full_stop() {
         for letters in [Letters::Large, Letters::Small, Letters::Tiny] {

@@ -4,10 +4,10 @@ use embedded_graphics::mono_font::MonoFont;
 use embedded_graphics::mono_font::iso_8859_1::{FONT_6X9, FONT_6X12, FONT_9X15};
 use mode13h::palette::Rgb;
 
-/// The fewest letters to a line, and the fewest lines, of which a panel is made: in smaller windows there is none.
+/// The fewest letters to a line, and the fewest lines, that a panel needs: smaller windows have none.
 pub(super) const MIN_SIZE: (usize, usize) = (8, 2);
 
-/// Sets of letters, all of one width in a set. In each the full stop is a square dot.
+/// Sets of letters, each of fixed width. In each the full stop is a square dot.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Letters {
     /// 9 × 15.
@@ -95,7 +95,7 @@ impl Row {
     }
 }
 
-/// A line of a panel as it is drawn: what stands first, and the text from a column on.
+/// A line of a panel as it is drawn: its head, and the text from a column on.
 pub(super) struct Laid {
     pub(super) head: Head,
     pub(super) column: usize,
@@ -112,7 +112,7 @@ impl Laid {
 /// Rows in lines of at most `columns` letters; all text beside heads begins in one column.
 pub(super) fn laid(rows: &[Row], columns: usize) -> Vec<Laid> {
     let widest = rows.iter().map(Row::head_width).max().unwrap_or(0);
-    // Where that leaves no room for words, text stands below its head.
+    // If that leaves no room for words, text goes below its head.
     let (beside, indent) = if widest + MIN_SIZE.0 <= columns { (true, widest) } else { (false, 0) };
     let mut lines = Vec::new();
     for row in rows {
@@ -131,8 +131,8 @@ pub(super) fn laid(rows: &[Row], columns: usize) -> Vec<Laid> {
     lines
 }
 
-/// A text in lines of at most `columns` letters. Words may be cut behind a hyphen; what is longer than a line is cut where
-/// the line ends.
+/// A text in lines of at most `columns` letters. Words may be cut after a hyphen; those longer than a line are cut
+/// where the line ends.
 pub(crate) fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let options = textwrap::Options::new(columns.max(1)).word_separator(textwrap::WordSeparator::AsciiSpace);
     textwrap::wrap(text, options).into_iter().map(Into::into).collect()

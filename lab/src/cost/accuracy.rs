@@ -2,7 +2,6 @@
 //!
 //! The truth of a frame is drawn once and shared by all configurations. Frames are compared on all processors; the
 //! results do not depend on which thread compared which frame.
-//! on who found it.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
@@ -132,8 +131,8 @@ impl Results {
         self.lit.share_not_compared()
     }
 
-    /// Share of pixels within a bound of [`BUDGETS`] of `lit`, or within what rounding to a byte takes if that is more,
-    /// not counting what vertex rounding explains; 1 if none were compared.
+    /// Share of pixels within a bound of [`BUDGETS`] of `lit`, or within the rounding error of a byte if that is
+    /// larger, not counting what vertex rounding explains; 1 if none were compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
         // Below 2⁵³: pixels.
@@ -320,7 +319,7 @@ impl Referee<'_> {
     }
 }
 
-/// How much of the errors at a frame's pixels vertex rounding explains.
+/// How much of the error at each pixel of a frame is explained by vertex rounding.
 struct Shifts<'a> {
     truth: &'a Truth<'a>,
     lit: &'a TruthFrame,

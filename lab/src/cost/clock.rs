@@ -8,8 +8,8 @@ use super::statistics::median;
 
 /// A clock.
 ///
-/// Best is one that runs only while this thread does, so that a frame is not charged for time that another program had
-/// the processor. The standard library has none.
+/// A clock that runs only while this thread does is best: it does not charge a frame for the time that another program
+/// had the processor. The standard library has none.
 #[derive(Clone, Copy)]
 pub struct Clock {
     /// Description in a few words.

@@ -14,14 +14,14 @@ use mode13h::span::Kernel;
 /// The budgets that are measured, in shades, largest error first.
 pub const BUDGETS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 
-/// The shading whose time is 1.
+/// The shading that times are relative to.
 pub(super) const REFERENCE: Shading = Shading::Gouraud88;
 
 /// What a configuration is measured for.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Kind {
     Shading(Shading),
-    /// In shades.
+    /// An error budget, in shades.
     Budget(f64),
     Choice(Aspect),
 }
@@ -68,7 +68,7 @@ impl<'a> Configuration<'a> {
     }
 
     pub(super) fn budget(shades: f64) -> Self {
-        // Powers of two.
+        // Budgets are powers of two, exact in f32.
         Self::accurate(Kind::Budget(shades), shades, Accuracy::WithinError(shades as f32))
     }
 
@@ -95,8 +95,8 @@ impl<'a> Configuration<'a> {
         self
     }
 
-    /// Lists the other choices aspect by aspect, the default first, all with the default shading; and last each of
-    /// these shadings, the reference first, with the portable kernel.
+    /// Lists the other choices aspect by aspect, the default first, all with the default shading; then each of these
+    /// shadings with the portable kernel, the reference first.
     ///
     /// Vertices are rounded to 8 bits and then again to fewer, so these times say nothing about a machine that has
     /// fewer bits.

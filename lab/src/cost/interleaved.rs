@@ -33,14 +33,14 @@ const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
 /// Ratios whose intervals are wider than this share of the ratio get twice the time.
 const NARROW: f64 = 0.02;
 
-/// One time.
+/// One measured time.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Sample {
     round: usize,
     /// Its position in the round, from 0.
     order: usize,
     way: usize,
-    /// For all frames of the round.
+    /// Time for all frames of the round.
     nanoseconds: f64,
 }
 
@@ -181,7 +181,7 @@ pub(super) fn run_interleaved(
 ) -> Result<Outcome, RenderError> {
     let mut chance = Random::again(spent.seed);
     let seconds = spent.seconds;
-    // One machine for all, so that none has better placed memory.
+    // All draw on the same VGA, so that none has its memory in a better place.
     let mut vga = Vga::new();
     let mut contenders: Vec<Candidate<'_>> = ways
         .iter()

@@ -121,7 +121,7 @@ pub fn measure(
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
     let mut ways = Configuration::shadings_and_budgets(shadings);
     if renderer().settings.vertex_path == Some(VertexPath::Integer) {
-        // It supports no budget.
+        // The integer path supports no budget.
         ways.retain(|way| !matches!(way.kind, Kind::Budget(_)));
     }
     if *with_choices {
@@ -179,7 +179,7 @@ fn choices(
         for scene in frames {
             match renderer.for_each_triangle(scene, Screen::MODE_13H, |_, _| {}) {
                 Ok(_) => {}
-                // f32 can represent what 16.16 cannot.
+                // f32 can represent numbers that 16.16 cannot.
                 Err(_) if way.kind == Kind::Choice(Aspect::VertexPath) => drawable = false,
                 Err(error) => return Err(error.into()),
             }

@@ -16,7 +16,7 @@ use mode13h::scene::{Object, Scene, Shared};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, Shading};
 
-/// Finds out what a renderer shows, using nothing but its drawing.
+/// Finds out what a renderer shows, just by having it draw.
 ///
 /// The **shades** are the bytes of the scene on a ramp of all 256 entries, without texture, mirror, fog or dither and
 /// with translucent objects made opaque: the result of shading before any of these apply. If light or material is
@@ -237,7 +237,7 @@ impl Numbered {
         Ok(())
     }
 
-    /// An object with another mesh, each of its materials once for every digit, which it shows whatever the light.
+    /// An object with another mesh. Each of its materials is repeated for every digit, and shows it whatever the light.
     fn object(&self, like: &Object, mesh: &Shared<Mesh>) -> Object {
         let digits = |material: &Material| {
             let mut digits = vec![material.clone(); self.base];

@@ -10,9 +10,9 @@
 //!
 //! A frame of 640 × 200 pixels that are half as wide shows the same scene: it has the same vertices, triangles and
 //! triangle rows, each row twice as long. The extra time is therefore what 320 × 200 pixels take in whatever loops draw
-//! them, and no loop has to be changed, or run outside its surroundings. A loop's time before its first pixel and after
-//! its last counts as set-up. Rows so short that they cover no pixel in one of the frames blur the line between the two
-//! parts; the smaller the faces, the more.
+//! them, and no loop has to be changed or run in isolation. A loop's time before its first pixel and after its last
+//! counts as set-up. Rows so short that they cover no pixel in one of the frames blur the line between the two parts;
+//! the smaller the faces, the more.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -1,5 +1,5 @@
-//! Frames against the clock: a pace that chooses the least error that fits in a time learns from the times of its
-//! frames.
+//! Frames against the clock: a pace chooses the smallest error that fits in a given time, learning from the times of
+//! its frames.
 
 use alloc::vec::Vec;
 use core::time::Duration;
@@ -62,8 +62,8 @@ pub fn calibrate(
     tried
 }
 
-/// Frames drawn for several times, from that of the cheapest budget to that of the dearest. Empty on vertices that
-/// support no budget.
+/// Frames drawn for several time limits, from the time of the cheapest budget to that of the dearest. Empty for a
+/// vertex path that supports no budget.
 pub(super) fn timed_rows(
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,

@@ -34,13 +34,13 @@ pub struct FaceHere {
 /// Kind of an edge, for a triangle seen clockwise.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum EdgeKind {
-    /// Level, the triangle below it.
+    /// Horizontal, with the triangle below it.
     Top,
     /// The triangle lies right of it.
     Left,
     /// The triangle lies left of it.
     Right,
-    /// Level, the triangle above it.
+    /// Horizontal, with the triangle above it.
     Bottom,
 }
 

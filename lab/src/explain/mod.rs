@@ -9,8 +9,8 @@
 //! | `walk` | [`Walk`]: a triangle pixel by pixel, with the registers of the 1994 loop at each |
 //! | `row` | [`row()`]: a row's intensity and its slope, as drawn and true |
 //!
-//! The bytes are the raster's own: every face is drawn again, clipped to the one pixel, and the byte of a stage is what
-//! is drawn when the later stages are left out. Starts, steps and sums come from the planes that the loops start from
+//! The bytes are the rasterizer's own: every face is drawn again, clipped to the one pixel, and the byte of a stage is
+//! what is drawn without the later stages. Starts, steps and sums come from the planes that the loops start from
 //! ([`internals::ShadeTrace`](mode13h::internals::ShadeTrace)). So the explanation agrees with the frame for every
 //! shading, kernel, hidden-surface method and effect.
 //!

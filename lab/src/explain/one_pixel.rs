@@ -1,7 +1,7 @@
 //! One pixel drawn by itself, stage by stage.
 //!
-//! Nothing is computed here that drawing computes: the raster draws a face clipped to the pixel, and the byte of a
-//! stage is what it draws with the later stages removed.
+//! Nothing that drawing computes is recomputed here: the rasterizer draws a face clipped to the pixel, and the byte of
+//! a stage is what it draws with the later stages removed.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -162,7 +162,7 @@ impl Lighting for Listed<'_> {
     }
 }
 
-/// Returns the number of each point that is lit as its shade, counted in whole shades.
+/// Numbers the lit points: each gets its number as its shade, in whole shades.
 #[derive(Debug, Default)]
 struct Counted {
     count: Cell<u16>,
@@ -265,7 +265,7 @@ fn stages(
         ShadeSource::LitEvery(apart, light) => {
             let listed = Listed { light, all: RefCell::default() };
             pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &listed), ..bare });
-            // Numbered and rounded down, its shade is the number of the lit pixel before it.
+            // With numbers for shades, its shade rounded down is the number of the lit pixel before it.
             let numbers = Counted::default();
             let numbered = PixelPipeline {
                 source: ShadeSource::LitEvery(apart, &numbers),

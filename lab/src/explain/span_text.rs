@@ -104,7 +104,7 @@ fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
     }
     let step = in_units(sums, sums.step as f64);
     text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
-    // Of many, the first and the last few.
+    // If there are many, only the first and the last few are shown.
     let ends = |k: &i32| steps < 2 * ENDS || *k < ENDS || *k > steps - ENDS;
     let mut shown: Vec<String> = (0..=steps).filter(ends).map(|k| hex(sums, sums.after(k))).collect();
     if steps >= 2 * ENDS {

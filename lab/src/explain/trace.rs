@@ -92,7 +92,7 @@ pub(super) fn trace(
     debug_assert!(met.iter().filter(|met| met.fate == Fate::Seen).count() <= 1);
     for fate in [Fate::Seen, Fate::SeenThrough] {
         for met in met.iter_mut().filter(|met| met.fate == fate) {
-            // What it passes through is known only while it is visited.
+            // Its stages are known only while the triangle is visited.
             let mut number = 0;
             internals::each_triangle(renderer, scene, screen, &mut |triangle| {
                 if number == met.number {

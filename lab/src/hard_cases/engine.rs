@@ -80,7 +80,7 @@ pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
 fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: bool, empty: u8) -> Vec<u8> {
     let mut bytes = vec![empty; width * height];
     let mut depths: Vec<u32> = Vec::new();
-    // A few dozen pixels a side, so no frame is refused.
+    // Frames are a few dozen pixels a side, so none is rejected.
     if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
         let raster = Raster::new(frame);
         if depth_tested {

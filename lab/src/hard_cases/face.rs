@@ -30,7 +30,7 @@ impl Corner {
         Self { x: self.x + x, y: self.y + y, ..self }
     }
 
-    /// Rounds the corner as the engine does: the input of faults that have nothing to do with rounding.
+    /// Rounds the corner as the engine does, as input for faults that have nothing to do with rounding.
     pub(super) fn rounded(self) -> Self {
         let round = |pixels: f64| (pixels * 256.0 + 0.5).floor() / 256.0;
         Self { x: round(self.x), y: round(self.y), ..self }

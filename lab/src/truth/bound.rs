@@ -19,8 +19,8 @@ use mode13h::settings::Shading;
 /// | `gouraud-float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | the same, and f32 |
 ///
 /// A vertex's shade is rounded to 1/256, so it is off by 1/512; a shade interpolated from vertices is a weighted mean
-/// of three, and no farther off. The rest is what the raster adds ([`Interpolation`](mode13h::raster::Interpolation)).
-/// A depth is rounded to half a unit of 2⁻³⁰·near/w: for w up to 4,096 times the near distance that is a share of 2⁻¹⁹,
+/// of three, and no farther off. The rasterizer adds the rest ([`Interpolation`](mode13h::raster::Interpolation)). A
+/// depth is rounded to half a unit of 2⁻³⁰·near/w: for w up to 4,096 times the near distance that is a share of 2⁻¹⁹,
 /// either way, and a quotient of sums with that error is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to
 /// 10,000 times the near distance.
 ///
@@ -28,8 +28,8 @@ use mode13h::settings::Shading;
 /// to the 1/256 pixel next to the right one, and where a face is clipped the new corners are rounded. A pixel of such a
 /// face may be off by as much more as the face's shades change over 1/256 pixel.
 ///
-/// A flat face has the model's shade at its middle, with its own normal, to ½ + 1/512 + 1/100. It may differ from its
-/// corners' shades by any amount. Other shadings without a bound are measured.
+/// A flat face has the model's shade at its middle, with its own normal, to within ½ + 1/512 + 1/100. It may differ
+/// from its corners' shades by any amount. Other shadings without a bound are measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Bound {
     /// Standard that the shading should meet.

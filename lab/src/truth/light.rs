@@ -63,7 +63,7 @@ fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
             let towards = unit(to_lamp).filter(|_| left > 0.0)?;
             Some((towards, left * left * cone.map_or(Some(1.0), |cone| in_cone(&cone, towards))?))
         }
-        // A kind of light newer than this laboratory.
+        // This kind of light is newer than the laboratory.
         _ => None,
     }
 }
@@ -73,7 +73,7 @@ fn reaching(light: &Light, at: Vector) -> Option<(Vector, f64)> {
 fn in_cone(cone: &Cone, towards: Vector) -> Option<f64> {
     let cosine = -dot(unit(wide(cone.direction))?, towards);
     let inner = libm::cos(cone.inner.to_radians());
-    // No edge is sharper than that.
+    // A cone's edge is never sharper than this.
     let outer = libm::cos(cone.outer.to_radians()).min(inner - 1.0 / 65_536.0);
     let x = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0);
     Some(3.0 * x * x - 2.0 * x * x * x)

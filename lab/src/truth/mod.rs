@@ -285,9 +285,9 @@ impl<'a> Truth<'a> {
 
     /// By how many shades the light on `face` changes around the centre of a pixel within the distance that a vertex
     /// may be misplaced: half of 1/256 pixel by rounding, a thousandth of a pixel by f32, and half a step of its depth.
-    /// If a face's corners move by no more than that across the screen, neither does the point seen at a pixel; what
-    /// the depths move it by is added. A fifth is added for what light does between the sampled positions. `None` if
-    /// the face is not seen at the centre itself.
+    /// If a face's corners move by no more than that across the screen, neither does the point seen at a pixel; its
+    /// shift by rounded depths is added. A fifth is added for changes of the light between the sampled positions.
+    /// `None` if the face is not seen at the centre itself.
     #[must_use]
     pub fn rounding_shift(&self, face: Face, x: u32, y: u32) -> Option<f64> {
         let reach = 0.5 / 256.0 + 0.001 + self.depth_shift(&self.triangle(face)?.1);
@@ -442,7 +442,7 @@ impl<'a> Truth<'a> {
         let intensity = match standard {
             Standard::Lit => {
                 let normal = weighted(corners.map(|corner| corner.normal), hit.weights);
-                // Where the vertices' normals cancel there is none.
+                // There is no normal where those of the vertices cancel.
                 light(weighted(corners.map(|corner| corner.world), hit.weights), unit(normal).unwrap_or_default())
             }
             _ => weighted(corners.map(|corner| light(corner.world, corner.normal)), hit.weights),

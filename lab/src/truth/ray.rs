@@ -25,7 +25,7 @@ pub(super) struct Met {
 /// Finds the point where the ray through (`x`, `y`), in pixels from the frame's upper left corner, hits a triangle;
 /// `None` if it misses, or hits nearer than the near plane.
 ///
-/// Two faces that share an edge compute the same value for it, with opposite signs. Where it is 0 the ray belongs to
+/// Two faces that share an edge compute the same value for it, with opposite signs. Where it is 0, the ray belongs to
 /// the face whose left or top edge it is, so always to exactly one.
 pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Met> {
     let [a, b, c] = triangle.each_ref().map(|corner| corner.seen);

@@ -1,7 +1,7 @@
 //! The old texts' claims, measured on scenes made for them, whatever the input is.
 //!
-//! A claim is a sentence, and to measure it one has to define what its words mean. `verdict` defines them in numbers,
-//! and nothing else decides: every verdict is computed from the figures.
+//! A claim is a sentence, and measuring it means defining what its words mean. `verdict` defines them in numbers, and
+//! every verdict is computed from the figures alone.
 //!
 //! | file | what |
 //! |---|---|
@@ -67,7 +67,7 @@ struct Times {
 
 impl Times {
     fn place(&self, shading: Shading, scene: usize) -> usize {
-        // Every pair that is asked for was drawn.
+        // Every requested pair was drawn.
         self.list.iter().position(|entrant| *entrant == (shading, scene)).unwrap_or(0)
     }
 

@@ -26,7 +26,7 @@ impl Rectangle {
     }
 }
 
-/// Width of a text. A letter of a sans-serif face is on average 0.55 of its height wide; 0.6 to be safe.
+/// Width of a text. A letter of a sans-serif face averages 0.55 of its height in width; 0.6 is used to be safe.
 pub(super) const fn width(text_length: usize, height: i32) -> i32 {
     // Names have a few dozen letters at most.
     text_length as i32 * height * 6 / 10

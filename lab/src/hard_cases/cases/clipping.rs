@@ -16,7 +16,7 @@ use mode13h::scene::Scene;
 /// The near plane of these cases.
 const NEAR: f64 = 0.5;
 
-/// Clipped corners are rounded separately, so a few shades either way.
+/// Clipped corners are rounded separately, so shades may differ by a few either way.
 const CUT: Measure = Measure { shades: 4, ..EXACT };
 
 /// A mesh whose vertices have these intensities when lit from above by [`light::scene`].

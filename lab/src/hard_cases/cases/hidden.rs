@@ -6,7 +6,7 @@ use crate::hard_cases::face::{Corner, Face, at, flat, without_diagonals};
 use crate::hard_cases::fault::depth;
 use crate::hard_cases::panel::{Mark, Measure};
 
-/// Faces hide each other: what counts is which one has the pixel, not how many drew it.
+/// Faces hide each other: it matters which one has the pixel, not how many drew it.
 const BY_DEPTH: Measure = Measure { shades: 0, counts_writes: false, other_byte: Mark::Face };
 
 /// Bytes from three ramps of the palette: copper, steel and jade.

@@ -86,7 +86,7 @@ pub(super) fn n8() -> Comparison {
     };
     for panel in [&mut fault, &mut right] {
         let due = beside(panel);
-        // Rows that were columns start elsewhere, so a shade either way.
+        // Rows that were columns start elsewhere, so shades may differ by one either way.
         panel.mark_against(&due, Measure { shades: 2, ..EXACT });
     }
     let outline =

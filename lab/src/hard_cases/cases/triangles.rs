@@ -32,7 +32,7 @@ pub(super) fn r3() -> Comparison {
     let mut faces = Vec::new();
     for row in 0..6_u32 {
         for column in 0..7_u32 {
-            // Somewhere within its own 4 × 4 pixels, and rotated, by two sequences without a pattern.
+            // Placed somewhere within its own 4 × 4 pixels and rotated, by two sequences without a pattern.
             let number = f64::from(row * 7 + column);
             let (u, v) = ((number * 0.618_034).fract(), (number * 0.414_214).fract());
             let (x, y) = (f64::from(column) * 4.0 + 2.0 + 1.4 * u, f64::from(row) * 4.0 + 1.8 + 1.4 * v);

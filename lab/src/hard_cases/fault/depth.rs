@@ -20,8 +20,8 @@ pub(in crate::hard_cases) fn buffer_of_16_bits(panel: &mut Panel, faces: &[Face]
     buffered(panel, faces, |face, sample| (sample.of(face.corners.map(|c| c.depth)) * 65_536.0).floor());
 }
 
-/// Depth summed in f32 from the face's first corner on, which rounds differently if the corners come in another order:
-/// of two coincident faces each wins here and there.
+/// Depth summed in f32 from the face's first corner, which rounds differently if the corners come in another order: two
+/// coincident faces each win here and there.
 pub(in crate::hard_cases) fn rounded_from_the_first_corner(panel: &mut Panel, faces: &[Face]) {
     buffered(panel, faces, |face, sample| {
         let [a, b, c] = face.corners.map(|corner| corner.depth as f32);

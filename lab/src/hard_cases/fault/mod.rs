@@ -1,8 +1,8 @@
 //! The wrong side of a picture: small, honest implementations of the faults that the engine guards against. Each gets
 //! one thing wrong and the rest right. Nothing else in the crate uses them.
 //!
-//! They use f64: the corners of the cases are multiples of 1/256 within a few dozen pixels, so that everything meant to
-//! be exact here is.
+//! They use f64: the corners of the cases are multiples of 1/256 within a few dozen pixels, so everything that should
+//! be exact here is exact.
 
 pub(super) mod cover;
 pub(super) mod depth;
