@@ -1,4 +1,4 @@
-//! How errors print: `Debug` prints like `Display`, because a `main` that returns an error prints it by `Debug`; and
+//! How errors print: `Debug` prints like `Display`, because a `main` that returns an error prints it with `Debug`. Also
 //! how messages of other libraries are quoted.
 
 /// Implements `Debug` as `Display`.

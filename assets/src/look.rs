@@ -1,6 +1,6 @@
-//! Looks: the palette, dither, mapping and vertices of an old machine, by one name.
+//! Looks: the palette, dither, mapping and vertices of an old machine, under one name.
 //!
-//! A look is nothing but settings that can each be made by themselves:
+//! A look is nothing but settings that can also be made one by one:
 //!
 //! | look | colours | dither | [`channels`](Settings::channels) |
 //! |---|---|---|---|
@@ -24,7 +24,7 @@ use mode13h::settings::{DitherPattern, Mapping, Settings};
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Look {
-    /// Sony's `PlayStation`: 15-bit colours, dithered, of which the frame has 256.
+    /// Sony's `PlayStation`: 256 dithered colours of 15 bits.
     Ps1,
     /// A game for the VGA: colours of its own, not dithered.
     Vga,
@@ -64,7 +64,7 @@ impl Look {
     /// All looks.
     pub const ALL: [Look; 5] = [Look::Ps1, Look::Vga, Look::GameBoy, Look::Cga, Look::Pico8];
 
-    /// Its name, as it is typed.
+    /// Its name, as users type it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Look {
         }
     }
 
-    /// The settings; what is `None` is left to the scene.
+    /// The settings; those that are `None` are left to the scene.
     #[must_use]
     pub fn settings(self) -> Settings {
         let dither = match self {
@@ -106,7 +106,8 @@ impl Look {
         }
     }
 
-    /// The colours of a palette in the look's number of bits: of `ps1` 5 a channel, each to the nearest of its 32 levels.
+    /// The colours of a palette in the look's number of bits: for `ps1` 5 a channel, each rounded to the nearest of 32
+    /// levels.
     #[must_use]
     pub fn rounded(self, palette: &Palette) -> Palette {
         if self != Look::Ps1 {
@@ -119,11 +120,11 @@ impl Look {
         };
         let colors = palette.colors().map(|Rgb { r, g, b }| Rgb::new(level(r), level(g), level(b)));
         let rounded = Palette::from_colors(colors);
-        // A number of ramps that a palette has is legal.
+        // The number of ramps comes from a palette, so it is legal.
         rounded.clone().with_ramps(palette.ramps() as u16).unwrap_or(rounded)
     }
 
-    /// Gives a scene the look, where it has not chosen for itself. Colours that are to be made become its
+    /// Gives a scene the look, except for settings of its own. A palette that has yet to be made becomes its
     /// [preference](Scene::auto_palette).
     pub(crate) fn lend(self, scene: &mut Scene, has_palette: bool) {
         scene.settings = scene.settings.or(&self.settings());
@@ -136,7 +137,7 @@ impl Look {
     }
 }
 
-/// A palette of few colours, from dark to light, each in as many entries as the others, and without ramps.
+/// A palette of few colours, from dark to light, in equally many entries each, and without ramps.
 fn repeated(colors: &[u32]) -> Box<Palette> {
     let all = core::array::from_fn(|i| {
         // Below the number of colours.
@@ -175,7 +176,7 @@ mod tests {
         assert_eq!((levels.len(), levels[0], levels[31], rounded.ramps()), (32, 0, 255, 1));
         // No level is farther away than half of the widest step, 9.
         assert!((0..=255).all(|i: u8| rounded[i].r.abs_diff(i) <= 4));
-        // On the DAC they stay different, which is all that its 6 bits have to do.
+        // On the DAC they stay distinct, which is all that is needed of its 6 bits.
         let mut shown: Vec<u8> = rounded.on_dac().colors().iter().map(|color| color.r).collect();
         shown.dedup();
         assert_eq!(shown.len(), 32);

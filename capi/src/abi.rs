@@ -1,19 +1,19 @@
-//! Codes and structs that cross the border, and the functions that need nothing else.
+//! The codes and structs of the interface, and the functions that need nothing else.
 
 use core::ffi::{c_char, c_int, c_void};
 
-/// Everything went well.
+/// The call succeeded.
 pub const OK: c_int = 0;
 
-/// Makes the codes, and the words of each.
+/// Makes the codes, and the text of each.
 macro_rules! codes {
     ($($name:ident = $code:literal, $text:literal;)*) => {
-        /// Why a call was refused.
+        /// The reason why a call was refused.
         #[derive(Clone, Copy, PartialEq, Eq, Debug)]
         #[repr(i32)]
         pub enum Refusal { $(#[doc = $text] $name = $code,)* }
 
-        /// The words of a code, which end with a zero.
+        /// The text of a code, which ends with a zero.
         fn words(code: c_int) -> &'static core::ffi::CStr {
             match code {
                 OK => c"no error",
@@ -27,7 +27,7 @@ macro_rules! codes {
             }
         }
 
-        /// All of them, by name and number, for the comparison with the header.
+        /// All codes, by name and number, for comparison with the header.
         pub const CODES: &[(&str, c_int)] = &[$((stringify!($name), $code),)*];
     };
 }
@@ -66,7 +66,7 @@ pub(crate) fn code(outcome: Outcome) -> c_int {
 /// The offset of an attribute that vertices lack.
 pub const ABSENT: u32 = u32::MAX;
 
-/// A frame to be drawn into.
+/// A frame to draw into.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 #[allow(missing_docs, reason = "the header has them")]
@@ -88,7 +88,7 @@ pub struct Target {
     pub depth_bytes: usize,
 }
 
-/// Vertices and indices, where the caller has them.
+/// Vertices and indices, in the caller's memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 #[allow(missing_docs, reason = "the header has them")]
@@ -168,10 +168,10 @@ pub struct Stats {
     pub pixels: u32,
 }
 
-/// A struct that crosses the border: plain numbers and pointers, of which all zeros are legal, and its size first.
+/// A struct of the interface: plain numbers and pointers, which may all be zero, with its size first.
 ///
 /// # Safety
-/// That is so.
+/// The type is such a struct.
 pub(crate) unsafe trait Sized32: Copy {
     /// The size that the first version of the struct had.
     const FIRST: usize = size_of::<Self>();
@@ -186,7 +186,7 @@ unsafe impl Sized32 for Material {}
 // SAFETY: as above.
 unsafe impl Sized32 for Stats {}
 
-/// Reads a struct. One of a later version may be longer, whose end is then left alone.
+/// Reads a struct. One of a later version may be longer; its end is then ignored.
 ///
 /// # Safety
 /// `from` is null or holds as many bytes as its size says.
@@ -196,7 +196,7 @@ pub(crate) unsafe fn read<T: Sized32>(from: *const T) -> Outcome<T> {
     }
     // SAFETY: the size is the first field.
     let size = unsafe { from.cast::<u32>().read_unaligned() } as usize;
-    // More than a page is a size that was never set.
+    // A size above a page was never set.
     if size < T::FIRST || size > 4_096 {
         return Err(Refusal::StructSize);
     }
@@ -204,7 +204,7 @@ pub(crate) unsafe fn read<T: Sized32>(from: *const T) -> Outcome<T> {
     Ok(unsafe { from.read_unaligned() })
 }
 
-/// The version that the library is of: major, minor and patch, eight bits each.
+/// The library's version: major, minor and patch, eight bits each.
 pub const VERSION: u32 = 0x00_01_00;
 
 /// The version of the library.
@@ -213,17 +213,17 @@ pub extern "C" fn m13_version() -> u32 {
     VERSION
 }
 
-/// The words of a code.
+/// The text of a code.
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_message(code: c_int) -> *const c_char {
     words(code).as_ptr()
 }
 
-/// The name of the kernel that spans are drawn by.
+/// The name of the kernel that draws spans.
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_kernel() -> *const c_char {
     let name = mode13h::span::Kernel::default().level();
-    // Names end with no zero: those that there are, again.
+    // Rust's names do not end with a zero, so these are the same ones again.
     for known in [c"portable", c"x86-64", c"i686", c"arrays", c"sse2", c"neon", c"wasm", c"avx2", c"avx512"] {
         if known.to_bytes() == name.as_bytes() {
             return known.as_ptr();

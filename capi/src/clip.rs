@@ -1,7 +1,7 @@
-//! What the near plane and the guard band leave of a triangle, and the triangles that it is drawn in.
+//! Clipping of a triangle to the near plane and the guard band, and the triangles that it is then drawn as.
 //!
-//! Planes come in one order, and each new point is computed from the end of its edge that is inside. So two triangles that
-//! share an edge cut it in one point, to the bit, and leave no crack.
+//! Planes come in a fixed order, and each new point is computed from the end of its edge that is inside. So two
+//! triangles that share an edge cut it in the same point, to the bit, and leave no crack.
 
 use crate::corner::{Door, Kept, Wide};
 
@@ -11,7 +11,7 @@ const PLANES: usize = 5;
 /// A triangle's corners, and at most one more for each plane.
 const MOST: usize = 3 + PLANES;
 
-/// How values run over the triangle.
+/// How values are interpolated over the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Progress {
     /// Shades are linear on the face, and not on the screen.
@@ -28,7 +28,7 @@ fn distance<D: Door, K: Kept>(plane: usize, corner: &Wide<D::Wide, K>, near: Opt
         (1 | 2, _) => D::distance(corner.w, corner.x, plane == 1),
         _ => D::distance(corner.w, corner.y, plane == 3),
     };
-    // One that was projected is inside, whatever the rounding here says.
+    // A corner that was projected is inside, whatever rounding says here.
     if corner.ready.is_some() && distance < zero { zero } else { distance }
 }
 
@@ -49,10 +49,10 @@ fn cut<D: Door, K: Kept>(
     // The coordinate that the plane fixes is not interpolated.
     let x = if matches!(plane, 1 | 2) { D::at_limit(w, plane == 2) } else { between(a.x, b.x) };
     let y = if matches!(plane, 3 | 4) { D::at_limit(w, plane == 4) } else { between(a.y, b.y) };
-    // Where the other end lies beyond the near plane it has no projection, and what is linear on the screen is linear along
+    // If the other end is beyond the near plane, it has no projection, and values linear on the screen are linear along
     // the edge.
     let on_screen = (plane != 0 && near.is_some()).then_some([b.w, w]);
-    // Positions on the screen have their depth in place of 1/w.
+    // Vertices on the screen have their depth in place of 1/w.
     let depth = between(a.depth, b.depth);
     let on_face = (near.is_none() && depth > zero).then_some([b.depth, depth]);
     let values = a.values.zip(b.values, |a, b, is_texture| {
@@ -62,7 +62,7 @@ fn cut<D: Door, K: Kept>(
     Wide { x, y, w, depth, values, ready: None }
 }
 
-/// Clips a triangle, and hands on the triangles of what is left. A mesh with w has a near plane.
+/// Clips a triangle, and passes on the triangles of what is left. A mesh with w has a near plane.
 #[inline(never)]
 pub(crate) fn clip<D: Door, K: Kept>(
     corners: [Wide<D::Wide, K>; 3],
@@ -110,7 +110,7 @@ pub(crate) fn clip<D: Door, K: Kept>(
     fan(&ready, count, triangle);
 }
 
-/// Twice the area on the screen, positive if clockwise as one sees it (y runs down).
+/// Twice the area on the screen, positive if clockwise as seen (y points down).
 #[inline]
 pub(crate) fn doubled_area<K: Kept>([a, b, c]: &[K; 3]) -> i64 {
     let at = |corner: &K| (i64::from(corner.vertex().x().to_bits()), i64::from(corner.vertex().y().to_bits()));
@@ -118,8 +118,8 @@ pub(crate) fn doubled_area<K: Kept>([a, b, c]: &[K; 3]) -> i64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// The triangles of a convex polygon that turn as the whole does. Rounding may dent it where a cut lies near a corner: a fan
-/// from the dent covers nothing twice, and such a fan is looked for.
+/// The triangles of a convex polygon, wound like the whole. Rounding may dent it where a cut is near a corner: a fan
+/// from the dent covers nothing twice, so one is looked for.
 fn fan<K: Kept>(corners: &[K; MOST], count: usize, triangle: &mut dyn FnMut([K; 3])) {
     let part = |apex: usize, i: usize| [apex, apex + i - 1, apex + i].map(|i| corners[i % count % MOST]);
     let sign = (2..count).map(|i| doubled_area(&part(0, i))).sum::<i64>().signum();

@@ -1,4 +1,4 @@
-//! Palettes of 768 bytes, tables of 64 KiB, and the way to the screen.
+//! Palettes of 768 bytes, tables of 64 KiB, and conversion for the screen.
 
 use core::ffi::{CStr, c_char, c_int};
 
@@ -52,7 +52,7 @@ unsafe fn write(to: *mut u8, colors: &[Rgb; 256], of: impl Fn(Rgb) -> [u8; 3]) -
     Ok(())
 }
 
-/// The colour `0xRRGGBB`. By shifts: the engine's own way is one of big-endian bytes, for which compilers take an
+/// The colour `0xRRGGBB`. Shifts are used because compilers turn the engine's own method, big-endian bytes, into an
 /// instruction that a 386 lacks.
 fn color(rgb: u32) -> Rgb {
     Rgb::new((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
@@ -62,7 +62,7 @@ fn bytes(Rgb { r, g, b }: Rgb) -> [u8; 3] {
     [r, g, b]
 }
 
-/// Names of the palettes that are compiled in, as C has them.
+/// Names of the compiled-in palettes, as C strings.
 const NAMES: [&CStr; 9] = [
     c"grey",
     c"silver",
@@ -75,13 +75,13 @@ const NAMES: [&CStr; 9] = [
     c"bios",
 ];
 
-/// Names a palette that is compiled in.
+/// Names a compiled-in palette.
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_palette_name(index: u32) -> *const c_char {
     NAMES.get(index as usize).map_or(core::ptr::null(), |name| name.as_ptr())
 }
 
-/// Copies a palette that is compiled in.
+/// Copies a compiled-in palette.
 ///
 /// # Safety
 /// See the header.
@@ -90,7 +90,7 @@ pub unsafe extern "C" fn m13_palette_named(name: *const c_char, to: *mut u8) -> 
     if name.is_null() || to.is_null() {
         return Refusal::Null as c_int;
     }
-    // Not beyond the first byte that differs, so not beyond the zero.
+    // It stops at the first byte that differs, so it does not read beyond the zero.
     let is = |known: &&&CStr| {
         let mut bytes = known.to_bytes_with_nul().iter().enumerate();
         // SAFETY: bytes up to the first zero, by the caller.
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn m13_palette_named(name: *const c_char, to: *mut u8) -> 
     })
 }
 
-/// Fills entries of a palette from one colour to another.
+/// Fills entries of a palette with a gradient from one colour to another.
 ///
 /// # Safety
 /// See the header.
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn m13_palette_nearest(from: *const u8, rgb: u32) -> c_int
     }
 }
 
-/// A palette on the way from one to another.
+/// A palette part of the way from one to another.
 ///
 /// # Safety
 /// See the header.
@@ -153,7 +153,7 @@ pub unsafe extern "C" fn m13_palette_fade(from: *const u8, other: *const u8, par
     }))
 }
 
-/// Moves entries of a palette round.
+/// Rotates entries of a palette.
 ///
 /// # Safety
 /// See the header.
@@ -172,7 +172,7 @@ pub unsafe extern "C" fn m13_palette_cycle(to: *mut u8, first: u32, entries: u32
     }))
 }
 
-/// From 8 bits a channel to the 6 of the DAC.
+/// Converts 8 bits a channel to the 6 of the DAC.
 ///
 /// # Safety
 /// See the header.
@@ -182,7 +182,7 @@ pub unsafe extern "C" fn m13_palette_to_dac(from: *const u8, to: *mut u8) -> c_i
     code(unsafe { colors(from).and_then(|all| write(to, &all, Rgb::to_dac)) })
 }
 
-/// From the 6 bits of the DAC to 8.
+/// Converts the 6 bits of the DAC to 8.
 ///
 /// # Safety
 /// See the header.
@@ -192,10 +192,11 @@ pub unsafe extern "C" fn m13_palette_from_dac(from: *const u8, to: *mut u8) -> c
     code(unsafe { colors(from).and_then(|all| write(to, &all, |six| bytes(Rgb::from_dac(bytes(six))))) })
 }
 
-/// A search for the nearest of 256 colours: from the one whose green is nearest up and down, until no other can be nearer.
+/// A search for the nearest of 256 colours: it goes up and down from the one with the nearest green, until no other can
+/// be nearer.
 struct Search {
     colors: [Rgb; 256],
-    /// Entries by green, then by index, and of each green the first.
+    /// Entries by green, then by index, and the first entry of each green.
     order: [u8; 256],
     first: [u16; 257],
 }
@@ -218,7 +219,7 @@ impl Search {
         Self { colors, order, first }
     }
 
-    /// As `Palette::nearest`: of entries equally near the first.
+    /// The nearest entry, like `Palette::nearest`: the first if several are equally near.
     fn nearest(&self, color: Rgb) -> u8 {
         let mut best = u32::MAX;
         // Returns whether entries farther in this direction can be as near.
@@ -236,7 +237,7 @@ impl Search {
     }
 }
 
-/// Fills a table: the byte of a row and a column.
+/// Fills a table, given the byte for a row and a column.
 ///
 /// # Safety
 /// It is null or as long.
@@ -251,7 +252,7 @@ unsafe fn fill(table: *mut u8, mut byte: impl FnMut(u8, u8) -> u8) -> Outcome {
     Ok(())
 }
 
-/// A palette as it is, as the card shows it, and a search among the latter.
+/// A palette as it is, the same as the card shows it, and a search in the latter.
 ///
 /// # Safety
 /// It is null or as long.
@@ -282,7 +283,7 @@ pub unsafe extern "C" fn m13_table_shades(from: *const u8, texels: *const u8, ta
     }))
 }
 
-/// Makes a table of fog.
+/// Makes a fog table.
 ///
 /// # Safety
 /// See the header.
@@ -299,7 +300,7 @@ pub unsafe extern "C" fn m13_table_fog(from: *const u8, rgb: u32, table: *mut u8
     }))
 }
 
-/// Makes a table of glass.
+/// Makes a table for glass.
 ///
 /// # Safety
 /// See the header.
@@ -336,7 +337,7 @@ pub unsafe extern "C" fn m13_table_add(from: *const u8, table: *mut u8) -> c_int
     }))
 }
 
-/// Writes pixels by the colours that the card shows, each of `PIXEL`.
+/// Writes pixels in the colours that the card shows, each as a `PIXEL`.
 ///
 /// # Safety
 /// Pointers are null or as in the header.

@@ -1,11 +1,11 @@
-//! From the caller's vertices to the raster's: by floats, or by 16.16 without a float.
+//! From the caller's vertices to the rasterizer's: in floats, or in 16.16 without floats.
 
 use mode13h::fixed::{I16F16, I24F8, U8F8};
 use mode13h::raster::Vertex;
 
 use crate::abi::{ABSENT, Mesh, Outcome, Refusal};
 
-/// The values of a corner beside its position and depth, in the units of the door that reads them.
+/// The values of a corner besides its position and depth, in the units of the [`Door`] that reads them.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Values<N> {
     pub(crate) shade: N,
@@ -15,7 +15,7 @@ pub(crate) struct Values<N> {
 }
 
 impl<N: Copy> Values<N> {
-    /// Each value and its partner of other values; the second says whether it is a texture coordinate.
+    /// Combines each value with that of `other`; `with` is told whether it is a texture coordinate.
     pub(crate) fn zip(self, other: Self, mut with: impl FnMut(N, N, bool) -> N) -> Self {
         Self {
             shade: with(self.shade, other.shade, false),
@@ -26,7 +26,7 @@ impl<N: Copy> Values<N> {
     }
 }
 
-/// The values that the stages of effects read, as the raster has them.
+/// The values that effect stages read, in the rasterizer's form.
 #[cfg_attr(not(feature = "effects"), allow(dead_code, reason = "nothing reads them"))]
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Attributes {
@@ -35,12 +35,12 @@ pub(crate) struct Attributes {
     pub(crate) slope: [u16; 2],
 }
 
-/// A corner as a list keeps it: a vertex, or with effects one with its attributes.
+/// A corner as it is stored in a list: a vertex, with its attributes if there are effects.
 pub(crate) trait Kept: Copy + Default {
-    /// Attributes are read.
+    /// True if attributes are read.
     const HAS_ATTRIBUTES: bool;
 
-    /// Made of both; without effects attributes are left out.
+    /// Makes one of both; without effects, attributes are left out.
     fn new(vertex: Vertex, attributes: Attributes) -> Self;
 
     /// The vertex.
@@ -90,44 +90,45 @@ pub(crate) struct Wide<N, K> {
     pub(crate) x: N,
     pub(crate) y: N,
     pub(crate) w: N,
-    /// Where the mesh gives it; otherwise it follows from w.
+    /// The mesh's depth, if it has one; otherwise it follows from w.
     pub(crate) depth: N,
     pub(crate) values: Values<N>,
-    /// The corner that needs no clipping. It stays as it is, because a neighbour that needs none either draws with it.
+    /// The corner, if it needs no clipping. It stays exactly as it is, because a neighbour that needs no clipping is
+    /// drawn with it.
     pub(crate) ready: Option<K>,
 }
 
-/// Pixels from the frame's corner to where triangles are cut. The guard band reaches one farther, so that rounding cannot
-/// take a cut point beyond it.
+/// Pixels from the frame's corner to where triangles are cut. The guard band reaches one pixel farther, so that
+/// rounding cannot take a cut point beyond it.
 pub(crate) const LIMIT: i32 = 4_095;
 
-/// A door: how vertices are read, projected and cut.
+/// A format of vertices: how they are read, projected and cut.
 pub(crate) trait Door {
     /// A number in memory.
     type Raw: Copy + Default;
-    /// A number that is wide enough.
+    /// A number wide enough for clipping.
     type Wide: Copy + PartialOrd + Default;
 
     /// The near plane of a mesh, which must be above 0.
     fn near(mesh: &Mesh) -> Outcome<Self::Wide>;
-    /// Widens a number; `None` if it is none.
+    /// Widens a number; `None` if it is not finite.
     fn widen(raw: Self::Raw) -> Option<Self::Wide>;
-    /// The depth of a mesh's vertex as it stands in memory, 32 bits; `None` if it is out of range.
+    /// The depth of a mesh's vertex from its 32 bits in memory; `None` if it is out of range.
     fn depth(bits: u32) -> Option<Self::Wide>;
     /// The w of a mesh whose vertices have none: 1.
     fn one() -> Self::Wide;
     /// The vertex of x, y, w, depth and shade; `None` if it must be clipped. `near` is that of a mesh that has w.
     fn vertex(numbers: [Self::Wide; 5], near: Option<Self::Wide>) -> Option<Vertex>;
-    /// The attributes of values.
+    /// Values as attributes.
     fn attributes(values: &Values<Self::Wide>) -> Attributes;
     /// The distance of a point from a plane of the guard band: `LIMIT·w ± c`.
     fn distance(w: Self::Wide, c: Self::Wide, positive: bool) -> Self::Wide;
     /// The difference of two numbers.
     fn minus(a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// `LIMIT·w`, or what is as far on the other side.
+    /// `LIMIT·w`, or its negative.
     fn at_limit(w: Self::Wide, positive: bool) -> Self::Wide;
-    /// The point between `a`, inside, and `b`, outside, whose distances from a plane are `inside` and `outside`. With `by`
-    /// it is that of values that are linear on the screen: the ratio of `b`'s w to the point's.
+    /// The point between `a`, inside, and `b`, outside, whose distances from a plane are `inside` and `outside`. With
+    /// `by`, values are linear on the screen: it has `b`'s w and the point's.
     fn between(
         a: Self::Wide,
         b: Self::Wide,
@@ -143,13 +144,13 @@ pub(crate) struct Floats;
 /// 16.16: the same, but depths are u32, of which 2³⁰ lies at the near plane.
 pub(crate) struct Fixed;
 
-/// The least whole number that is not below `x`'s floor: `floor(x)`, for what fits.
+/// `floor(x)`, for numbers that fit.
 fn floor(x: f64) -> i64 {
     let whole = x as i64;
     if whole as f64 > x { whole - 1 } else { whole }
 }
 
-/// 0 to 255 in 8.8.
+/// Converts 0 to 255 to 8.8.
 fn byte_of_float(x: f64) -> u16 {
     (x.clamp(0.0, 255.0) * 256.0 + 0.5) as u16
 }
@@ -201,7 +202,7 @@ impl Door for Floats {
 
     fn attributes(values: &Values<f64>) -> Attributes {
         Attributes {
-            // What is too large wraps, as the texture does.
+            // Coordinates that are too large wrap, as the texture does.
             texture: values.texture.map(|c| floor(c * 65_536.0 + 0.5) as i32),
             fog: byte_of_float(values.fog),
             slope: values.slope.map(byte_of_float),
@@ -222,7 +223,8 @@ impl Door for Floats {
         if positive { limit } else { -limit }
     }
 
-    /// The mean of both, each weighted with the other's distance: of numbers of one sign no digit is lost.
+    /// The mean of both, each weighted with the other's distance, so that no digits are lost between numbers of the
+    /// same sign.
     fn between(a: f64, b: f64, inside: f64, outside: f64, by: Option<[f64; 2]>) -> f64 {
         match by {
             None => (b * inside - a * outside) / (inside - outside),
@@ -259,7 +261,7 @@ impl Door for Fixed {
     #[inline(always)]
     fn vertex([x, y, w, depth, shade]: [i64; 5], near: Option<i64>) -> Option<Vertex> {
         let (x, y, depth) = match near {
-            // Those of a mesh are 32 bits; of a cut, between two that are.
+            // Those of a mesh have 32 bits; those of a cut are between two such.
             None => {
                 let pixels = |c: i64| I24F8::round_from_i16f16(I16F16::from_bits(c as i32));
                 (pixels(x), pixels(y), depth as u32)
@@ -300,7 +302,8 @@ impl Door for Fixed {
         if positive { limit } else { -limit }
     }
 
-    /// The nearest, halves upward. Numbers are below 2⁴⁵ (12 bits of the limit, 32 of w and a sign), products below 2⁹².
+    /// Rounded to the nearest, halves upward. Numbers are below 2⁴⁵ (12 bits of the limit, 32 of w and a sign),
+    /// products below 2⁹².
     fn between(a: i64, b: i64, inside: i64, outside: i64, by: Option<[i64; 2]>) -> i64 {
         let (a, b, inside, outside) = (i128::from(a), i128::from(b), i128::from(inside), i128::from(outside));
         let whole = inside - outside;
@@ -320,7 +323,7 @@ impl Door for Fixed {
 /// The floor of n / d for a positive d, which is within i64.
 #[cfg(feature = "effects")]
 fn floor_of(n: i128, d: i128) -> i128 {
-    // On 32 bits it is long, so there is one.
+    // Its code is long on 32 bits, so it is shared.
     mode13h::fixed::floor_of_wide(n, d).into()
 }
 #[cfg(not(feature = "effects"))]
@@ -334,14 +337,14 @@ pub(crate) struct Source {
     mesh: Mesh,
 }
 
-/// Bytes of a mesh's parts.
+/// The memory of a mesh's parts.
 pub(crate) struct Parts {
     pub(crate) vertices: usize,
     pub(crate) indices: usize,
 }
 
 impl Source {
-    /// Checks all of a mesh but its indices' values.
+    /// Checks all of a mesh except the values of its indices.
     pub(crate) fn new(mesh: Mesh, has_shade: bool) -> Outcome<(Self, Parts)> {
         let Mesh { stride, position, depth, shade, texture, fog, slope, .. } = mesh;
         if mesh.homogeneous > 1 {
@@ -404,7 +407,7 @@ impl Source {
         }
     }
 
-    /// Refuses an index of a vertex that is not there.
+    /// Rejects an index of a vertex that does not exist.
     ///
     /// # Safety
     /// The mesh holds as many indices as it says.
@@ -437,7 +440,7 @@ impl Source {
         !self.mesh.indices.is_null()
     }
 
-    /// A number of a vertex, 0 where vertices have none; `None` if it is no number.
+    /// A number of a vertex, 0 if vertices lack it; `None` if it is not a number.
     ///
     /// # Safety
     /// `vertex` is one of the mesh, and the offset one that was checked.
@@ -450,7 +453,7 @@ impl Source {
         D::widen(unsafe { vertex.add(offset as usize).cast::<D::Raw>().read_unaligned() })
     }
 
-    /// x, y, w, depth and shade of vertex `i`, and where it is; `None` if one of them is none, or out of range.
+    /// x, y, w, depth and shade of vertex `i`, and its address; `None` if one of them is not a number, or out of range.
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.
@@ -471,7 +474,7 @@ impl Source {
         }
     }
 
-    /// The values of a vertex beside its numbers.
+    /// The further values of a vertex.
     ///
     /// # Safety
     /// `vertex` is one of the mesh.
@@ -480,13 +483,14 @@ impl Source {
         let Mesh { texture, fog, slope, .. } = self.mesh;
         // SAFETY: offsets have been checked.
         let number = |offset: u32| unsafe { Self::number::<D>(vertex, offset) };
-        // The second of two that are not there is not, either.
+        // If the first of two is absent, so is the second.
         let two = |offset: u32| Some([number(offset)?, number(if offset == ABSENT { ABSENT } else { offset + 4 })?]);
         Some(Values { shade, texture: two(texture)?, fog: number(fog)?, slope: two(slope)? })
     }
 
-    /// Writes vertex `i` as the raster takes it to two places. Returns false if it must be clipped, or has a number that is
-    /// none or out of range. (Copied from the first place, it would be read in one piece just after it was written in four.)
+    /// Writes vertex `i` in the rasterizer's form to two places. Returns false if it must be clipped, or a number of it
+    /// is invalid or out of range. (A copy from the first place would read in one piece what had just been written in
+    /// four.)
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.
@@ -512,8 +516,8 @@ impl Source {
         true
     }
 
-    /// Vertex `i` as the raster takes it without effects; `None` if it must be clipped, or has a number that is none or out
-    /// of range.
+    /// Vertex `i` in the rasterizer's form, without effects; `None` if it must be clipped, or a number of it is invalid
+    /// or out of range.
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.
@@ -524,7 +528,7 @@ impl Source {
         D::vertex(numbers, near)
     }
 
-    /// Vertex `i`, to be clipped; `None` if it has a number that is none or out of range.
+    /// Vertex `i`, for clipping; `None` if a number of it is invalid or out of range.
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.
@@ -544,7 +548,7 @@ impl Source {
 }
 
 impl<N: Copy, K: Kept> Wide<N, K> {
-    /// The corner as the raster takes it; `None` if it must be clipped.
+    /// The corner in the rasterizer's form; `None` if it must be clipped.
     pub(crate) fn project<D: Door<Wide = N>>(&self, near: Option<N>) -> Option<K> {
         let Self { x, y, w, depth, values, .. } = self;
         let attributes = if K::HAS_ATTRIBUTES { D::attributes(values) } else { Attributes::default() };

@@ -13,12 +13,12 @@ use crate::target::{Bytes, Checked, Depth, check};
 
 #[cfg(feature = "effects")]
 use crate::effects::{Context, Effects};
-/// Without effects there is none.
+/// There is no context without effects.
 #[cfg(not(feature = "effects"))]
 enum Context {}
 
-/// Where doubles are fast, the raster sets triangles up eight at a time. Elsewhere it walks down each, whichever way it is
-/// called, and the code for lists is left out.
+/// Where doubles are fast, the rasterizer sets up eight triangles at a time. Elsewhere it walks down each one, however
+/// it is called, and the code for lists is left out.
 const IS_BATCHED: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -26,11 +26,11 @@ const IS_BATCHED: bool = cfg!(any(
     all(target_arch = "x86", target_feature = "sse2")
 ));
 
-/// A list of fewer triangles is drawn one by one: to clear the memory for many would take longer.
+/// A list of fewer triangles is drawn one by one, because clearing the memory for many would take longer.
 const FEW: u32 = 12;
 
-/// Triangles that are drawn together, and vertices that are remembered: for many and for few. A machine that is slow has
-/// little room on its stack, too.
+/// The numbers of triangles drawn together and of vertices cached, for long lists and for short ones. A slow machine
+/// also has little room on its stack.
 const MANY_TOGETHER: usize = 128;
 const MANY_REMEMBERED: usize = 512;
 const FEW_TOGETHER: usize = 4;
@@ -54,7 +54,7 @@ type Plain = Ready;
 #[cfg(not(all(feature = "effects", mode13h_small)))]
 type Plain = Projected;
 
-/// A raster, whatever the width of its depth cells.
+/// A rasterizer, whatever the width of its depth cells.
 trait Draws {
     /// Draws triangles of vertices in slots.
     fn indexed(&mut self, vertices: &Slots, triangles: &[[u32; 3]], by: Interpolation) -> DrawStats;
@@ -86,7 +86,7 @@ struct Indexed<'r> {
     interpolation: Interpolation,
     cull: u32,
     vertices: Slots,
-    /// The index of each slot's vertex, or `u32::MAX`, which no index reaches: all are below a count of 32 bits.
+    /// The index of each slot's vertex, or `u32::MAX`, which no index reaches, since all are below a 32-bit count.
     names: [u32; MANY_REMEMBERED],
     /// The last batch that used each slot. A vertex stays until its batch is drawn.
     used: [u32; MANY_REMEMBERED],
@@ -98,7 +98,7 @@ struct Indexed<'r> {
 }
 
 impl Indexed<'_> {
-    /// Returns whether a triangle of these corners is culled.
+    /// Returns whether a triangle with these corners is culled.
     #[inline(always)]
     fn is_culled(&self, corners: &[Projected; 3]) -> bool {
         let area = doubled_area(corners);
@@ -206,7 +206,7 @@ unsafe fn draw_indexed<D: Door>(
         // SAFETY: as above.
         let alone = named.map(|index| unsafe { source.vertex::<D>(index, near) });
         if let [Some(a), Some(b), Some(c)] = alone {
-            // Two of them have one slot.
+            // Two of them share a slot.
             list.draw(&[a, b, c]);
             continue;
         }
@@ -219,10 +219,10 @@ unsafe fn draw_indexed<D: Door>(
     [list.handed_on, refused, spans, covered, pixels]
 }
 
-/// What triangles are handed to when there are enough.
+/// The function that draws triangles once there are enough.
 type Flush<'f, K> = dyn FnMut(&[[K; 3]]) -> [u32; 3] + 'f;
 
-/// Triangles that wait until there are enough, and the counts of those that were drawn.
+/// Pending triangles, drawn once there are enough, and the counts of those already drawn.
 struct Waiting<'f, K, const TOGETHER: usize> {
     triangles: [[K; 3]; TOGETHER],
     count: usize,
@@ -238,7 +238,7 @@ impl<K: Kept, const TOGETHER: usize> Waiting<'_, K, TOGETHER> {
         self.take();
     }
 
-    /// Takes the triangle behind the last one.
+    /// Adds the triangle that was written after the last one.
     #[inline(always)]
     fn take(&mut self) {
         if self.cull > 0 {
@@ -264,7 +264,7 @@ impl<K: Kept, const TOGETHER: usize> Waiting<'_, K, TOGETHER> {
     }
 }
 
-/// Does what `gather` does, with room for `TOGETHER` triangles and `REMEMBERED` vertices.
+/// Does the work of `gather`, with room for `TOGETHER` triangles and `REMEMBERED` vertices.
 ///
 /// # Safety
 /// That of `gather`.
@@ -277,7 +277,7 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
     let near = source.near::<D>();
     let mut waiting =
         Waiting { triangles: [[K::default(); 3]; TOGETHER], count: 0, cull, handed_on: 0, drawn: [0; 3], flush };
-    // Vertices that were made, by their index. No index is the greatest u32, as all are below a count of 32 bits.
+    // Cached vertices, by their index. No index is the greatest u32, since all are below a 32-bit count.
     let (mut names, mut made) = ([u32::MAX; REMEMBERED], [K::default(); REMEMBERED]);
     let (is_indexed, mut refused) = (source.is_indexed(), 0);
     for i in 0..source.triangles() {
@@ -289,7 +289,7 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
                 *corner = made[slot];
                 return true;
             }
-            // Until it is made there is none.
+            // The slot is empty until the vertex is made.
             names[slot] = u32::MAX;
             // SAFETY: indices have been checked.
             let is_made = unsafe { source.corner::<D, K>(index, near, corner, &mut made[slot]) };
@@ -298,7 +298,7 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
             }
             is_made
         };
-        // Straight to where it waits: no copy, and no load of what was stored in parts just before.
+        // Written straight to its place in the list: no copy, and no load of data just stored in parts.
         let [to_a, to_b, to_c] = &mut waiting.triangles[waiting.count % TOGETHER];
         if put(a, to_a) && put(b, to_b) && put(c, to_c) {
             waiting.take();
@@ -313,7 +313,7 @@ unsafe fn gather_by<D: Door, K: Kept, const TOGETHER: usize, const REMEMBERED: u
     [waiting.handed_on, refused, spans, covered, pixels]
 }
 
-/// Reads, clips and culls the triangles of a list with effects, and hands them on.
+/// Reads, clips and culls the triangles of a list with effects, and passes them on.
 ///
 /// # Safety
 /// The mesh holds what it says, and its indices have been checked.
@@ -334,7 +334,7 @@ unsafe fn gather<D: Door, K: Kept>(
     }
 }
 
-/// Clips triangle `i`. Returns false if one of its numbers is none, or out of range.
+/// Clips triangle `i`. Returns false if one of its numbers is invalid or out of range.
 ///
 /// # Safety
 /// Its indices have been checked.
@@ -378,12 +378,12 @@ macro_rules! with_raster {
     }};
 }
 
-/// Reads, clips and culls a list with few copies: straight into a table of vertices.
+/// Reads, clips and culls a list with few copies, straight into a table of vertices.
 type DrawMany = unsafe fn(&Source, Progress, u32, &mut dyn Draws, Interpolation) -> [u32; 5];
 
-/// A door's functions that read, clip and cull a list. They are pointers so that [`draw_by`] is compiled only once.
+/// A [`Door`]'s functions that read, clip and cull a list. They are pointers so that [`draw_by`] is compiled only once.
 struct Readers {
-    /// Checks that the near plane is a number that can be used.
+    /// Checks that the near plane is a usable number.
     near: fn(&Mesh) -> Outcome,
     few: unsafe fn(&Source, Progress, u32, &mut Flush<'_, Plain>) -> [u32; 5],
     /// For long lists, in builds that draw them in batches.
@@ -419,7 +419,7 @@ unsafe fn draw<D: Door>(
     unsafe { draw_by(&const { Readers::of::<D>() }, target, mesh, material, context, stats) }
 }
 
-/// Draws a list that a door's functions read.
+/// Draws a list that a [`Door`]'s functions read.
 ///
 /// # Safety
 /// That of [`draw`].
@@ -473,7 +473,7 @@ unsafe fn draw_by(
         }
     } else {
         with_raster!(checked, |raster| {
-            // Asked again, so that the compiler knows.
+            // Tested again for the compiler's sake.
             if IS_BATCHED
                 && let Some(many) = readers.many
                 && source.triangles() >= FEW
@@ -522,7 +522,7 @@ pub unsafe extern "C" fn m13_draw(
     code(unsafe { draw::<Floats>(target, mesh, material, context.cast(), stats) })
 }
 
-/// Draws the triangles of a mesh whose numbers are 16.16. It works without a float.
+/// Draws the triangles of a mesh whose numbers are 16.16, without floats.
 ///
 /// # Safety
 /// See the header.
@@ -541,9 +541,9 @@ pub unsafe extern "C" fn m13_draw_x(
 /// Draws one triangle.
 ///
 /// # Safety
-/// `vertices` is null or three of what the door reads; `target` is as in the header.
+/// `vertices` is null or three of the [`Door`]'s vertices; `target` is as in the header.
 unsafe fn triangle<D: Door>(target: *const Target, vertices: *const c_void, shading: u32, color: u32) -> c_int {
-    // Position, depth and shade stand in both structs alike.
+    // Position, depth and shade have the same offsets in both structs.
     const { assert!(size_of::<Vertex>() == 16 && size_of::<VertexX>() == 16) };
     let (mut mesh, mut material) = (Mesh::NONE, Material::NONE);
     (mesh.vertices, mesh.vertex_count, mesh.stride) = (vertices, 3, 16);
@@ -569,7 +569,7 @@ pub unsafe extern "C" fn m13_triangle(
     unsafe { triangle::<Floats>(target, corners.cast(), shading, color) }
 }
 
-/// Draws a triangle of three corners in 16.16. It works without a float.
+/// Draws a triangle of three corners in 16.16, without floats.
 ///
 /// # Safety
 /// See the header.
@@ -585,7 +585,7 @@ pub unsafe extern "C" fn m13_triangle_x(
 }
 
 impl Mesh {
-    /// Without a vertex; only positions are there, at the beginning of each.
+    /// A mesh without vertices; they would have only positions, at the start of each.
     pub const NONE: Self = Self {
         size: size_of::<Self>() as u32,
         vertex_count: 0,
@@ -607,7 +607,7 @@ impl Mesh {
 }
 
 impl Material {
-    /// Flat, of colour 0.
+    /// A flat material of colour 0.
     pub const NONE: Self = Self {
         size: size_of::<Self>() as u32,
         shading: 0,
@@ -627,7 +627,7 @@ impl Material {
     };
 }
 
-/// Makes a mesh of vertices of which nothing is known but their stride.
+/// Makes a mesh of vertices of which only the stride is known.
 ///
 /// # Safety
 /// See the header.
@@ -641,7 +641,7 @@ pub unsafe extern "C" fn m13_mesh_init(mesh: *mut Mesh, vertices: *const c_void,
     code(Ok(()))
 }
 
-/// Makes a material of a shading and nothing else.
+/// Makes a material with a shading and nothing else.
 ///
 /// # Safety
 /// See the header.
@@ -657,7 +657,7 @@ pub unsafe extern "C" fn m13_material_init(material: *mut Material, shading: u32
     }))
 }
 
-/// The bytes that a context takes.
+/// The number of bytes that a context takes.
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_size() -> usize {
     #[cfg(feature = "effects")]

@@ -1,4 +1,4 @@
-//! Textures, light by a table, fog and translucency, with memory of the caller's.
+//! Textures, light by a table, fog and translucency, in the caller's memory.
 
 use core::ffi::c_void;
 
@@ -12,28 +12,28 @@ use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal};
 use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
-/// What the stages take when they draw for the first time, and no more later.
+/// The memory that the stages allocate when they draw for the first time, and no more later.
 const HEAP: usize = 0x1_C000;
 
-/// The bytes of a context, wherever memory begins that is aligned to 16.
+/// The bytes of a context, wherever its memory begins, if that is aligned to 16.
 pub(crate) const BYTES: usize = size_of::<Context>() + HEAP;
 
 const MAGIC: u64 = 0x6D31_3363_6F6E_7478;
 const TABLE: usize = 65_536;
 
-/// What lies in the memory of a context.
+/// The contents of a context's memory.
 #[repr(C, align(16))]
 pub(crate) struct Context {
     magic: u64,
     batch: EffectBatch,
-    /// A row for each shade in which each texel stays: for textures without light.
+    /// A table that leaves each texel as it is in every shade, for textures without light.
     unlit: [u8; TABLE],
 }
 
-/// Makes a context, and has the stages take their memory.
+/// Makes a context, and has the stages allocate their memory.
 ///
 /// # Safety
-/// `memory` holds as many bytes, and `context` a pointer.
+/// `memory` has this many bytes, and `context` room for a pointer.
 pub(crate) unsafe fn init(memory: *mut c_void, bytes: usize, context: *mut *mut c_void) -> Outcome {
     Bytes::new(memory, bytes)?;
     if !memory.addr().is_multiple_of(16) {
@@ -43,7 +43,7 @@ pub(crate) unsafe fn init(memory: *mut c_void, bytes: usize, context: *mut *mut 
         return Err(Refusal::Short);
     }
     let made = memory.cast::<Context>();
-    // SAFETY: aligned, and long enough. The table is filled in place, for stacks may be small.
+    // SAFETY: aligned, and long enough. The table is filled in place, because stacks may be small.
     unsafe {
         for i in 0..TABLE {
             (&raw mut (*made).unlit).cast::<u8>().add(i).write(i as u8);
@@ -101,7 +101,7 @@ unsafe fn texels<'a>(from: *const u8, u_bits: u32, v_bits: u32) -> Outcome<(Texe
 /// A row of texels.
 ///
 /// # Safety
-/// Pointers are null or as long as is said.
+/// Pointers are null or as long as stated.
 pub(crate) unsafe fn span(
     pixels: *mut u8,
     count: usize,
@@ -117,7 +117,7 @@ pub(crate) unsafe fn span(
     Ok(())
 }
 
-/// A context with what a material asks for.
+/// A context with what a material needs.
 pub(crate) struct Effects<'a> {
     batch: &'a mut EffectBatch,
     pipeline: PixelPipeline<'a>,
@@ -127,7 +127,7 @@ impl Effects<'_> {
     /// Checks both.
     ///
     /// # Safety
-    /// `context` is null or one that `init` has made, and tables and pictures of the material are as long as is said.
+    /// `context` is null or one that `init` has made, and tables and pictures of the material are as long as stated.
     pub(crate) unsafe fn new(
         context: *mut Context,
         target: &Checked<'_>,
@@ -211,7 +211,7 @@ impl Effects<'_> {
     }
 }
 
-/// A raster with cells of either width.
+/// A rasterizer with cells of either width.
 pub(crate) trait CellOf {
     /// Draws a batch, and adds to the counts.
     fn draw(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>, sum: &mut [u32; 3]);

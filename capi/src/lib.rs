@@ -1,19 +1,19 @@
-//! The rasterizer of `mode13h` for C. `include/mode13h.h` is the documentation: each function here stands there, with what
-//! it takes, does and returns. `capi/build` makes the libraries, `capi/check` tests them.
+//! The rasterizer of `mode13h` for C. `include/mode13h.h` is the documentation: it says what each function here takes,
+//! does and returns. `capi/build` makes the libraries, `capi/check` tests them.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `abi` | codes, structs, and how a struct of another version is read |
 //! | `target` | the frame, its band, clip rectangle and depth buffer, checked at each call |
-//! | `corner` | from the caller's vertices to the raster's, by floats and by 16.16 |
+//! | `corner` | from the caller's vertices to the rasterizer's, in floats and in 16.16 |
 //! | `clip` | the near plane and the guard band |
 //! | `draw` | triangles and lists of them |
 //! | `effects` | textures, light by a table, fog and translucency |
-//! | `color` | palettes, tables of 64 KiB, the way to the screen |
+//! | `color` | palettes, tables of 64 KiB, conversion for the screen |
 //! | `memory` | the caller's memory as an allocator, and the end of a panic |
 //!
-//! Arguments are checked before anything is written. What the caller passes is read by value, without alignment, and never
-//! through a reference, so that it may overlap with anything but what is drawn into; that is refused.
+//! Arguments are checked before anything is written. The caller's data is read by value, unaligned, and never through a
+//! reference, so it may overlap with anything except the memory that is drawn into; that is rejected.
 #![no_std]
 
 #[cfg(feature = "std")]

@@ -1,4 +1,5 @@
-//! What a library for C needs and an `rlib` does not: an allocator over the caller's memory, and the end of a panic.
+//! The parts that a library for C needs and an `rlib` does not: an allocator in the caller's memory, and a panic
+//! handler.
 
 #[cfg(feature = "effects")]
 pub(crate) use arena::within;
@@ -8,8 +9,8 @@ mod arena {
     use core::alloc::{GlobalAlloc, Layout};
     use core::sync::atomic::{AtomicUsize, Ordering};
 
-    /// Hands out the memory of the context that is being made, and takes nothing back. At any other time there is none: the
-    /// stages have all that they need.
+    /// Hands out the memory of the context that is being made, and takes nothing back. At any other time it has none,
+    /// as the stages already have all they need.
     struct Arena {
         /// The first free address and the end; 0 while no context is made.
         next: AtomicUsize,
@@ -19,11 +20,11 @@ mod arena {
     #[global_allocator]
     static ARENA: Arena = Arena { next: AtomicUsize::new(0), end: AtomicUsize::new(0) };
 
-    /// One thread at a time makes a context. On a processor without an exchange in one step there are no threads.
+    /// Only one thread at a time makes a context. A processor without an atomic exchange has no threads.
     #[cfg(target_has_atomic = "8")]
     static IS_TAKEN: core::sync::atomic::AtomicBool = core::sync::atomic::AtomicBool::new(false);
 
-    /// Runs `make` with memory.
+    /// Runs `make` with this memory to allocate from.
     pub(crate) fn within(memory: *mut u8, bytes: usize, make: impl FnOnce()) {
         #[cfg(target_has_atomic = "8")]
         while IS_TAKEN.swap(true, Ordering::Acquire) {
@@ -39,7 +40,7 @@ mod arena {
         IS_TAKEN.store(false, Ordering::Release);
     }
 
-    // SAFETY: what is handed out lies within the memory, is aligned, and is handed out once.
+    // SAFETY: each block is inside the memory, aligned, and handed out once.
     unsafe impl GlobalAlloc for Arena {
         unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
             let next = self.next.load(Ordering::Relaxed);
@@ -59,17 +60,17 @@ mod arena {
             core::ptr::null_mut()
         }
 
-        /// Takes nothing back, as the stages give nothing back.
+        /// Does nothing, as the stages free nothing.
         unsafe fn dealloc(&self, _: *mut u8, _: Layout) {}
     }
 }
 
-/// Nothing panics, for all arguments are checked. If something did, the program would end here.
+/// Nothing panics, because all arguments are checked. If something did, the program would end here.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    // SAFETY: an instruction that is none, which ends the program.
+    // SAFETY: an invalid instruction, which ends the program.
     unsafe {
         core::arch::asm!("ud2", options(noreturn, nomem, nostack));
     }

@@ -1,4 +1,4 @@
-//! The frame that is drawn into: a struct of the caller's, which is checked at each call.
+//! The frame to draw into: a struct of the caller's, which is checked at each call.
 
 use core::ffi::{c_int, c_void};
 
@@ -6,7 +6,7 @@ use mode13h::raster::{DepthBuffer, Frame, RasterError, Rect};
 
 use crate::abi::{OK, Outcome, Refusal, Target, code, read};
 
-/// Bytes from an address on.
+/// A range of bytes in memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes {
     start: usize,
@@ -14,27 +14,27 @@ pub(crate) struct Bytes {
 }
 
 impl Bytes {
-    /// Those from a pointer on, which must not be null, nor reach beyond the end of memory.
+    /// The range that starts at a pointer, which must not be null; nor may the range reach beyond the end of memory.
     pub(crate) fn new<T>(pointer: *const T, length: usize) -> Outcome<Self> {
         if pointer.is_null() {
             return Err(Refusal::Null);
         }
         let start = pointer.addr();
-        // No slice is longer than half of memory.
+        // No slice is longer than half the address space.
         if length > isize::MAX as usize || start.checked_add(length).is_none() {
             return Err(Refusal::Short);
         }
         Ok(Self { start, length })
     }
 
-    /// Refuses those that share a byte with others.
+    /// Rejects ranges that overlap.
     pub(crate) fn apart_from(self, other: Self) -> Outcome {
         let apart = self.start + self.length <= other.start || other.start + other.length <= self.start;
         if apart || self.length == 0 || other.length == 0 { Ok(()) } else { Err(Refusal::Overlap) }
     }
 }
 
-/// A depth buffer, as the target says.
+/// A depth buffer, as described by the target.
 pub(crate) enum Depth<'a> {
     None,
     U16(DepthBuffer<'a, u16>),
@@ -51,13 +51,13 @@ pub(crate) struct Checked<'a> {
 }
 
 impl Checked<'_> {
-    /// Refuses bytes that share one with what is drawn into.
+    /// Rejects a range that overlaps the memory that is drawn into.
     pub(crate) fn apart_from(&self, read: Bytes) -> Outcome {
         read.apart_from(self.pixels)?;
         self.depths.map_or(Ok(()), |depths| read.apart_from(depths))
     }
 
-    /// The part of the clip rectangle that the frame holds.
+    /// The part of the clip rectangle that is in the frame.
     fn clip(&self) -> Rect {
         self.clip.intersection(self.frame.bounds())
     }
@@ -80,8 +80,8 @@ macro_rules! depth_of {
             return Err(Refusal::Alignment);
         }
         let count = $target.depth_bytes / size_of::<$value>();
-        // SAFETY: not null, aligned, no longer than the bytes that there are, and apart from the pixels; by the caller nobody
-        // else uses them.
+        // SAFETY: not null, aligned, no longer than the bytes available, and apart from the pixels; by the caller
+        // nobody else uses them.
         let values = unsafe { core::slice::from_raw_parts_mut($target.depth.cast::<$value>(), count) };
         DepthBuffer::new(values, &$frame).map_err(refusal)?
     }};
@@ -118,7 +118,7 @@ pub(crate) unsafe fn check<'a>(target: *const Target) -> Outcome<Checked<'a>> {
     Ok(Checked { frame, depth, clip, pixels, depths })
 }
 
-/// Writes a struct to where a pointer says.
+/// Writes a struct through a pointer.
 ///
 /// # Safety
 /// It is null, or there is room.
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn m13_target_init(
     code(unsafe { check(&raw const made).and_then(|_| put(target, made)) })
 }
 
-/// Gives a target a depth buffer, or with 0 bits takes it away.
+/// Gives a target a depth buffer, or removes it if `bits` is 0.
 ///
 /// # Safety
 /// See the header.
@@ -195,7 +195,7 @@ pub unsafe extern "C" fn m13_target_depth(target: *mut Target, depth: *mut c_voi
     }
 }
 
-/// Draws only inside a rectangle from now on.
+/// Restricts drawing to a rectangle from now on.
 ///
 /// # Safety
 /// See the header.
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn m13_target_clip(target: *mut Target, x0: i32, y0: i32, 
     }
 }
 
-/// Says that the pixels hold some rows of the frame alone.
+/// Declares that the pixels hold only some rows of the frame.
 ///
 /// # Safety
 /// See the header.
@@ -256,7 +256,7 @@ pub unsafe extern "C" fn m13_clear(target: *const Target, index: u8) -> c_int {
     }))
 }
 
-/// Makes everything inside the clip rectangle as far away as can be.
+/// Makes everything inside the clip rectangle as far away as possible.
 ///
 /// # Safety
 /// See the header.

@@ -1,5 +1,5 @@
-//! The raster's definitions, pixel by pixel in 128-bit integers, without regard to speed. They share nothing with the
-//! raster but the vertices.
+//! The rasterizer's definitions, pixel by pixel in 128-bit integers, without regard to speed. They share nothing with
+//! the rasterizer except the vertices.
 
 use alloc::vec::Vec;
 
@@ -48,7 +48,7 @@ pub fn polygon_covers(polygon: &[Point], p: Point) -> bool {
     for (i, &a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
         let (upper, lower) = if a.1 < b.1 { (a, b) } else { (b, a) };
-        // On the edge or to the right of it on the screen, which is not to the right when walking down.
+        // On the edge or to the right of it on the screen, which is to the left when walking down.
         if upper.1 <= p.1 && p.1 < lower.1 && edge(upper, lower, p) <= 0 {
             inside = !inside;
         }

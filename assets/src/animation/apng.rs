@@ -25,15 +25,15 @@ pub enum FilmColors {
     True,
 }
 
-/// A frame of an [`ApngFile`], ready to be written. It only depends on the frame and the one before it, so several can
-/// be made at a time, on any threads, and then be added in order.
+/// A frame of an [`ApngFile`], ready to be written. It depends only on the frame and the one before it, so several can
+/// be made at a time, on any threads, and then added in order.
 pub struct ApngFrame {
     /// The animation's size in pixels: width and height.
     size: (u32, u32),
     density: (u32, u32),
     colors: FilmColors,
     area: Area,
-    /// Whether transparent pixels show what was there before.
+    /// Whether transparent pixels show the frame before.
     blends: bool,
     /// The compressed rows.
     data: Vec<u8>,
@@ -201,7 +201,7 @@ struct Writer<W> {
     /// The first frame's size and colours.
     first: Option<((u32, u32), FilmColors)>,
     bytes: u64,
-    /// Set once writing failed, perhaps amid a chunk: nothing more may be written.
+    /// Set once writing has failed, perhaps in the middle of a chunk: nothing more may be written.
     failed: Option<io::ErrorKind>,
 }
 

@@ -5,7 +5,7 @@ use mode13h::export::Scaled;
 
 use super::{AnimationError, AnimationErrorKind};
 
-/// A rectangle of the animation, in pixels: from `left` and `top` up to, but without, `right` and `bottom`.
+/// A rectangle of the animation, in pixels: from `left` and `top` up to, but not including, `right` and `bottom`.
 #[derive(Clone, Copy)]
 pub(super) struct Area {
     pub(super) left: usize,

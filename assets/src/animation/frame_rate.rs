@@ -5,7 +5,7 @@ use super::error::{AnimationError, AnimationErrorKind, FRAME_RATES};
 /// An animation's frames per second, 0.1 to 50.
 ///
 /// Browsers show at most 50 frames per second: a delay below 2/100 s becomes 10/100 s there. 35, the default, is every
-/// second retrace of the machine.
+/// second retrace of the VGA.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRate(f64);
 

@@ -1,5 +1,5 @@
 //! GIF animations, written frame by frame: each frame is cropped to what it changes, with transparent pixels where that
-//! is shorter. A frame only has a palette of its own if the first frame's lacks a colour that it uses. Indices of equal
+//! is shorter. A frame has a palette of its own only if the first frame's lacks a colour that it uses. Indices of equal
 //! colours are merged.
 //!
 //! A frame that changes nothing is not written: the one before it stays longer. (A frame of one pixel would keep the
@@ -101,8 +101,8 @@ impl<W: Write> GifWriter<W> {
     }
 
     /// Adds a prepared frame: the first from [`GifFrame::first`], each other from [`GifFrame::after`]. Each must be
-    /// made from the frame that was added before it, with this animation's scale and the colours of its first frame.
-    /// Made from another, it shows what that other would have left.
+    /// made from the frame that was added before it, with this animation's scale and the colours of its first frame. A
+    /// frame made from a different one shows the remains of that one.
     ///
     /// # Errors
     ///
@@ -135,7 +135,7 @@ impl<W: Write> GifWriter<W> {
                         self.film.frames += 1;
                         return Ok(());
                     }
-                    // No image stays longer than 655.35 s: then another begins, which redraws one pixel unchanged.
+                    // No image stays longer than 655.35 s; then another begins, which redraws one unchanged pixel.
                     (false, None) => Some(frame.first_pixel(self.scale, &self.palette)?),
                 }
             }
@@ -218,7 +218,7 @@ impl<W: Write> Out<W> {
 
     /// Writes a compressed image, and before the first the file's header.
     fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), AnimationError> {
-        // If this fails, the file ends amid an image, and nothing more may be written.
+        // If this fails, the file ends in the middle of an image, and nothing more may be written.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));
         let written = out.opened(size, palette).and_then(|mut encoder| {
             encoder.write_lzw_pre_encoded_frame(image)?;

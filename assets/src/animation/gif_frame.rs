@@ -9,9 +9,8 @@ use super::AnimationError;
 use super::color_table::ColorTable;
 use super::difference::{Area, changed, kept};
 
-/// A frame of an [animation](super::GifWriter) and its compressed image. It only depends on the frame and the one
-/// before it, so several can be made at a time, on any threads, and then be [added](super::GifWriter::add_frame) in
-/// order.
+/// A frame of an [animation](super::GifWriter) and its compressed image. It depends only on the frame and the one
+/// before it, so several can be made at a time, on any threads, and then [added](super::GifWriter::add_frame) in order.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -63,7 +62,8 @@ impl GifFrame {
         GifFrame::new(&scaled, Some(image))
     }
 
-    /// Makes a frame that follows `before`: only the differences are written. `film`: the colours of the first frame.
+    /// Makes a frame that follows `before`: only the differences are written. `film` has the colours of the first
+    /// frame.
     ///
     /// # Errors
     ///
@@ -132,7 +132,7 @@ impl GifFrame {
     }
 }
 
-/// The min length of a run of unchanged pixels that become transparent. Shorter runs would break up the pixels around
+/// The least length of a run of unchanged pixels that become transparent. Shorter runs would break up the pixels around
 /// them, which costs more than it saves: on the torus 16 gave smaller files than 1, 4, 8 and 32.
 const TRANSPARENT_RUN: usize = 16;
 

@@ -7,7 +7,7 @@ use mode13h::palette::Rgb;
 
 use super::AnimationError;
 
-/// The header line of a stream of frames like this one. `rate`: frames per second as a fraction.
+/// The header line of a stream of frames like this one. `rate` is the number of frames per second, as a fraction.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};

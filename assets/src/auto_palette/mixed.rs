@@ -1,8 +1,8 @@
 //! Colours that are on no ramp: in fog, behind transparent surfaces, under coloured light.
 //!
-//! They are found by rendering the scene in true colour, as three grey pictures, one for each channel: lights,
-//! materials, images and fog have their intensity on that channel there. So light, fog, glass and images are the
-//! renderer's own, and no pixel depends on a palette.
+//! They are found by rendering the scene in true colour, as three grey pictures, one for each channel, in which lights,
+//! materials, images and fog have their intensity on that channel. So light, fog, glass and images are the renderer's
+//! own, and no pixel depends on a palette.
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;

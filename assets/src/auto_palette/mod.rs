@@ -1,4 +1,4 @@
-//! Palettes made for a scene: each of its materials is measured over a loop, and the entries are derived from that.
+//! Palettes made for a scene: each of its materials is measured over a loop, and the entries follow from that.
 //!
 //! | file | what |
 //! |---|---|
@@ -57,13 +57,13 @@ impl AutomaticPalette {
 ///
 /// Area and brightness are measured from what is visible over a loop. A material without a colour of its own and
 /// without an image that names a coloured ramp of the scene's palette keeps the colours of that ramp. Any other
-/// material's colour is its [own](Material::own_colors), in the light that it reflects in full light, ambient and
-/// diffuse together; its highlight adds to that. On its ramp that colour is at the intensity `full_light` of
-/// [`Entries::Ramp`]. So its ambient and diffuse shares are scaled to add up to that, in the same proportion, and the
-/// rest is the highlight's. The material then no longer needs channels, because its colour is in the ramp, and a `ramp`
-/// that it named is replaced. A material with an image keeps its shares. The image's colours, tinted by the material's,
-/// are the base of entries at the visible brightnesses. If its plan calls for mipmaps, their colours count, too, each
-/// level half as much as the level before.
+/// material's colour is its [own](Material::own_colors), as it reflects full light, ambient and diffuse together; its
+/// highlight adds to that. On its ramp that colour is at the intensity `full_light` of [`Entries::Ramp`]. So its
+/// ambient and diffuse shares are scaled to add up to that, in the same proportion, and the highlight gets the rest.
+/// The material then no longer needs channels, because its colour is in the ramp, and a `ramp` that it named is
+/// replaced. A material with an image keeps its shares. The image's colours, tinted by the material's, are the base of
+/// entries at the visible brightnesses. If its plan calls for mipmaps, their colours count as well, each level half as
+/// much as the one before.
 ///
 /// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
 /// under a coloured light. They are measured in true colour, and share the block of the textures. Under coloured light
@@ -257,9 +257,9 @@ fn own_colors_on(along: &[Rgb], material: &Material, full: f32) -> OwnColors {
     (color.map(|channel| channel / full), highlight)
 }
 
-/// An object's materials for a palette without ramps: each that names a ramp by its number in its
-/// [own colours](Material::own_colors), or, if it has none and no image, in the colour that the ramp of `palette`, which it
-/// is made for, has at half light. (At its end a ramp is often white, as there are highlights.)
+/// An object's materials for a palette without ramps. Each that names a ramp by its number gets its [own
+/// colours](Material::own_colors) or, if it has none and no image, the colour at half light on that ramp of `palette`,
+/// which it was made for. (A ramp often ends in white, for highlights.)
 #[must_use]
 pub fn without_ramps(object: &Object, palette: Option<&Palette>) -> Vec<Material> {
     let plain = Surface::default();

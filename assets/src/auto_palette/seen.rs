@@ -1,7 +1,7 @@
 //! Area and brightness of each material of a scene, as far as it is visible.
 //!
 //! Each moment is drawn once with intensities as shades, and once with the materials' numbers in place of shades, one
-//! byte of the number at a time: so visibility is the renderer's own. Adding up projected areas would be cheaper, but
+//! byte of the number at a time, so visibility is the renderer's own. Adding up projected areas would be cheaper, but
 //! would include hidden areas. Materials behind transparent surfaces are visible, too: the scene is drawn again without
 //! those surfaces.
 

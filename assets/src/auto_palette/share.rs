@@ -1,8 +1,8 @@
 //! A palette made for the visible surfaces: a ramp for each material, a block for the textures.
 //!
 //! Entry 0 is black, for the background, and entry 255 white, for text and graphics drawn over the picture. The 254 in
-//! between are distributed so that the sum, over all visible pixels, of the squared distance between wanted and
-//! displayed colour falls most with every entry given:
+//! between are handed out so that each lowers the sum, over all visible pixels, of the squared distance between wanted
+//! and displayed colour as much as possible:
 //!
 //! - A ramp of n entries has n − 1 steps. Rounding to its entries has a mean squared error of a twelfth of the squared
 //!   step, so with a share `area` of the pixels, and colours `length` apart between the darkest and the brightest
@@ -86,7 +86,7 @@ pub struct Automatic {
 
 /// The number of entries to distribute: all except the first and the last.
 const CAPACITY: usize = 254;
-/// The min length of a ramp, unless it has fewer colours.
+/// The least length of a ramp, unless it has fewer colours.
 const MIN_ENTRIES: usize = 4;
 /// The number of entries reserved for textures before the ramps get theirs.
 const MIN_FOR_TEXTURES: usize = 16;
@@ -96,7 +96,7 @@ const UNSEEN: f64 = 1e-6;
 const NARROWEST: f64 = 0.25;
 /// The number of brightness levels tested for a texture's colours.
 const LEVELS: u8 = 16;
-/// The max number of textured uses considered: those with the largest areas.
+/// The most textured uses considered: those with the largest areas.
 const MAX_TEXTURED: usize = 64;
 /// The weight of the whole area in median cut.
 const WHOLE: f64 = 16_777_216.0;

@@ -62,7 +62,7 @@ pub struct Model {
     pub lights: Vec<Light>,
     /// The camera of the file.
     pub camera: Option<Camera>,
-    /// What moves them; see [`Playback`].
+    /// The rig that moves them; see [`Playback`].
     pub rig: Option<Rig>,
 }
 

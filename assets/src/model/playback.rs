@@ -8,7 +8,7 @@ use mode13h::scene::{Camera, Object, ObjectId, Scene, Shared};
 
 use crate::model_file::{Clip, Pose, Rig};
 
-/// The poses of a round that a picture is framed for.
+/// The number of poses in a round that a picture is framed for.
 const POSES: u32 = 16;
 
 /// A model in a scene that plays one of its animations, again and again.
@@ -19,7 +19,7 @@ pub struct Playback {
     mesh: Shared<Mesh>,
     clip: usize,
     object: ObjectId,
-    /// The factors by which the object's mesh was made longer.
+    /// The factors by which the object's mesh was stretched.
     stretch: Vec3,
     /// The scene's lights and its camera are the file's.
     moves_lights: bool,
@@ -29,8 +29,8 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// Makes an object play a clip, by its index; one that there is not is the first. The object's mesh must be the one that
-    /// was read with the rig.
+    /// Makes an object play a clip, by its index; if there is no such clip, the first. The object's mesh must be the
+    /// one that was read with the rig.
     #[must_use]
     pub fn new(rig: impl Into<Shared<Rig>>, clip: usize, scene: &Scene, object: ObjectId) -> Option<Self> {
         let (rig, mesh) = (rig.into(), Shared::new(scene.get(object)?.mesh().clone()));
@@ -47,7 +47,7 @@ impl Playback {
         })
     }
 
-    /// Moves the scene's lights and its camera, too, which are those of the model's file.
+    /// Also moves the scene's lights and its camera, which must be those of the model's file.
     #[must_use]
     pub fn with_lights_and_camera(mut self, lights: bool, camera: bool) -> Self {
         (self.moves_lights, self.moves_camera) = (lights, camera);
@@ -72,8 +72,8 @@ impl Playback {
         &self.rig.clips()[self.clip]
     }
 
-    /// Puts the model where it is at a time, in seconds. A time that is shown already changes no mesh, so that the renderer
-    /// keeps what it has.
+    /// Moves the model to where it is at a time, in seconds. If that time is already shown, the mesh does not change,
+    /// so that the renderer's caches stay valid.
     pub fn show(&mut self, scene: &mut Scene, seconds: f64) {
         let camera = match self.shown {
             Some((shown, camera)) if shown == seconds => camera,
@@ -97,13 +97,13 @@ impl Playback {
     fn pose(&self, seconds: f64) -> Pose {
         let mut pose = self.rig.pose(&self.mesh, self.clip, seconds);
         if self.stretch != Vec3::ONE {
-            // A place beyond f32 leaves it at rest.
+            // If a position is beyond f32, it stays at rest.
             pose.mesh = pose.mesh.stretched(self.stretch).unwrap_or_else(|_| Mesh::clone(&self.mesh));
         }
         pose
     }
 
-    /// An object in some poses of the clip, for what must hold all of them.
+    /// An object in some poses of the clip, for bounds that must contain all of them.
     pub(crate) fn poses(&self, object: &Object) -> impl Iterator<Item = Object> {
         (0..POSES).map(|pose| {
             let mut object = object.clone();
@@ -121,7 +121,7 @@ impl Playback {
     }
 }
 
-/// Puts a light where another one stands.
+/// Moves a light to where another one is.
 fn stand_as(light: &mut Light, place: &Light) {
     match (light, place) {
         (Light::Sun { direction, .. }, Light::Sun { direction: place, .. }) => *direction = *place,

@@ -2,7 +2,7 @@
 //!
 //! **Light.** A key light from the upper right and a fill a quarter as strong from the left, at right angles to it.
 //! Together with the ambient light they add up to 1 at most, so that nothing is overexposed: the brightest face shows
-//! its own colour, and one that neither light reaches two fifths of it.
+//! its own colour, and a face that neither light reaches shows two fifths of it.
 //!
 //! **Colour.** The colour of a surface with an image is the image. Exporters write some grey Kd with it, often 0.8 or
 //! 0.64, which dims nothing in the program that the model was made in. So these surfaces are exposed together, until
@@ -60,8 +60,9 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     finish(scene, has_colors)
 }
 
-/// Makes a scene of a model that brings lights or a camera, as its author arranged it: the model stands where it stands in its
-/// file, and still. Without lights it has the studio's, seen from the camera; without a camera one that frames a whole turn.
+/// Makes a scene of a model that brings lights or a camera, as its author arranged it: the model keeps its position in
+/// the file, and does not turn. Without lights it has the studio's, seen from the camera; without a camera, one that
+/// frames a whole turn.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`](mode13h::render::Renderer::draw).

@@ -16,7 +16,7 @@ use super::lists::{Corner, Lists};
 /// The side of the texture, in texels.
 const SIDE: u8 = 16;
 
-/// Sets the colours of faces in the draft, by a texture with that name: `colors` has the faces' indices, in ascending
+/// Sets the colours of faces in the draft with a texture of that name; `colors` has the faces' indices, in ascending
 /// order. Returns the surface that these faces must have.
 pub(crate) fn paint(draft: &mut Draft, colors: &[(usize, Rgb)], name: String) -> Surface {
     let mut sorted: Vec<Rgb> = colors.iter().map(|(_, color)| *color).collect();

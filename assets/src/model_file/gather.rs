@@ -12,7 +12,7 @@ use super::ModelFileErrorKind;
 use super::lists::{Corner, Lists};
 use super::polygon::Splitter;
 
-/// Makes the mesh from the lists, with their positions in f32. Unused surfaces are dropped. With `as_given` its faults are
+/// Makes the mesh from the lists, with their positions in f32. Unused surfaces are dropped. With `as_given`, faults are
 /// not repaired.
 ///
 /// # Errors

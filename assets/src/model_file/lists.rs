@@ -1,4 +1,4 @@
-//! What every format's reader produces: lists of positions, texture coordinates and normals, and faces with any number
+//! The output of every format's reader: lists of positions, texture coordinates and normals, and faces with any number
 //! of corners that index them.
 
 use mode13h::glam::{Vec2, Vec3};

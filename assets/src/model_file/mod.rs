@@ -71,7 +71,7 @@ pub struct Loaded {
     pub lights: Vec<Light>,
     /// The first camera of the file, in the mesh's coordinates.
     pub camera: Option<Camera>,
-    /// What moves the mesh, the lights and the camera, if anything does. All of these are at rest.
+    /// The rig that moves the mesh, the lights and the camera, if they move. All of these are at rest.
     pub rig: Option<Rig>,
 }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The error of a palette file, with its position. Nothing of the file is used.
+/// The error of a palette file, with its position. The whole file is rejected.
 ///
 /// Displays as `line 7: expected three numbers 0 to 255, found "red"`, to be appended to the file's name and a colon.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -12,8 +12,8 @@ use super::error::PaletteError;
 use super::{Format, parse_named};
 use crate::texture;
 
-/// The max number of bytes read from a palette file. None is longer, not even one with a paragraph for each colour; a
-/// longer one fails on the part up to here.
+/// The most bytes read from a palette file. None is longer, not even one with a paragraph for each colour; a longer one
+/// fails on the part up to here.
 const LONGEST: usize = 1 << 20;
 
 /// The max number of bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.
@@ -101,8 +101,8 @@ pub(crate) fn of_bytes(name: &str, bytes: &[u8]) -> Result<Palette, LoadErrorKin
     picture.palette.map(Palette::from_colors).ok_or_else(none)
 }
 
-/// Whether bytes are a picture that may have a palette. The extension of a palette file says that they are none, since the
-/// bytes of a raw palette may begin in any way.
+/// Returns whether bytes are a picture that may have a palette. With the extension of a palette file they are not,
+/// since the bytes of a raw palette may begin in any way.
 fn is_picture(name: &str, bytes: &[u8]) -> bool {
     Format::of_file_name(name).is_none() && texture::may_have_palette(bytes)
 }

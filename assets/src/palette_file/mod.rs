@@ -1,4 +1,4 @@
-//! Reading and writing of palette files, in the formats listed in [`FORMATS`].
+//! Reading and writing palette files, in the formats listed in [`FORMATS`].
 //!
 //! | format | extension | what |
 //! |---|---|---|

@@ -57,7 +57,7 @@ impl<'a> Builder<'a> {
         }
         if let Some(look) = &layout.look {
             look.0.lend(&mut self.scene, layout.palette.is_some());
-            // That there is none was chosen, too.
+            // Having none is a choice, too.
             if let Some(RenderLayout { dither: Some(OffOr(None)), .. }) = layout.render {
                 self.scene.settings.dither = None;
             }
@@ -101,7 +101,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Sets the background and the fog. Fog only hides distant surfaces if it ends in the background's colour, so each
+    /// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour, so each
     /// defaults to the other.
     fn background_and_fog(
         &mut self,

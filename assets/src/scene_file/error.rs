@@ -10,7 +10,7 @@ use crate::model_file::ModelFileError;
 use crate::palette_file::PaletteError;
 use crate::texture::LoadError;
 
-/// The error of a scene file. Nothing of the file is used.
+/// The error of a scene file. The whole file is rejected.
 ///
 /// Displayed on one line, as ``scene.toml:9:1: key `objects[0].shap`: unknown key; known are name, shape, …``.
 #[non_exhaustive]

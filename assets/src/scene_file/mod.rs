@@ -24,7 +24,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `layout` | the tables and keys that there are |
+//! | `layout` | the tables and keys |
 //! | `value` | numbers, vectors, colours and names with their ranges |
 //! | `shape` | the shapes with their subdivisions |
 //! | `build` | from the layout to a [`Scene`] |

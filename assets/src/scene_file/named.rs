@@ -29,7 +29,7 @@ pub(super) struct NamedModel {
     pub(super) origin: [f64; 3],
     /// The axis that points up, if its format says so.
     pub(super) up: Option<UpAxis>,
-    /// What moves it, if anything does.
+    /// The rig that moves it, if it moves.
     pub(super) rig: Option<Shared<Rig>>,
 }
 

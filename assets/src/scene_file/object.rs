@@ -35,7 +35,7 @@ impl Change {
     }
 }
 
-/// What moves the mesh of an object.
+/// How the mesh of an object moves.
 pub(super) struct Moving {
     pub(super) rig: Shared<Rig>,
     /// The clip that it plays.
@@ -56,7 +56,8 @@ pub(super) struct Objects {
 }
 
 impl Objects {
-    /// Makes the objects of a layout, one for each of its positions, without their motion; and what moves their mesh.
+    /// Makes the objects of a layout, one for each of its positions, without their motion; and returns how their mesh
+    /// moves.
     pub(super) fn object(
         &mut self,
         layout: &Spanned<ObjectLayout>,

@@ -39,7 +39,7 @@ impl Protocol {
     /// All protocols.
     pub const ALL: [Protocol; 2] = [Protocol::Sixel, Protocol::Kitty];
 
-    /// Its name, as it is typed.
+    /// Its name, as users type it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,9 +48,9 @@ impl Protocol {
         }
     }
 
-    /// The protocol that the terminal probably takes, by variables of the environment, which `variable` returns: kitty's
-    /// if `KITTY_WINDOW_ID` is set, or if `TERM` or `TERM_PROGRAM` names kitty or Ghostty; otherwise sixel. In tmux and
-    /// screen, which pass no pictures of kitty's on, always sixel.
+    /// The protocol that the terminal probably supports, by environment variables, which `variable` returns: kitty's if
+    /// `KITTY_WINDOW_ID` is set, or if `TERM` or `TERM_PROGRAM` names kitty or Ghostty; otherwise sixel. It is always
+    /// sixel in tmux and screen, which do not pass kitty's pictures on.
     #[must_use]
     pub fn of_environment(variable: impl Fn(&str) -> Option<OsString>) -> Protocol {
         let text = |name: &str| variable(name).map(|value| value.to_string_lossy().to_ascii_lowercase());
@@ -67,7 +67,7 @@ impl Protocol {
     /// A picture at the cursor, which the terminal leaves in the picture's last line.
     ///
     /// # Errors
-    /// A picture that is not sound, or too large when enlarged.
+    /// A picture that is invalid, or too large when enlarged.
     pub fn picture(self, picture: &Picture<'_>, scale: Scale) -> Result<String, PictureError> {
         match self {
             Protocol::Sixel => sixel::picture(picture, scale),
@@ -77,20 +77,20 @@ impl Protocol {
 
     /// A frame of an animation, in the upper left corner of the screen, in place of the frame before it.
     ///
-    /// The terminal shows it only when it has all of it, if it knows synchronized output.
+    /// A terminal that supports synchronized output shows it only when it has all of it.
     ///
     /// # Errors
     /// Those of [`picture`](Self::picture).
     pub fn frame(self, picture: &Picture<'_>, scale: Scale) -> Result<String, PictureError> {
         let shown = match self {
             Protocol::Sixel => sixel::picture(picture, scale)?,
-            // The image of this number replaces the one before it, and the cursor stays.
+            // The image with this number replaces the one before it, and the cursor stays.
             Protocol::Kitty => kitty::picture(picture, scale, ",i=13,p=1,C=1")?,
         };
         Ok(format!("\x1b[?2026h\x1b[H{shown}\x1b[?2026l"))
     }
 
-    /// What to print after the last [`frame`](Self::frame), so that the terminal gives up its memory of it.
+    /// Text to print after the last [`frame`](Self::frame), so that the terminal frees its memory.
     #[must_use]
     pub const fn after_frames(self) -> &'static str {
         match self {

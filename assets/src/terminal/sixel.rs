@@ -24,7 +24,7 @@ use mode13h::export::{Picture, PictureError, Scale, Scaled};
 /// Rows of a band.
 const BAND: usize = 6;
 
-/// Repeated columns from which a count is shorter.
+/// Number of repeated columns from which a count is shorter.
 const WORTH_COUNTING: usize = 4;
 
 /// A picture at the cursor.
@@ -32,14 +32,14 @@ pub(super) fn picture(picture: &Picture<'_>, scale: Scale) -> Result<String, Pic
     let scaled = Scaled::new(picture, scale)?;
     let width = scaled.width as usize;
     let mut text = String::new();
-    // A string takes what is written to it.
+    // Writing to a string cannot fail.
     let _ = write(&mut text, picture, &scaled, width);
     Ok(text)
 }
 
 fn write(text: &mut String, picture: &Picture<'_>, scaled: &Scaled<'_>, width: usize) -> fmt::Result {
     write!(text, "\x1bP7;0;0q\"1;1;{};{}", scaled.width, scaled.height)?;
-    // Enlarging adds no colours, and may leave some out if it makes smaller: these are then defined and not used.
+    // Scaling adds no colours, and may drop some when it shrinks the picture: these are then defined but not used.
     let mut used = [false; 256];
     for y in 0..picture.height {
         picture.row(y).iter().for_each(|&index| used[usize::from(index)] = true);
@@ -131,7 +131,7 @@ impl Band {
         Ok(())
     }
 
-    /// Writes the columns of a colour from the place of the pass to its last one.
+    /// Writes the columns of a colour from the position of the pass to its last one.
     fn write_color(&self, text: &mut String, index: usize, at: usize, (first, last): (usize, usize)) -> fmt::Result {
         write!(text, "#{index}")?;
         repeat(text, 0, first - at)?;

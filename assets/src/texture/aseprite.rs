@@ -1,6 +1,6 @@
 //! Aseprite's own files of indexed sprites: the visible layers of the first frame.
 //!
-//! The crate `asefile` reads the whole format, but brings a second version of `image`.
+//! The crate `asefile` reads the whole format, but pulls in a second version of `image`.
 
 use std::io::Read;
 

@@ -39,7 +39,7 @@ impl List {
         self.0.push(Frame::new(name, make));
     }
 
-    /// Adds a frame on the machine.
+    /// Adds a frame on the VGA.
     fn vga(&mut self, name: String, settings: Settings, scene: impl Fn() -> Scene + 'static) {
         self.add(name, move || Picture { scene: scene(), settings, shape: Shape::Vga });
     }
@@ -286,7 +286,7 @@ impl List {
         self.vga("object/none".into(), Settings::default(), Scene::new);
     }
 
-    /// Frames of other shapes than the machine's. Effects extend beyond column 320, next to padding between rows, and
+    /// Frames of shapes other than the VGA's. Effects extend beyond column 320, next to padding between rows, and
     /// across bands.
     fn canvases(&mut self) {
         let shapes = [
@@ -424,7 +424,7 @@ const EFFECTS: [(&str, Change); 18] = [
     }),
 ];
 
-/// Scenes for frames of other shapes than the machine's.
+/// Scenes for frames of shapes other than the VGA's.
 const CANVASES: [(&str, Change, Shading); 10] = [
     ("plain", |_| {}, Shading::Gouraud88Reseeded),
     ("float", |_| {}, Shading::Float),

@@ -10,7 +10,7 @@
 //! | `near/…` | two interpenetrating tori, through the near plane and beyond the guard band |
 //! | `object/…` | parents, hidden objects, sizes, upward axes, materials that respond in their own way |
 //! | `canvas/…` | a pitch wider than the frame, wide and tall frames, bands |
-//! | `shipped/…` | the scenes that are compiled in, as [values](shipped) |
+//! | `shipped/…` | the shipped scenes, as [values](shipped) |
 //!
 //! The hashes are in `expected.rs`, which is generated: `MODE13H_UPDATE=1 cargo test -p mode13h-conformance`. If a hash
 //! changes, what the engine draws has changed.
@@ -38,7 +38,7 @@ use crate::hash::{START, fnv_1a};
 /// The target of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shape {
-    /// The machine: 320 × 200, with its DAC.
+    /// The VGA: 320 × 200, with its DAC.
     Vga,
     /// A frame of any size with square pixels and any pitch, drawn in bands.
     Canvas {
@@ -86,7 +86,7 @@ pub struct Drawn {
     pub height: u32,
     /// The pixels, row after row, `width` bytes each.
     pub pixels: Vec<u8>,
-    /// The colours that the machine shows.
+    /// The colours that the DAC shows.
     pub palette: Palette,
     /// Hash of the pixels, the padding between rows, and the colours: 64-bit FNV-1a, its halves combined by exclusive
     /// or.
@@ -115,7 +115,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// What a frame's bytes hold before it is drawn. Padding between rows must keep it.
+/// Value of a frame's bytes before it is drawn. Padding between rows must keep it.
 const BEFORE: u8 = 0xA5;
 
 impl Frame {

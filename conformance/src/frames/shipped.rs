@@ -1,4 +1,4 @@
-//! The scenes that are compiled into the engine, as values, so that chips without files can draw them too.
+//! The shipped scenes as values, so that chips without files can draw them too.
 //!
 //! A test compares each with its file in `assets/scenes/`. Cameras that a file leaves to automatic framing are given
 //! here as the result.

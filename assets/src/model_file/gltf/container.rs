@@ -48,7 +48,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
             return Err(fault(format!("meshes[{i}]: there are no such positions")));
         }
     }
-    // Nor does it check what animations move.
+    // It does not check the targets of animations, either.
     for (i, animation) in root.animations.iter_mut().enumerate() {
         let beyond = |channel: &json::animation::Channel| channel.target.node.value() >= root.nodes.len();
         if let Some(channel) = animation.channels.iter().position(beyond) {
@@ -57,14 +57,14 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
         // Properties of extensions.
         animation.channels.retain(|channel| matches!(channel.target.path, json::validation::Checked::Valid(_)));
     }
-    // Nor whether an image has bytes. Their type is seen in the bytes themselves.
+    // It does not check whether an image has bytes, either. Their type follows from the bytes themselves.
     for (i, image) in root.images.iter_mut().enumerate() {
         if image.buffer_view.is_none() && image.uri.is_none() {
             return Err(fault(format!("images[{i}]: has neither a uri nor a bufferView")));
         }
         image.mime_type.get_or_insert_with(|| json::image::MimeType(String::new()));
     }
-    // Whatever else is required, the rest can be drawn.
+    // Whatever other extensions are required, the rest can be drawn.
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {
         Error::Validation(faults) => match faults.first() {

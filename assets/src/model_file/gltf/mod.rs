@@ -7,7 +7,7 @@
 //! | `POSITION`, `NORMAL`, `TEXCOORD_n`, `COLOR_0` in any type of number, sparse or not | positions, normals, texture coordinates; a colour for each face without a texture, up to 256 in all |
 //! | materials | surfaces, by the rules below |
 //! | images in the file, as data URIs and beside it | textures, placed by `KHR_texture_transform` |
-//! | skins: joints, inverse bind matrices, `JOINTS_n` and `WEIGHTS_n` | the mesh at rest as the joints put it, and a [`Rig`](rig::Rig) |
+//! | skins: joints, inverse bind matrices, `JOINTS_n` and `WEIGHTS_n` | the mesh at rest, as posed by the joints, and a [`Rig`](rig::Rig) |
 //! | animations of translation, rotation and scale | clips of the rig |
 //! | `KHR_lights_punctual` | suns, lamps and spot lights, by the rule in `rig/stage.rs` |
 //! | the first camera in perspective | a camera |
@@ -74,7 +74,7 @@ pub(crate) fn draft(
     let clips = motion::read(&document, &buffers, &skeleton, &mut left_out).map_err(fault)?;
     let lights = nodes::lights(&scene, &mut left_out);
     let camera = nodes::camera(&document, &scene, &mut left_out);
-    // The transforms that the vertices of each mesh hang on: its node's, or the joints of a skin.
+    // The transforms that the vertices of each mesh are bound to: its node's, or those of a skin's joints.
     let mut skins = Skins::default();
     let mut bindings = Vec::new();
     for node in &scene {
@@ -115,12 +115,12 @@ pub(crate) fn draft(
     Ok(draft)
 }
 
-/// What the vertices of a mesh in a node hang on.
+/// The transforms that the vertices of a mesh in a node are bound to.
 #[derive(Clone, Copy)]
 struct Binding {
-    /// The place of the node's own transform in the skeleton.
+    /// The index of the node's own transform in the skeleton.
     of_node: u32,
-    /// The place of the first joint's, and the number of joints, if it has a skin.
+    /// The index of the first joint's transform, and the number of joints, if it has a skin.
     joints: Option<(u32, usize)>,
 }
 
@@ -132,7 +132,7 @@ struct Reading<'a> {
     colors: Vec<(usize, Rgb)>,
     /// The surface of these faces.
     color_surface: Option<usize>,
-    /// The transforms that vertices hang on, at rest.
+    /// The transforms that vertices are bound to, at rest.
     transforms: Vec<Placement>,
     /// The vertices before their transforms, one for each position, if anything moves.
     moving: Option<Vertices>,
@@ -170,7 +170,7 @@ impl Reading<'_> {
         let colors = attribute(&Semantic::Colors(0)).filter(|_| !is_textured);
         let colors = colors.map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
         let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
-        // By the specification a skinned mesh does not stand where its node does, but where its joints are.
+        // By the specification a skinned mesh is not where its node is, but where its joints are.
         let skinned = match binding.joints {
             Some(joints) => skin::influences(primitive, count, joints, self.buffers).map_err(fault)?,
             None => None,

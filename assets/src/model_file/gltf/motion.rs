@@ -31,7 +31,7 @@ fn clip(
     left_out: &mut LeftOut,
 ) -> Result<Option<Clip>, String> {
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-    // The place in `samplers` of each of the file's, by whether it is of rotations: two channels may share one.
+    // The index in `samplers` of each of the file's, for vectors and for rotations: two channels may share one.
     let mut places = vec![[None; 2]; animation.samplers().count()];
     for channel in animation.channels() {
         let target = channel.target();

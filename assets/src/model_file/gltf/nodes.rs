@@ -23,7 +23,7 @@ pub(super) fn read(document: &Document) -> Result<(Skeleton, Vec<Node<'_>>), Str
     let mut tree = Tree { parents: vec![None; all.len()], is_placed: vec![false; all.len()], order: Vec::new() };
     tree.place(&all, roots, true)?;
     let scene = tree.order.iter().map(|&node| all[node].clone()).collect();
-    // Joints may stand beside the scene.
+    // Joints may be outside the scene.
     tree.place(&all, without_parent(), false)?;
     let parts = |node: &Node<'_>| {
         let (translation, rotation, scale) = node.transform().decomposed();
@@ -46,7 +46,8 @@ struct Tree {
 }
 
 impl Tree {
-    /// Places nodes and all below them. With `once` one that is placed already is an error; otherwise it is passed by.
+    /// Places nodes and all below them. With `once`, a node that is already placed is an error; otherwise it is
+    /// skipped.
     fn place(&mut self, all: &[Node<'_>], roots: Vec<usize>, once: bool) -> Result<(), String> {
         let mut waiting: Vec<(usize, Option<usize>)> = roots.into_iter().rev().map(|root| (root, None)).collect();
         while let Some((node, parent)) = waiting.pop() {
@@ -65,7 +66,7 @@ impl Tree {
     }
 }
 
-/// The lights that stand in a scene.
+/// The lights in a scene.
 pub(super) fn lights(scene: &[Node<'_>], left_out: &mut LeftOut) -> Vec<Source> {
     let mut lights = Vec::new();
     for node in scene {
@@ -100,7 +101,7 @@ fn range(range: Option<f32>) -> Option<f64> {
     range.map(f64::from).filter(|range| *range > 0.0 && range.is_finite())
 }
 
-/// The first camera of a scene that is one in perspective.
+/// The first perspective camera of a scene.
 pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut LeftOut) -> Option<Eye> {
     for node in scene {
         let Some(camera) = node.camera() else { continue };

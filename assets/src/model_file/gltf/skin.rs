@@ -1,4 +1,4 @@
-//! Skins: the joints that vertices hang on.
+//! Skins: the joints that vertices are bound to.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::model_file::rig::{Influences, Matrix, Skeleton};
 /// The transforms of each skin, made when first asked for.
 #[derive(Default)]
 pub(super) struct Skins {
-    /// The places of a skin's transforms in the skeleton.
+    /// The first index and the number of each skin's transforms in the skeleton.
     known: HashMap<usize, (u32, usize)>,
 }
 
@@ -55,7 +55,7 @@ impl Skins {
     }
 }
 
-/// The most lists of four joints each that a vertex has.
+/// The most lists of four joints that a vertex may have.
 const SETS: u32 = 8;
 
 /// The joints of each vertex of a skinned primitive, and their weights, which add up to 1. `None` if it names none.

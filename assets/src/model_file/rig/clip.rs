@@ -1,4 +1,4 @@
-//! Keyframes: what moves in which way.
+//! Keyframes: which nodes move, and how.
 
 use core::fmt;
 use std::error::Error;
@@ -29,7 +29,7 @@ impl Clip {
         &self.name
     }
 
-    /// The time that it takes, in seconds: up to its last key. Then it begins again.
+    /// How long it takes, in seconds: up to its last key. Then it begins again.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration
@@ -38,11 +38,11 @@ impl Clip {
 
 /// A model has no clip of this name or number.
 ///
-/// Displays with a list of the clips there are: `no clip Jump; there are 0 (Idle), 1 (Run)`.
+/// Displays with a list of all clips: `no clip Jump; there are 0 (Idle), 1 (Run)`.
 #[derive(Clone, PartialEq, Eq)]
 pub struct UnknownClip {
     word: String,
-    /// The names of the clips that there are; empty for one without a name.
+    /// The names of all clips; empty for one without a name.
     names: Vec<String>,
 }
 
@@ -91,8 +91,8 @@ pub(crate) enum Interpolation {
     Step,
     /// Quaternions along the shorter great circle.
     Linear,
-    /// A cubic Hermite spline. Each key has three values: the tangent that it is reached by, its value, and the tangent that
-    /// it is left by, both of these for a second.
+    /// A cubic Hermite spline. Each key has three values: the incoming tangent, the value, and the outgoing tangent,
+    /// both tangents per second.
     CubicSpline,
 }
 
@@ -101,14 +101,14 @@ pub(crate) enum Interpolation {
 pub(crate) struct Sampler {
     pub(crate) interpolation: Interpolation,
     pub(crate) is_rotation: bool,
-    /// The times of the keys in seconds, at least one, none before the one in front of it.
+    /// The times of the keys in seconds, at least one, in ascending order; two may be equal.
     pub(crate) times: Vec<f32>,
-    /// One for each key, or three; of a vector the last number is 0.
+    /// One for each key, or three; the last number of a vector is 0.
     pub(crate) values: Vec<[f32; 4]>,
 }
 
 impl Sampler {
-    /// The value at a time: before the first key that of the first, after the last that of the last.
+    /// The value at a time. Before the first key it is that of the first, after the last that of the last.
     pub(super) fn at(&self, seconds: f64) -> [f64; 4] {
         let next = self.times.partition_point(|&time| f64::from(time) <= seconds);
         let is_spline = self.interpolation == Interpolation::CubicSpline;
@@ -188,8 +188,8 @@ mod tests {
         assert_eq!([0.5, 1.0, 1.5].map(|t| jump.at(t)[0]), [0.5, 7.0, 7.5]);
     }
 
-    /// Turns about an axis by angles up to half a turn: between them by the part of the angle. The quaternions are f32, off
-    /// by 2⁻²⁵ of 1 in each number, which changes the angle between them by less than 2⁻²².
+    /// Turns about an axis by angles up to half a turn; between two of them the angle is interpolated. The quaternions
+    /// are f32, off by 2⁻²⁵ of 1 in each number, which changes the angle between them by less than 2⁻²².
     #[test]
     fn a_rotation_turns_evenly_the_shorter_way() {
         let about = |angle: f64| {

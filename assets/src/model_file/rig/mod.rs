@@ -1,7 +1,8 @@
-//! What moves a model: nodes, keyframes, and the vertices that hang on them.
+//! Rigs, which move a model: nodes, keyframes, and the vertices bound to them.
 //!
-//! A vertex hangs on one transform or is a blend of several (linear blend skinning: N. Magnenat-Thalmann, R. Laperrière,
-//! D. Thalmann, "Joint-Dependent Local Deformations", 1988). All is computed in f64 and rounded once.
+//! A vertex is bound to one transform or to a blend of several (linear blend skinning: N. Magnenat-Thalmann, R.
+//! Laperrière, D. Thalmann, "Joint-Dependent Local Deformations", 1988). Everything is computed in f64 and rounded
+//! once.
 #![cfg_attr(not(feature = "gltf"), expect(dead_code, unused_imports, reason = "of the formats only glTF has nodes"))]
 
 mod clip;
@@ -21,7 +22,7 @@ pub(crate) use stage::{Eye, Kind, Source};
 
 use crate::wide::{Wide, widen};
 
-/// What moves a model that was read: its skeleton, and its animations.
+/// The moving parts of a model that was read: its skeleton, and its animations.
 ///
 /// ```no_run
 /// use mode13h::scene::{Object, Scene};
@@ -41,7 +42,8 @@ pub struct Rig {
     skeleton: Skeleton,
     clips: Vec<Clip>,
     vertices: Vertices,
-    /// For each vertex of the mesh its number in `vertices`, and its normal before the transform, by the order of its triangles' corners.
+    /// For each vertex of the mesh its index in `vertices`, and its normal before the transform, by the order of its
+    /// triangles' corners.
     of_mesh: Vec<(u32, [f32; 3])>,
     /// The lights at rest, and the node of each.
     lights: Vec<(usize, Light)>,
@@ -62,10 +64,10 @@ pub struct Pose {
     pub camera: Option<Camera>,
 }
 
-/// The nodes, and the transforms that vertices hang on.
+/// The nodes, and the transforms that vertices are bound to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Skeleton {
-    /// The nodes that stand in a tree, parents before children.
+    /// The nodes that are in a tree, parents before children.
     pub(crate) order: Vec<usize>,
     /// All nodes.
     pub(crate) nodes: Vec<Node>,
@@ -80,23 +82,24 @@ pub(crate) struct Node {
     pub(crate) parts: (Wide, [f64; 4], Wide),
 }
 
-/// A transform that vertices hang on.
+/// A transform that vertices are bound to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Matrix {
     pub(crate) node: usize,
-    /// The transform that comes before it: a joint's inverse bind matrix.
+    /// The transform applied before it: a joint's inverse bind matrix.
     pub(crate) before: Option<Placement>,
 }
 
 impl Skeleton {
-    /// Adds a transform that vertices hang on, and returns its place.
+    /// Adds a transform that vertices are bound to, and returns its index.
     pub(crate) fn add(&mut self, matrix: Matrix) -> u32 {
         self.matrices.push(matrix);
-        // Of far fewer than 2³² is there a text.
+        // A file has far fewer than 2³² of them.
         (self.matrices.len() - 1) as u32
     }
 
-    /// The place of each node in a scene, of the local ones at rest or of `local`. `None` for one that stands in no tree.
+    /// The placement of each node in a scene, from the local ones in `local`, or else at rest. `None` for a node that
+    /// is in no tree.
     pub(crate) fn places(&self, local: impl Fn(usize) -> Option<Placement>) -> Vec<Option<Placement>> {
         let mut places = vec![None; self.nodes.len()];
         for &number in &self.order {
@@ -110,7 +113,7 @@ impl Skeleton {
         places
     }
 
-    /// The transforms that vertices hang on.
+    /// The transforms that vertices are bound to.
     pub(crate) fn transforms(&self, places: &[Option<Placement>]) -> Vec<Placement> {
         let place = |matrix: &Matrix| {
             let place = places[matrix.node].unwrap_or(Placement::NONE);
@@ -129,10 +132,11 @@ pub(crate) struct Vertices {
     pub(crate) influences: Influences,
 }
 
-/// What each vertex hangs on: transforms of the skeleton and their weights, at least one. The weights of a vertex add up to 1.
+/// The transforms of the skeleton that each vertex is bound to, at least one, with their weights. The weights of a
+/// vertex add up to 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Influences {
-    /// The place in `all` where those of each vertex end.
+    /// The index in `all` where those of each vertex end.
     ends: Vec<usize>,
     all: Vec<(u32, f64)>,
 }
@@ -158,7 +162,7 @@ impl Influences {
     }
 }
 
-/// The nodes of a file and what stands in them, before there is a mesh.
+/// The nodes of a file and what is in them, before there is a mesh.
 #[derive(Default)]
 pub(crate) struct Nodes {
     pub(crate) skeleton: Skeleton,
@@ -169,7 +173,7 @@ pub(crate) struct Nodes {
     pub(crate) camera: Option<Eye>,
 }
 
-/// What stands beside a mesh.
+/// What goes with a mesh.
 #[derive(Default)]
 pub(crate) struct Staged {
     pub(crate) lights: Vec<Light>,
@@ -178,8 +182,8 @@ pub(crate) struct Staged {
 }
 
 impl Nodes {
-    /// Puts lights and camera about a mesh, and hangs its vertices on their transforms. `corners` are the numbers of the
-    /// positions at the corners of its triangles, which nothing has mended.
+    /// Places lights and camera around a mesh, and binds its vertices to their transforms. `corners` are the indices of
+    /// the positions at the corners of its triangles, which have not been repaired.
     pub(crate) fn stage(self, mesh: &Mesh, corners: &[u32], origin: Wide) -> Staged {
         let Self { skeleton, clips, vertices, lights: sources, camera: eye } = self;
         let places = skeleton.places(|_| None);
@@ -197,7 +201,7 @@ impl Nodes {
                 if normal == [0.0; 3] {
                     normal = unit(place.normal_before(widen(mesh.normals()[vertex as usize])));
                 }
-                // The triangles of a mirrored vertex were turned round.
+                // The triangles of a mirrored vertex were flipped.
                 let sign = if place.mirrors() { -1.0 } else { 1.0 };
                 of_mesh[vertex as usize] = (source, normal.map(|c| sign * c));
             }
@@ -224,7 +228,7 @@ impl Rig {
     /// The index of a clip by its name, the first if several share it, or else by its index as a number: `Run` or `2`.
     ///
     /// # Errors
-    /// An [`UnknownClip`], which lists the clips there are.
+    /// An [`UnknownClip`], which lists all clips.
     pub fn find_clip(&self, word: &str) -> Result<usize, UnknownClip> {
         match self.clips.iter().position(|clip| clip.name() == word) {
             Some(named) => Ok(named),
@@ -237,9 +241,9 @@ impl Rig {
         index.filter(|index| *index < self.clips.len()).ok_or_else(|| UnknownClip::new(word, &self.clips))
     }
 
-    /// The model at a time of a clip, in seconds; a clip begins again when it ends. `mesh` is the one that was read with the
-    /// rig. Any other number of vertices moves nothing, and so does a clip that there is not. A vertex whose place is beyond
-    /// f32 stays where it is at rest.
+    /// The model at a time of a clip, in seconds; a clip begins again when it ends. `mesh` is the one that was read
+    /// with the rig. With any other number of vertices, or if there is no such clip, nothing moves. A vertex whose
+    /// position is beyond f32 stays where it is at rest.
     #[must_use]
     pub fn pose(&self, mesh: &Mesh, clip: usize, seconds: f64) -> Pose {
         let mut parts = vec![None; self.skeleton.nodes.len()];

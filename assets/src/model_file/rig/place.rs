@@ -1,4 +1,4 @@
-//! Where transforms put a point, a direction and a normal.
+//! Transforms of points, directions and normals.
 
 use crate::wide::{Wide, cross, dot};
 
@@ -9,12 +9,12 @@ pub(crate) struct Placement([Wide; 4]);
 impl Placement {
     pub(crate) const NONE: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]]);
 
-    /// That of a matrix by columns, whose last row is 0, 0, 0, 1 by definition.
+    /// The transform of a matrix by columns, whose last row is 0, 0, 0, 1 by definition.
     pub(crate) fn of_matrix(columns: [[f32; 4]; 4]) -> Self {
         Self(columns.map(|[x, y, z, _]| [x, y, z].map(f64::from)))
     }
 
-    /// That of a matrix by columns in f64.
+    /// The transform of a matrix by columns in f64.
     pub(crate) fn of_columns(columns: [[f64; 4]; 4]) -> Self {
         Self(columns.map(|[x, y, z, _]| [x, y, z]))
     }
@@ -54,7 +54,7 @@ impl Placement {
         (length > 0.0 && length.is_finite()).then(|| self.0[axis].map(|c| c / length))
     }
 
-    /// This one behind `inner`.
+    /// This one applied after `inner`.
     pub(crate) fn after(self, inner: Self) -> Self {
         let [x, y, z, origin] = inner.0;
         Self([self.direction(x), self.direction(y), self.direction(z), self.point(origin)])
@@ -70,7 +70,7 @@ impl Placement {
         [0, 1, 2].map(|axis| x[axis] * d[0] + y[axis] * d[1] + z[axis] * d[2])
     }
 
-    /// Whether it mirrors, so that faces are wound the other way.
+    /// Returns whether it mirrors, so that faces are wound the other way.
     pub(crate) fn mirrors(self) -> bool {
         let [x, y, z, _] = self.0;
         dot(x, cross(y, z)) < 0.0
@@ -82,15 +82,15 @@ impl Placement {
         self.area(normal).map(|c| sign * c)
     }
 
-    /// The area vector of a placed face: by the inverse's transpose, times the determinant. It goes with the order of the
-    /// face's corners, and so looks inward where the transform mirrors.
+    /// The area vector of a placed face: by the inverse's transpose, times the determinant. It follows the order of the
+    /// face's corners, so it points inward if the transform mirrors.
     pub(crate) fn area(self, area: Wide) -> Wide {
         let [x, y, z, _] = self.0;
         let [a, b, c] = [cross(y, z), cross(z, x), cross(x, y)];
         [0, 1, 2].map(|axis| a[axis] * area[0] + b[axis] * area[1] + c[axis] * area[2])
     }
 
-    /// What [`normal`](Self::normal) makes a placed normal of, of any length: by the transpose.
+    /// The normal that [`normal`](Self::normal) turns into a placed one, of any length: by the transpose.
     pub(crate) fn normal_before(self, normal: Wide) -> Wide {
         let [x, y, z, _] = self.0;
         [x, y, z].map(|column| dot(column, normal))

@@ -1,12 +1,13 @@
-//! Lights and a camera that a model's file brings.
+//! The lights and the camera in a model's file.
 //!
 //! **Range.** The light of a lamp falls off by the inverse square of the distance, without end; the engine's by
 //! (1 − d²/R²)², up to its range R. Both have the same value and the same slope at R/√3, so R is √3 times the lamp's distance
 //! from the middle of the model; or, for a lamp beside or inside it, as much as reaches all of it. A range in the file limits
 //! it. The intensity at the lamp is then 27/4 · I/R².
 //!
-//! **Exposure.** Files give lux and candela, or what their program takes for it. So all lights are exposed together, as a
-//! camera does it by itself: a white surface in the middle of the model that faces each of them fully would get full light.
+//! **Exposure.** Files give lux and candela, or what their program takes for that. So all lights are exposed together,
+//! as by a camera's automatic exposure: a white surface in the middle of the model that faced each of them fully would
+//! get full light.
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -17,10 +18,10 @@ use mode13h::scene::Camera;
 use super::place::Placement;
 use crate::wide::{Wide, dot, sub, widen};
 
-/// A light as a file has it.
+/// A light as it is in a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source {
-    /// The node that it stands in. It shines along the node's −z.
+    /// The node that it is in. It shines along the node's −z.
     pub(crate) node: usize,
     pub(crate) kind: Kind,
     /// In sRGB.
@@ -40,7 +41,7 @@ pub(crate) enum Kind {
     },
 }
 
-/// A camera as a file has it, which looks along its node's −z.
+/// A camera as it is in a file. It looks along its node's −z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Eye {
     pub(crate) node: usize,
@@ -50,7 +51,7 @@ pub(crate) struct Eye {
     pub(crate) near: f64,
 }
 
-/// Where something stands: its node's transform, and the point of the file that is 0 in the mesh.
+/// Where something is: its node's transform, and the point of the file that is 0 in the mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Stand {
     pub(super) place: Placement,
@@ -72,7 +73,7 @@ fn narrow(v: Wide) -> Vec3 {
     Vec3::from_array(v.map(|c| c as f32))
 }
 
-/// The lights, and for each the index of its source. One that stands nowhere, or whose numbers leave f32, is left out.
+/// The lights, and for each the index of its source. A light that is nowhere, or whose numbers exceed f32, is left out.
 pub(super) fn lights(
     sources: &[Source],
     stand: impl Fn(usize) -> Option<Stand>,
@@ -111,7 +112,7 @@ pub(super) fn lights(
         lights.push((index, light, intensity, in_the_middle * f64::from(light.brightness())));
     }
     let full: f64 = lights.iter().map(|(.., in_the_middle)| in_the_middle).sum();
-    // Where none reaches the middle, the brightest is full light beside itself.
+    // If none reaches the middle, the brightest is full light right beside itself.
     let full =
         if full > 0.0 { full } else { lights.iter().fold(0.0, |most, (_, _, intensity, _)| intensity.max(most)) };
     let exposed =
@@ -119,7 +120,7 @@ pub(super) fn lights(
     exposed.filter(|(_, light)| is_sound(light)).collect()
 }
 
-/// Whether the renderer takes a light.
+/// Returns whether the renderer accepts a light.
 fn is_sound(light: &Light) -> bool {
     let ranges = match *light {
         Light::Lamp { range, .. } => range > 0.0 && range.is_finite(),
@@ -128,7 +129,7 @@ fn is_sound(light: &Light) -> bool {
     ranges && light.color().iter().all(|c| c.is_finite()) && light.intensity() > 0.0 && light.intensity().is_finite()
 }
 
-/// Puts a light where its node stands, if that is anywhere.
+/// Moves a light to where its node is, if that is anywhere.
 pub(super) fn moved(mut light: Light, stand: Stand) -> Light {
     match &mut light {
         Light::Sun { direction, .. } => *direction = stand.axis(2).unwrap_or(*direction),
@@ -143,11 +144,13 @@ pub(super) fn moved(mut light: Light, stand: Stand) -> Light {
     light
 }
 
-/// The camera: it looks at the point before it that is as far as the middle of the model. `None` if it stands nowhere.
+/// The camera: it looks at the point in front of it that is as far away as the middle of the model. `None` if it is
+/// nowhere.
 pub(super) fn camera(eye: &Eye, stand: Stand, bounds: &Bounds) -> Option<Camera> {
     let (position, towards, up) = (stand.position()?, stand.place.axis(2)?, stand.axis(1)?);
     let away = sub(widen(position), widen(bounds.centre));
-    // Before it, else as far away as the model is behind it, and so far that f32 tells the points apart.
+    // In front of it, or else as far away as the model is behind it, and far enough for f32 to keep the points
+    // distinct.
     let before = dot(away, towards);
     let distance = if before > 0.0 { before } else { libm::sqrt(dot(away, away)) };
     let least = position.abs().max_element().max(bounds.radius) / 65_536.0;
@@ -160,7 +163,7 @@ pub(super) fn camera(eye: &Eye, stand: Stand, bounds: &Bounds) -> Option<Camera>
     is_sound.then_some(Camera { eye: position, target, up, field_of_view, near })
 }
 
-/// Puts the camera where its node stands, if that is anywhere. It looks as far as before.
+/// Moves the camera to where its node is, if that is anywhere. It looks as far as before.
 pub(super) fn looking(camera: Camera, stand: Stand) -> Camera {
     let (Some(eye), Some(towards), Some(up)) = (stand.position(), stand.place.axis(2), stand.axis(1)) else {
         return camera;
