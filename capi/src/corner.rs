@@ -1,4 +1,4 @@
-//! From the caller's vertices to the rasterizer's: in floats, or in 16.16 without floats.
+//! Conversion of the caller's vertices to the rasterizer's: in floats, or in 16.16 without floats.
 
 use mode13h::fixed::{I16F16, I24F8, U8F8};
 use mode13h::raster::Vertex;

@@ -17,8 +17,8 @@ use crate::effects::{Context, Effects};
 #[cfg(not(feature = "effects"))]
 enum Context {}
 
-/// Where doubles are fast, the rasterizer sets up eight triangles at a time. Elsewhere it walks down each one, however
-/// it is called, and the code for lists is left out.
+/// True where doubles are fast, and the rasterizer sets up eight triangles at a time. Elsewhere it walks down each one,
+/// however it is called, and the code for lists is left out.
 const IS_BATCHED: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -386,7 +386,7 @@ struct Readers {
     /// Checks that the near plane is a usable number.
     near: fn(&Mesh) -> Outcome,
     few: unsafe fn(&Source, Progress, u32, &mut Flush<'_, Plain>) -> [u32; 5],
-    /// For long lists, in builds that draw them in batches.
+    /// The function for long lists, in builds that draw them in batches.
     many: Option<DrawMany>,
     #[cfg(feature = "effects")]
     effects: unsafe fn(&Source, Progress, u32, &mut Flush<'_, Ready>) -> [u32; 5],

@@ -82,7 +82,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// What a built-in palette holds, and where it comes from.
+/// The contents of a built-in palette, and where it comes from.
 pub(crate) fn summary(builtin: &Builtin) -> String {
     format!("{}. {}", ramps(builtin.palette), builtin.provenance).trim_end().to_string()
 }

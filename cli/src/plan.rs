@@ -120,7 +120,7 @@ struct JsonEffect<'a> {
     on: bool,
     choice: &'static str,
     reason: &'a str,
-    /// Only if asked for; then null where it cannot be measured.
+    /// The price, only if asked for; then null if it cannot be measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     ns_per_frame: Option<Option<u64>>,
 }

@@ -418,7 +418,7 @@ type Drawn = (u32, Stats, Option<Timed>);
 /// A frame that was timed.
 #[derive(Clone, Copy)]
 struct Timed {
-    /// In milliseconds.
+    /// The time allowed, in milliseconds.
     max_time: f32,
     milliseconds: f64,
     fits: bool,

@@ -57,7 +57,7 @@ fn kernels() -> Vec<&'static str> {
 /// A frame that differs from the one on every other machine.
 struct Wrong {
     name: String,
-    /// Where it differs from the portable kernel's; `None` if that kernel draws the same.
+    /// The difference from the portable kernel's frame; `None` if that kernel draws the same.
     difference: Option<Difference>,
     /// The error of a frame that could not be drawn.
     error: Option<String>,

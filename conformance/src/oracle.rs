@@ -149,7 +149,7 @@ pub struct Shades {
     values: [i128; 3],
     /// The value's change per pixel along a row.
     slope: Ratio,
-    /// For `GouraudVintage`: the first row, and all rows.
+    /// The first row and all rows, for `GouraudVintage`.
     top: i64,
     rows: Vec<VintageRow>,
     depths: [i128; 3],

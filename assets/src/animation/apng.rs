@@ -33,7 +33,7 @@ pub struct ApngFrame {
     density: (u32, u32),
     colors: FilmColors,
     area: Area,
-    /// Whether transparent pixels show the frame before.
+    /// True if transparent pixels show the frame before.
     blends: bool,
     /// The compressed rows.
     data: Vec<u8>,

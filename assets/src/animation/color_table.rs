@@ -33,7 +33,7 @@ impl ColorTable {
         ColorTable { colors }
     }
 
-    /// For each entry of a palette, its index in this table; `None` if the indices use a colour that is not in it.
+    /// The index in this table of each entry of a palette; `None` if the indices use a colour that is not in it.
     pub(super) fn places(&self, palette: &[Rgb; 256], indices: &[u8]) -> Option<[u8; 256]> {
         let mut places = [0; 256];
         for ((place, color), used) in places.iter_mut().zip(palette).zip(used(indices)) {

@@ -19,7 +19,7 @@ use mode13h::vga::Vga;
 /// The number of pictures per loop.
 const POSES: u32 = 16;
 
-/// What is visible of a material over one loop of the scene.
+/// Area and brightness of a material, as visible over one loop of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Seen {
     /// The share of its pixels among all covered pixels, 0 to 1.
@@ -166,7 +166,7 @@ impl Numbers {
         Self { bytes: places.map(picture).collect(), found: vec![None; Vga::SHOWN] }
     }
 
-    /// For each pixel the number of its material, from 0, through all objects in order.
+    /// The number of each pixel's material, from 0, through all objects in order.
     pub(super) fn at(&mut self, seconds: f64) -> Result<&[Option<usize>], RenderError> {
         let mut numbers = vec![0; Vga::SHOWN];
         for (place, picture) in (0..).step_by(8).zip(&mut self.bytes) {

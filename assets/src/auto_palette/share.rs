@@ -33,7 +33,7 @@ use mode13h::palette::MedianCut;
 use mode13h::palette::gradient::{Stop, color_at, fill};
 use mode13h::palette::{Palette, Ramp, Rgb};
 
-/// What a surface needs from a palette.
+/// A surface's needs from a palette.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Use<'a> {
     /// The colour in full light.

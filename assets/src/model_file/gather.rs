@@ -1,4 +1,4 @@
-//! From the lists of a file to a mesh: splits faces, turns triples into vertices, and fills in normals.
+//! Turns the lists of a file into a mesh: splits faces, turns triples into vertices, and fills in normals.
 
 use core::iter;
 use std::collections::HashMap;

@@ -16,7 +16,7 @@ use crate::texture;
 /// fails on the part up to here.
 const LONGEST: usize = 1 << 20;
 
-/// The max number of bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.
+/// The most bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.
 pub(crate) const LONGEST_PICTURE: u64 = 64 << 20;
 
 /// The reason why a file gives no palette.

@@ -1,4 +1,4 @@
-//! From a file's layout to a scene.
+//! Builds a scene from a file's layout.
 
 use std::path::Path as FilePath;
 

@@ -210,7 +210,7 @@ impl error::Error for SceneError {
     }
 }
 
-/// The max number of characters shown of a message, which may quote the file.
+/// The most characters shown of a message, which may quote the file.
 const LONGEST_MESSAGE: usize = 2500;
 
 /// A writer that puts its text on one line, printable, and not too long to read.

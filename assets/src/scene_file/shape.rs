@@ -8,7 +8,7 @@ use mode13h::mesh::{Mesh, shapes};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
     pub(super) name: &'static str,
-    /// Its subdivisions, each with its name, min, max and default.
+    /// Its subdivisions, each with its name, minimum, maximum and default.
     subdivisions: &'static [(&'static str, u32, u32, u32)],
     triangles: fn(&[u32]) -> u64,
     make: fn(&[u32]) -> Mesh,
@@ -55,7 +55,7 @@ const SHAPES: [Shape; 7] = [
     },
 ];
 
-/// The max of most subdivisions.
+/// The maximum of most subdivisions.
 const MAX_PARTS: u32 = 4096;
 
 fn product(subdivisions: &[u32]) -> u64 {

@@ -51,7 +51,7 @@ fn broken(what: &str) -> LoadErrorKind {
 /// The parts of a layer that determine whether its cels are visible.
 struct Layer {
     is_visible: bool,
-    /// Whether it is the background layer, which is below all others and has no transparent index.
+    /// True if it is the background layer, which is below all others and has no transparent index.
     is_background: bool,
     level: u16,
 }

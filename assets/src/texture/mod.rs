@@ -22,7 +22,7 @@ use indexed::Indexed;
 /// The first bytes of a PNG.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The max memory for reading a picture: 4,096 × 4,096 pixels of four 16-bit samples.
+/// The most memory for reading a picture: 4,096 × 4,096 pixels of four 16-bit samples.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
 /// The reason why a file gives no texture.
@@ -81,7 +81,7 @@ impl core::error::Error for LoadError {
 pub struct Decoded {
     /// The texture.
     pub texture: Texture,
-    /// Whether some pixel of the picture was not opaque; the texture is opaque.
+    /// True if some pixel of the picture was not opaque; the texture is opaque.
     pub was_transparent: bool,
     /// The palette of an indexed picture, whatever its size.
     pub palette: Option<[Rgb; 256]>,

@@ -99,9 +99,9 @@ enum By {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct ShadingChoice {
     shading: Shading,
-    /// Shades of error.
+    /// The error budget, in shades.
     budget: f32,
-    /// In milliseconds.
+    /// The time for a frame, in milliseconds.
     time: f32,
     /// The greatest error that a time may choose, if one was named.
     max_error: Option<f32>,

@@ -43,7 +43,7 @@ pub struct Canvas {
     bytes: Vec<u8>,
 }
 
-/// Not a constant, so that moved or copied bytes show up too.
+/// A byte next to the row, not a constant, so that moved or copied bytes show up too.
 fn guard_byte(i: usize) -> u8 {
     // The low byte.
     0xA5 ^ (i as u8)

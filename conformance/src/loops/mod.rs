@@ -45,7 +45,7 @@ use mode13h::span::Kernel;
 
 use crate::Random;
 
-/// Which cases a loop is run on; the same seed gives the same cases on every machine.
+/// The cases that a loop is run on; the same seed gives the same cases on every machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Cases {
     seed: u64,

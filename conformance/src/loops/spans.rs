@@ -97,13 +97,13 @@ struct Quotients {
 }
 
 impl Quotients {
-    /// Below 2^`bits`, which is at most 116.
+    /// A number below 2^`bits`, which is at most 116.
     fn wide(random: &mut Random, bits: u32) -> i128 {
         let number = u128::from(random.next_u64()) << 64 | u128::from(random.next_u64());
         (number >> (128 - bits)) as i128
     }
 
-    /// Next to whole numbers, where f64 cannot distinguish the quotient from the whole number.
+    /// Quotients next to whole numbers, from which f64 cannot distinguish them.
     fn beside_whole(random: &mut Random, bits: u32) -> Self {
         let (d, dd) = (Self::wide(random, bits).max(1), Self::wide(random, bits) >> 14);
         let quotient = i128::from(random.within(0, 255));
@@ -111,7 +111,7 @@ impl Quotients {
         Self { n: quotient * d + beside, dn: quotient * dd, d, dd }
     }
 
-    /// From any quotient to any other, with a rising or falling divisor.
+    /// A row from any quotient to any other, with a rising or falling divisor.
     fn anywhere(random: &mut Random, bits: u32, length: usize) -> Self {
         let gaps = length.max(2) as i128 - 1;
         // The rounded steps lose less than one per pixel: less than the divisor in total, so less than a quotient.

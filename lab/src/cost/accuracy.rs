@@ -94,7 +94,7 @@ pub(super) struct Results {
     pub(super) kept: [Kept; BUDGETS.len()],
     entries: Entries,
     swim: Swim,
-    /// By how many shades the worst pixel exceeds its shading's bound, negative if none does; `None` without a bound.
+    /// How far the worst pixel exceeds its shading's bound, in shades, negative if none does; `None` without a bound.
     pub(super) excess: Option<f64>,
     /// Each frame's largest error against `lit`, not counting what vertex rounding explains.
     pub(super) worst: Vec<f64>,
@@ -327,7 +327,7 @@ struct Shifts<'a> {
 }
 
 impl Shifts<'_> {
-    /// By how many shades vertex rounding may shift the light at a pixel.
+    /// How far vertex rounding may shift the light at a pixel, in shades.
     fn of(&mut self, place: usize) -> f64 {
         let (truth, lit) = (self.truth, self.lit);
         *self.known.entry(place).or_insert_with(|| {

@@ -17,7 +17,7 @@ pub const BUDGETS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
 /// The shading that times are relative to.
 pub(super) const REFERENCE: Shading = Shading::Gouraud88;
 
-/// What a configuration is measured for.
+/// The reason why a configuration is measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Kind {
     Shading(Shading),

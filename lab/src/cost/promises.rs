@@ -1,4 +1,4 @@
-//! What a study requires of the engine, and what it reports where a promise was broken.
+//! The promises that a study checks, and its reports on broken ones.
 
 use alloc::format;
 use alloc::string::String;
@@ -21,7 +21,7 @@ const BLIND: f64 = 0.005;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Promise {
     Kept,
-    /// Not distinguishable from kept: the excess may be chance.
+    /// The promise cannot be distinguished from a kept one, as the excess may be chance.
     KeptWithinChance,
     Broken,
     /// There is nothing to compare with.

@@ -134,7 +134,7 @@ pub struct ShadingRow {
     pub cover_errors: u64,
     /// Share of the covered pixels that were not compared with `lit` because they show another face, 0 to 1.
     pub not_compared: f64,
-    /// By how many shades the worst pixel exceeds the shading's bound, negative if none does. Only shadings that are
+    /// How far the worst pixel exceeds the shading's bound, in shades, negative if none does. Only shadings that are
     /// linear on the screen have one, and only if the plan states how far linear shades are off.
     #[cfg_attr(feature = "serde", serde(rename = "beyond_bound"))]
     pub excess: Option<f64>,
@@ -179,7 +179,7 @@ pub struct BudgetRow {
     /// The cheapest shading with exact cover that keeps every pixel within the budget, if there is one.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::maybe"))]
     pub best_single_shading: Option<Shading>,
-    /// That shading's time per frame, measured alongside the budget's.
+    /// The time per frame of `best_single_shading`, measured alongside the budget's.
     #[cfg_attr(feature = "serde", serde(rename = "best_single_ns"))]
     pub best_single: Option<Nanoseconds>,
     /// The ratio of the budget's time to that, with its 95 % interval.
@@ -276,7 +276,7 @@ pub struct OptionRow {
     pub cover_errors: u64,
 }
 
-/// What measuring says about a claim.
+/// The verdict of the measurements on a claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Verdict {
     /// The claim holds.
@@ -311,7 +311,7 @@ impl core::fmt::Display for Verdict {
 pub struct Claim {
     /// The claim.
     pub claim: String,
-    /// What was measured, with figures.
+    /// The measurement, with figures.
     pub measured: String,
     /// The verdict.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::text"))]

@@ -27,7 +27,7 @@ pub struct FaceHere {
     pub corners: [Vertex; 3],
     /// Its depth at the pixel; greater is nearer.
     pub depth: u32,
-    /// What became of it.
+    /// Its fate.
     pub fate: Fate,
 }
 

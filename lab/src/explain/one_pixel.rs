@@ -19,7 +19,7 @@ use mode13h::raster::{DrawStats, Frame, Raster, Rect, Vertex};
 use mode13h::render::Screen;
 use mode13h::span::Kernel;
 
-/// Where a face's shades come from.
+/// The source of a face's shades.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum ShadedBy {
     /// The vertices' shades.

@@ -64,7 +64,7 @@ pub struct Seen {
     pub face: usize,
     /// The palette entries that its shades lie in.
     pub ramp: Ramp,
-    /// Where its shades come from.
+    /// The source of its shades.
     pub shaded_by: ShadedBy,
     /// True if it covers exactly the pixels whose centres are in it.
     pub exact_cover: bool,
@@ -265,7 +265,7 @@ fn nearest(truth: &Truth<'_>, met: &Met, x: u32, y: u32) -> Option<usize> {
     all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(triangle, _)| triangle)
 }
 
-/// What is needed to explain a visible face.
+/// The data needed to explain a visible face.
 struct Inputs<'a> {
     scene: &'a Scene,
     screen: Screen,

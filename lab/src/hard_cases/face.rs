@@ -6,11 +6,11 @@ use mode13h::raster::{Interpolation, Vertex};
 /// A corner on the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corner {
-    /// To the right, in pixels.
+    /// Distance to the right, in pixels.
     pub(super) x: f64,
-    /// Down, in pixels.
+    /// Distance down, in pixels.
     pub(super) y: f64,
-    /// From 0 to 255.
+    /// Shade, from 0 to 255.
     pub(super) shade: f64,
     /// near / w: 1 at the near plane, falling to 0 far away.
     pub(super) depth: f64,

@@ -49,7 +49,7 @@ pub struct Case {
     pub sentence: &'static str,
     /// The fault on the left side.
     pub wrong: &'static str,
-    /// What the engine does instead.
+    /// The engine's way instead.
     pub right: &'static str,
     build: fn() -> Comparison,
 }

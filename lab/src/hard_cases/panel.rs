@@ -1,6 +1,6 @@
 //! One half of a picture: a small frame, what was drawn into it, and which of its pixels are wrong.
 
-/// What is wrong with a pixel.
+/// Mark for the fault of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum Mark {

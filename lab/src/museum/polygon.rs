@@ -35,7 +35,7 @@ use mode13h::internals::raster::reference::shade::RESEED;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Rect, Vertex};
 use mode13h::span::Kernel;
 
-/// Where a convex polygon's two edges cross a row's centre.
+/// The crossings of a convex polygon's two edges with a row's centre.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct TableRow {
     /// Left crossing, rounded up to 1/256 pixel.

@@ -13,7 +13,7 @@ pub(super) struct Corner {
     pub(super) world: Vector,
     /// Unit length.
     pub(super) normal: Vector,
-    /// Before the perspective division: see [`Eye::see`].
+    /// Position before the perspective division: see [`Eye::see`].
     pub(super) seen: Vector,
 }
 

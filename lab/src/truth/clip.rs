@@ -16,7 +16,7 @@ pub(super) const LIMIT: f64 = 4095.75;
 /// A corner of what remains of a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kept {
-    /// Before the perspective division: see [`Eye::see`].
+    /// Position before the perspective division: see [`Eye::see`].
     pub(super) seen: Vector,
     /// Weights of the face's three vertices here, for values that are linear on the face in space.
     pub(super) on_face: [f64; 3],

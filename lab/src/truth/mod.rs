@@ -113,14 +113,14 @@ pub enum TruthError {
     Object {
         /// Its index.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A light, by its index in the scene.
     Light {
         /// Its index.
         index: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// The scene's ambient light is not finite.
@@ -283,7 +283,7 @@ impl<'a> Truth<'a> {
         self.pixel(Standard::Lit, self.met(face, [x, y])?)
     }
 
-    /// By how many shades the light on `face` changes around the centre of a pixel within the distance that a vertex
+    /// How much the light on `face` changes, in shades, around the centre of a pixel within the distance that a vertex
     /// may be misplaced: half of 1/256 pixel by rounding, a thousandth of a pixel by f32, and half a step of its depth.
     /// If a face's corners move by no more than that across the screen, neither does the point seen at a pixel; its
     /// shift by rounded depths is added. A fifth is added for changes of the light between the sampled positions.
@@ -299,7 +299,7 @@ impl<'a> Truth<'a> {
         Some(1.2 * 255.0 * change.fold(0.0, f64::max))
     }
 
-    /// By how many pixels rounding depths to 2⁻³⁰ moves the point of a face that is seen at a pixel.
+    /// How far rounding depths to 2⁻³⁰ moves the point of a face that is seen at a pixel, in pixels.
     ///
     /// A pixel has weights aᵢ on the screen, and on the face weights in proportion to aᵢ·near/wᵢ. Depths that are off
     /// by a share of up to ε give it the weights on the face of the point that has aᵢ(1 ± ε) on the screen. These

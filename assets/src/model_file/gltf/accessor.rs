@@ -25,7 +25,7 @@ pub(super) struct Buffers {
     pub(super) images: Vec<Image>,
 }
 
-/// The max number of rows of an accessor without a buffer, whose values are all 0.
+/// The most rows of an accessor without a buffer, whose values are all 0.
 const MAX_ZEROS: usize = 1 << 16;
 
 impl Buffers {

@@ -56,7 +56,7 @@ pub(crate) use container::recognizes;
 use material::{Materials, encoded};
 use skin::Skins;
 
-/// The max number of corners of all faces: a mesh may be used by many nodes, so a small file may be a large model.
+/// The most corners of all faces together: a mesh may be used by many nodes, so a small file may be a large model.
 const MAX_CORNERS: usize = 3 << 26;
 
 /// Reads a file and the buffers that it names.

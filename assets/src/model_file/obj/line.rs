@@ -14,7 +14,7 @@ pub(crate) struct Lines<R> {
     number: u64,
     /// The number of lines read so far.
     read: u64,
-    /// Whether the last line ended in CR: a following LF belongs to it.
+    /// True if the last line ended in CR, so that a following LF belongs to it.
     after_cr: bool,
 }
 

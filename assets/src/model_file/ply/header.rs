@@ -104,7 +104,7 @@ pub(super) struct Header {
     pub(super) lines: u64,
 }
 
-/// The max number of elements, and of an element's properties, so that no property list takes for ever.
+/// The most elements, and properties of an element, so that no property list takes for ever.
 const MAX: usize = 1_000;
 
 impl Header {

@@ -57,7 +57,7 @@ pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> 
     Ok(draft)
 }
 
-/// What the elements contain in addition to positions, normals and faces.
+/// Data of the elements in addition to positions, normals and faces.
 struct Reading {
     /// The number of vertices that the header announces.
     vertices: u64,
@@ -65,9 +65,9 @@ struct Reading {
     of_vertices: Vec<Rgb>,
     /// The colour of each face, or empty.
     of_faces: Vec<Rgb>,
-    /// Whether each vertex has texture coordinates, with the same index.
+    /// True if each vertex has texture coordinates, with the same index.
     has_texcoords: bool,
-    /// Whether corners of faces have their own texture coordinates.
+    /// True if corners of faces have their own texture coordinates.
     has_pairs: bool,
     has_texture: bool,
 }

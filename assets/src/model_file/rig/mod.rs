@@ -42,7 +42,7 @@ pub struct Rig {
     skeleton: Skeleton,
     clips: Vec<Clip>,
     vertices: Vertices,
-    /// For each vertex of the mesh its index in `vertices`, and its normal before the transform, by the order of its
+    /// The index in `vertices` of each vertex of the mesh, and its normal before the transform, by the order of its
     /// triangles' corners.
     of_mesh: Vec<(u32, [f32; 3])>,
     /// The lights at rest, and the node of each.
@@ -127,7 +127,7 @@ impl Skeleton {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Vertices {
     pub(crate) positions: Vec<[f32; 3]>,
-    /// Of any length; 0 where the file gives none.
+    /// Normals of any length; 0 where the file gives none.
     pub(crate) normals: Vec<[f32; 3]>,
     pub(crate) influences: Influences,
 }
@@ -173,7 +173,7 @@ pub(crate) struct Nodes {
     pub(crate) camera: Option<Eye>,
 }
 
-/// What goes with a mesh.
+/// Lights, camera and rig that go with a mesh.
 #[derive(Default)]
 pub(crate) struct Staged {
     pub(crate) lights: Vec<Light>,

@@ -24,9 +24,9 @@ pub(crate) struct Source {
     /// The node that it is in. It shines along the node's −z.
     pub(crate) node: usize,
     pub(crate) kind: Kind,
-    /// In sRGB.
+    /// Its colour, in sRGB.
     pub(crate) color: [f32; 3],
-    /// Above 0.
+    /// Its intensity, above 0.
     pub(crate) intensity: f64,
 }
 
@@ -45,13 +45,13 @@ pub(crate) enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Eye {
     pub(crate) node: usize,
-    /// From the picture's upper to its lower edge, in radians, above 0 and below π.
+    /// Angle from the picture's upper to its lower edge, in radians, above 0 and below π.
     pub(crate) field_of_view: f64,
-    /// Above 0.
+    /// The near distance, above 0.
     pub(crate) near: f64,
 }
 
-/// Where something is: its node's transform, and the point of the file that is 0 in the mesh.
+/// The placement of something: its node's transform, and the point of the file that is 0 in the mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Stand {
     pub(super) place: Placement,

@@ -25,7 +25,7 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
     }
 }
 
-/// What each budget keeps and costs.
+/// The table of each budget's errors and times.
 pub(super) fn table(study: &Study) -> Table {
     let columns = [
         Column::text("budget, shades").brief(),
@@ -64,7 +64,7 @@ pub(super) fn table(study: &Study) -> Table {
     Table::new(&columns, study.budget.iter().map(row).collect())
 }
 
-/// Which shading drew how many triangles.
+/// The table of how many triangles each shading drew.
 fn shares(study: &Study) -> Table {
     let columns = [Column::text("budget, shades"), Column::text("triangles of all frames")];
     let rows = study.budget.iter().filter(|row| !row.triangles.is_empty());

@@ -51,7 +51,7 @@ fn price(cheap: &ShadingRow, near: &ShadingRow) -> [String; 2] {
     }
 }
 
-/// What a study found, for a reader who knows none of its terms.
+/// The result of a study, for a reader who knows none of its terms.
 fn sentence(input: &str, cheap: &ShadingRow, near: &ShadingRow) -> String {
     let price = match times(near, cheap) {
         Some(times) if times.is_finite() && times > 0.0 => format!("{} times as long as", brief(times)),

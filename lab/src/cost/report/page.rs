@@ -25,7 +25,7 @@ for (const chart of document.querySelectorAll("[data-points]")) {
 for (const pair of document.querySelectorAll(".pair")) divide(pair, pair.dataset.label);
 "#;
 
-/// What the names in the summary and the errors mean.
+/// Explains the names in the summary and the errors.
 pub(super) const NAMES: &str = "The old loop done right is gouraud-8.8-reseeded, the default; the printed one is gouraud-vintage; phong lights every \
     pixel. A shade is 1/255 of full intensity. Errors are those of the light on a face, before texture, fog and dither: \
     against gouraud, exact linear interpolation of exact vertex light, or against lit, the lighting model at every pixel.";

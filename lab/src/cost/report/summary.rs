@@ -35,7 +35,7 @@ fn arithmetic(input: &str, linear: &ShadingRow, printed: Option<&ShadingRow>) ->
     format!("On {input} {name} {error} and {time}.")
 }
 
-/// What lighting every pixel does to the error, and what it costs.
+/// Says how much light at every pixel reduces the error, and what it costs.
 fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let left = linear.error_lit.max;
     let Some(phong) = phong else {

@@ -21,7 +21,7 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
     }
 }
 
-/// What each time led to.
+/// The table of results for each time.
 pub(super) fn table(study: &Study) -> Table {
     let columns = [
         Column::text("time given").brief(),

@@ -1,4 +1,4 @@
-//! Beyond the screen and behind the eye: R7, C1, C2.
+//! Geometry beyond the screen and behind the eye: R7, C1, C2.
 
 use mode13h::glam::Vec3;
 

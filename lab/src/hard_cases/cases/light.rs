@@ -37,7 +37,7 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     scene
 }
 
-/// What light cases need besides the view: a mesh, its lights, and the shades that the fault gives its vertices.
+/// The input of a light case besides the view: a mesh, its lights, and the shades that the fault gives its vertices.
 struct Lit {
     mesh: Option<Mesh>,
     /// The vertices' positions before the engine splits any vertices.
@@ -70,7 +70,7 @@ fn sun(towards: Vector) -> Light {
     Light::sun(towards.map(|c| c as f32))
 }
 
-/// For each vertex, the sum of its faces' unit normals, not normalized.
+/// The sum of the unit normals of each vertex's faces, not normalized.
 fn sums(positions: &[Vector], triangles: &[[usize; 3]]) -> Vec<Vector> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for triangle in triangles {

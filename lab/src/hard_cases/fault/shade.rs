@@ -11,7 +11,7 @@ struct Row {
     right: (f64, f64),
 }
 
-/// Where a convex polygon's edges cross the centre of row `y`; `None` if they do not.
+/// Finds where a convex polygon's edges cross the centre of row `y`; `None` if they do not.
 fn row(corners: &[Corner], y: i32) -> Option<Row> {
     let yc = f64::from(y) + 0.5;
     let mut ends = Vec::new();
