@@ -1,4 +1,4 @@
-//! `mode13h generate`: completions and man pages, from the definitions that the command line is parsed by.
+//! `mode13h generate`: completions and man pages, from the definitions that the command line is parsed with.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -519,7 +519,7 @@ impl Artist {
     }
 }
 
-/// A bar on standard error, if that is a terminal and there is more than one frame.
+/// A progress bar on standard error, if that is a terminal and there is more than one frame.
 fn progress(frames: u32) -> ProgressBar {
     if frames == 1 || output::is_quiet() {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! `mode13h scenes`: the scenes that are compiled in, as files.
+//! `mode13h scenes`: the shipped scenes, as files.
 
 use std::path::PathBuf;
 

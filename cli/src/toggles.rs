@@ -185,8 +185,8 @@ mod tests {
         }
         assert!(failures.is_empty(), "{failures:#?}");
     }
-    /// Tests that T leaves of a model with an image, in a palette made for what is seen and in one without ramps,
-    /// shades in order, not the entries of the palette one after the other.
+    /// Tests that a model whose image T has removed shows shades in order, not the palette's entries one after the
+    /// other, in a palette made for what is seen and in one without ramps.
     #[test]
     fn a_model_without_its_image_is_shaded_in_order() {
         let texture = "crate".parse::<Texture>().ok().map(mode13h::scene::Shared::new);

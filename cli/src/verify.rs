@@ -201,7 +201,7 @@ fn differing(is: &Drawn, right: &Drawn) -> Vec<u8> {
     is.pixels.iter().zip(&right.pixels).map(|(is, right)| if is == right { black } else { white }).collect()
 }
 
-/// The hash over the frames as they are expected.
+/// The expected hash over the frames.
 fn expected_hash(prefix: Option<&str>) -> u64 {
     chosen(prefix).iter().fold(START, |hash, frame| frames::combined_hash(hash, frame.expected().unwrap_or_default()))
 }

@@ -74,7 +74,7 @@ enum Command {
     Generate(generate::Options),
 }
 
-/// All commands and options: what is parsed, and what help, completions and man pages are made from.
+/// All commands and options, for parsing and for making help, completions and man pages.
 pub(crate) fn command() -> clap::Command {
     let keys_and_status = format!("{}\n\n{EXIT_STATUS}", demo::help_on_keys(WIDTH));
     // The word after an option is its value, even with a minus.
@@ -82,7 +82,7 @@ pub(crate) fn command() -> clap::Command {
         true => arg,
         false => arg.allow_negative_numbers(true),
     };
-    // The short page of the program has its commands; those of the commands have how to draw.
+    // The program's short help has its commands; the drawing options are in that of the commands.
     let is_left_out = |arg: clap::Arg| {
         let has_heading = arg.get_help_heading().is_some();
         arg.hide_short_help(has_heading)
@@ -148,7 +148,7 @@ fn empty_word() -> Option<String> {
     Some(before.map_or("''".into(), |option| format!("{} ''", option.display())))
 }
 
-/// Describes what is wrong with the words, as one sentence.
+/// Describes what is wrong with the command line, in one sentence.
 fn sentence(error: &clap::Error) -> String {
     if let Some(sentence) = mistyped_command() {
         return sentence;
@@ -176,7 +176,7 @@ fn sentence(error: &clap::Error) -> String {
     format!("{}{near} ({help} shows the options)", paragraph.join(" "))
 }
 
-/// Finds the command that the first word was the name of, or nearly is, if it is nothing else.
+/// Finds the command that the first word nearly is, if it is nothing else, and asks whether it was meant.
 fn mistyped_command() -> Option<String> {
     let word = first_word()?;
     let command = typo::mistyped_command(&word)?;
@@ -187,7 +187,7 @@ fn mistyped_command() -> Option<String> {
     ))
 }
 
-/// The words that show the help of the command that was typed.
+/// The command line that shows the help of the command that was typed.
 fn help() -> String {
     match first_word().as_ref().and_then(named) {
         Some(command) => format!("mode13h {command} --help"),

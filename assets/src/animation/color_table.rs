@@ -87,7 +87,7 @@ mod tests {
         assert_eq!([0, 3, 4, 255].map(|i| places[i]), [0, 0, 1, 63]);
         assert_eq!(table.free(&[0, 1, 3]), Some(2));
         assert_eq!(table.free(&std::array::from_fn::<u8, 64, _>(|i| i as u8)), Some(64));
-        // A missing colour only matters where it is used.
+        // A missing colour matters only where it is used.
         palette[9] = Rgb::WHITE;
         assert!(table.places(&palette, &[8]).is_some() && table.places(&palette, &[9]).is_none());
         assert_eq!(ColorTable::of_used(&palette, &[9, 9, 0]).bytes(), [0, 0, 0, 255, 255, 255, 0, 0, 0]);

@@ -67,7 +67,7 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
     /// The point in the file that is 0 in the mesh: the centre of a model far from 0, otherwise 0.
     pub origin: [f64; 3],
-    /// The lights of the file, in the mesh's coordinates, exposed so that all of them together are full light in its middle.
+    /// The lights of the file, in the mesh's coordinates, exposed so that together they give full light in its middle.
     pub lights: Vec<Light>,
     /// The first camera of the file, in the mesh's coordinates.
     pub camera: Option<Camera>,

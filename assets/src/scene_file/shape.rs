@@ -63,7 +63,7 @@ fn product(subdivisions: &[u32]) -> u64 {
 }
 
 impl Shape {
-    /// Returns the subdivisions of the shape, from those that a scene gives, which must be as many as it has.
+    /// Returns the shape's subdivisions, given those of a scene, which must be equally many.
     pub(super) fn subdivided(self, given: &[i64]) -> Result<Vec<u32>, String> {
         if given.len() != self.subdivisions.len() {
             let names: Vec<&str> = self.subdivisions.iter().map(|row| row.0).collect();

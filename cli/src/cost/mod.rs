@@ -187,7 +187,7 @@ fn turned(stage: &mut Turntable, frames: u32, degrees: f64) -> Vec<Scene> {
     scenes
 }
 
-/// A bar on standard error, if that is a terminal.
+/// A progress bar on standard error, if that is a terminal.
 struct Progress {
     bar: ProgressBar,
     step: Mutex<Option<Step>>,

@@ -351,7 +351,7 @@ impl Judged {
         Judged { is_known: vec![false; right.pixels.len()], right, known: shown, faces }
     }
 
-    /// Marks the truth as known for the pixels that a tile draws by steps of `step`.
+    /// Marks the truth as known for the pixels that a tile draws in steps of `step`.
     fn know(&mut self, [columns, rows]: [Range<u32>; 2], step: u32) {
         let is_drawn = |at: &u32| at % step == step / 2;
         for y in rows.filter(is_drawn) {

@@ -48,7 +48,7 @@ impl Looks {
         self.mappings.chosen().map_or("by plan", |mapping| mapping.name())
     }
 
-    /// Turns effects off or on until they are as keys have switched them.
+    /// Turns effects off or on until they are in the states that keys have set.
     fn switch_again(&self, show: &mut Show) -> Result<(), Failure> {
         let (stage, renderer) = (&mut show.stage, &mut show.halves[0].renderer);
         for &(switch, wanted) in &self.switches {

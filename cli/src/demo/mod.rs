@@ -14,7 +14,7 @@
 //! | `background` | a thread that the picture does not wait for |
 //! | `loader` | the inputs, loaded when they are asked for and when their files change |
 //! | `choice` | one of a list |
-//! | `terminal` | all of it in a terminal instead, without the rest |
+//! | `terminal` | the picture in a terminal instead, without the panels |
 
 mod background;
 mod choice;
@@ -501,7 +501,7 @@ mod tests {
         demo
     }
 
-    /// While something else is said, too.
+    /// It says so even while it says something else.
     #[test]
     fn a_stopped_picture_says_so_as_long_as_it_is_stopped() {
         let mut demo = demo("torus");
@@ -519,7 +519,7 @@ mod tests {
     }
 
     /// Tests that in every scene, window and page, with one panel open or both, no letter is cut, missing from the
-    /// font, or over another, and that every word of a panel stands on one of its pages.
+    /// font, or over another, and that every word of a panel is on one of its pages.
     #[test]
     fn text_is_never_cut_in_any_scene() {
         for scene in shipped::ALL {

@@ -25,7 +25,7 @@ const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds, so that nothing jumps after a pause.
 const LONGEST_FRAME: f64 = 0.1;
 
-/// Motion: the scene's time, by the clock unless it is stopped, and what the user has turned.
+/// Motion: the scene's time, which follows the clock unless it is stopped, and the pose set by the user.
 pub(super) struct Motion {
     /// The scene's time at the time `change`, in seconds.
     time: f64,

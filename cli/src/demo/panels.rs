@@ -52,7 +52,7 @@ impl Panel for Shades {
 /// The map over the picture.
 pub(super) struct Maps {
     pub(super) is_on: bool,
-    /// The pixel under the mouse, or the last that was.
+    /// The pixel under the mouse, or the last one that was.
     pub(super) mouse: Pixel,
 }
 

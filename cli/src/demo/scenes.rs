@@ -18,7 +18,7 @@ pub(super) struct Scenes {
     pub(super) is_loading: bool,
     /// Name of the one on show.
     pub(super) name: String,
-    /// Reason why the scene on show is not that of the files.
+    /// Reason why the scene on show differs from the files.
     pub(super) wrong: Option<Failure>,
 }
 

@@ -184,7 +184,7 @@ impl Show {
     }
 }
 
-/// Puts two pictures on a screen: the right one from a column on, if there is one.
+/// Puts two pictures on a screen, the right one from the divider on, if there is one.
 fn compose(screen: &mut Vga, left: &Vga, right: &Vga, divider: Option<usize>) {
     screen.clone_from(left);
     let column = divider.unwrap_or(Vga::WIDTH);

@@ -56,7 +56,7 @@ impl Ratio {
     /// The ratio of `times` to `others`. Sample i of both comes from the same round, since whatever slows down a whole
     /// round slows both. Rounds in which either is NaN are ignored.
     ///
-    /// The interval is that of the percentile bootstrap (Efron 1979): as many rounds as there are, drawn from them with
+    /// The interval is that of the percentile bootstrap (Efron 1979): the same number of rounds, drawn with
     /// replacement, a thousand times.
     pub(super) fn new(times: &[f64], others: &[f64], chance: &mut Random) -> Self {
         let ratios: Vec<f64> = times.iter().zip(others).map(|(time, other)| time / other).collect();

@@ -1,4 +1,4 @@
-//! A triangle pixel by pixel: what the 1994 loop holds in its registers at each.
+//! A triangle pixel by pixel, with the registers of the 1994 loop at each.
 
 use alloc::vec::Vec;
 
