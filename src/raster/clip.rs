@@ -12,7 +12,8 @@ pub const PLANES: usize = 5;
 /// Maximum number of corners: three, and at most one more for every plane.
 pub const MAX_CORNERS: usize = 3 + PLANES;
 
-/// The corners of a convex polygon before the perspective division, in the type of either vertex path.
+/// The corners of a convex polygon before the perspective division, in either vertex path's
+/// coordinate type.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners<C> {
     corners: [C; MAX_CORNERS],
@@ -34,7 +35,7 @@ impl<C: Copy> Corners<C> {
         }
     }
 
-    /// Projects every corner to a vertex; `None` if one of them has none.
+    /// Projects every corner to a vertex; `None` if any corner has no projection.
     #[must_use]
     pub fn project(&self, mut vertex: impl FnMut(&C) -> Option<Vertex>) -> Option<Clipped> {
         let mut polygon = Clipped { vertices: [Vertex::default(); MAX_CORNERS], count: self.count };
@@ -118,13 +119,14 @@ impl Clipped {
     /// The polygon as triangles that turn the same way as the whole.
     ///
     /// Where a cut lies near a corner, three successive corners may be nearly collinear, and rounding may dent the
-    /// polygon there. A fan from any other corner would then cover the dent twice; a fan from the dent does not.
-    /// Triangles that still turn the other way, in polygons that are hardly more than a line, are left out.
+    /// polygon there. A fan from any other corner would then cover the dent twice; a fan from the
+    /// dent does not. In polygons that are little more than a line, triangles that still turn the
+    /// other way are left out.
     pub fn parts(&self) -> impl Iterator<Item = [Vertex; 3]> {
         self.part_corners().map(|corners| self.triangle(corners))
     }
 
-    /// The triangles of [`parts`](Self::parts), by the indices of their corners.
+    /// The triangles of [`parts`](Self::parts), as corner indices.
     pub fn part_corners(&self) -> impl Iterator<Item = [usize; 3]> {
         let sign = self.doubled_area().signum();
         let turns = move |part: &[usize; 3]| doubled_area(&self.triangle(*part)).signum() * sign;

@@ -13,8 +13,8 @@ use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 use crate::lanes::three;
 
-/// Screen position of a vertex, x and y in 1/256 pixel within the guard band, or a mark that it needs clipping. Packed
-/// into one number, so that one load reads it.
+/// Screen position of a vertex, x and y in 1/256 pixel within the guard band, or a mark that it
+/// needs clipping, packed into one integer so that a single load reads it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub(crate) struct ScreenPos(u64);
@@ -62,7 +62,7 @@ impl From<ScreenPos> for u64 {
     }
 }
 
-/// Vertex values, one array for each. Arrays for effects are empty where nothing needs them.
+/// Vertex values, one array per value. Arrays for unused effects are empty.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns<'a> {
     pub(crate) at: &'a [ScreenPos],
@@ -88,8 +88,8 @@ pub(crate) struct EffectColumns<'a> {
     pub(crate) lit: LitColumn<'a>,
 }
 
-/// The values of a corner beyond its position, shade and depth. Values that a pipeline does not use may be
-/// anything.
+/// The values of a corner besides its position, shade and depth. Values that a pipeline does not
+/// use may be anything.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {
@@ -123,7 +123,7 @@ pub(crate) enum Value {
 
 #[cfg(feature = "alloc")]
 impl Value {
-    /// The most values that one pipeline asks for.
+    /// The most values that one pipeline needs.
     pub(crate) const MAX_COUNT: usize = 4;
 
     /// Index among the values of a pipeline, which has either channels or a table of normals.
@@ -261,7 +261,7 @@ impl Columns<'_> {
         Vertex::of_projected(I24F8::from_bits(at.x()), I24F8::from_bits(at.y()), shade, self.depth[i])
     }
 
-    /// The remaining values of vertex `i` as seen from one side, where there are any; the input of lighting only with
+    /// The remaining values of vertex `i`, if any, as seen from one side; lighting input only with
     /// `lit`.
     #[cfg(feature = "alloc")]
     pub(crate) fn attributes(&self, i: usize, side: usize, lit: bool) -> Attributes {

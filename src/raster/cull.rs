@@ -1,5 +1,6 @@
-//! Culls many triangles at a time by the positions of their corners alone: back faces, and triangles that cover no
-//! pixel centre. Most triangles of a fine model end here. The others get the class they are set up by.
+//! Culls back faces and triangles that cover no pixel centre, many at a time, by corner positions
+//! alone. Most triangles of a detailed model end here. The others are assigned the class by which
+//! they are set up.
 
 use super::columns::ScreenPos;
 use super::frame::Rect;
@@ -21,8 +22,8 @@ pub(crate) struct CullMasks {
     pub(crate) front: u64,
     /// Turned away from the eye. A triangle in neither mask has no area.
     pub(crate) back: u64,
-    /// The triangle's box, left and top sides included, holds a pixel centre of the clip rectangle; and if the box is
-    /// only 2 × 2 pixels, one of them lies in the triangle.
+    /// The triangle's box, left and top sides included, contains a pixel centre of the clip
+    /// rectangle; and if the box is only 2 × 2 pixels, at least one of them lies in the triangle.
     pub(crate) covers: u64,
     /// The class; meaningless for triangles that cover nothing.
     pub(crate) large: u64,
@@ -31,8 +32,8 @@ pub(crate) struct CullMasks {
 }
 
 compiled_for_each_level! {
-    /// Culls up to 64 triangles. Coverage is found only for triangles with an area, and if it `culls`, only for those
-    /// turned toward the eye.
+    /// Culls up to 64 triangles. Coverage is computed only for triangles with an area and, if it
+    /// `culls`, only for those turned toward the eye.
     ///
     /// # Panics
     /// If a triangle has a corner that is not in `at`.
@@ -60,7 +61,8 @@ fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect
     masks
 }
 
-/// Culls up to 64 triangles by the side they show. Every visible one may cover something, and is drawn by itself.
+/// Culls up to 64 triangles by facing alone. Each visible one may cover something, and is drawn
+/// individually.
 fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> CullMasks {
     let mut masks = CullMasks::default();
     for (i, triangle) in triangles.iter().take(CHUNK).enumerate() {
@@ -150,7 +152,8 @@ impl CullMasks {
 pub(crate) type PickList<const N: usize> = Packed<N>;
 
 compiled_for_each_level! {
-    /// Appends to the list, of the 64 triangles from index `first` on, those whose bits are set in `chosen`.
+    /// Appends to the list those of the 64 triangles from index `first` on whose bits are set in
+    /// `chosen`.
     pub(crate) fn pick[const N: usize][N](list: &mut PickList<N>, first: u32, masks: &CullMasks, chosen: u64) = pick_by;
 }
 
@@ -201,7 +204,7 @@ impl<S: Lanes8> Bounds<S> {
         Self { x, y, columns, rows }
     }
 
-    /// Where a pixel centre of the rectangle, which lies inside a frame, is in the box.
+    /// Lanes whose box contains a pixel centre of the rectangle, which lies inside a frame.
     #[inline(always)]
     fn overlap(&self, s: S, clip: Rect) -> S::Mask {
         // Sides are at most 4,096.
@@ -212,7 +215,7 @@ impl<S: Lanes8> Bounds<S> {
         s.and(in_columns, s.is_greater(s.min_i32(self.rows[1], side(clip.y1)), first))
     }
 
-    /// Where the box does not lie inside the rectangle.
+    /// Lanes whose box does not lie inside the rectangle.
     #[inline(always)]
     fn cross(&self, s: S, clip: Rect) -> S::Mask {
         let side = |side: u32| s.splat_i32(side as i32);
@@ -230,7 +233,7 @@ impl<S: Lanes8> Bounds<S> {
         s.and(few_columns, s.is_greater(s.splat_i32(MAX_ROWS + 1), s.sub_i32(self.rows[1], self.rows[0])))
     }
 
-    /// Where the triangles are small enough for set-up in f64.
+    /// Lanes whose triangle is small enough for set-up in f64.
     #[inline(always)]
     fn are_batched(&self, s: S) -> S::Mask {
         // Differences are at most 2²¹.
@@ -265,14 +268,14 @@ impl<S: Lanes8> Bounds<S> {
     }
 }
 
-/// The least and the greatest.
+/// The minimum and the maximum.
 #[inline(always)]
 fn ends<S: Lanes8>(s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 2] {
     [s.min_i32(s.min_i32(a, b), c), s.max_i32(s.max_i32(a, b), c)]
 }
 
-/// Triangles that cover none of four pixels: the one at the origin, its right neighbour, and the two below. The result
-/// is right only if the corners are less than 1,024 units away.
+/// Triangles that cover none of four pixels: the one at the origin, its right neighbour, and the
+/// two below. The result is valid only if the corners are less than 1,024 units away.
 ///
 /// ```text
 /// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
@@ -345,11 +348,11 @@ mod tests {
     }
 
     fn kernels() -> Vec<Kernel> {
-        // Every level the processor has, lower ones included: `simd` alone is the highest.
+        // Every level that the processor has: `simd` alone would be only the highest.
         Kernel::available().collect()
     }
 
-    /// Random triangles show the same sides in integers as in the lanes.
+    /// Random triangles face the same way in integers as in the lanes.
     #[test]
     fn sides_in_integers_are_those_of_lanes() {
         let mut seed = 1_u64;
@@ -374,8 +377,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every kernel finds the same sign of each face's area as the raster, and leaves out no face of which the
-        /// raster draws a pixel.
+        /// Every kernel finds the same sign of each face's area as the raster, and culls no face of
+        /// which the raster draws a pixel.
         #[test]
         fn what_is_left_out_covers_nothing(
             culls: bool,

@@ -8,7 +8,7 @@ pub(crate) use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
 /// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines (`Cell` says what that
-/// loses); greater is nearer, 0 is farthest. The slice is the caller's.
+/// loses); greater is nearer, 0 is farthest. The caller owns the slice.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],
@@ -17,8 +17,8 @@ pub struct DepthBuffer<'a, D: Cell = u32> {
 }
 
 impl<'a, D: Cell> DepthBuffer<'a, D> {
-    /// Lays a depth buffer over the rows that `frame` holds. The values stay as they are:
-    /// [`clear`](Self::clear) sets them.
+    /// Creates a depth buffer in `values` for the rows that `frame` holds. The values are left
+    /// unchanged: [`clear`](Self::clear) sets them.
     ///
     /// # Errors
     /// `values` is shorter than columns × rows.
@@ -52,7 +52,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         }
     }
 
-    /// Returns whether it was laid over a frame of this width and these rows.
+    /// Returns whether it was created for a frame of this width and these rows.
     pub(super) fn holds(&self, width: u32, rows: &core::ops::Range<u32>) -> bool {
         let values = u64::from(width) * u64::from(rows.end - rows.start);
         self.width == width && self.first_row == rows.start && self.values.len() as u64 == values

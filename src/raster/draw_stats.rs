@@ -1,6 +1,6 @@
 //! Counts of what was drawn.
 
-/// Counts of drawing a triangle.
+/// Drawing statistics, of one triangle or summed.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub struct DrawStats {

@@ -1,4 +1,4 @@
-//! The error of frames, depth buffers and vertices that the raster refuses.
+//! The error for frames, depth buffers and vertices that the raster rejects.
 
 use core::fmt;
 
@@ -7,15 +7,15 @@ use crate::fixed::{I24F8, U8F8};
 /// The most columns or rows of a frame.
 pub(super) const MAX_SIDE: u32 = 4096;
 
-/// A frame, depth buffer or vertex that the raster refuses.
+/// A frame, depth buffer or vertex that the raster rejects.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RasterError {
     /// Width or height is 0 or above 4,096.
     Size {
-        /// Columns asked for.
+        /// Requested columns.
         width: u32,
-        /// Rows asked for.
+        /// Requested rows.
         height: u32,
     },
     /// The pitch is less than the width.

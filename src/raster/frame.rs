@@ -5,7 +5,7 @@ use core::ops::Range;
 use super::error::{self, RasterError};
 use crate::vga::Vga;
 
-/// A rectangle of pixels: `x0 ≤ x < x1`, `y0 ≤ y < y1`. Empty where an end is not after its start.
+/// A rectangle of pixels: `x0 ≤ x < x1`, `y0 ≤ y < y1`. Empty if an end is not after its start.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Rect {
     /// First column.
@@ -26,7 +26,7 @@ impl Rect {
     #[cfg(feature = "alloc")]
     pub(crate) const EVERYWHERE: Self = Self { x0: 0, y0: 0, x1: u32::MAX, y1: u32::MAX };
 
-    /// The part that both rectangles hold.
+    /// The intersection of both rectangles.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl Rect {
         }
     }
 
-    /// Returns whether it holds no pixel.
+    /// Returns whether it contains no pixel.
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1

@@ -11,8 +11,8 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `vertex` | what may enter: a [`Vertex`] is checked on construction |
-//! | `clip` | what clipping before the projection leaves of a triangle, as triangles |
+//! | `vertex` | the input: a [`Vertex`] is checked on construction |
+//! | `clip` | clipping before the projection, and the triangles that remain |
 //! | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
 //! | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
 //! | `interpolation` | the list of shadings |

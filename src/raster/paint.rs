@@ -176,8 +176,8 @@ impl RowShader {
 /// Shading for the stages of `effects`.
 #[cfg(feature = "alloc")]
 impl RowShader {
-    /// The bytes of `piece`, which begins at column `x` of `row` and contains no further start. With dither, the
-    /// thresholds of the row replace the half.
+    /// The bytes of `piece`, which begins at column `x` of `row` and contains no other start. With
+    /// dither, the thresholds of the row replace the half.
     pub(super) fn piece(&self, row: &Row, x: i32, piece: &mut [u8], dither: Option<&ThresholdRow>, kernel: Kernel) {
         // A column.
         let column = x as usize;
@@ -359,7 +359,7 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
 
-    /// Where the depth buffer holds nothing nearer, every kind is painted as without depths.
+    /// Where the depth buffer holds nothing nearer, every kind is painted as it is without depths.
     #[test]
     fn rows_where_nearer_are_rows() {
         const WIDTH: u32 = 200;

@@ -5,7 +5,7 @@ use crate::lanes::LANES;
 
 /// Triangles culled at a time.
 pub(crate) const CHUNK: usize = 64;
-/// The greatest width of a small triangle, in pixels: a span of that length has no start but its first.
+/// The greatest width of a small triangle, in pixels: a span of that length has a single start.
 pub(super) const MAX_COLUMNS: i32 = 64;
 /// The greatest height of a small triangle, in rows.
 pub(super) const MAX_ROWS: i32 = 16;

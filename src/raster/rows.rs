@@ -3,7 +3,7 @@
 //! One row of each of eight triangles, or eight rows of one: both are lanes of the same formula, and [`Lane`] says
 //! which.
 //!
-//! What fills a span is a parameter: [`Shades8`].
+//! The fill of a span is a parameter: [`Shades8`].
 //!
 //! Left and right are the smaller and the greater of two edges: where the long edge and a short one meet a row, one
 //! lies left of the other in exact arithmetic, and rounding up preserves their order.
@@ -19,10 +19,11 @@ use crate::simd::Lanes8;
 use crate::span::LargeTriangle;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
-/// The most rows of eight small triangles that are found row by row and sorted by triangle afterwards.
+/// The most rows of a small triangle for its rows to be found with those of seven others, then
+/// sorted by triangle.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
 
-/// What the eight lanes of a vector are.
+/// The meaning of a vector's eight lanes.
 pub(super) trait Lane<S: Lanes8>: Copy {
     fn load_f64(self, s: S, from: &Floats) -> S::F64;
     fn load_i32(self, s: S, from: &Ints) -> S::I32;
@@ -80,13 +81,13 @@ impl<S: Lanes8> Lane<S> for OneTriangle {
 
 /// Drawn parts of eight rows, in columns relative to the box's first, as sums with `ROUND_MAGIC`.
 pub(super) struct Parts<S: Lanes8> {
-    /// The row's first covered pixel inside the frame, ...
+    /// The row's first covered pixel inside the frame.
     pub(super) row: S::F64,
-    /// ... and the one after its last.
+    /// The pixel after the row's last covered one.
     pub(super) end: S::F64,
-    /// The column of the exact start, ...
+    /// The column of the exact start.
     pub(super) seed: S::F64,
-    /// ... and the first pixel that is drawn.
+    /// The first pixel that is drawn.
     pub(super) start: S::F64,
 }
 
@@ -124,7 +125,7 @@ impl Batches {
         self.current + 1 >= Self::COUNT
     }
 
-    /// Begins the batch from pick `first` on; batch 0 once the spans of all have been drawn.
+    /// Begins the batch from pick `first` on, as batch 0 again once all spans have been drawn.
     #[inline(always)]
     pub(super) fn begin(&mut self, first: usize) {
         let starts_anew = first == 0 || self.are_full();
@@ -159,9 +160,9 @@ impl Batches {
 
 /// Shades of eight triangles, and of spans in their rows.
 pub(super) trait Shades8 {
-    /// True if a shade and its step are all that fills a span.
+    /// True if a shade and its step are enough to fill a span.
     const IS_LINEAR: bool;
-    /// True if each triangle has a single shade, so that nothing needs the planes of linear ones.
+    /// True if each triangle has a single shade, so that no planes of linear shades are needed.
     const IS_FLAT: bool = false;
 
     /// Further columns of eight spans.
@@ -176,7 +177,7 @@ pub(super) trait Shades8 {
     /// Sets up eight triangles whose edges and linear shades are already set up.
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
 
-    /// What fills the spans of rows `j`, as columns of the list.
+    /// The fills of the spans of rows `j`, as columns of the list.
     fn fill_of<S: Lanes8>(
         &self,
         s: S,
@@ -205,12 +206,13 @@ pub(super) trait Shades8 {
         setup.large_triangle(i, layout, reseeds)
     }
 
-    /// Draws the spans of a list and empties it; with `DEPTHS` only where they are nearer than the target's cells.
+    /// Draws the spans of a list and empties it; with `DEPTHS`, only where they are nearer than the
+    /// target's cells.
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
 }
 
-/// Linear shades in 8.8; with `FLAT` a single shade for each triangle, which needs no plane: all of its rows start with
-/// it.
+/// Linear shades in 8.8; with `FLAT`, a single shade per triangle, which needs no plane: all of its
+/// rows start with it.
 pub(super) struct Linear<const FLAT: bool> {
     /// With `FLAT` the shades, with the half that rounds them; the steps, in the upper halves, are 0.
     paint: Ints,

@@ -50,9 +50,9 @@ use crate::span::LargeTriangle;
 pub(super) struct FrameLayout {
     /// The row whose pixels come first.
     pub(super) first_row: u32,
-    /// Pixels from one row to the next, at most 2¹⁶, ...
+    /// Pixels from one row to the next, at most 2¹⁶.
     pub(super) pitch: u32,
-    /// ... and cells of the depth buffer.
+    /// Cells of the depth buffer from one row to the next.
     pub(super) width: u32,
 }
 
@@ -74,7 +74,8 @@ impl Corners8 {
     pub(super) const NONE: Self =
         Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
 
-    /// Reads the first eight of these triangles, their depths only with `DEPTHS`. With `FLAT` all have a single shade.
+    /// Reads the first eight of these triangles, their depths only with `DEPTHS`. With `FLAT`, each
+    /// has a single shade.
     #[inline(always)]
     pub(super) fn gather<const DEPTHS: bool, const FLAT: bool>(
         &mut self,
@@ -259,8 +260,9 @@ impl TriangleSetup8 {
         }
     }
 
-    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth planes of small ones
-    /// too, and without `FLAT` the shade planes. Returns what other planes are set up from.
+    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth
+    /// planes of small ones too, and without `FLAT` the shade planes. Returns the basis for setting
+    /// up other planes.
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8, const DEPTHS: bool, const FLAT: bool>(
         &mut self,
@@ -272,7 +274,7 @@ impl TriangleSetup8 {
         let [bx, by] = s.halves_of_i64(s.load_i64(&corners.at[1]));
         let [cx, cy] = s.halves_of_i64(s.load_i64(&corners.at[2]));
         // The box that culling found, recomputed in eight operations for eight triangles. To pass it on, culling would
-        // have to pack three more lists, and these would be gathered here.
+        // have to pack three more lists, and these would have to be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
         let bottom = s.max_i32(s.max_i32(ay, by), cy);
         let column = first_centre(s, s.min_i32(s.min_i32(ax, bx), cx));
@@ -324,7 +326,7 @@ impl TriangleSetup8 {
             self.shade.set_up(s, &basis, &corners.shade);
         }
         s.store_f64(inverse, &mut self.inverse);
-        // No rows without an area.
+        // Triangles without area have no rows.
         let has_area = s.is_less(s.splat_f64(0.0), area);
         s.store_i32(s.select_i32(has_area, rows, s.splat_i32(0)), &mut self.rows);
 
@@ -351,12 +353,12 @@ impl TriangleSetup8 {
     }
 }
 
-/// What planes over eight triangles are set up from. All values except the last are integers.
+/// The basis for setting up planes over eight triangles. All values except the last are integers.
 pub(super) struct Basis<S: Lanes8> {
     pub(super) order: Order<S>,
-    /// The first corner by height, relative to the centre of the box's first pixel, ...
+    /// The first corner by height, relative to the centre of the box's first pixel.
     pub(super) first: [S::F64; 2],
-    /// ... and the others relative to it.
+    /// The other corners, relative to the first.
     pub(super) second: [S::F64; 2],
     pub(super) third: [S::F64; 2],
     /// Twice the area, negative if the second corner lies left of the edge from the first to the third.
@@ -375,8 +377,9 @@ impl<S: Lanes8> Basis<S> {
         [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
-    /// Change of a corner's weight per 1/256 pixel; then its weight at the box's first pixel, with its change per row
-    /// and per column. All are exact whole numbers. Corners are counted by height.
+    /// Change of a corner's weight per 1/256 pixel; then its weight at the box's first pixel, with
+    /// its change per row and per column. All are exact whole numbers. Corners are numbered by
+    /// height.
     #[inline(always)]
     pub(super) fn weight(&self, s: S, corner: usize) -> (S::F64, [S::F64; 3]) {
         let ([x, y], pixel, zero) = (self.first, s.splat_f64(256.0), s.splat_f64(0.0));

@@ -9,8 +9,8 @@
 //!
 //! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
 //! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
-//! its terms' magnitudes. A triangle's coordinates begin at the texel of a corner, its base, so that f32 resolves
-//! them where the others are near.
+//! its terms' magnitudes. A triangle's coordinates are relative to the texel of a corner, its base,
+//! so that f32 resolves them if the other corners are near.
 
 use super::columns::{Picks, Triangles};
 use super::pick::Pick;
@@ -57,9 +57,9 @@ pub(super) struct AffinePlanes8 {
     whole_per_column: [Ints; 2],
     /// Change per pixel, where a row has more than one.
     step: [Ints; 2],
-    /// The level of each triangle, if the image has levels, ...
+    /// The level of each triangle, if the image has levels.
     level: Ints,
-    /// ... and a bit for each whose u, or v, falls along a row.
+    /// A bit for each triangle whose u, or v, falls along a row.
     falls: [u32; 2],
 }
 
@@ -309,8 +309,8 @@ impl PerspectivePlanes8 {
         }
     }
 
-    /// The coordinates of the corners, sorted, from the triangle's base on, and the greatest difference between two. None
-    /// is greater than that and a texel.
+    /// The sorted corners' coordinates relative to the triangle's base, and the greatest difference
+    /// between two. No coordinate exceeds that difference plus a texel.
     #[inline(always)]
     fn rebase<S: Lanes8>(
         &mut self,

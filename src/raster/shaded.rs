@@ -372,7 +372,7 @@ impl Shades8 for Shaded8<'_> {
         self.starts.put(s, places, spans.columns);
     }
 
-    /// The exact steps in f32 of a triangle too large for sums of 64 bits.
+    /// The exact steps in f32 of a triangle too large for 64-bit sums.
     #[inline(never)]
     fn set_up_large(&mut self, i: usize, _: &TriangleSetup8) {
         #[cfg(feature = "alloc")]
@@ -401,11 +401,11 @@ impl Shades8 for Shaded8<'_> {
     }
 }
 
-/// What fills a span.
+/// The fill of a span.
 struct Fill {
     /// The triangle, among those whose steps are stored.
     face: usize,
-    /// The index of its first pixel, counted from where its sums are.
+    /// The index of its first pixel, relative to the pixel where its sums are.
     #[cfg(feature = "alloc")]
     first: i32,
     starts: [i64; 2],

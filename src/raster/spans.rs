@@ -1,8 +1,8 @@
 //! Turns picked triangles into spans, eight at a time.
 //!
-//! Half of the triangles of a fine model cover no pixel centre, and most of the others a few. So the work per triangle
-//! has to be small: no sorting by branches, no division of its own, no loop for a row of one pixel. A triangle is
-//! culled once, set up once, and becomes spans once:
+//! Half of the triangles of a detailed model cover no pixel centre, and most of the others only a
+//! few. So the work per triangle has to be small: no sorting by branches, no division of its own,
+//! no loop for a row of one pixel. A triangle is culled once, set up once, and becomes spans once:
 //!
 //! | stage | lanes | what |
 //! |---|---|---|
@@ -34,7 +34,8 @@ use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
-/// Triangles, and whether their rows are split into pieces of 64 pixels, with which linear shades are reseeded.
+/// Triangles, and whether their rows are split into pieces of 64 pixels, at which linear shades are
+/// reseeded.
 #[derive(Clone, Copy)]
 pub(super) struct Drawn<'a> {
     pub(super) triangles: &'a Triangles<'a>,
@@ -75,7 +76,7 @@ impl Default for SpanScratch {
 
 #[cfg(feature = "alloc")]
 impl<D: Cell> Raster<'_, D> {
-    /// [`picks`](Self::picks) with memory of the caller's.
+    /// [`picks`](Self::picks) with the caller's memory.
     pub(crate) fn picks_with(
         &mut self,
         triangles: &Triangles<'_>,
@@ -165,7 +166,8 @@ pub(super) type Place = (FrameLayout, Rect);
 
 /// Draws triangles with linear shades, none of which is unbatched; if there are cells, only where they are nearer.
 ///
-/// Without type parameters, as `draw_shaded`, so that it is compiled in this crate, and not in each that draws.
+/// Like `draw_shaded`, it has no type parameters, so that it is compiled in this crate rather than
+/// in every crate that draws.
 #[inline(never)]
 fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
     match (!of.picks.flat.is_empty() && !IS_COMPACT, target.cells.is_some()) {
@@ -177,7 +179,8 @@ fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_
 }
 
 compiled_for_each_level! {
-    /// Draws triangles, with `FLAT` of a single shade each, with `DEPTHS` where they are nearer than the cells.
+    /// Draws triangles: with `FLAT`, of a single shade each; with `DEPTHS`, only where they are
+    /// nearer than the cells.
     fn draw_at_level[const FLAT: bool, const DEPTHS: bool][FLAT, DEPTHS](
         of: Drawn<'_>,
         place: Place,
@@ -231,7 +234,8 @@ fn gather<P: Shades8, const DEPTHS: bool>(corners: &mut Corners8, triangles: &Tr
     }
 }
 
-/// Draws triangles, with `DEPTHS` where they are nearer than the target's cells; with `LISTED` the list has depths.
+/// Draws triangles: with `DEPTHS`, only where they are nearer than the target's cells; with
+/// `LISTED`, the list has depths.
 #[inline(always)]
 pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
     s: S,

@@ -29,7 +29,7 @@ impl<'a> Raster<'a> {
         Self { clip: frame.bounds(), frame, depth: None, kernel: Kernel::default() }
     }
 
-    /// Draws with a depth buffer of its own, cleared, in `values`, which grows as needed.
+    /// Draws with its own depth buffer, cleared, in `values`, which grows as needed.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub fn with_cleared_depth<D: Cell>(self, values: &'a mut alloc::vec::Vec<D>) -> Raster<'a, D> {
@@ -42,8 +42,8 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// Draws with a depth buffer of its own in `values`, which grows as needed and is cleared only in `within`. Nothing
-    /// may be drawn outside `within`, where `values` are not touched.
+    /// Draws with its own depth buffer in `values`, which grows as needed and is cleared only in
+    /// `within`. Nothing may be drawn outside `within`, where `values` are not touched.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {
@@ -70,8 +70,9 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Height of a triangle, in 256ths of a pixel, from which on its rows are worth the eight-lane set-up: 32 pixels. (With
-/// AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows 1,320 and 690 ns.)
+/// Height of a triangle, in 256ths of a pixel, from which its rows are worth the eight-lane
+/// set-up: 32 pixels. (With AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows
+/// 1,320 and 690 ns.)
 const TALL: i64 = 32 << 8;
 
 impl<'a, D: Cell> Raster<'a, D> {
@@ -125,7 +126,7 @@ impl<'a, D: Cell> Raster<'a, D> {
             return self.draw_vintage(&triangle);
         }
         let mut drawn = DrawStats::default();
-        // Created for the first row: half of the triangles of a fine model cover no pixel.
+        // Created for the first row: half of the triangles of a detailed model cover no pixel.
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
         let draw = |row: Row| {

@@ -115,7 +115,7 @@ impl Batch {
     }
 }
 
-/// Vertices that triangles share and name by index, at most `N`, for [`Raster::indexed`].
+/// Vertices that triangles share and refer to by index, at most `N`, for [`Raster::indexed`].
 #[derive(Clone, Debug)]
 pub struct VertexTable<const N: usize> {
     at: [ScreenPos; N],
@@ -204,7 +204,7 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         let (mut drawn, mut batch) = (DrawStats::default(), Batch::new());
         for (vertices, interpolation) in triangles {
-            // Most triangles of a fine model are like that, and not worth storing.
+            // Most triangles of a detailed model are like that, and not worth storing.
             if Batch::takes(interpolation) && misses_centres(vertices) {
                 continue;
             }
@@ -256,7 +256,7 @@ impl<D: Cell> Raster<'_, D> {
         self.of_columns(columns, triangles, interpolation)
     }
 
-    /// Draws triangles of columns that have one length.
+    /// Draws triangles from columns of equal length.
     fn of_columns(&mut self, columns: Columns<'_>, triangles: &[[u32; 3]], interpolation: Interpolation) -> DrawStats {
         let (mut drawn, count) = (DrawStats::default(), columns.at.len());
         let is_there = |corners: &[u32; 3]| corners.iter().all(|i| (*i as usize) < count);
@@ -394,8 +394,8 @@ mod tests {
         (counts, bytes, cells)
     }
 
-    /// What [`Raster::triangles`] leaves out draws nothing, at every side of a box and of a centre; and every triangle
-    /// whose box alone shows that it draws nothing is left out.
+    /// Triangles that [`Raster::triangles`] leaves out draw nothing, at every side of a box and of
+    /// a centre; and every triangle whose box alone shows that it draws nothing is left out.
     #[test]
     fn triangles_that_miss_all_centres_draw_nothing() {
         let coordinates = [-129_i32, -128, -127, 0, 127, 128, 129, 255, 384];
@@ -425,8 +425,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
 
-        /// [`Raster::indexed`] gives the bytes, depths and counts of [`Raster::triangle`] for each, and leaves out what names a
-        /// vertex that is not there.
+        /// [`Raster::indexed`] gives the bytes, depths and counts of [`Raster::triangle`] for each,
+        /// and leaves out triangles with an index that is out of range.
         #[test]
         fn indexed_triangles_are_those_of_their_vertices(
             vertices in [vertex(), vertex(), vertex(), vertex(), vertex(), vertex()],

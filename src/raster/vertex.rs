@@ -3,8 +3,8 @@
 use super::error::RasterError;
 use crate::fixed::{I24F8, U8F8};
 
-/// A projected vertex: position in 1/256 pixel, shade, depth. Every vertex is valid, so the raster itself has nothing
-/// to refuse.
+/// A projected vertex: position in 1/256 pixel, shade, depth. Every vertex is valid, so the raster
+/// itself has nothing to reject.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Vertex {
     x: i32,

@@ -12,8 +12,9 @@ use crate::simd::at_best_level;
 /// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k is
 /// at most 4,095.
 ///
-/// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast Phong shading*,
-/// 1986, use two additions per pixel for it; computed from its own k, every pixel is as accurate as the first.)
+/// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast
+/// Phong shading*, 1986, use two additions per pixel for it; here every pixel is computed from its
+/// own k, so it is as accurate as the first.)
 #[inline]
 pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
     curve_inlined(shades, parabola, least, most);

@@ -1,8 +1,8 @@
 //! The depth test of a span, before anything is computed for its pixels.
 //!
 //! Each block of eight pixels gets a mask: a byte for each pixel, the first lowest, 0 if it is nearer than its cell,
-//! otherwise 255. The loops that show texels or copy bytes write by these masks, so a hidden block costs no more than
-//! its test.
+//! otherwise 255. The loops that show texels or copy bytes write under these masks, so a hidden
+//! block costs no more than its test.
 
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, compiled_for_each_level};
@@ -60,7 +60,8 @@ fn test_last(cells: &mut [u32], depths: [i64; 2], left: usize, keeps: bool) -> u
     stays
 }
 
-/// Copies bytes to a row by the masks of their blocks. What the masks let stay does not change, nor what follows them.
+/// Copies bytes to a row under the masks of their blocks. Masked pixels and those after the last
+/// block do not change.
 #[inline(always)]
 fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
     let (mut row, mut bytes) = (row, bytes);
@@ -75,7 +76,7 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
         let Some((eight, rest)) = row.split_first_chunk_mut::<LANES>() else { break };
         let Some((new, behind)) = bytes.split_first_chunk::<LANES>() else { break };
         if stays >> 32 == u64::from(u32::MAX) {
-            // Bytes stored a moment ago are less often reloaded in other pieces.
+            // Bytes just stored are then less often reloaded in different pieces.
             if let (Some(four), Some(new)) = (eight.first_chunk_mut(), new.first_chunk()) {
                 // The lower half.
                 let stay = stays as u32;
@@ -88,8 +89,9 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
     }
 }
 
-/// Copies the bytes of a span of up to 64 pixels where they are nearer, with depths as in [`test_span`]; the row and the
-/// cells have as many, unless they have none. Returns the number of nearer pixels.
+/// Copies the bytes of a span of up to 64 pixels where they are nearer, with depths as in
+/// [`test_span`]; the row and the cells have that many, or none. Returns the number of nearer
+/// pixels.
 #[inline(always)]
 pub(crate) fn copy_span<S: Lanes8>(
     s: S,

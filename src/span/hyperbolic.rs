@@ -25,9 +25,10 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
 
 /// Fills `row` with quotients in f64, for rows in which these nearly always decide.
 ///
-/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of less than ½: a
-/// product and a sum above and below, and a quotient. Rounded to an integer it is less than 1 off, so its upper 8 bits
-/// are the byte unless the lower 16 are 0; there `exact` gives it.
+/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of
+/// less than ½: a product and a sum each in numerator and denominator, and a quotient. Rounded to
+/// an integer it is less than 1 off, so its upper 8 bits are the byte unless the lower 16 are 0;
+/// there `exact` gives it.
 #[inline]
 pub(crate) fn fill_estimated_quotients(
     row: &mut [u8],

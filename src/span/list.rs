@@ -35,9 +35,9 @@ pub(crate) struct SpanList {
     /// Number of pixels and cells.
     pixels: i32,
     cells: i32,
-    /// Pixels from one row to the next, ...
+    /// Pixels from one row to the next.
     pub(crate) pitch: i32,
-    /// ... and cells.
+    /// Cells from one row to the next.
     pub(crate) width: i32,
     /// Pixels of all spans so far, as eight partial sums.
     covered: [i32; LANES],
@@ -136,7 +136,7 @@ impl SpanList {
         }
     };
 
-    /// An empty list for these numbers of pixels and cells, each with the number of them from one row to the next.
+    /// An empty list for these numbers of pixels and cells, each with its pitch.
     #[inline(always)]
     pub(crate) fn new(pixels: (usize, u32), cells: (usize, u32)) -> Self {
         let mut list = Self::NONE;
@@ -236,8 +236,8 @@ impl SpanList {
         (mask, count)
     }
 
-    /// Draws the spans, with `DEPTHS` where they are nearer than cells, and empties the list. If there are fewer pixels
-    /// or cells than the list was made for, nothing is drawn.
+    /// Draws the spans, with `DEPTHS` only where they are nearer than the cells, and empties the
+    /// list. If there are fewer pixels or cells than the list was made for, nothing is drawn.
     #[inline(always)]
     pub(crate) fn draw_by<const DEPTHS: bool>(&mut self, Target { pixels, cells, kernel }: &mut Target<'_>) {
         if self.count == 0 {

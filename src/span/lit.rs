@@ -52,7 +52,8 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The numerators of six numbers at each of eight pixels, and their denominators.
 pub type Numerators = [Lanes<f64>; 7];
 
-/// Dividends of [`interpolate_at`]: [`divide`] turns them into its numbers, for pixels of different rows too.
+/// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of
+/// different rows.
 #[inline]
 #[must_use]
 pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {

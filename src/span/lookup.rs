@@ -1,6 +1,6 @@
 //! A look-up by two bytes: what shading of texels, fog, transparency and Phong's table reduce to.
 
-/// Replaces each byte by what a table of 256 × 256 holds for it:
+/// Replaces each byte with its entry in a table of 256 × 256:
 ///
 /// ```text
 /// row[k] = table[high[k] << 8 | row[k]]

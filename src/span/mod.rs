@@ -113,8 +113,8 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 pub struct Kernel {
     name: &'static str,
     level: Level,
-    /// Uses only what every processor of the target has. A level that not every processor has is a proof that this one
-    /// does, and has its own function.
+    /// Uses only features that every processor of the target has. Any other level is a proof that
+    /// this processor has its features, and has its own function.
     fill: Fill,
 }
 
@@ -345,10 +345,11 @@ impl Kernel {
     }
     }
 
-    /// Copies the first `length` bytes to a row that has at least as many. What follows them does not change.
+    /// Copies the first `length` bytes to a row that has at least as many. Later ones do not
+    /// change.
     #[inline(always)]
     pub(crate) fn copy(self, length: usize, row: &mut [u8], bytes: &[u8]) {
-        // Usually few, with an unpredictable number: trailing bytes are rewritten unchanged.
+        // Usually short, with an unpredictable length: trailing bytes are rewritten unchanged.
         if (1..=8).contains(&length)
             && let (Some(row), Some(bytes)) = (row.first_chunk_mut(), bytes.first_chunk())
         {
@@ -374,7 +375,7 @@ impl Kernel {
         self.level
     }
 
-    /// Returns whether it has vectors that hold eight numbers of 32 bits.
+    /// Returns whether its vectors hold eight 32-bit numbers.
     #[cfg(feature = "alloc")]
     #[inline]
     pub(crate) fn has_wide_lanes(self) -> bool {

@@ -104,7 +104,7 @@ pub(super) mod sse2 {
             Self { even, odd: _mm_add_epi16(even, steps) }
         }
 
-        /// The block whose shades are higher by `by`.
+        /// The block with all shades raised by `by`.
         #[inline]
         #[target_feature(enable = "sse2")]
         pub(super) fn raised(self, by: __m128i) -> Self {
@@ -287,8 +287,8 @@ pub(crate) mod avx2 {
     }
 
     /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, with the step in the upper half.
-    /// Bytes behind the span, in whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not
-    /// drawn.
+    /// Bytes after the span, in whichever row, are rewritten unchanged. A span that reaches beyond
+    /// `pixels` is not drawn.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {

@@ -97,7 +97,7 @@ impl EffectBatch {
         if self.is_full() {
             return false;
         }
-        // Most faces of a fine model are like that, and not worth storing.
+        // Most faces of a detailed model are like that, and not worth storing.
         if misses_centres(vertices) {
             return true;
         }

@@ -53,7 +53,8 @@ impl Curve {
         }
     }
 
-    /// a, b and c from a pixel with these weights on, which change by `[sa, sb, sc]` per pixel.
+    /// a, b and c along a row from a pixel with these weights, which change by `[sa, sb, sc]` per
+    /// pixel.
     #[inline]
     fn parabola(&self, [a, b, c]: [f64; 3], [sa, sb, sc]: [f64; 3]) -> [f32; 3] {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);

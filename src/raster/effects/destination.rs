@@ -1,5 +1,5 @@
-//! Where the loops for spans show their pixels: in the buffer of the stages, in the frame, or in the frame where they are
-//! nearer.
+//! Where the span loops write their pixels: to the stages' buffer, to the frame, or to the frame
+//! where they are nearer.
 
 use super::spans::Spans;
 use crate::lanes::LANES;
@@ -7,15 +7,16 @@ use crate::simd::Lanes8;
 use crate::span::depth_test::{Masks, test_span};
 use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_masked};
 
-/// Where the pixels of spans are shown.
+/// Where the pixels of spans are written.
 pub(super) trait Destination {
-    /// Where the pixels of span `i` begin, how many there are, and how many of its first ones are left out.
+    /// Where the pixels of span `i` begin, how many there are, and how many leading ones are left
+    /// out.
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
 
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
 
-    /// Shows texels in pixels of span `i` from `at` on, before which this many of its drawn ones lie.
+    /// Writes texels to the pixels of span `i` from `at` on, after this many of its drawn ones.
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
@@ -62,11 +63,11 @@ impl Destination for InFrame<'_> {
     }
 }
 
-/// The frame by masks: if there are cells, where pixels are nearer.
+/// The frame, written under masks: if there are cells, only where pixels are nearer.
 pub(super) struct Masked<'a> {
     pub(super) pixels: &'a mut [u8],
     pub(super) cells: Option<&'a mut [u32]>,
-    /// True if the cells store nearer depths.
+    /// True if nearer depths are stored in the cells.
     pub(super) keeps: bool,
     /// Pixels that were nearer so far.
     pub(super) nearer: u32,
@@ -107,7 +108,7 @@ impl Destination for Masked<'_> {
                     return;
                 }
             }
-            // All but what follows the last pixel.
+            // Everything except what follows the last pixel.
             None if length % LANES > 0 => {
                 if let Some(last) = masks.last_mut() {
                     *last = u64::MAX << (8 * (length % LANES));

@@ -1,11 +1,11 @@
-//! Pipelines whose pixels need no stage before fog and blending: one loop per span shows them.
+//! Pipelines whose pixels need no stage before fog and blending: one loop per span draws them.
 
 use super::pipeline::{Image, PixelPipeline, ShadeSource};
 use crate::fixed::IS_SMALL;
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
 
-/// How the pixels of faces are shown by one loop per span, with no buffer between.
+/// How one loop per span draws the pixels of faces, with no buffer in between.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Direct<'a> {
     /// Linear shades, to be fogged.
@@ -25,7 +25,7 @@ pub(super) enum DirectTint<'a> {
     Lit(&'a [u8; 65_536]),
 }
 
-/// A row of a table that shows every texel as it is.
+/// A table row that leaves every texel unchanged.
 static IDENTITY: [u8; 256] = {
     let mut row = [0; 256];
     let mut texel = 0_u8;
@@ -39,7 +39,7 @@ static IDENTITY: [u8; 256] = {
 impl<'a> Direct<'a> {
     /// The direct form of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
-        // A build for size has no loop for each tint: it stores texels, and then looks these up.
+        // A build for size has no loop for each tint: it stores texels, then looks them up.
         if IS_SMALL || pipeline.channels().is_some() {
             return None;
         }

@@ -13,9 +13,9 @@ use crate::span::list::Target;
 use crate::span::texture::{Blended, FirstPlace, Fogged, Painted, Texels, Tint, Untextured};
 
 impl Direct<'_> {
-    /// Shows the pixels of every span in the frame, fogged or blended as the pipeline says; if there are cells, only
-    /// where they are nearer. Returns the number of nearer pixels; `None`, with nothing shown, if there is no loop for
-    /// this pipeline.
+    /// Draws the pixels of every span, fogged or blended as the pipeline says; if there are cells,
+    /// only where they are nearer. Returns the number of nearer pixels, or `None` without drawing
+    /// if there is no loop for this pipeline.
     pub(super) fn show(self, spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, target: &mut Target<'_>) -> Option<u32> {
         let Target { pixels, cells, kernel } = target;
         let (fog, keeps) = (pipeline.fog(), pipeline.keeps_depth);
@@ -37,7 +37,7 @@ impl Direct<'_> {
         Some(0)
     }
 
-    /// Shows pixels where they are nearer than the cells.
+    /// Draws pixels where they are nearer than the cells.
     #[inline(never)]
     fn show_nearer(
         self,
@@ -66,7 +66,7 @@ impl Direct<'_> {
     #[inline(never)]
     fn show_fogged(self, spans: &Spans<'_>, fog: &[u8; 65_536], to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
         match self {
-            // With narrow vectors stages are 3 % faster.
+            // With narrow vectors, stages are 3 % faster.
             Self::Shades if !kernel.has_wide_lanes() => return None,
             Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
             Self::Texture { image, tint } => match tint {
@@ -79,7 +79,7 @@ impl Direct<'_> {
     }
 
     fn show_blended(self, spans: &Spans<'_>, blend: &[u8; 65_536], to: &mut InFrame<'_>, kernel: Kernel) -> Option<()> {
-        // Shades are blended 14 % faster in stages.
+        // Blending shades is 14 % faster in stages.
         let Self::Texture { image, tint } = self else { return None };
         match tint {
             DirectTint::None => show_texture(spans, image, Blended((), blend), to, kernel),
@@ -91,7 +91,7 @@ impl Direct<'_> {
 }
 
 compiled_for_each_level! {
-    /// Shows the shades of every span, tinted.
+    /// Draws the shades of every span, tinted.
     #[inline(never)]
     fn show_shades[T: Tint, D: Destination][T, D](spans: &Spans<'_>, tint: T, to: &mut D) = show_shades_by;
 }

@@ -1,4 +1,5 @@
-//! Turns faces with effects into spans: the same list as for plain triangles, and what the stages need beside it.
+//! Turns faces with effects into spans: the same list as for plain triangles, plus what the stages
+//! need.
 //!
 //! A span is up to 64 pixels of a row. It begins where its shades are reseeded, a multiple of 64 pixels from the row's
 //! first covered pixel inside the frame, so every value is exact at its first pixel. A clip rectangle may hide its
@@ -115,7 +116,7 @@ impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
     }
 }
 
-/// Triangles as the stages read them: picked ones, by their index among the picks.
+/// Picked triangles as the stages read them, by their index among the picks.
 #[derive(Clone, Copy)]
 pub(super) struct Faces<'a> {
     pub(super) triangles: &'a Triangles<'a>,
@@ -132,7 +133,7 @@ impl<'a> Faces<'a> {
         FaceCorners { triangle: face.triangle, face, columns: &self.triangles.columns.effects }
     }
 
-    /// Face `k` with its corners sorted by height, and where the values of its corners are.
+    /// Face `k` with its corners sorted by height, and the indices of its vertices.
     #[inline]
     pub(super) fn sorted(&self, k: usize) -> SortedFace {
         let pick = self.picks.get(k);
@@ -240,7 +241,7 @@ struct Wanted {
 
 impl Wanted {
     fn by(pipeline: &PixelPipeline<'_>) -> Self {
-        // For every 16th pixel a stage sets up each face on its own.
+        // For `Every16`, a stage sets up each face on its own.
         let texture = pipeline.texture().map(|stage| stage.mapping).filter(|mapping| *mapping != Mapping::Every16);
         let last_level = pipeline.levels().map(Levels::last);
         let mut values = [None; Value::MAX_COUNT];
@@ -278,7 +279,7 @@ pub(super) struct Listed<'a> {
     sums: &'a mut SpanStarts<SUMS>,
     /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
-    /// How pixels are shown by one loop per span, where possible.
+    /// How one loop per span draws the pixels, where possible.
     pub(super) direct: Option<Direct<'a>>,
 }
 

@@ -10,7 +10,8 @@ use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::Numerators;
 
-/// The most lit pixels of a span that is lit only at some, its end included, rounded up to whole vectors.
+/// The most lit pixels of a span of which only some are lit, its end included, rounded up to whole
+/// vectors.
 const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.
@@ -83,7 +84,7 @@ fn places(first: usize) -> Lanes<f64> {
 
 /// Pixels of several rows, pending until eight of them are lit together.
 struct Waiting {
-    /// The first eight make a full block; behind them is room for what one more row adds.
+    /// The first eight make a full block; after them is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
     /// The index of each among the pixels of all spans.
     places: [usize; 2 * LANES],

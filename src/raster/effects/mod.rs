@@ -59,7 +59,8 @@ use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
 use crate::span::{Kernel, lookup, lookup_row};
 
-/// Memory of the stages: planes of faces, and what passes from stage to stage. Reusing it allocates nothing.
+/// Memory of the stages: planes of faces, and the data passed from stage to stage. Reusing it
+/// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EffectScratch {
     /// A list of spans with what the stages know about them; empty until it is needed.
@@ -141,7 +142,7 @@ impl EffectScratch {
     }
 }
 
-/// Counts what was done to this many pixels, whatever the depth test said about them.
+/// Counts the work done on this many pixels, whatever the depth test decided.
 fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
     let add = |on: bool, count: &mut u32| *count += if on { pixels } else { 0 };
     add(pipeline.texture().is_some(), &mut drawn.textured);
@@ -238,7 +239,7 @@ fn write_all_by(
 }
 
 compiled_for_each_level! {
-    /// Writes spans where they are nearer, and if it keeps depths stores theirs.
+    /// Writes spans where they are nearer, and stores their depths if the pipeline keeps them.
     #[inline(never)]
     fn write_nearer[][](
         spans: &Spans<'_>,
@@ -305,7 +306,7 @@ fn mixed<'a>(
 }
 
 compiled_for_each_level! {
-    /// Draws triangles with effects, with `DEPTHS` only their nearer pixels.
+    /// Draws triangles with effects; with `DEPTHS`, only their nearer pixels.
     #[inline(never)]
     fn draw_effects[const DEPTHS: bool][DEPTHS](
         of: Drawn<'_>,

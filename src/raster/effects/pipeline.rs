@@ -30,10 +30,11 @@ pub enum ShadeSource<'a> {
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at every pixel.
     Lit(&'a dyn Lighting),
-    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a row; shades are linear
-    /// between.
+    /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a
+    /// row; shades are linear in between.
     ///
-    /// The lit pixels are the row's first inside the frame, some at equal distances from there on, and its last.
+    /// The lit pixels are the row's first inside the frame, its last, and those at equal distances
+    /// in between.
     LitEvery(SampleSpacing, &'a dyn Lighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): at the corners
     /// and at the midpoints of the edges. Clamped to these limits, one pair for each channel; a single shade uses the
@@ -118,12 +119,12 @@ impl<'a> Image<'a> {
         Self { texels: stage.texels, levels: stage.levels.filter(|_| !cfg!(mode13h_leave_out = "mipmaps")) }
     }
 
-    /// The number of the last level.
+    /// The index of the last level.
     pub(super) fn last(self) -> u32 {
         self.levels.map_or(0, Levels::last)
     }
 
-    /// The texels of every level; numbers beyond the last are not used.
+    /// The texels of every level; entries beyond the last are not used.
     #[inline]
     pub(super) fn all(self) -> [Texels<'a>; LEVELS] {
         let mut all = [self.texels; LEVELS];
@@ -161,7 +162,7 @@ pub struct PixelPipeline<'a> {
 
 /// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
 impl<'a> PixelPipeline<'a> {
-    /// Its source, which is not light at the pixels if that is left out.
+    /// Its source; never per-pixel lighting in a build that leaves that out.
     #[inline]
     pub(super) fn source(&self) -> ShadeSource<'a> {
         match self.source {

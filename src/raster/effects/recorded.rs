@@ -27,7 +27,7 @@ pub(super) struct Recorded {
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
     pub(super) depth: [i64; 2],
-    /// Levels of some pixels, if the image has them: as found for eight triangles, and the definition.
+    /// Levels of some pixels, if the image has any: as found for eight triangles, and as defined.
     pub(super) levels: Vec<(Option<AffineLevel>, AffineLevel)>,
 }
 

@@ -46,9 +46,9 @@ pub(super) struct Span {
     /// The column and the row of its first pixel, which the clip rectangle may hide.
     pub(super) x: i32,
     pub(super) y: i32,
-    /// Where its pixels begin among those of all spans, ...
+    /// Where its pixels begin among those of all spans.
     pub(super) first: usize,
-    /// ... and how many there are, hidden ones included: 1 to 64.
+    /// Number of its pixels, hidden ones included: 1 to 64.
     pub(super) len: usize,
 }
 
@@ -89,7 +89,7 @@ impl Span {
 }
 
 impl<'a> Spans<'a> {
-    /// Takes as many spans from index `first` on as pass through the stages together.
+    /// Takes as many spans from index `first` on as can pass through the stages together.
     #[inline]
     pub(super) fn of(listed: &'a Listed<'_>, list: &'a SpanList, first: usize, offsets: &'a mut Offsets) -> Self {
         let (mut count, mut end) = (0, 0);
@@ -185,7 +185,8 @@ impl<'a> Spans<'a> {
         self.listed.numbers.of(self.first + i, 2 + value.slot())
     }
 
-    /// Returns whether the list has the texture coordinates of all spans; otherwise these are of a single face.
+    /// Returns whether the list has the texture coordinates of all spans; otherwise there is a
+    /// single face.
     #[inline(always)]
     pub(super) fn have_texture(&self) -> bool {
         self.listed.walked.is_none()
@@ -211,7 +212,8 @@ impl<'a> Spans<'a> {
         planes.perspective.sums(lane, self.listed.sums(self.first + i))
     }
 
-    /// The level of the image at pixel `k` of span `i`, whose texture is linear on the face, if an estimate decides.
+    /// The level of the image at pixel `k` of span `i`, whose texture is linear on the face, if an
+    /// estimate decides it.
     #[inline(always)]
     pub(super) fn level(&self, i: usize, k: i32, last: u32) -> Option<u32> {
         let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
@@ -231,8 +233,8 @@ impl<'a> Spans<'a> {
         planes.perspective.singles(lane, self.listed.sums(self.first + i))
     }
 
-    /// Runs one stage: for every face `plane` computes what its values are over it, from its corners top to bottom; for
-    /// every span `fill` computes its part of `out` from that.
+    /// Runs one stage: for every face, `plane` sets up its values from its corners, top to bottom;
+    /// for every span, `fill` computes its part of `out` from them.
     #[inline(always)]
     pub(super) fn each<P, T>(
         &self,
@@ -304,7 +306,7 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// A shade or another value of the corners, to become bytes.
+/// A shade or another corner value that is turned into bytes.
 #[derive(Clone, Copy)]
 pub(super) struct Shaded {
     /// `None` for the shade.

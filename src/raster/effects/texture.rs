@@ -23,7 +23,8 @@ use crate::span::texture::{
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
 const EVERY: i32 = 16;
 
-/// Shows the texels of every span, linear on the face if the mapping is in perspective, otherwise on the screen.
+/// Draws the texels of every span, linear on the face if the mapping is in perspective, otherwise
+/// on the screen.
 #[inline(always)]
 pub(super) fn show_texture<T: Tint, D: Destination>(
     spans: &Spans<'_>,
@@ -65,7 +66,7 @@ impl Spans<'_> {
                 // Beyond the triangle there may be no coordinates at all.
                 let next = (x + EVERY).min(last).max(x);
                 let [from, to] = [x, next].map(|x| plane.at(x, y).map(|coordinate| coordinate >> level));
-                // Wrapping is intended: texels repeat. Not −2³¹ by −1.
+                // Wrapping is intended: texels repeat. It is never −2³¹ by −1.
                 let step = |i: usize| (to[i].wrapping_sub(from[i]) / (next - x).max(1)) as u32;
                 let [u, v] = from.map(i32::cast_unsigned);
                 fill_affine(part, all[level as usize % LEVELS], u, v, step(0), step(1));
@@ -86,28 +87,29 @@ fn level_at(plane: &PerspectiveTexture, levels: &LevelPlane, x: i32, y: i32, las
 }
 
 compiled_for_each_level! {
-    /// Shows the texels of every span, linear on the screen.
+    /// Draws the texels of every span, linear on the screen.
     #[inline(never)]
     fn show_affine[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
         = show_affine_by;
 }
 
 compiled_for_each_level! {
-    /// Shows the texels of every span, linear on the screen, each face from a level of the image.
+    /// Draws the texels of every span, linear on the screen, each face from one level of the image.
     #[inline(never)]
     fn show_affine_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: &mut D)
         = show_affine_levels_by;
 }
 
 compiled_for_each_level! {
-    /// Shows the texels of every span, linear on the face.
+    /// Draws the texels of every span, linear on the face.
     #[inline(never)]
     fn show_exact[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
         = show_exact_by;
 }
 
 compiled_for_each_level! {
-    /// Shows the texels of every span, linear on the face, from levels, one of which is chosen for every 16 pixels.
+    /// Draws the texels of every span, linear on the face, from a mipmap level chosen every 16
+    /// pixels.
     #[inline(never)]
     fn show_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: &mut D)
         = show_levels_by;
@@ -151,7 +153,8 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Shows the texels of span `i`, from their coordinates at its first pixel on, and the change per pixel.
+/// Draws the texels of span `i`, from their coordinates at its first pixel on, and the change per
+/// pixel.
 #[inline(always)]
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     s: S,
@@ -226,8 +229,8 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Shows texels of a level in pixels of a span, linear on the face: the first one is number `first` of the span. The list
-/// may have sums for it.
+/// Draws texels of a level in a span from its pixel `first` on, linear on the face. The list may
+/// have sums for it.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     s: S,
@@ -444,8 +447,9 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every level sets up eight triangles as it would each alone: affine coordinates and depths to the bit, the
-        /// sums of perspective ones within the four roundings of their terms.
+        /// Every level sets up eight triangles as it would each one alone: affine coordinates and
+        /// depths to the bit, the sums of perspective ones within the four roundings of their
+        /// terms.
         #[test]
         fn eight_triangles_are_each_its_own(given in given()) {
             let (mut at, mut depth, mut shade) = (Vec::new(), Vec::new(), Vec::new());
@@ -537,8 +541,8 @@ mod tests {
         prop::array::uniform8(triangle.boxed())
     }
 
-    /// Levels that are found for eight triangles at a time are those of the definition. In perspective an estimate
-    /// decides most.
+    /// Levels found for eight triangles at a time match the definition. In perspective, an estimate
+    /// decides most of them.
     #[test]
     fn levels_are_the_definition() {
         for mapping in [Mapping::Affine, Mapping::Perspective] {

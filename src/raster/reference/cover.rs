@@ -8,7 +8,7 @@ use crate::raster::vertex::Vertex;
 /// the three points, not on the order they were given in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortedTriangle {
-    /// The vertices by (y, x).
+    /// The vertices, sorted by (y, x).
     pub vertices: [Vertex; 3],
     /// Twice the area in (1/256 pixel)²; positive if the middle vertex lies right of the edge from
     /// top to bottom. Within ±2⁴².

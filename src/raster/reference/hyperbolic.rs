@@ -10,8 +10,9 @@
 //!
 //! Numerator and denominator are exact: at most 2⁴² · 2³² · 2¹⁶. The byte is the nearest shade, `floor((I + 128) /
 //! 256)`, in one quotient. It is in the range of the vertices because I is a mean of theirs with non-negative weights,
-//! and the quotient is exact. It is off from the truth by half a shade and what the rounding of depths adds: for w from
-//! 1 to 10⁴ within one triangle a depth is off by at most 5 parts in 10⁶, a shade by 0.003.
+//! and the quotient is exact. It is within half a shade of the truth, plus what rounding the depths
+//! adds: for w from 1 to 10⁴ within one triangle a depth is off by at most 5 parts in 10⁶, a shade
+//! by 0.003.
 
 use super::cover::SortedTriangle;
 use super::weights::{Weights, in_f64};

@@ -1,9 +1,9 @@
 //! Exact quotients from one reciprocal.
 //!
-//! A triangle divides several numbers by the same divisor: its doubled area, the height of an edge.
-//! Integer division is slow (20 to 90 cycles for 64 bits on the processors of the last decade), so
-//! where the processor has f64 the divisor is inverted once and every quotient is a product, made
-//! exact by its remainder:
+//! Drawing a triangle divides several numbers by the same divisor: its doubled area, the height of
+//! an edge. Integer division is slow (20 to 90 cycles for 64 bits on the processors of the last
+//! decade), so where the processor has f64 the divisor is inverted once and every quotient is a
+//! product, made exact by its remainder:
 //!
 //! ```text
 //! q = nearest(n · (1/d))        in f64: three roundings, each at most one part in 2⁵³

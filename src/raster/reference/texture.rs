@@ -25,8 +25,8 @@ pub(in crate::raster) fn depth(triangle: &SortedTriangle, corner: usize) -> i64 
 /// it is for triangles of half a million pixels and 4,096 texels, its numerator is right modulo 2⁶⁴ whatever its terms
 /// are.
 ///
-/// In level n of a mipmap, the coordinate and the step are divided by 2ⁿ and rounded again, which gives what rounding
-/// once would: see [`AffineLevel`].
+/// In level n of a mipmap, the coordinate and the step are divided by 2ⁿ and rounded again, which
+/// gives the same as rounding once: see [`AffineLevel`].
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct AffinePlane {
     area: Divisor,
@@ -111,7 +111,7 @@ impl AffinePlane {
     }
 }
 
-/// The level of a mipmap that a face with coordinates linear on the screen is shown from.
+/// The mipmap level from which a face with coordinates linear on the screen is drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(in crate::raster) struct AffineLevel {
     pub(in crate::raster) level: u32,

@@ -101,7 +101,7 @@ impl<'a> List<'a> {
         &mut self.pairs[slot]
     }
 
-    /// Inserts the faces that begin at row `y`. `coming` holds their keys, and is used up.
+    /// Inserts the faces that begin at row `y`. `coming` holds their keys, and is consumed.
     pub(super) fn enter(&mut self, y: i32, coming: &mut [u64], faces: &[([Vertex; 3], Interpolation)]) {
         self.y = y;
         for key in &mut *coming {

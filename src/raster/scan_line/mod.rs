@@ -97,7 +97,7 @@ impl Lists {
 pub struct ScratchError {
     /// Faces to be drawn.
     pub faces: usize,
-    /// Faces that there is memory for.
+    /// Faces that fit into the memory.
     pub room: usize,
 }
 

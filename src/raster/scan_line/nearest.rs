@@ -9,10 +9,10 @@
 //! z_i − z_j ≥ 2²⁴     if j was: then d_i is greater by at least one
 //! ```
 //!
-//! The difference is linear, so where this holds at both ends it holds all between; where it does not hold at the right
-//! end, it holds up to the pixel that one division gives, and from there on the faces are compared again. Where i leads
-//! at the first pixel by less than that, only the first pixel is decided. The background counts as a face of depth 0
-//! submitted before all others.
+//! The difference is linear, so where this holds at both ends it holds everywhere between; where it
+//! does not hold at the right end, it holds up to the pixel that one division gives, and from there
+//! on the faces are compared again. Where i leads at the first pixel by less than that, only the
+//! first pixel is decided. The background counts as a face of depth 0 submitted before all others.
 
 use super::active::List;
 use crate::raster::reference::depth::DepthPlane;

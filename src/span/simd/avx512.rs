@@ -24,9 +24,9 @@ static EVEN: [u16; 32] = {
     even
 };
 
-// Vectors that are read through a `black_box`. The compiler replaces a shuffle that it knows, and one under a mask that
-// it knows, by two or three operations on the shuffle port. (A large triangle's rows then take 3.0 ns each, otherwise
-// 1.9.)
+// Vectors that are read through a `black_box`, because the compiler replaces a shuffle that it
+// knows, or one under a mask that it knows, with two or three operations on the shuffle port. (A
+// large triangle's rows then take 3.0 ns each, otherwise 1.9.)
 
 /// Both bytes of a 16-bit lane from its upper one.
 static UPPER_BYTES: [u16; 32] = {
@@ -48,7 +48,7 @@ static LOWEST: [u64; 8] = {
 /// The upper halves of eight 64-bit lanes of two vectors, in 32-bit lanes.
 static UPPER_HALVES: [u32; 16] = [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31];
 
-/// Loads one of these.
+/// Loads one of these vectors.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn opaque<T, const N: usize>(numbers: &'static [T; N]) -> __m512i {

@@ -4,8 +4,9 @@
 //! Pixels of an iteration that are not part of the span get depth 0, which is not nearer than anything, so they are
 //! rewritten unchanged: AVX2 has masked stores only for 32 bits, and on some processors they are slow. So as many
 //! pixels and cells as an iteration takes must exist, in whichever row; a span at the very end of the frame that lacks
-//! them is drawn by [`fill_nearer`]. (Four where that is enough, since bytes stored a moment ago are then less often
-//! reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
+//! them is drawn by [`fill_nearer`]. (Four where that is enough, since bytes just stored are then
+//! less often reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9
+//! to 13.5 with 0.6.)
 
 use core::arch::x86_64::*;
 
@@ -13,11 +14,11 @@ use super::super::depth::{fill_nearer, fill_nearer_16_16};
 use super::super::list::{Span, SpanDepth, SpanList};
 use crate::simd::{Avx2, SET_THEN_CLEAR};
 
-/// Pixels per iteration, ...
+/// Pixels per iteration.
 const EIGHT: usize = 8;
-/// ... for shades in long spans, ...
+/// Pixels per iteration for shades in long spans.
 const SIXTEEN: usize = 16;
-/// ... or in spans of at most four.
+/// Pixels per iteration in spans of at most four.
 const FOUR: usize = 4;
 
 /// Fills every span of a list. Returns the number of pixels written.
@@ -52,7 +53,7 @@ fn fill_16_16(
     })
 }
 
-/// What a span is filled with.
+/// The fill of a span.
 #[derive(Clone, Copy)]
 enum Own {
     /// Its own shade and step in 8.8.
@@ -63,8 +64,8 @@ enum Own {
 
 /// Fills spans in order. Returns the number of pixels written.
 ///
-/// A span that does not lie inside the pixels and cells is not drawn. (One function for a list: one for each span,
-/// which is too large to be inlined in the loop, is a quarter slower.)
+/// A span that does not lie inside the pixels and cells is not drawn. (One function fills a whole
+/// list: one for each span, which is too large to be inlined in the loop, is a quarter slower.)
 #[target_feature(enable = "avx2")]
 fn fill(
     pixels: &mut [u8],
@@ -119,7 +120,7 @@ fn fill(
     turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
 }
 
-/// The first `count` lanes set, at most eight.
+/// A mask with the first `count` lanes set, at most eight.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn first_eight(count: usize) -> __m256i {

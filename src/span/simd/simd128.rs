@@ -5,7 +5,7 @@
 pub(super) trait Block: Copy {
     /// The block whose first pixel has `shade`.
     fn new(shade: u16, step: u16) -> Self;
-    /// The block whose shades are higher by `by`.
+    /// The block with all shades raised by `by`.
     fn raised(self, by: u16) -> Self;
     /// Its sixteen bytes.
     fn store(self, to: &mut [u8; 16]);

@@ -1,4 +1,4 @@
-//! Loops over the texels of a span: where they lie in their image, and what is shown of them.
+//! Loops over the texels of a span: where they lie in their image, and how they are shown.
 
 use super::Texels;
 use super::tint::Tint;
@@ -6,8 +6,8 @@ use crate::fixed::IS_COMPACT;
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
 
-/// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next eight, in lanes. What
-/// follows those pixels does not change.
+/// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next
+/// eight, in lanes. The pixels after those do not change.
 #[inline(always)]
 pub(crate) fn show_along<S: Lanes8, T: Tint>(
     s: S,
@@ -67,7 +67,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     }
 }
 
-/// [`show_along`] by the masks of [`depth_test`](super::depth_test), one for each block.
+/// [`show_along`] under the masks of [`depth_test`](super::depth_test), one for each block.
 #[inline(always)]
 pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     s: S,
@@ -134,20 +134,20 @@ fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): 
     tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
 }
 
-/// Pixels that are shown at once if no more are left.
+/// Pixels written at once if no more are left.
 const FOUR: usize = LANES / 2;
 
 /// Indices of texels, eight at a time.
 pub(crate) trait PlacesAlong<S: Lanes8> {
     fn next(&mut self) -> S::I32;
-    /// Leaves out the next eight.
+    /// Skips the next eight.
     #[inline(always)]
     fn skip(&mut self) {
         self.next();
     }
 }
 
-/// The texels of a level, and its number.
+/// The texels of a level, and its index.
 pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
 
 /// Computes indices of texels in vectors.

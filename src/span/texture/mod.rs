@@ -30,7 +30,7 @@ pub use self::perspective::{fill_perspective, fill_perspective_portable};
 #[cfg(feature = "alloc")]
 pub(crate) use self::tint::{Blended, Fogged, Painted, SpanValues, Tint, Untextured};
 
-/// A texture's bytes, row by row, with their shape.
+/// A texture's bytes, row by row, with its size.
 #[derive(Clone, Copy, Debug)]
 pub struct Texels<'a> {
     /// 2^(ubits + vbits), so at least one and at most 65,536.

@@ -153,9 +153,9 @@ pub(crate) fn singles_along<S: F32Lanes8>(
 struct PerspectiveAlong<S: Lanes8, Q: QuotientsAlong<S>, E> {
     places: PlaceLanes<S>,
     quotients: Q,
-    /// The numbers of the next eight texels, ...
+    /// The numbers of the next eight texels.
     numbers: Q::Numbers,
-    /// ... and of the first of them.
+    /// The number of the first of them.
     first: usize,
     exact: E,
 }
@@ -165,7 +165,8 @@ impl<S: Lanes8, Q: QuotientsAlong<S>, E: FnMut(usize, &mut [i32; LANES])> Places
     fn next(&mut self) -> S::I32 {
         let (s, numbers, first) = (self.places.s, self.numbers, self.first);
         self.skip();
-        // Without f64 no quotient decides, and each would take a chip thousands of instructions.
+        // Without f64 no quotient decides, and each would cost a microcontroller thousands of
+        // instructions.
         if HAS_F64 {
             let ([u, v], is_unsure) = self.quotients.at(s, numbers);
             if !is_unsure {
@@ -208,7 +209,7 @@ trait QuotientsAlong<S: Lanes8> {
 struct Quotients<S: Lanes8> {
     places: PlaceLanes<S>,
     sums: PerspectiveSums<f64>,
-    /// The number of the pixel behind the last.
+    /// The number of the pixel after the last.
     end: S::I32,
     /// False if no quotient can decide, since divisors differ too much.
     are_sure: bool,
@@ -315,7 +316,7 @@ impl<S: F32Lanes8> Singles<S> {
 impl<S: F32Lanes8> QuotientsAlong<S> for Singles<S> {
     type Numbers = S::F32;
 
-    /// Pixels beyond the last may be what cannot decide.
+    /// Pixels beyond the last may also be undecided.
     #[inline(always)]
     fn at(&self, s: S, k: S::F32) -> ([S::I32; 2], bool) {
         let ([[u, du], [v, dv]], [d, dd]) = (self.numerators, self.divisors);
@@ -353,7 +354,7 @@ mod tests {
             let found = lanes[3] - SINGLES_MARGIN;
             most = most.max((f64::from(found) - exact).abs());
             is_near |= (lanes[3] & 0xFFFF) < 2 * SINGLES_MARGIN;
-            // What decides, decides for the right texel.
+            // Decided quotients select the right texel.
             assert!(is_near || (exact / 65_536.0).floor() as i32 == lanes[3] >> 16, "{exact} {found}");
         }
         assert_eq!(is_unsure, is_near);

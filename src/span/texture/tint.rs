@@ -1,4 +1,4 @@
-//! What is shown for a texel: itself, lit, fogged or blended.
+//! How a texel is shown: as it is, lit, fogged or blended.
 
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
