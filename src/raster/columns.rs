@@ -89,7 +89,7 @@ pub(crate) struct EffectColumns<'a> {
 }
 
 /// The values of a corner besides its position, shade and depth. Values that a pipeline does not
-/// use may be anything.
+/// use are ignored.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {

@@ -56,7 +56,7 @@ impl Interpolation {
         Self::Float,
     ];
 
-    /// Its name in a recorded frame.
+    /// The name used in a recorded frame.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -90,7 +90,7 @@ impl Interpolation {
         }
     }
 
-    /// What is added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
+    /// The amount added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
     #[must_use]
     pub const fn rounding(self) -> u8 {
         match self {

@@ -19,8 +19,8 @@ use crate::simd::Lanes8;
 use crate::span::LargeTriangle;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
-/// The most rows of a small triangle for its rows to be found with those of seven others, then
-/// sorted by triangle.
+/// The greatest height, in rows, of small triangles that are walked eight at a time; their rows are
+/// sorted by triangle afterwards.
 pub(super) const MAX_SHORT_ROWS: i32 = 4;
 
 /// The meaning of a vector's eight lanes.
@@ -174,7 +174,7 @@ pub(super) trait Shades8 {
     /// Begins the eight triangles from pick `first` on.
     fn begin(&mut self, first: usize);
 
-    /// Sets up eight triangles whose edges and linear shades are already set up.
+    /// Completes the set-up of eight triangles whose edges and linear shades are already set up.
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
 
     /// The fills of the spans of rows `j`, as columns of the list.

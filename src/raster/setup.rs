@@ -45,7 +45,7 @@ use crate::simd::Lanes8;
 #[cfg(simd_x86_64)]
 use crate::span::LargeTriangle;
 
-/// Where the pixels of a frame lie.
+/// Layout of a frame's pixels.
 #[derive(Clone, Copy)]
 pub(super) struct FrameLayout {
     /// The row whose pixels come first.
@@ -195,7 +195,7 @@ pub(super) struct TriangleSetup8 {
     pub(super) upper: Edges,
     pub(super) lower: Edges,
     pub(super) shade: ValuePlanes8,
-    /// 1 over twice the area.
+    /// The reciprocal of twice the area.
     pub(super) inverse: Floats,
     /// Depth at the box's first pixel, with 32 fraction bits modulo 2⁶⁴, the half included.
     pub(super) z: [i64; LANES],

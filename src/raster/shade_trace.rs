@@ -194,7 +194,7 @@ pub fn row_of(
     found
 }
 
-/// All rows that it draws in a frame of this size.
+/// All rows that a triangle draws in a frame of this size.
 pub fn rows_of(triangle: &SortedTriangle, interpolation: Option<Interpolation>, width: u32, height: u32) -> Vec<Row> {
     let mut rows = Vec::new();
     each_row(triangle, interpolation, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));

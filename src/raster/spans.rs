@@ -161,7 +161,7 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
-/// Where triangles are drawn: the pixels' layout, and the clip rectangle.
+/// Drawing area of triangles: the pixels' layout, and the clip rectangle.
 pub(super) type Place = (FrameLayout, Rect);
 
 /// Draws triangles with linear shades, none of which is unbatched; if there are cells, only where they are nearer.
@@ -368,8 +368,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1_000))]
-        /// Bytes, depths and counts of triangles with a single shade each are those of one after another, at every
-        /// level.
+        /// Triangles with a single shade each give the bytes, depths and counts of drawing them one
+        /// after another, at every level.
         #[test]
         fn flat_triangles_are_each_its_own(
             corners in prop::collection::vec(corner(), 3..30),

@@ -61,8 +61,8 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// Draws only what is nearer than `depth`, which must be laid over this frame's rows ([`DepthBuffer::new`]); rows
-    /// that it lacks are not drawn.
+    /// Draws only what is nearer than `depth`, which must have been created for this frame's rows
+    /// ([`DepthBuffer::new`]); rows that it lacks are not drawn.
     #[must_use]
     pub fn with_depth<D: Cell>(self, depth: DepthBuffer<'a, D>) -> Raster<'a, D> {
         let Self { frame, clip, depth: _, kernel } = self;

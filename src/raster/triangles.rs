@@ -38,7 +38,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// The most triangles it holds.
+    /// The most triangles that a batch can hold.
     pub const CAPACITY: usize = 128;
 
     /// An empty batch.
@@ -85,7 +85,7 @@ impl Batch {
         self.count
     }
 
-    /// Returns whether the batch holds no triangle.
+    /// Returns whether the batch is empty.
     #[must_use]
     #[inline]
     pub const fn is_empty(&self) -> bool {

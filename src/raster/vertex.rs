@@ -119,8 +119,8 @@ impl Vertex {
     }
 }
 
-/// Returns whether the box of these corners, its left and top sides included and the others excluded, holds no pixel
-/// centre: a triangle with exact coverage then draws nothing.
+/// Returns whether the box of these corners, its left and top sides included and the others
+/// excluded, contains no pixel centre: a triangle with exact coverage then draws nothing.
 #[inline]
 pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
     let [a, b, c] = corners;

@@ -89,9 +89,9 @@ impl Edge {
 /// A triangle with its vertices on whole pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VintageTriangle {
-    /// From the top to the bottom.
+    /// The edge from the top to the bottom.
     long: Edge,
-    /// From the top to the middle, and from there to the bottom.
+    /// The edges from the top to the middle, and from there to the bottom.
     short: [Edge; 2],
     /// The row of the middle, and the one after the last.
     split: i32,

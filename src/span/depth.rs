@@ -13,7 +13,7 @@ mod sealed {
     #[derive(Debug)]
     pub enum Cells<'a> {
         U16(&'a mut [u16]),
-        /// These have kernels of their own.
+        /// Cells of 32 bits, which have kernels of their own.
         U32(&'a mut [u32]),
     }
 

@@ -121,9 +121,9 @@ compiled_for_each_level! {
     ) -> u32 = copy_where_nearer_by;
 }
 
-/// [`copy_nearer`](super::depth::copy_nearer) of the first `length` bytes, or if it does not keep depths
-/// [`copy_nearer_keep_depth`](super::depth::copy_nearer_keep_depth), with depths as in [`test_span`]. What follows in the
-/// row and in the cells does not change.
+/// [`copy_nearer`](super::depth::copy_nearer) of the first `length` bytes, or if it does not keep
+/// depths [`copy_nearer_keep_depth`](super::depth::copy_nearer_keep_depth), with depths as in
+/// [`test_span`]. The rest of the row and of the cells does not change.
 #[inline(always)]
 fn copy_where_nearer_by<S: Lanes8>(
     s: S,

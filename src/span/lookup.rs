@@ -1,4 +1,4 @@
-//! A look-up by two bytes: what shading of texels, fog, transparency and Phong's table reduce to.
+//! A look-up by two bytes: the core of texel shading, fog, transparency and Phong's table.
 
 /// Replaces each byte with its entry in a table of 256 × 256:
 ///

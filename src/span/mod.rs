@@ -221,7 +221,7 @@ impl Kernel {
         LISTED.iter().filter_map(Listed::kernel)
     }
 
-    /// Its name in the table, such as `simd`.
+    /// The kernel's name in the table, such as `simd`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         self.name
@@ -320,8 +320,9 @@ impl Kernel {
     /// Copies the first `length` bytes like [`depth::copy_nearer`] with `KEEPS`, otherwise like
     /// [`depth::copy_nearer_keep_depth`]. Returns the number of pixels written.
     ///
-    /// Row, cells and bytes may be longer, and what follows in the row and in the cells does not change: vectors take
-    /// whole iterations where there is room for them. Pixels beyond the shortest of the three are left alone.
+    /// Row, cells and bytes may be longer, and the rest of the row and of the cells does not
+    /// change: vectors take whole iterations where there is room for them. Pixels beyond the
+    /// shortest of the three are left alone.
     #[inline]
     fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
         self,
@@ -345,8 +346,8 @@ impl Kernel {
     }
     }
 
-    /// Copies the first `length` bytes to a row that has at least as many. Later ones do not
-    /// change.
+    /// Copies the first `length` bytes to a row that has at least as many. The rest of the row does
+    /// not change.
     #[inline(always)]
     pub(crate) fn copy(self, length: usize, row: &mut [u8], bytes: &[u8]) {
         // Usually short, with an unpredictable length: trailing bytes are rewritten unchanged.

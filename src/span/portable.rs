@@ -1,4 +1,4 @@
-//! The loop of 1994, and the specification: what this writes is right.
+//! The loop of 1994, and the specification: its output is right by definition.
 
 /// `mov [edi],ah` / `inc edi` / `add ax,bx` / `loop`, with `row` for EDI and CX.
 #[inline]

@@ -130,8 +130,8 @@ static BAYER: [ThresholdRow; 8] = {
     rows
 };
 
-/// What the `PlayStation` adds to each channel of 8 bits before it cuts off the lower three (Martin Korth, *Nocash PSX
-/// Specifications*, "24bit RGB to 15bit RGB Dithering").
+/// The dither that the `PlayStation` adds to each 8-bit channel before it cuts off the lower three
+/// bits (Martin Korth, *Nocash PSX Specifications*, "24bit RGB to 15bit RGB Dithering").
 ///
 /// ```text
 /// threshold = nearest((2·(offset + 4) + 1) · 255 / 16)        offset −4 to 3

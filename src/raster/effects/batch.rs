@@ -67,7 +67,7 @@ impl Corners {
 }
 
 impl EffectBatch {
-    /// The most faces it holds.
+    /// The most faces that a batch can hold.
     pub const CAPACITY: usize = CHUNK;
 
     /// An empty batch. Its first drawing allocates 100 kB.
@@ -76,7 +76,7 @@ impl EffectBatch {
         Self::default()
     }
 
-    /// Returns whether the batch holds no face.
+    /// Returns whether the batch is empty.
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
@@ -91,7 +91,8 @@ impl EffectBatch {
     }
 
     /// Adds a face. The order and winding of the corners do not matter; a face without area draws nothing, and one
-    /// whose box holds no pixel centre is left out. Returns `false`, and adds nothing, if the batch is full.
+    /// whose box contains no pixel centre is left out. Returns `false`, and adds nothing, if the
+    /// batch is full.
     #[inline]
     pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
         if self.is_full() {

@@ -68,7 +68,7 @@ impl Curve {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePlane {
     weights: Weights,
-    /// 1 over the triangle's doubled area.
+    /// The reciprocal of the triangle's doubled area.
     share: f64,
     steps: [f64; 3],
     curves: [Curve; 3],

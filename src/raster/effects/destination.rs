@@ -7,7 +7,7 @@ use crate::simd::Lanes8;
 use crate::span::depth_test::{Masks, test_span};
 use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_masked};
 
-/// Where the pixels of spans are written.
+/// Destination of the pixels of spans.
 pub(super) trait Destination {
     /// Where the pixels of span `i` begin, how many there are, and how many leading ones are left
     /// out.

@@ -28,7 +28,7 @@ use crate::simd::Lanes8;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, SpanStarts, Spans8, Starts8, Target};
 use crate::span::texture::Levels;
 
-/// Where a span lies in its face, packed into two u32.
+/// Position of a span in its face, packed into two u32.
 ///
 /// | bits | the first | the second |
 /// |---|---|---|
@@ -86,7 +86,7 @@ const SUMS: usize = 3;
 /// The numbers of eight spans.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks8<S: Lanes8> {
-    /// The two of the mark, and those of the slots in use.
+    /// The mark's two numbers, and those of the slots in use.
     numbers: [S::I32; NUMBERS],
     count: usize,
     /// The mapping of the coordinates, if there are any.
@@ -206,7 +206,8 @@ impl FacePlanes8 {
     };
 }
 
-/// Reused memory beside the list of spans: the planes of the faces, and the numbers of each span.
+/// Reused memory that accompanies the list of spans: the planes of the faces, and the numbers of
+/// each span.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     planes: [FacePlanes8; Batches::COUNT],

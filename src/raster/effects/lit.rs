@@ -205,11 +205,11 @@ impl Spans<'_> {
     }
 }
 
-/// The lit pixels of a span, and the ones between.
+/// The lit pixels of a span, and the ones in between.
 #[derive(Clone, Copy, Debug)]
 struct Knots {
     spacing: usize,
-    /// From the span's first pixel, in pixels.
+    /// Positions of the lit pixels, relative to the span's first pixel.
     places: [i32; KNOTS],
     /// Number of knots, at least two.
     count: usize,

@@ -63,7 +63,7 @@ use crate::span::{Kernel, lookup, lookup_row};
 /// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EffectScratch {
-    /// A list of spans with what the stages know about them; empty until it is needed.
+    /// A list of spans with the stages' data about them; empty until it is needed.
     lists: Vec<(SpanList, Columns)>,
     buffers: Buffers,
 }
@@ -93,7 +93,7 @@ impl Buffers {
         }
     }
 
-    /// Its size in bytes.
+    /// Size in bytes.
     fn bytes(&self) -> usize {
         let Self { bytes, other, channels, shades } = self;
         let bytes = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
@@ -103,7 +103,7 @@ impl Buffers {
 }
 
 impl EffectScratch {
-    /// Its size in bytes.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.lists.capacity() * size_of::<(SpanList, Columns)>() + self.buffers.bytes()
     }

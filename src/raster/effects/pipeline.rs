@@ -63,7 +63,7 @@ pub enum SampleSpacing {
 }
 
 impl SampleSpacing {
-    /// All of them, the closest spacing first.
+    /// All spacings, the closest first.
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
     /// Distance in pixels.
@@ -162,7 +162,7 @@ pub struct PixelPipeline<'a> {
 
 /// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
 impl<'a> PixelPipeline<'a> {
-    /// Its source; never per-pixel lighting in a build that leaves that out.
+    /// The shade source; never per-pixel lighting in a build that leaves that out.
     #[inline]
     pub(super) fn source(&self) -> ShadeSource<'a> {
         match self.source {

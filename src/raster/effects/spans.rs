@@ -53,7 +53,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Its pixels among those of all spans.
+    /// The span's pixels among those of all spans.
     #[inline(always)]
     pub(super) fn pixels(&self) -> Range<usize> {
         self.first..self.first + self.len
@@ -79,7 +79,7 @@ impl Span {
         self.mark.last()
     }
 
-    /// Its row.
+    /// The span's row.
     pub(super) fn row(&self) -> Row {
         let origin = self.x - self.mark.before();
         // At most 64.

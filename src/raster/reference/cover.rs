@@ -113,9 +113,9 @@ impl SortedTriangle {
 /// Walks a triangle's rows: the two edges that cross the current row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::raster) struct RowWalk {
-    /// From the top to the bottom.
+    /// The edge from the top to the bottom.
     long: Edge,
-    /// From the top to the middle, then from there to the bottom.
+    /// The edge from the top to the middle, then from there to the bottom.
     short: Edge,
     is_long_left: bool,
     y: i32,
@@ -181,7 +181,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Its covered pixels, as columns.
+    /// The covered pixels, as columns.
     #[must_use]
     #[inline]
     pub fn range(&self) -> core::ops::Range<usize> {

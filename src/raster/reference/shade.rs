@@ -114,7 +114,7 @@ impl ShadePlane {
         self.per_column
     }
 
-    /// A.
+    /// The doubled area A.
     #[inline]
     pub(in crate::raster) fn area(&self) -> &Divisor {
         &self.area

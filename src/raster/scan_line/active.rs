@@ -14,10 +14,10 @@ use crate::raster::vertex::Vertex;
 pub struct EdgePair {
     triangle: SortedTriangle,
     pub(super) interpolation: Interpolation,
-    /// Its index among the faces: at equal depths the first gets the pixel.
+    /// The face's index among all faces: at equal depths the first gets the pixel.
     pub(super) order: usize,
     walk: RowWalk,
-    /// Its pixels on the current row.
+    /// The face's pixels on the current row.
     pub(super) row: Row,
     /// True if it hides the background wherever it is: the depths of its vertices are above 0.
     pub(super) hides_background: bool,
@@ -47,13 +47,13 @@ impl EdgePair {
         self.walk.down(&self.triangle)
     }
 
-    /// Its shades, computed when it first has a pixel.
+    /// The face's shades, computed when it first has a pixel.
     #[inline]
     pub(super) fn paint(&mut self) -> &RowShader {
         self.paint.get_or_insert_with(|| RowShader::new(&self.triangle, self.interpolation))
     }
 
-    /// Its depths, computed when it first meets another face.
+    /// The face's depths, computed when it first meets another face.
     #[inline]
     pub(super) fn depth(&mut self) -> &DepthPlane {
         self.depth.get_or_insert_with(|| DepthPlane::new(&self.triangle))

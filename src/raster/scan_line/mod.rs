@@ -24,7 +24,7 @@
 //! | `active` | faces whose rows are being walked: their two edges |
 //! | `nearest` | which of the open faces a segment belongs to, and how far |
 //!
-//! # What it costs
+//! # Cost
 //!
 //! Every face that is open in a segment covers each of its pixels, and a segment has at least one pixel. So the work
 //! done in segments is bounded by the pixels that a depth buffer would test; on a model it is far less. The list is
@@ -72,7 +72,7 @@ pub struct Lists {
 
 #[cfg(feature = "alloc")]
 impl Lists {
-    /// Its size in bytes.
+    /// Size in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
     }
@@ -139,8 +139,8 @@ impl Key {
 
 impl<D: Cell> Raster<'_, D> {
     internal! {
-    /// Draws all `faces` of a frame, at each pixel the nearest one, and writes no pixel twice: the bytes are those of
-    /// drawing them in order with a cleared depth buffer.
+    /// Draws all `faces` of a frame, the nearest one at each pixel, and writes no pixel twice: the
+    /// bytes are those of drawing them in order with a cleared depth buffer.
     ///
     /// The frame's former contents count as background. The raster's depth buffer, if it has one, is neither read nor
     /// changed.

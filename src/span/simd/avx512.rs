@@ -71,6 +71,8 @@ fn ones(length: usize) -> u64 {
     _bzhi_u64(u64::MAX, length as u32)
 }
 
+/// Fills a row, 64 pixels per iteration.
+///
 /// ```text
 /// even[j] = shade + 2·j·step
 /// while more than 64 pixels are left:
@@ -151,7 +153,8 @@ unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     }
 }
 
-/// A triangle whose rows go to the pixels without a list. Columns and rows are relative to its box's first.
+/// A triangle whose rows are written directly to the pixels, without a list. Columns and rows are
+/// relative to its box's first.
 ///
 /// (Eight rows take half the instructions of the list, with which a cube's triangles of 3,570 pixels in 100 rows take
 /// 1.57 times as long.)
@@ -327,7 +330,7 @@ impl Ramp {
         _mm512_mask_shuffle_epi8(odd, self.even_bytes, even, self.upper)
     }
 
-    /// Half of them: the bytes of 32 pixels.
+    /// The bytes of 32 pixels, half as many.
     #[inline]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
     fn half(self, shades: __m256i) -> __m256i {

@@ -1,12 +1,12 @@
 //! The span with a depth test in AVX2: four pixels per iteration in the shortest spans, eight
 //! in others, and sixteen for shades in spans longer than eight.
 //!
-//! Pixels of an iteration that are not part of the span get depth 0, which is not nearer than anything, so they are
-//! rewritten unchanged: AVX2 has masked stores only for 32 bits, and on some processors they are slow. So as many
-//! pixels and cells as an iteration takes must exist, in whichever row; a span at the very end of the frame that lacks
-//! them is drawn by [`fill_nearer`]. (Four where that is enough, since bytes just stored are then
-//! less often reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9
-//! to 13.5 with 0.6.)
+//! Pixels of an iteration that are not part of the span get depth 0, which is never nearer, so they
+//! are rewritten unchanged: AVX2 has masked stores only for 32 bits, and on some processors they
+//! are slow. So as many pixels and cells as an iteration takes must exist, in whichever row; a span
+//! at the very end of the frame that lacks them is drawn by [`fill_nearer`]. (Four where that is
+//! enough, since bytes just stored are then less often reloaded in other pieces: 38.5 to 36.7 ns
+//! per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
 
 use core::arch::x86_64::*;
 

@@ -7,7 +7,7 @@ pub(super) trait Block: Copy {
     fn new(shade: u16, step: u16) -> Self;
     /// The block with all shades raised by `by`.
     fn raised(self, by: u16) -> Self;
-    /// Its sixteen bytes.
+    /// Stores the block's sixteen bytes.
     fn store(self, to: &mut [u8; 16]);
 }
 

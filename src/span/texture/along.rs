@@ -7,7 +7,7 @@ use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
 
 /// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next
-/// eight, in lanes. The pixels after those do not change.
+/// eight, in lanes. The rest of the row does not change.
 #[inline(always)]
 pub(crate) fn show_along<S: Lanes8, T: Tint>(
     s: S,
@@ -96,8 +96,9 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         }
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
         rest = behind;
-        // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case extracts its own
-        // lanes: those of all, extracted before, would not fit into the registers.)
+        // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each
+        // case extracts its own lanes: all of them, extracted up front, would not fit into the
+        // registers.)
         if stays == 0 && !IS_COMPACT {
             let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
             let mut k = 0;

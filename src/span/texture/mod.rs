@@ -94,7 +94,7 @@ impl<'a> Texels<'a> {
     pub(crate) fn place(self, u: u32, v: u32) -> usize {
         let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
-        // What a narrow usize cuts off, the masks clear anyway.
+        // The masks clear whatever a narrow usize cuts off.
         let column = (u >> 16) as usize & columns;
         // Shifted once instead of down and up.
         let row = (v >> (16 - self.ubits)) as usize & (last & !columns);

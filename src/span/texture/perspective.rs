@@ -189,7 +189,8 @@ impl<S: Lanes8, Q: QuotientsAlong<S>, E: FnMut(usize, &mut [i32; LANES])> Places
 trait QuotientsAlong<S: Lanes8> {
     /// Numbers of eight texels.
     type Numbers: Copy;
-    /// The coordinates of texels with these numbers, and whether one of them cannot decide which texel it lies in.
+    /// The coordinates of texels with these numbers, and whether the texel of any of them is
+    /// undecided.
     fn at(&self, s: S, numbers: Self::Numbers) -> ([S::I32; 2], bool);
     /// The numbers of the next eight.
     fn next(&self, s: S, numbers: Self::Numbers) -> Self::Numbers;
@@ -231,7 +232,7 @@ impl<S: Lanes8> Quotients<S> {
         Self { places: PlaceLanes::of_level(s, texels), sums: *sums, end: s.splat_i32(end as i32), are_sure }
     }
 
-    /// The coordinates at pixels with these numbers, and whether one of them cannot decide.
+    /// The coordinates at pixels with these numbers, and whether any of them is undecided.
     #[inline(always)]
     fn coordinates(&self, numbers: S::I32) -> ([S::I32; 2], bool) {
         let PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base, .. } = self.sums;

@@ -23,7 +23,8 @@ pub(crate) trait Tint: Copy {
     /// Table rows of eight pixels.
     type Rows: Copy;
     fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S>;
-    /// The table rows of the next eight pixels, whose present bytes are `pixels`; advances the state.
+    /// The table rows of the next eight pixels, whose current bytes are `pixels`; advances the
+    /// state.
     fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
     /// The byte for a texel of pixel `k` of eight.
     fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
