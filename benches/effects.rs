@@ -1,4 +1,5 @@
-//! The pixel loops other than the span's, portable against optimized form, at typical span lengths.
+//! Times the pixel loops other than the span's, portable against optimized, at typical span
+//! lengths.
 //!
 //! ```text
 //! cargo bench --bench effects
@@ -28,7 +29,7 @@ const ROWS: usize = 64;
 /// Bytes per row, with room for every start offset.
 const CAPACITY: usize = 320 + 64;
 
-/// What the loops read and write. The tables exceed a first-level cache, as they do in use.
+/// Memory that the loops read and write. The tables exceed a first-level cache, as they do in use.
 struct Memory {
     row: Vec<u8>,
     channels: [Vec<u8>; 3],

@@ -1,4 +1,4 @@
-//! From a model's file to the first frame, compared with `tobj`, which only reads the file.
+//! Times loading from a model's file to the first frame, against `tobj`, which only reads the file.
 //!
 //! ```text
 //! cargo bench --bench loading

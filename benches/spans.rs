@@ -11,7 +11,7 @@ const LENGTHS: [usize; 15] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 100, 160
 /// Spans per batch: one for each offset in a cache line, as spans start anywhere.
 const SPANS: usize = 64;
 
-/// What is timed: a kernel, or the memset of a flat span.
+/// A contender: a kernel, or the memset of a flat span.
 #[derive(Clone, Copy)]
 enum Candidate {
     Fill,

@@ -1,8 +1,9 @@
 //! Clipping in homogeneous space: the near plane first, then the guard band, in f64.
 //!
-//! Only what the raster cannot take is clipped: what lies nearer than the near plane, and what is projected more than
-//! 4,096 pixels away. The screen's edges need no clipping, since the raster leaves out exactly what lies beyond them.
-//! [`raster::clip`](crate::raster::clip) goes through the planes in an order that leaves no crack.
+//! Faces are clipped only where the raster cannot take them: nearer than the near plane, or
+//! projected more than 4,096 pixels away. The screen's edges need no clipping, since the raster
+//! omits exactly what lies beyond them. [`raster::clip`](crate::raster::clip) visits the planes in
+//! an order that leaves no cracks.
 
 use crate::fixed::U8F8;
 use crate::raster::clip::{Clipped, Corners, clip as clip_triangle};
@@ -29,13 +30,13 @@ fn attributes_between(a: &Attributes, b: &Attributes, parts: Parts) -> Attribute
     let shade = |from: U8F8, to: U8F8, part: f64| {
         let (from, to) = (f64::from(from.to_bits()), f64::from(to.to_bits()));
         let (low, high) = (from.min(to), from.max(to));
-        // At most 0xFF00: between two values that are. The cast truncates after the half.
+        // At most 0xFF00, being between two such values. The cast truncates, hence the half.
         U8F8::from_bits(((from + (to - from) * part).max(low).min(high) + 0.5) as u16)
     };
     let coordinate = |from: i32, to: i32| {
         let (from, to) = (f64::from(from), f64::from(to));
         let (low, high) = (from.min(to), from.max(to));
-        // Between two i32.
+        // Between two i32 values.
         libm::floor((from + (to - from) * of_texture).max(low).min(high) + 0.5) as i32
     };
     Attributes {
@@ -50,7 +51,7 @@ fn attributes_between(a: &Attributes, b: &Attributes, parts: Parts) -> Attribute
     }
 }
 
-/// Which values are linear along what.
+/// How shades and texture coordinates are interpolated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progressions {
     pub(super) interpolation: Interpolation,
@@ -149,7 +150,7 @@ pub(super) fn clip(
         },
     )?;
     let polygon = left.project(|corner| {
-        // At most 0xFF00: between two shades that are. The cast truncates after the half.
+        // At most 0xFF00, being between two such shades. The cast truncates, hence the half.
         let shade = U8F8::from_bits((corner.shade + 0.5) as u16);
         corner.vertex.or_else(|| view.divide(corner.at, shade))
     })?;

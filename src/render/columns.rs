@@ -28,8 +28,8 @@ pub(super) struct VertexColumns {
 }
 
 impl VertexColumns {
-    /// Makes room for `count` vertices with unknown values. They must then be put on the screen, and lit or left
-    /// without light.
+    /// Makes room for `count` vertices with unspecified values. They must then be projected, and
+    /// lit or left without light.
     pub(super) fn begin(&mut self, count: usize) {
         self.at.resize(count, ScreenPos::NEEDS_CLIPPING);
         self.depth.resize(count, 0);
@@ -40,7 +40,7 @@ impl VertexColumns {
         self.slope.clear();
     }
 
-    /// Leaves vertices without shades, if faces or pixels are lit.
+    /// Leaves vertices without shades, if faces or pixels are lit instead.
     pub(super) fn leave_without_light(&mut self) {
         self.shade.fill([U8F8::default(); 2]);
     }
@@ -81,8 +81,8 @@ impl VertexColumns {
     }
 }
 
-/// Triangles with vertices that are not a mesh's: parts of clipped faces, faces with curved shades, and those of the
-/// 16.16 path. Their values are for the visible side.
+/// Triangles whose vertices are not a mesh's: parts of clipped faces, faces with curved shades, and
+/// those of the 16.16 path. Their values are for the visible side.
 #[derive(Debug, Default)]
 pub(super) struct AddedTriangles {
     vertices: VertexColumns,
@@ -90,7 +90,7 @@ pub(super) struct AddedTriangles {
     indices: Vec<[u32; 3]>,
     /// The face that each is part of.
     faces: Vec<u32>,
-    /// Vertices and triangles that stay until the frame is drawn.
+    /// Numbers of vertices and triangles kept until the frame is drawn.
     kept: (usize, usize),
 }
 

@@ -39,8 +39,8 @@ pub struct DrawnEffects<'a> {
 
 impl Renderer {
     /// Passes every triangle that [`draw`](Self::draw) would draw to `visit`, in the order of
-    /// [`for_each_triangle`](Self::for_each_triangle), with everything the raster would get. Nothing is drawn, and
-    /// frames drawn afterwards are the same as without it.
+    /// [`for_each_triangle`](Self::for_each_triangle), with everything the raster would get. Draws
+    /// nothing, and does not affect later frames.
     pub(crate) fn each_triangle(
         &mut self,
         scene: &Scene,

@@ -1,11 +1,12 @@
-//! Map from edges to numbers: a hash table that keeps its memory from frame to frame.
+//! A hash table from edges to numbers that reuses its memory from frame to frame.
 //!
-//! Open addressing: an edge is in the first free slot from the one its hash gives, and the table is never more than
-//! half full. It is only looked up, never iterated, so no byte depends on the hash.
+//! Open addressing: an edge is in the first free slot at or after the one its hash gives, and the
+//! table is never more than half full. It is only looked up, never iterated, so no byte depends on
+//! the hash.
 
 use alloc::vec::Vec;
 
-/// No edge: both its ends would be equal.
+/// Marks a free slot: an edge's ends differ.
 const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 
 /// Map from an edge, two different numbers, to a number.
@@ -56,7 +57,7 @@ impl EdgeMap {
         // half is the better one, and 32 bits fit a `usize`.
         let hash = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let mut place = hash as usize & last;
-        // Half of the slots are free.
+        // At least half of the slots are free, so this ends.
         while self.places[place].0 != FREE && self.places[place].0 != (a, b) {
             place = (place + 1) & last;
         }

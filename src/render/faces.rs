@@ -30,7 +30,7 @@ pub(super) struct Face {
     pub(super) back_facing: bool,
 }
 
-/// The points at which flat-shaded faces are lit: their middles, and their normals there.
+/// The points at which flat-shaded faces are lit: their centres, and their normals there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FacePoints {
     /// In a list of their own, since suns alone need nothing else.
@@ -58,8 +58,9 @@ pub(super) struct Faces<'a> {
     pub(super) face_points: Option<&'a FacePoints>,
     /// True if back faces are culled.
     pub(super) culls: bool,
-    /// A bit for each triangle that lies back to back with another, 64 in a word; empty if there are none. As a back
-    /// face it is culled even where others show their backs: the other one has the same depth, and faces the eye.
+    /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if
+    /// there are none. As a back face it is culled even where others show their backs: the other
+    /// one has the same depth, and faces the eye.
     pub(super) twins: &'a [u64],
     /// True if its shades vary; otherwise each surface has a single one.
     pub(super) runs: bool,
@@ -72,7 +73,7 @@ pub(super) struct Faces<'a> {
     pub(super) affine: bool,
     /// True if pixels may be lit individually.
     pub(super) lights_pixels: bool,
-    /// Kernel for the light that decides on a face.
+    /// Kernel for the light that decides a face's shading.
     pub(super) kernel: Kernel,
 }
 
@@ -251,8 +252,8 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, p
     }
 }
 
-/// The points at which faces are lit. A face without area has no normal, but rounded it may still cover a pixel: it
-/// gets the normal of its first corner.
+/// The points at which faces are lit. A face without area has no normal, but once rounded it may
+/// still cover a pixel, so it gets the normal of its first corner.
 pub(super) fn face_points(geometry: &Geometry<'_>, FacePoints { normals, centres }: &mut FacePoints) {
     let corners = |indices: &[u32; 3]| three(*indices, |i| geometry.positions[i as usize]);
     normals.clear();
@@ -263,7 +264,7 @@ pub(super) fn face_points(geometry: &Geometry<'_>, FacePoints { normals, centres
     centres.clear();
     centres.extend(geometry.triangles.iter().map(|indices| {
         let [a, b, c] = corners(indices);
-        // Each third separately: the sum of three might overflow.
+        // Divided separately, since the sum of three might overflow.
         a / 3.0 + b / 3.0 + c / 3.0
     }));
 }

@@ -1,4 +1,4 @@
-//! The methods for hidden surfaces: the faces of a frame drawn in their order, far to near, or row by row.
+//! Hidden-surface methods: a frame's faces are drawn in scene order, far to near, or row by row.
 
 use alloc::vec::Vec;
 
@@ -25,11 +25,11 @@ pub(super) struct Scratch {
     effects: EffectScratch,
     pick: PickScratch,
     integer: IntegerScratch,
-    /// The faces of a frame that must be known completely before it is drawn, ...
+    /// Faces of a frame that must all be known before it is drawn.
     faces: Vec<DeferredFace>,
-    /// ... the transparent ones, ...
+    /// Transparent faces, drawn after everything opaque.
     transparent: Vec<DeferredFace>,
-    /// ... and the sum of a face's depths with its index: what is sorted to draw far to near.
+    /// Sort keys for drawing far to near: the sum of a face's depths, and its index.
     far_to_near: Vec<(u64, usize)>,
     /// The faces as input of the scan-line method.
     triangles: Vec<([Vertex; 3], Interpolation)>,
@@ -260,7 +260,7 @@ fn each_run(
     }
 }
 
-/// All faces at once, each pixel once.
+/// Draws all faces at once, each pixel once.
 fn scan_line(
     (scene, cache, added): (&Scene, &Cache, Triangles<'_>),
     faces: &[DeferredFace],

@@ -1,4 +1,5 @@
-//! Converts a scene for the integer path: its floats become 16.16 here, and there are none further on.
+//! Converts a scene for the integer path: its floats become 16.16 here, and none are used further
+//! on.
 //!
 //! Powers of two bring everything into range. A mesh is scaled about its pivot until its farthest coordinate lies
 //! between 16,384 and 32,767: 30 bits, whatever its size. The scene is scaled about the eye until its farthest object
@@ -37,7 +38,7 @@ struct Converted {
     normals: Vec<Vector>,
     /// Its coordinates are in units of 2^exponent of the object's.
     exponent: i32,
-    /// No vertex is farther from the pivot, in 1/65,536 of the mesh's own unit.
+    /// Bound on the vertices' distance from the pivot, in 1/65,536 of the mesh's own unit.
     radius: u64,
     in_use: bool,
 }
@@ -136,7 +137,7 @@ struct Prepared {
 pub(super) struct IntegerPath {
     meshes: Vec<Converted>,
     view: Option<View>,
-    /// The input of the view.
+    /// Inputs of the view.
     camera: Option<(Camera, [I16F16; 2])>,
     objects: Vec<Prepared>,
     paints: Vec<Paint>,
@@ -171,7 +172,7 @@ impl IntegerPath {
     /// Converts a scene with finite numbers. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
-        // Lamps, including spot lights, are left out: the plan reports it.
+        // Lamps, including spot lights, are left out, as the plan reports.
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
             let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
@@ -225,7 +226,7 @@ impl IntegerPath {
             prepared.paints = first..self.paints.len();
             prepared.exponent = self.meshes[prepared.converted].exponent + scale_exponent + exponent;
             prepared.placement = Placement {
-                // No farther than the farthest.
+                // No farther than the farthest object, so it fits.
                 position: from_eye(object.position).map(|c| fixed(c * scale).unwrap_or_default()),
                 pivot: Vector::default(),
                 angles: object.angles.map(BinaryAngle::from),
@@ -255,12 +256,12 @@ impl IntegerPath {
         }
     }
 
-    /// The prepared scene in numbers, without its objects: camera, focal lengths, suns.
+    /// The prepared scene as numbers, without its objects: camera, focal lengths, suns.
     pub(super) fn frame(&self) -> Option<(Camera, [I16F16; 2], &[Sun])> {
         self.camera.map(|(camera, focal)| (camera, focal, &*self.suns))
     }
 
-    /// An object of the prepared scene in numbers.
+    /// An object of the prepared scene as numbers.
     pub(super) fn object<'a>(&'a self, index: usize, object: &'a scene::Object) -> Option<Object<'a, u32>> {
         let prepared = self.objects.get(index)?;
         let mesh = fixed_mesh(&self.meshes, prepared, object);

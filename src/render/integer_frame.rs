@@ -1,4 +1,4 @@
-//! A frame of the 16.16 path in numbers, for programs that draw it on another machine.
+//! A frame of the 16.16 path as numbers, for programs that draw it on another machine.
 
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ use crate::settings::Shading;
 /// A frame of the 16.16 path before its vertices are computed.
 #[derive(Clone, Debug)]
 pub struct IntegerFrame<'a> {
-    /// A shading of this path.
+    /// The shading, one that this path supports.
     pub shading: Shading,
     /// True if depths are needed because the order of the objects does not suffice.
     pub is_depth_tested: bool,
@@ -29,7 +29,7 @@ pub struct IntegerFrame<'a> {
 }
 
 impl Renderer {
-    /// Prepares a frame with the 16.16 path, draws nothing, and returns its numbers.
+    /// Prepares a frame with the 16.16 path and returns its numbers, without drawing.
     pub(crate) fn integer_frame<'a>(
         &'a mut self,
         scene: &'a Scene,

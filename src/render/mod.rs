@@ -99,8 +99,8 @@ impl Cache {
         self.states.get(object)?.triangles(of_scene)
     }
 
-    /// The number of faces of the objects that `counts` selects, seen in this frame or only in a later one: room for
-    /// that many is enough until a plane cuts some into parts.
+    /// The number of faces of the objects that `counts` selects, seen in this frame or not: room
+    /// for that many suffices unless a plane cuts some into parts.
     fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan) -> bool) -> usize {
         let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
         let counted = objects.filter(|(_, plan)| counts(plan));
@@ -108,8 +108,8 @@ impl Cache {
     }
 }
 
-/// Draws scenes. It reuses its memory from frame to frame, and the vertices of objects that do not change; the bytes
-/// are those of a new renderer.
+/// Draws scenes. Its memory and the vertices of unchanged objects are reused from frame to frame;
+/// the bytes are the same as from a new renderer.
 ///
 /// ```
 /// use mode13h::render::Renderer;
@@ -162,9 +162,9 @@ impl Renderer {
         self.overrides.set(effect, on);
     }
 
-    /// Forces an effect on or off for one object, by its index in the scene, overriding what holds for every object.
-    /// `None` takes that back. Palette animation is on if it is on for any object. Otherwise like
-    /// [`force`](Self::force).
+    /// Forces an effect on or off for one object, by its index in the scene, overriding the setting
+    /// for all objects. `None` removes the override. Palette animation is on if it is on for any
+    /// object. Otherwise like [`force`](Self::force).
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
         self.overrides.set_for(object, effect, on);
     }
@@ -215,8 +215,8 @@ impl Renderer {
         Some(faces.linear_error())
     }
 
-    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next, and draws nothing. Frames drawn
-    /// afterwards are the same as without it.
+    /// Makes the plan of the frame that [`draw`](Self::draw) would draw next. Draws nothing, and
+    /// does not affect later frames.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -232,7 +232,7 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw), except for numbers that 16.16 cannot hold, which are found only when it is drawn.
+    /// See [`draw`](Self::draw). Numbers that 16.16 cannot hold are found only on drawing.
     pub fn make_plan(&mut self, scene: &Scene, screen: Screen) -> Result<&Plan, RenderError> {
         let view = self.checked(scene, screen)?;
         self.decide(scene, &view, true);
@@ -245,8 +245,8 @@ impl Renderer {
     /// frame is left as it is.
     ///
     /// # Errors
-    /// A number in the scene that is not finite or out of range; on the integer path one that 16.16 cannot hold
-    /// together with the others. The machine is then left unchanged.
+    /// A number in the scene is not finite or is out of range, or on the integer path does not fit
+    /// 16.16 together with the others. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let before = self.bytes();
@@ -276,7 +276,7 @@ impl Renderer {
     /// Draws `scene` into any frame, or into a band of one, with this ratio of pixel width to height.
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw). The frame is then left unchanged.
+    /// See [`draw`](Self::draw). On error the frame is left unchanged.
     pub fn draw_frame(
         &mut self,
         scene: &Scene,
@@ -303,7 +303,7 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw). The frame is then left unchanged.
+    /// See [`draw`](Self::draw). On error the frame is left unchanged.
     pub fn draw_over(
         &mut self,
         scene: &Scene,
@@ -338,7 +338,7 @@ impl Renderer {
     /// Attributes for effects are left out. Returns the counts of the work, without the raster's.
     ///
     /// # Errors
-    /// Those of [`draw`](Self::draw), before the first triangle.
+    /// See [`draw`](Self::draw). No triangle is passed before an error.
     pub fn for_each_triangle(
         &mut self,
         scene: &Scene,
@@ -356,15 +356,15 @@ impl Renderer {
         Ok(stats)
     }
 
-    /// Makes the plan and the vertices of a frame, and draws nothing. For measuring what that takes.
+    /// Makes the plan and the vertices of a frame, and draws nothing. For measuring their cost.
     pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.prepare(scene, screen, None, true)?;
         self.last = None;
         Ok(())
     }
 
-    /// Checks the scene, makes the plan, and the vertices that it requires. Returns whether anything has changed that
-    /// the image depends on.
+    /// Checks the scene, makes the plan, and computes the vertices that it requires. Returns
+    /// whether anything that the image depends on has changed.
     fn prepare(
         &mut self,
         scene: &Scene,
@@ -458,7 +458,7 @@ impl Renderer {
         settings
     }
 
-    /// Returns whether the last frame may stay if nothing has changed.
+    /// Returns whether the last frame may be left as it is if nothing has changed.
     fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
     }

@@ -43,7 +43,7 @@ struct VertexInputs {
     fog: Option<Fog>,
     accuracy: Accuracy,
     tolerance: f32,
-    /// The bits after the point that they are rounded to once more.
+    /// Fraction bits to which the vertices are rounded once more.
     bits: Option<u8>,
 }
 
@@ -71,7 +71,7 @@ impl VertexInputs {
         changed | replace(&mut self.tolerance, settings.tolerance())
     }
 
-    /// The light on the object according to its plan; of the lamps, only the given ones.
+    /// The light on the object according to its plan, with only these lamps.
     fn lights<'a>(&'a self, lamps: &'a [LampBeam], plan: &ObjectPlan) -> Lights<'a> {
         let suns = if plan.stages().is_lit() { self.suns.as_slice() } else { &[] };
         Lights { suns, lamps, eye: self.view.eye() }
@@ -217,7 +217,7 @@ impl ObjectState {
         stats: &mut Stats,
     ) -> bool {
         let mut stages = *plan.stages();
-        // Neither means that the vertices would differ.
+        // Neither affects the vertices.
         (stages.vertices, stages.nearest) = (VertexStage::Make, 0.0);
         if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) {
             return false;
@@ -259,7 +259,7 @@ impl ObjectState {
         self.lamps.extend(source.lamps.iter().filter(falls_on_it).copied());
     }
 
-    /// The faces, split if that is on.
+    /// Splits the faces, if that is on.
     fn split_faces(&mut self, &Made { object, plan, .. }: &Made<'_>) {
         self.is_tessellated = plan.stages().tessellates();
         let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
@@ -286,7 +286,7 @@ impl ObjectState {
         if !self.has_effects() {
             return;
         }
-        // Those that the plan asks for, also where an effect is forced to run on neutral input.
+        // Those that the plan asks for, even where an effect is forced to run on neutral input.
         let VertexColumns { texture, fog, channels, .. } = &mut self.columns;
         let image = plan.stages().has_texture() || plan.stages().has_environment();
         if image || plan.stages().neutral_image {
@@ -300,7 +300,7 @@ impl ObjectState {
         }
     }
 
-    /// The vertices' shades, or their channels, if vertices are lit.
+    /// Computes the vertices' shades, or their channels, if vertices are lit.
     fn light_vertices(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
@@ -392,11 +392,12 @@ impl ObjectState {
         }
     }
 
-    /// The tables of shades by normal in eye space, which stay valid while the object turns.
+    /// Updates the tables of shades by normal in eye space, which stay valid while the object
+    /// turns.
     fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {
-            // A lamp counts as a sun at the object's position: a table knows no positions.
+            // A lamp counts as a sun at the object's position, since a table knows no positions.
             let (towards, share) = match *light {
                 Light::Sun { direction, .. } => (direction, 1.0),
                 Light::Lamp { position, range, cone, .. } => {

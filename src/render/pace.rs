@@ -1,13 +1,15 @@
-//! The least error that fits in a time: chooses the error budget of the next frames from the times of earlier ones.
+//! Chooses the error budget of the next frames, the least that fits in a time, from earlier frames'
+//! times.
 //!
-//! Frames are grouped in blocks of eight drawn within the same error. A block's mean time is the cost of its error, and
-//! it scales the costs of the other errors, since a pose that takes longer at one error takes longer at each. First
-//! each error gets a block of its own, from the greatest on. From then on each block is drawn within the least error
-//! whose time fits.
+//! Frames are grouped in blocks of eight drawn within the same error. A block's mean time is the
+//! cost of its error. It also scales the costs of the other errors, since a pose that takes longer
+//! at one error takes longer at all of them. Each error first gets a block of its own, starting
+//! with the greatest. From then on each block is drawn within the least error whose time fits.
 //!
-//! A frame of twice the block's median or more counts as the median: another program ran. A block whose time is used up
-//! ends at once, so a sudden load is met within a few frames. An error that fits is kept as long as it takes no more
-//! than a twentieth longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors
+//! A frame that takes twice the block's median or longer counts as the median, since another
+//! program must have run. A block whose time is used up ends at once, so a sudden load is handled
+//! within a few frames. An error that fits is kept as long as it takes no more than a twentieth
+//! longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors
 //! alternate.
 
 use core::time::Duration;
@@ -21,7 +23,7 @@ const ERRORS: [f32; 6] = [Pace::MAX_ERROR, 8.0, 4.0, 2.0, 1.0, 0.5];
 /// Frames of a block.
 const BLOCK: usize = 8;
 
-/// Share of the time up to which the current error is kept. A newly chosen one must fit.
+/// Multiple of the time up to which the current error is kept. A newly chosen one must fit.
 const TOLERANCE: f32 = 1.05;
 
 /// Ratio of a block's time to the one before it above which the difference is not noise.
@@ -33,8 +35,8 @@ const OUTLIER: f32 = 2.0;
 /// Frames without a change before a smaller error is chosen.
 const HOLD: usize = 32;
 
-/// Frames without a change before trying a smaller error that did not fit: its time was that of other poses. Each
-/// failed trial doubles it, up to 16 times this.
+/// Frames without a change before retrying a smaller error that did not fit, since its time was
+/// measured on other poses. Each failed trial doubles the wait, up to 16 times this.
 const PATIENCE: usize = 128;
 
 /// Chooses the [error budget](Accuracy::WithinError) of the next frame so that frames stay within a time.
@@ -203,8 +205,8 @@ impl Pace {
         }
     }
 
-    /// The index of the least error that fits: a greater one at once if the current one does not, a smaller one only
-    /// after a while.
+    /// The index of the least error that fits: switches to a greater one at once if the current one
+    /// does not fit, but to a smaller one only after a while.
     fn choose(&self) -> usize {
         let costs = &self.costs[..=self.smaller().count()];
         if let Some(untried) = costs.iter().position(|cost| cost.is_infinite()) {
@@ -292,9 +294,9 @@ mod tests {
         ERRORS.iter().position(|of| *of == error).expect("of the list")
     }
 
-    /// The time of a frame within each error, in milliseconds: for a duck, a football and a torus, as measured by
-    /// `mode13h cost`; and where errors hardly change the time, where only the least does, and where the time does not
-    /// always rise.
+    /// The time of a frame within each error, in milliseconds: for a duck, a football and a torus,
+    /// as measured by `mode13h cost`; then where errors hardly change the time, where only the
+    /// least does, and where the time does not always rise.
     const MODELS: [[f32; 6]; 6] = [
         [0.765, 0.838, 0.892, 1.006, 1.228, 1.226],
         [0.443, 0.571, 0.686, 1.222, 1.504, 2.077],
@@ -304,12 +306,14 @@ mod tests {
         [2.00, 2.30, 3.10, 2.90, 3.60, 3.30],
     ];
 
-    /// Eight successive poses around a full turn, as the study draws them; each with its share of the time.
+    /// Eight successive poses around a full turn, as the study draws them, each with its relative
+    /// time.
     const POSES: [f32; 8] = [0.8, 1.0, 1.3, 1.1, 0.7, 0.9, 1.2, 1.0];
 
-    /// On every model, with a first frame that takes three times as long, and a machine whose frames are late by a few
-    /// percent, and one in fifty by far: the error falls as the time grows, and is no greater than the least whose time
-    /// fits, except for trials and noise, nor smaller than what fits within [`TOLERANCE`].
+    /// On every model, with a first frame that takes three times as long, and a machine whose
+    /// frames are late by a few percent, one in fifty by far: the error falls as the time grows, is
+    /// no greater than the least whose time fits (except for trials and noise), and no smaller than
+    /// what fits within [`TOLERANCE`].
     #[test]
     fn the_error_falls_as_the_time_grows() {
         for (model, deviation) in MODELS.iter().flat_map(|model| [0.0, 0.01, 0.03].map(|deviation| (model, deviation)))
@@ -372,8 +376,8 @@ mod tests {
         }
     }
 
-    /// A sudden load is met within the frames that fit in the time of one block, and one block more: from then on each
-    /// block's frames fit on average.
+    /// A sudden load is handled within the frames that fit in the time of one block, plus one
+    /// block: from then on each block's frames fit on average.
     #[test]
     fn a_sudden_load_is_met_within_two_blocks() {
         for (load, model) in [1.1, 1.3, 2.0, 3.0].into_iter().flat_map(|load| MODELS.map(|model| (load, model))) {
@@ -421,7 +425,7 @@ mod tests {
         assert!(near * 10 >= frames.len() * 9, "{near} of {}", frames.len());
     }
 
-    /// If the error does not change the time, nothing is gained by a great one.
+    /// If the error does not change the time, a great one gains nothing.
     #[test]
     fn a_scene_whose_time_the_error_does_not_change_gets_the_least_error() {
         let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);
@@ -432,7 +436,8 @@ mod tests {
         assert!(frames[TRIED..].iter().all(|(error, _)| *error == Pace::MAX_ERROR) && !budget.fits());
     }
 
-    /// Known times are wrong, as the scene has changed: smaller errors are retried, rarely, until they fit.
+    /// If known times are wrong because the scene has changed, smaller errors are retried, rarely,
+    /// until they fit.
     #[test]
     fn old_times_are_tried_again() {
         let mut budget = Pace::in_milliseconds(T, Pace::MAX_ERROR);

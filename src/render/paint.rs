@@ -1,4 +1,4 @@
-//! A material in its scene: what its shades are computed with.
+//! A material in its scene, with everything that its shades are computed from.
 
 use crate::fixed::U8F8;
 use crate::lanes::{each, three};
@@ -68,8 +68,8 @@ impl SurfaceMaterial {
         self.response.as_ref().map_or(channel, |response| answered(response, channel, Ramp::WHOLE))
     }
 
-    /// The shade of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite, which is more than
-    /// 1 too.
+    /// The shade of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite,
+    /// which clamps to 1 too.
     #[inline]
     pub(super) fn shade(&self, intensity: f64) -> U8F8 {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())

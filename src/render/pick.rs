@@ -1,5 +1,5 @@
-//! Picking: which faces of an object are drawn, and how. Faces are culled or clipped where necessary, and get a
-//! shading: the object's, or within an error budget one decided for each.
+//! Picking: which faces of an object are drawn, and how. Faces are culled, clipped where necessary,
+//! and given a shading: the object's or, within an error budget, one chosen for each face.
 
 use alloc::vec::Vec;
 
@@ -28,10 +28,10 @@ const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has it
 /// Number of pending picks above which they are drawn.
 const CAPACITY: usize = 512;
 
-/// Room for picks: at the capacity 64 more faces may come, the last of which has eight parts.
+/// Room for picks: at capacity, 64 more faces may follow, the last of which has eight parts.
 const ROOM: usize = CAPACITY + CHUNK + AddedTriangles::MAX_OF_FACE;
 
-/// What faces that are drawn together have in common.
+/// Properties shared by faces that are drawn together.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Look {
     /// The surface, if pixels pass through stages; otherwise it does not matter.
@@ -99,7 +99,7 @@ pub(super) struct Culler {
     pub(super) kernel: Kernel,
 }
 
-/// Memory for picking. It is allocated when first needed, and is then sufficient.
+/// Memory for picking. It is allocated when first needed, and is large enough from then on.
 #[derive(Debug, Default)]
 pub(super) struct PickScratch {
     picks: PickList<{ ROOM + LANES }>,
@@ -153,7 +153,7 @@ impl<'a> Picker<'a> {
         if self.culler.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
 
-    /// Begins a run, if the look is another one.
+    /// Begins a run, if the look changes.
     fn begin(&mut self, look: Look) {
         let end = self.scratch.picks.as_slice().len();
         if self.scratch.runs.last().is_none_or(|(_, last)| *last != look) {
@@ -170,7 +170,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds those of 64 faces whose bits are set, all of the same look.
+    /// Adds the faces, of 64 with the same look, whose bits are set.
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
         self.begin(look);
@@ -205,7 +205,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds a triangle that is not a mesh's.
+    /// Adds a triangle whose vertices are not a mesh's.
     pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: FaceShading) {
         let flat = match interpolation {
             Interpolation::Flat(index) => Some(U8F8::from(index)),
@@ -225,7 +225,7 @@ impl<'a> Picker<'a> {
         added.triangle(corners, 0);
     }
 
-    /// Picks the pending triangles that are not a mesh's.
+    /// Picks the pending triangles whose vertices are not a mesh's.
     fn push_pending(&mut self) {
         if let Some((look, first)) = self.pending.take() {
             self.push_added(look, first, None);
@@ -235,13 +235,13 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Draws the triangles that are not a mesh's.
+    /// Draws the triangles whose vertices are not a mesh's.
     pub(super) fn finish_vertices(&mut self) {
         self.push_pending();
         self.finish(&Triangles::NONE);
     }
 
-    /// Memory of triangles that the frame adds.
+    /// Memory for triangles that the frame adds.
     pub(super) fn added(&mut self) -> &mut AddedTriangles {
         &mut self.scratch.added
     }
@@ -252,7 +252,7 @@ impl<'a> Picker<'a> {
         self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
     }
 
-    /// Draws what is pending, all of it lit. `triangles` are the object's.
+    /// Draws the pending picks, all of which are lit. `triangles` are the object's.
     #[inline(never)]
     fn finish(&mut self, triangles: &Triangles<'_>) {
         let (mut first, mut keeps) = (0, self.keeps);
@@ -312,7 +312,7 @@ impl Faces<'_> {
                 self.make_space::<CULLS>(picker, stats);
                 continue;
             }
-            // What follows is lit face by face.
+            // The faces below are lit one by one, after all pending ones.
             self.light_pending::<CULLS>(picker, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
@@ -405,7 +405,7 @@ impl Faces<'_> {
         Some(self.flat(face))
     }
 
-    /// Draws what is pending if there is no room for more.
+    /// Draws the pending picks if there is no room for more.
     #[inline]
     fn make_space<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         if picker.is_full() {
@@ -413,7 +413,7 @@ impl Faces<'_> {
         }
     }
 
-    /// Draws what is pending.
+    /// Draws the pending picks.
     fn finish<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         self.light_pending::<CULLS>(picker, stats);
         picker.finish(&self.triangles());
@@ -427,7 +427,7 @@ impl Faces<'_> {
         }
     }
 
-    /// [`light_pending`](Self::light_pending): many at a time, so that few lanes are without a face.
+    /// [`light_pending`](Self::light_pending), many at a time, so that few lanes are idle.
     #[inline(never)]
     fn light_faces<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
@@ -440,8 +440,8 @@ impl Faces<'_> {
         self.shade_faces::<CULLS>(kernel, picks, &mut flat[first..]);
     }
 
-    /// A face that bounds alone do not show to be linear on the screen. `error` is its bound, if it is not linear on
-    /// the face either.
+    /// Picks a face that bounds alone do not prove linear on the screen. `error` is its bound, if
+    /// it is not linear on the face either.
     #[inline(never)]
     fn decided(
         &self,
@@ -474,7 +474,8 @@ impl Faces<'_> {
         fit.shading
     }
 
-    /// A face that reaches beyond the near plane or the guard band. Separate, because it is rare.
+    /// Picks a face that reaches beyond the near plane or the guard band. Separate because it is
+    /// rare.
     #[cold]
     #[inline(never)]
     fn clipped(

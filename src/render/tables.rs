@@ -1,5 +1,5 @@
-//! The lookup tables of effects. Each is computed when first needed, and again when the palette or another of its
-//! inputs has changed; a table that nothing needs does not exist.
+//! The lookup tables of effects. Each is computed when first needed, and again when the palette or
+//! another of its inputs has changed; unneeded tables do not exist.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -194,7 +194,7 @@ impl<T> Made<T> {
     }
 }
 
-/// Finds the table of an image: for the same texture object, not for an equal one.
+/// Finds the table of an image, by the identity of its texture: an equal texture does not match.
 fn find<'a, T>(all: &'a [Made<T>], image: Image<'_>) -> Option<&'a T> {
     let is_of = |made: &&Made<T>| Shared::ptr_eq(&made.texture, image.texture) && made.has_levels == image.has_levels;
     all.iter().find(is_of).map(|made| &made.made)

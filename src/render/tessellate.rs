@@ -58,8 +58,8 @@ pub(super) struct Tessellated {
 struct Known {
     /// Intensities of front and back.
     light: Vec<(f64, f64)>,
-    /// One for each sun and each lamp, if any surface has a highlight: the angle between the eye and the mirrored
-    /// light.
+    /// The angle between the eye and the mirrored light for each sun and each lamp, if any surface
+    /// has a highlight.
     angles: Vec<f64>,
 }
 
@@ -313,7 +313,7 @@ impl Bend<'_> {
         off(fa, fb, fm) > self.tolerance || off(ba, bb, bm) > self.tolerance
     }
 
-    /// Between the eye and each light, suns first, mirrored at a point.
+    /// Angles at a point between the eye and each mirrored light, suns first.
     fn angles(&self, position: Vec3, normal: Vec3) -> impl Iterator<Item = f64> {
         let (at, n) = (widen(position), widen(normal));
         let v = unit3(sub(self.lights.eye, at));

@@ -1,4 +1,4 @@
-//! Eight lanes of numbers: the operations in which the batches are written, once for all levels.
+//! Operations on eight lanes of numbers, in which the batches are written once for all levels.
 //!
 //! A token that implements [`Lanes8`] proves that the processor has its level. Each operation works lane by lane. Lanes
 //! 0 to 7 are in the order of the arrays they are loaded from.
@@ -13,7 +13,7 @@ pub(crate) trait Lanes8: Copy {
     type I32: Copy;
     /// Eight i64, or eight u64. All sums and products wrap.
     type I64: Copy;
-    /// Eight truth values.
+    /// Eight booleans.
     type Mask: Copy;
 
     fn load_f64(self, from: &[f64; 8]) -> Self::F64;
@@ -71,12 +71,12 @@ pub(crate) trait Lanes8: Copy {
     fn xor_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     /// Shifts left by a constant.
     fn shl_i32(self, a: Self::I32, by: i32) -> Self::I32;
-    /// Shifts right by a constant, with the sign.
+    /// Arithmetic right shift by a constant.
     fn shr_i32(self, a: Self::I32, by: i32) -> Self::I32;
     fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
-    /// Lanes 0 of both, lanes 1 of both, and so on: the first eight and the last eight.
+    /// Interleaves lanes 0 of both, lanes 1 of both, and so on: the first eight and the last eight.
     fn interleave_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2];
 
     fn load_i64(self, from: &[i64; 8]) -> Self::I64;
@@ -102,7 +102,7 @@ pub(crate) trait Lanes8: Copy {
     /// Reads `from[rows[lane][column]]` for each of three columns.
     ///
     /// # Panics
-    /// If one of them does not exist.
+    /// If one of them is out of bounds.
     #[inline(always)]
     fn gather<T: Copy + Into<u64>>(self, from: &[T], rows: &[[u32; 3]; 8]) -> [Self::I64; 3] {
         let mut lanes = [[0; 8]; 3];
@@ -128,23 +128,24 @@ pub(crate) trait Lanes8: Copy {
     /// [`compress_i32`](Self::compress_i32) for 64-bit lanes.
     fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
 
-    /// The depth test of four pixels, of which only the first `count` are compared with their cells: a byte for each,
-    /// the first lowest, 0 if its depth is greater than the cell, otherwise 255. With `keeps` greater depths are
-    /// stored. `z` and `dz` are the first depth and the change per pixel, with the integer part in the upper half.
+    /// Tests the depths of four pixels, of which only the first `count` are compared with their
+    /// cells. Returns a byte for each, the first lowest: 0 if its depth is greater than the cell,
+    /// otherwise 255. With `keeps` greater depths are stored. `z` and `dz` are the first depth and
+    /// the change per pixel, with the integer part in the upper half.
     #[inline(always)]
     fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
         // The lower half.
         test_depths(cells, depths, count, keeps) as u32
     }
-    /// [`test_four`](Self::test_four) of eight pixels.
+    /// [`test_four`](Self::test_four) for eight pixels.
     #[inline(always)]
     fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         test_depths(cells, depths, count, keeps)
     }
 }
 
-/// The depth test pixel by pixel, which most levels do as fast as in vectors.
-// Not inlined where size counts, see `fixed::IS_COMPACT`.
+/// Tests depths pixel by pixel, which on most levels is as fast as in vectors.
+// Not inlined where size matters, see `fixed::IS_COMPACT`.
 #[cfg_attr(any(mode13h_small, target_family = "wasm"), inline(never))]
 #[cfg_attr(not(any(mode13h_small, target_family = "wasm")), inline(always))]
 fn test_depths<const N: usize>(cells: &mut [u32; N], [mut z, dz]: [i64; 2], count: usize, keeps: bool) -> u64 {
@@ -164,9 +165,10 @@ fn test_depths<const N: usize>(cells: &mut [u32; N], [mut z, dz]: [i64; 2], coun
     stays
 }
 
-/// Eight lanes that are set, and eight that are not, for masks of the first lanes of eight.
+/// Eight set lanes and eight clear ones, for masks of the first lanes of eight.
 ///
-/// Masks are loaded from here, not computed by a comparison: from that the compiler would know that the cleared lanes
-/// are stored as they were read, and would store the others with `vpmaskmovd`, which takes 20 cycles on AMD processors.
+/// Masks are loaded from here, not computed by a comparison. From a comparison the compiler would
+/// infer that the cleared lanes are stored as they were read, and would store the others with
+/// `vpmaskmovd`, which takes 20 cycles on AMD processors.
 #[cfg(simd_x86_64)]
 pub(crate) static SET_THEN_CLEAR: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];

@@ -148,7 +148,7 @@ macro_rules! apart {
 #[cfg(simd_x86_64)]
 pub(super) use apart;
 
-/// The operations that AVX2 and AVX-512 share: on 256 bits.
+/// The 256-bit operations that AVX2 and AVX-512 share.
 #[cfg(simd_x86_64)]
 macro_rules! singles_of_256_bits {
     ($($rest:tt)*) => {

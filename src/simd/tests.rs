@@ -26,7 +26,7 @@ impl Numbers {
         self.i64s().map(|n| if n % 7 == 0 { ends[n.rem_euclid(5) as usize] } else { n as i32 })
     }
 
-    /// Integers, for which a product with a sum rounds equally in one step and in two.
+    /// Integers, for which fused and unfused multiply-adds round equally.
     fn f64s(&mut self) -> [f64; 8] {
         self.i64s().map(|n| (n % (1 << 24)) as f64)
     }
@@ -67,7 +67,7 @@ impl<S: Lanes8> Checker<S> {
     }
 }
 
-/// Compares depth tests with the definition, some of whose depths equal their cells.
+/// Compares depth tests, where some depths equal their cells, with the definition.
 fn check_depth_test<S: Lanes8>(s: S, name: &str, random: &mut Numbers) {
     let ([z, dz, ..], count) = (random.i64s(), (random.bits() % 9) as usize);
     let depths = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| (z.wrapping_add(dz.wrapping_mul(k)) >> 32) as u32);
@@ -224,7 +224,7 @@ impl<S: F32Lanes8> Checker<S> {
         let mut lanes = [0; 8];
         self.s.store_i32(self.s.bits_of_f32(found), &mut lanes);
         for (found, expected) in lanes.into_iter().zip(expected) {
-            // The levels may differ in which NaN it is.
+            // The levels may return different NaNs.
             let found = f32::from_bits(found.cast_unsigned());
             let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
             assert!(same, "{what} of {}: {found:?} for {expected:?}", self.name);

@@ -133,7 +133,7 @@ macro_rules! each2 {
     }};
 }
 
-/// Numbers 2·`i` and 2·`i` + 1 of eight.
+/// Elements 2·`i` and 2·`i` + 1 of eight.
 #[inline(always)]
 fn pair<T>(eight: &[T; 8], i: usize) -> &[T; 2] {
     &eight.as_chunks::<2>().0[i]
@@ -411,7 +411,7 @@ impl<V: Vector128> Lanes8 for Wide128<V> {
     }
     #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], mut to: [&mut [u32; 8]; N]) {
-        // These levels do not all have such an instruction: lane by lane from arrays.
+        // Not all of these levels have such an instruction, so it is done lane by lane from arrays.
         let bits = self.to_bitmask(mask);
         let mut lanes = [[0; 8]; N];
         for (i, lanes) in lanes.iter_mut().enumerate() {

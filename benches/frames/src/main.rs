@@ -1,6 +1,7 @@
-//! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects that were on for any
-//! object in any frame. `sphere` is a turning sphere of 79,600 faces. A fourth argument is an error budget in shades,
-//! or a shading. A fifth one is another number of frames per second; the camera then orbits a scene that does not move.
+//! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects
+//! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces. A fourth
+//! argument is an error budget in shades, or a shading. A fifth one replaces the 35 frames per
+//! second; the camera then orbits a scene that does not move by itself.
 //!
 //!     cargo run --release -p frames -- fog 35 portable
 //!
@@ -37,7 +38,7 @@ fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(
     renderer.draw(scene, vga).map(|_| ())
 }
 
-/// Half of its faces cover no pixel, as in a scanned model.
+/// A sphere half of whose faces cover no pixel, as in a scanned model.
 fn sphere() -> Scene {
     let mut scene = Scene::new();
     let object = scene.add(Object::new(shapes::sphere(200, 200)));

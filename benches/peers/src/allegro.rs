@@ -32,7 +32,7 @@ unsafe extern "C" {
     fn peers_allegro_fixed(drawing: c_int, vertices: *mut Fixed, triangles: c_int);
 }
 
-/// Creates Allegro's bitmaps. To be called once.
+/// Creates Allegro's bitmaps. Call it once.
 pub fn start() -> Result<(), &'static str> {
     // SAFETY: called once, before anything else of Allegro's.
     match unsafe { peers_allegro_start(WIDTH as c_int, HEIGHT as c_int, 1 << SIDE_BITS) } {
@@ -104,7 +104,7 @@ impl<V: AllegroVertex> Candidate for Allegro<'_, V> {
     fn clear(&mut self, index: u8) {
         let material = self.material;
         let table = if self.drawing == Drawing::Translucent { &material.mixed } else { &material.lit };
-        // SAFETY: the bitmaps exist; as many texels and a table of 65,536.
+        // SAFETY: the bitmaps exist; the texels fill one of them, and the table has 65,536 entries.
         unsafe {
             peers_allegro_clear(c_int::from(index));
             peers_allegro_clip(c_int::from(!self.inside));
@@ -118,7 +118,7 @@ impl<V: AllegroVertex> Candidate for Allegro<'_, V> {
 
     fn read(&mut self, bytes: &mut [u8]) {
         assert_eq!(bytes.len(), WIDTH * HEIGHT);
-        // SAFETY: as many bytes as the bitmap has pixels.
+        // SAFETY: there are as many bytes as the bitmap has pixels.
         unsafe { peers_allegro_read(bytes.as_mut_ptr()) }
     }
 }

@@ -222,8 +222,8 @@ fn triangles(
     }))
 }
 
-/// Prints by how many times the best peer is slower than our batches with this kernel, by medians: one row per drawing,
-/// one column per workload.
+/// Prints how many times slower the best peer is than our batches with this kernel, by medians: one
+/// row per drawing, one column per workload.
 fn print_table(kernel: &str, tables: &[Value]) {
     let named = |workload: &Value| workload["name"].as_str().unwrap_or_default().to_owned();
     let workloads = |table: &Value| table["workloads"].as_array().cloned().unwrap_or_default();
@@ -248,8 +248,8 @@ fn print_table(kernel: &str, tables: &[Value]) {
     }
 }
 
-/// Prints by how many times Mesa is slower than ours with a depth buffer and this kernel: one row per drawing of whole
-/// frames, one column per scene.
+/// Prints how many times slower Mesa is than ours with a depth buffer and this kernel: one row per
+/// drawing of whole frames, one column per scene.
 fn print_frames(kernel: &str, frames: &[Value]) {
     let mut names: Vec<&str> = Vec::new();
     for name in frames.iter().filter_map(|frame| frame["name"].as_str()) {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use mode13h::glam::Vec3;
 use mode13h::mesh::Mesh;
 
-/// How far at most a new vertex is displaced, as a share of its edge's length.
+/// Maximum displacement of a new vertex, as a fraction of its edge's length.
 const ROUGHNESS: f32 = 0.08;
 
 /// A mesh of about this many faces, made from one that has fewer.

@@ -1,4 +1,4 @@
-//! What a triangle should have drawn: cover and shade in exact arithmetic, pixel by pixel.
+//! The correct picture of a triangle: coverage and shade in exact arithmetic, pixel by pixel.
 
 use mode13h::raster::Vertex;
 use mode13h::span::Kernel;

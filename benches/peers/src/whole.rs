@@ -98,7 +98,7 @@ impl Stages {
     }
 }
 
-/// What a frame shows.
+/// The contents of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shown {
     /// One mesh, which fills the frame.

@@ -67,7 +67,7 @@ fn run(words: &str) -> bool {
 
 /// Draws frames with a kernel. Returns whether all match those of every machine.
 fn draw<'a>(kernel: Kernel, frames: impl Iterator<Item = &'a Frame>) -> bool {
-    // What a renderer caches between frames must not show.
+    // One renderer for all frames: its caches must not show.
     let (mut renderer, mut count, mut hash, mut wrong) = (Renderer::new(), 0_usize, START, Vec::new());
     for frame in frames {
         count += 1;

@@ -1,8 +1,8 @@
-//! The bound: how far linear shades are from the model's light on a patch of a surface. `docs/budget.md` has the
-//! proofs; its lemmas are named where they are used.
+//! Bounds how far linear shades are from the model's light on a patch of a surface.
+//! `docs/budget.md` has the proofs; its lemmas are named where they are used.
 //!
-//! A patch is a face, or a set of faces none of whose figures exceeds the patch's. Eight patches are bounded at a time,
-//! in plain arrays that the compiler vectorises.
+//! A patch is a face, or a set of faces whose figures never exceed the patch's. Eight patches are
+//! bounded at a time, in plain arrays that the compiler vectorises.
 
 use super::ranges::{HUGE, Patches, Sight, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes, each};
@@ -10,32 +10,33 @@ use crate::light::{ConeBeam, Lights, Reflectance};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 
-/// Greatest turn of a direction, in radians: greater ones are not distinguished.
+/// Largest turn of a direction, in radians: larger ones are clamped to it.
 const GREATEST_TURN: f32 = 1e4;
 
-/// Length of the second derivative of a unit vector, in squares of its turn: 2/√3 (Lemma 5).
+/// Length of the second derivative of a unit vector, relative to its turn squared: 2/√3 (Lemma 5).
 const BEND: f32 = 1.154_701;
 
-/// Bound on the error of f32 arithmetic, as a share of a light's strength, in the bound and in the cosines that enter it.
+/// Bound on the error of f32 arithmetic, relative to a light's strength, in the bound and in the
+/// cosines that enter it.
 const ROUNDING: f32 = 2e-5;
 
-/// Spread from which on a face's normals may cancel.
+/// Spread at which a face's normals may begin to cancel.
 const CANCELS: f32 = 0.99;
 
 /// Figures of eight patches that do not depend on the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shapes {
-    /// Radius of the corners' normals (Lemma 1): no face has a greater one.
+    /// Radius of the corners' normals (Lemma 1); no face's is larger.
     pub(super) spread: Lanes<f32>,
     /// Radius of the corners' positions.
     pub(super) edge: Lanes<f32>,
-    /// Size of the parts into which the faces are divided, as a share of the face.
+    /// Size of the parts into which the faces are divided, as a fraction of the face.
     pub(super) part: Lanes<f32>,
-    /// Share of its range by which perspective shifts a shade.
+    /// Fraction of its range by which perspective shifts a shade.
     pub(super) bend: Lanes<f32>,
 }
 
-/// Strengths of one light on one surface, on each channel, with their signs.
+/// Signed strengths of one light on one surface, per channel.
 #[derive(Clone, Copy, Debug)]
 struct Strength {
     body: [f32; 3],
@@ -51,20 +52,20 @@ pub(super) struct Incident<'a> {
     pub(super) extent: f32,
     /// True if red, green and blue are lit separately.
     pub(super) in_color: bool,
-    /// True if light continues below the horizon, as less than none.
+    /// True if light continues below the horizon, as negative light.
     pub(super) below: bool,
 }
 
-/// Bounds of a patch, in shares of full intensity.
+/// Bounds of a patch, as fractions of full intensity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Distance of shades that are linear on the screen from the model's light.
+    /// How far shades that are linear on the screen are from the model's light.
     pub(super) on_screen: Lanes<f32>,
-    /// Distance of shades that are linear on the face.
+    /// How far shades that are linear on the face are from the model's light.
     pub(super) on_face: Lanes<f32>,
 }
 
-/// A highlight's power: the constants of Lemma 8.
+/// Constants of Lemma 8 for a highlight's power.
 #[derive(Clone, Copy, Debug)]
 struct Lobe {
     shininess: f32,
@@ -112,7 +113,7 @@ struct FallOff {
 impl FallOff {
     const NONE: Self = Self { most: 1.0, least: 1.0, first: 0.0, second: 0.0, turn: 0.0 };
 
-    /// Lemma 6, from the nearest and the farthest distance.
+    /// Lemma 6, from the nearest and farthest distances.
     #[inline(always)]
     fn new(near: f32, far: f32, edge: f32, inverse_range: f32) -> Self {
         let (d0, d1) = (near * inverse_range, lesser(far * inverse_range, 1.0));
@@ -185,12 +186,12 @@ impl FallOff {
     }
 }
 
-/// One term of the light on a patch, in shares of its strength.
+/// One term of the light on a patch, relative to its strength.
 #[derive(Clone, Copy, Debug)]
 struct Term {
     /// Error of linear shades.
     error: f32,
-    /// By how much the term varies over one face, or a part of it.
+    /// How much the term varies over one face, or a part of it.
     range: f32,
     most: f32,
     least: f32,
@@ -204,7 +205,8 @@ struct Normals {
     part: f32,
 }
 
-/// Lemmas 2, 3 and 7: a light's body, from the range of n·w at the corners, w being the direction times the fall-off.
+/// A light's diffuse term by Lemmas 2, 3 and 7, from the range of n·w at the corners, where w is
+/// the direction times the fall-off.
 #[inline(always)]
 fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff, below: bool) -> Term {
     let Normals { spread, deficit, part } = n;
@@ -229,7 +231,7 @@ fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff,
     Term { error: lesser(error, differs), range: differs, most: highest, least: lowest }
 }
 
-/// Lemma 8: a light's highlight, from the range of r·v at the corners, and of n·l.
+/// A light's highlight by Lemma 8, from the range of r·v at the corners, and that of n·l.
 #[inline(always)]
 fn highlight(
     n: Normals,
@@ -279,7 +281,7 @@ fn highlight(
     Term { error: lesser(error, range), range, most, least }
 }
 
-/// At least e^−y, for y of at least 0: e^y is greater than the first terms of its series.
+/// At least e^−y, for y ≥ 0: e^y is greater than the first terms of its series.
 #[inline(always)]
 fn falling(y: f32) -> f32 {
     1.0 / (1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y / 120.0)))))
@@ -294,7 +296,8 @@ fn put(terms: &mut Terms, lane: usize, term: Term) {
     (errors[lane], ranges[lane], most[lane], least[lane]) = (term.error, term.range, term.most, term.least);
 }
 
-/// The eye of a surface with highlights: their power, the view of the eye, and how far its direction turns.
+/// The eye, for a surface with highlights: their power, the sight of the eye, and how far its
+/// direction turns.
 struct Eye<D> {
     lobe: Lobe,
     sight: Sight<D>,
@@ -402,7 +405,7 @@ impl Incident<'_> {
 }
 
 at_best_level! {
-    /// [`interpolation_error`], compiled for the kernel's processor: the same numbers.
+    /// Calls [`interpolation_error`] compiled for the kernel's processor; the results are the same.
     #[inline(never)]
     pub(super) fn error_at_best[const WHOLE: bool, P: Patches][WHOLE, P](
         kernel: Kernel, patches: &P, shapes: &Shapes, incident: &Incident<'_>,
@@ -411,9 +414,10 @@ at_best_level! {
     }
 }
 
-/// Bounds the distance of linear shades from the model's light, not counting rounding to bytes, on each of eight
-/// patches. With `WHOLE` the bound is for whole faces, whose corners have unit normals; otherwise it is for any part of
-/// the faces of the size given by `shapes`, between light at the part's own corners.
+/// Bounds how far linear shades are from the model's light, not counting rounding to bytes, on each
+/// of eight patches. With `WHOLE` the bound is for whole faces, whose corners have unit normals;
+/// otherwise it is for any part of the faces of the size given by `shapes`, interpolated between
+/// light at the part's own corners.
 #[inline(always)]
 pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     patches: &P,
@@ -424,7 +428,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     let narrow = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32];
     // Coordinates in f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
     let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
-    // Beyond moderate values there is no bound, and below them nothing overflows.
+    // Immoderate values get no bound; with moderate ones nothing overflows.
     if !incident.is_moderate() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
@@ -481,7 +485,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     for [errors, ranges, most, least] in &sums.of[..sums.channels.min(3)] {
         for lane in 0..LANES {
             let (error, range, most, least) = (errors[lane], ranges[lane], most[lane], least[lane]);
-            // Lemma 4: what is clamped at 1 and at 0.
+            // Lemma 4: the effect of clamping at 1 and at 0.
             let cut = lesser(range / 4.0, greater(most - 1.0, 0.0)) + lesser(range / 4.0, greater(-least, 0.0));
             // Both lie between the greatest and the least light.
             let apart =

@@ -1,6 +1,6 @@
-//! The bound, tested as a bound: on random patches in random light no sampled error is greater than the bound of the
-//! face, of the part, or of the cluster that contains the face. `cargo test` tests 36,000 faces, the long run
-//! 3,200,000.
+//! Tests that the bound holds: on random patches in random light, no sampled error exceeds the
+//! bound of the face, of the part, or of the cluster that contains the face. `cargo test` tests
+//! 36,000 faces, the long run 3,200,000.
 
 use core::f64::consts::FRAC_PI_2;
 use std::vec::Vec;
@@ -133,8 +133,8 @@ impl Case {
         Self { triangles, positions, normals, suns, lamps, eye: wide(eye_at), answer, part, in_color }
     }
 
-    /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one least of all, and the
-    /// points between may be dark. A highlight is at its greatest there, and ends abruptly.
+    /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one
+    /// least, and the points between may be dark. A highlight peaks there, and ends abruptly.
     fn grazing(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
         let spread = random.log(0.01, 0.5) as f32;
@@ -309,7 +309,7 @@ impl Case {
                 let (light, linear) = (self.light(face, mix(corners)), mix(at_corners));
                 for channel in 0..if self.in_color { 3 } else { 1 } {
                     let error = (light[channel] - linear[channel]).abs();
-                    // Of a light at the surface itself there is no bound.
+                    // There is no bound for a light on the surface itself.
                     most = if error.is_nan() { most } else { most.max(error) };
                 }
             }
@@ -317,7 +317,7 @@ impl Case {
         most
     }
 
-    /// The corners of a part of its size.
+    /// The corners of a random part of the case's size.
     fn part(&self, random: &mut Chance) -> [[f64; 3]; 3] {
         let whole = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let part = f64::from(self.part);
@@ -335,7 +335,7 @@ impl Case {
 /// Rounding of f32 sums near 1: 1/10,000 shade, covered by the allowance for the rounding of shades.
 const ROUNDING: f64 = 4e-7;
 
-/// Tests one case; returns bound over error for each face with a significant error.
+/// Tests one case; returns the ratio of bound to error for each face with a significant error.
 fn try_case(case: &Case, random: &mut Chance, points: u32) -> Vec<f64> {
     let (whole, parts, clusters) = case.bounds();
     let mut ratios = Vec::new();
@@ -398,7 +398,8 @@ fn no_sampled_error_is_beyond_its_bound() {
     let at = |share: f64| ratios[(share * (ratios.len() - 1) as f64) as usize];
     std::println!("{} faces: bound over error {:.2} in the median, {:.2} at 95 %", ratios.len(), at(0.5), at(0.95));
     assert!(ratios.len() > 5_000);
-    // Measured with the current bound, plus 2 % for other machines' powers: a looser bound makes a slower budget.
+    // Measured with the current bound, plus 2 % for other machines' power functions: a looser bound
+    // slows down the budget.
     assert!(at(0.5) < 3.71 && at(0.95) < 43.6, "a looser bound: {:.2} and {:.2}", at(0.5), at(0.95));
 }
 

@@ -1,4 +1,5 @@
-//! Classification: which faces of a chunk are linear, by the bound on clusters and on eight faces at a time.
+//! Classifies the faces of a chunk as linear or not, by the bound on clusters and on eight faces at
+//! a time.
 
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
@@ -15,14 +16,15 @@ use crate::view::ObjectView;
 pub(in crate::render) struct Classes {
     /// Faces that are linear on the screen.
     pub(in crate::render) linear: u64,
-    /// Others that are linear on the face.
+    /// Other faces, linear on the face.
     pub(in crate::render) float: u64,
-    /// Bounds of the remaining ones, for shades that are linear on the face, in shares of full intensity.
+    /// Bounds of the remaining faces, for shades that are linear on the face, as fractions of full
+    /// intensity.
     pub(in crate::render) errors: [f32; CHUNK],
 }
 
-/// Share of its range by which perspective shifts a shade, on each of eight clusters: (ρ − 1) / 4 (Lemma 9). Nothing
-/// drawn unclipped is nearer than the near plane.
+/// Fraction of its range by which perspective shifts a shade, on each of eight clusters: (ρ − 1) /
+/// 4 (Lemma 9). Nothing drawn unclipped is nearer than the near plane.
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
     let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
@@ -35,7 +37,7 @@ fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f3
     })
 }
 
-/// Share of its range by which perspective shifts a shade, on each of eight faces.
+/// Fraction of its range by which perspective shifts a shade, on each of eight faces.
 #[inline(always)]
 fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
     let (row, offset) = view.along_view();
@@ -64,7 +66,8 @@ impl Faces<'_> {
         error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
     }
 
-    /// Faces of a chunk whose clusters are linear, for those that show their fronts or those that show their backs.
+    /// Faces of a chunk whose clusters are linear, among those that show their fronts or, with
+    /// `back`, their backs.
     #[inline(never)]
     fn linear_by_clusters(&self, budget: &Budget, chunk: usize, back: bool) -> u64 {
         let chunk = &budget.clusters.chunks[chunk];

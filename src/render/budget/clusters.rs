@@ -9,7 +9,7 @@ use crate::lanes::{LANES, Lanes};
 use crate::raster::pick::CHUNK;
 use crate::render::geometry::Geometry;
 
-/// Radii of a face (Lemma 1), whatever the light.
+/// Radii of a face (Lemma 1), which do not depend on the light.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Facet {
     /// Radius of its normals.
@@ -24,8 +24,8 @@ pub(super) fn radius(points: [Vec3; 3]) -> f32 {
     let [a, b, c] = [(0, 1), (1, 2), (2, 0)].map(square);
     let longest = a.max(b).max(c);
     let others = a + b + c - longest;
-    // The radius of the longest edge, or for an acute triangle of the circumcircle: R² = a²b²c² / 16K², by the squares
-    // of the sides. That is at most a third of the longest edge's square.
+    // Half of the longest edge or, for an acute triangle, the circumradius: R² = a²b²c² / 16K²,
+    // from the squared sides. That is at most a third of the longest edge's square.
     let around = a * b * c / (2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c));
     let square = if others > longest && around <= longest / 3.0 { around.max(longest / 4.0) } else { longest / 3.0 };
     let square = if others <= longest { longest / 4.0 } else { square };
@@ -57,13 +57,13 @@ impl Chunk {
             let cone = sum.normalize_or_zero();
             let cosine = corners().map(|i| normals[i].dot(cone)).fold(1.0, f32::min);
             for axis in 0..3 {
-                // Half of each, as their sum might overflow.
+                // Halved separately, since their sum might overflow.
                 let (min, max) = (min[axis] * 0.5, max[axis] * 0.5);
                 chunk.clusters.centres[axis][lane] = min + max;
                 chunk.clusters.halves[axis][lane] = (max - min) * (1.0 + 1e-5) + 1e-6 * (min.abs() + max.abs());
                 chunk.clusters.axes[axis][lane] = cone[axis];
             }
-            // A thousandth for the rounding of cosines near 1.
+            // The thousandth allows for the rounding of cosines near 1.
             chunk.clusters.angles[lane] = if cosine > 0.0 { libm::acosf(cosine) + 1e-3 } else { core::f32::consts::PI };
             chunk.spread[lane] = facets.iter().map(|facet| facet.spread).fold(0.0, f32::max);
             chunk.edge[lane] = facets.iter().map(|facet| facet.edge).fold(0.0, f32::max);

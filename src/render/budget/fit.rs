@@ -1,10 +1,12 @@
-//! The fit: a quadratic function on the screen, tested on a grid of points of one face (`docs/budget.md`, Lemma 10).
+//! Fits a quadratic function on the screen, tested on a grid of points of one face
+//! (`docs/budget.md`, Lemma 10).
 //!
-//! The quadratic function goes through the light at six points: the corners and the middles of the edges (see
-//! `raster::effects::ShadeSource::Curved`). It approximates light that is not clamped at 1: clamping both increases no
-//! difference.
+//! The quadratic function goes through the light at six points: the corners and the middles of the
+//! edges (see `raster::effects::ShadeSource::Curved`). It approximates light before it is clamped
+//! at 1: clamping both never increases their difference.
 //!
-//! Light from one source on a matt face continues below the horizon, as much less than none as the other side has more.
+//! On a matt face, light from one source continues below the horizon as negative light, whose
+//! magnitude is the light on the other side.
 
 use glam::Vec3;
 
@@ -26,20 +28,22 @@ use crate::span::Kernel;
 /// grid.)
 const PIXELS_A_POINT: f32 = 4.0;
 
-/// Pixels from which on a face is fitted. (Instructions of a frame within 1 shade, relative to 48, for 16, 32 and 48:
-/// `rgb` 1.06, 1.02 and 1, `torus` 1.04, 1.00 and 1, `teapot` 1.02, 1 and 1; `torus` within 2 takes 1.01, 0.99 and 1.)
+/// Size in pixels from which a face is fitted. (Instructions of a frame within 1 shade, relative to
+/// 48, for 16, 32 and 48: `rgb` 1.06, 1.02 and 1, `torus` 1.04, 1.00 and 1, `teapot` 1.02, 1 and 1;
+/// `torus` within 2 takes 1.01, 0.99 and 1.)
 const WORTH_CURVE: f32 = 48.0;
 
-/// Share of the allowed error up to which the face's bound, times the square of the smallest part's size, makes the
-/// bound of parts worth computing: an estimate. (Instructions of a frame within 1 shade with it: `phong` 0.94, `rgb`
-/// 0.92; with 0.5 instead `rgb` 0.97.)
+/// The bound of parts is computed if the face's bound, times the square of the smallest part's
+/// size, is at most this fraction of the allowed error: an estimate. (Instructions of a frame
+/// within 1 shade with it: `phong` 0.94, `rgb` 0.92; with 0.5 instead `rgb` 0.97.)
 const HOPE: f32 = 0.25;
 
-/// Share of the allowed error up to which light may deviate between the points of a grid for it to be worth lighting.
-/// (Within 1 shade the torus takes 1.00 of `phong` with 0.5, 0.93 with 0.9.)
+/// A grid is worth lighting if light deviates between its points by less than this fraction of the
+/// allowed error. (Within 1 shade the torus takes 1.00 of `phong` with 0.5, 0.93 with 0.9.)
 const MODEL: f32 = 0.9;
 
-/// The widest row, in pixels, from which on lighting only some pixels of a triangle pays: eight are lit at a time.
+/// Width in pixels of a triangle's widest row from which lighting only some of its pixels pays:
+/// eight are lit at a time.
 const WORTH_KNOTS: f32 = 16.0;
 
 /// Weights of eight points on the screen.
@@ -52,8 +56,8 @@ const NODES: Weights = [
     [0.0, 0.0, 1.0, 0.5, 0.5, 0.0, 0.0, 0.0],
 ];
 
-/// The points that divide each edge in `n`, except for the corners and, as `n` is even, the middles of the edges;
-/// padded to full eights with the first corner.
+/// The points that divide each edge into `n`, except for the corners and, as `n` is even, the
+/// middles of the edges; padded to full eights with the first corner.
 const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     let mut eights = [[[1.0; LANES], [0.0; LANES], [0.0; LANES]]; EIGHTS];
     let (mut at, mut a) = (0, 0);
@@ -87,7 +91,7 @@ const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHT
 /// Light at the nodes, on each channel.
 type Nodes = [Lanes<f32>; 3];
 
-/// The shading of a face, and if it is quadratic, the light that its function goes through.
+/// The shading of a face and, if it is quadratic, the light that its function goes through.
 pub(in crate::render) struct Fit {
     pub(in crate::render) shading: FaceShading,
     pub(in crate::render) nodes: Nodes,
@@ -148,7 +152,7 @@ impl Quadratic {
         Self { corners: [fa, fb, fc], bends: [bend(fb, ma, fc), bend(fc, mb, fa), bend(fa, mc, fb)] }
     }
 
-    /// Bounds its distance from some values.
+    /// Bounds the function's distance from these values.
     #[inline(always)]
     fn off(&self, [a, b, c]: &Weights, values: &Lanes<f32>) -> f32 {
         let ([fa, fb, fc], [da, db, dc]) = (self.corners, self.bends);
@@ -159,7 +163,7 @@ impl Quadratic {
         }))
     }
 
-    /// By how much it bends between the points of a grid that divides each edge in `n`.
+    /// How much it bends between the points of a grid that divides each edge into `n`.
     #[inline]
     fn between(&self, n: f32) -> f32 {
         // D is half of the greatest bend.
@@ -173,7 +177,7 @@ at_best_level! {
     }
 }
 
-/// Returns the greatest value; NaN if one of them is.
+/// Returns the greatest value; NaN if any is NaN.
 #[inline(always)]
 fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     let (mut most, mut i) = (0.0, 0);
@@ -184,7 +188,7 @@ fn greatest<const N: usize>(values: [f32; N]) -> f32 {
     most
 }
 
-/// Infinite beyond f32.
+/// Narrows to f32; values beyond its range become infinite.
 #[inline(always)]
 fn narrow(wide: &Lanes<f64>) -> Lanes<f32> {
     each!(lane => wide[lane] as f32)
@@ -223,7 +227,7 @@ impl Faces<'_> {
         if !face.below {
             return front;
         }
-        // One side has the light, the other what remains without it, which is the lesser.
+        // One side has the light; the other has what remains without it, which is less.
         let back = self.front(face, weights, true);
         let mut both = [[0.0; LANES]; 3];
         for channel in 0..3 {
@@ -245,8 +249,8 @@ impl Faces<'_> {
         }
     }
 
-    /// The cheapest shading of a face that is known, from light at some of its points, to keep within the budget.
-    /// `error` is the bound of shades that are linear on the face.
+    /// The cheapest shading of a face that is known, from light at some of its points, to stay
+    /// within the budget. `error` is the bound of shades that are linear on the face.
     #[inline(never)]
     pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
         let (depths, spare) = (three(vertices.each_ref(), Vertex::depth), budget.spare(EXACT_ROUNDING));
@@ -294,8 +298,9 @@ impl Faces<'_> {
         Fit::of(spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)))
     }
 
-    /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes through, if it fits.
-    /// `left` is how far it may be off at the points of each grid, out of the whole allowance.
+    /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes
+    /// through, if it fits. `spare` is the whole allowance, and `left` how much of it remains on
+    /// each grid.
     fn quadratic(
         &self,
         face: &OnScreen<'_>,
@@ -348,7 +353,8 @@ fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
     (area, if height == 0 { 0.0 } else { 512.0 * area / height as f32 })
 }
 
-/// The limits of quadratic shades: the shade without light, as no light takes any away, and the last one.
+/// The limits of quadratic shades: the shade without light, since no light is negative here, and
+/// the last shade.
 pub(in crate::render) fn limits(paint: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
     if channels {
         let Reflectance { ambient, color, .. } = paint.answer;

@@ -1,4 +1,4 @@
-//! The error budget: the cheapest shading for each triangle that is known to keep within it.
+//! The error budget: the cheapest shading for each triangle that is known to stay within it.
 //!
 //! One bound says how far linear shades are from the model's light on a patch of a surface (`bound`). It is computed
 //! for clusters of eight faces, for eight faces one by one, and for parts of one face. Faces that it leaves undecided
@@ -42,7 +42,8 @@ pub(super) const PHONG: FaceShading = FaceShading::By(Shading::Phong);
 /// 1/2,000 for the bound itself.
 const LINEAR_ROUNDING: f32 = 0.7525;
 
-/// Rounding of a shade that is exact before it: a half, 1/512 for the vertices' shades, 1/100 for f32, and the bound's.
+/// Rounding of an otherwise exact shade: a half, 1/512 for the vertices' shades, 1/100 for f32, and
+/// the bound's.
 const EXACT_ROUNDING: f32 = 0.5125;
 
 /// Error budget of an object: the data that its decisions are based on.
@@ -60,7 +61,8 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Updates the budget to the object's current state. `mesh` is the object's, if that is what is drawn.
+    /// Updates the budget to the object's current state. `mesh` is the object's, if it is drawn
+    /// unsplit.
     #[inline(never)]
     pub(super) fn renew(
         &mut self,
@@ -77,7 +79,8 @@ impl Budget {
         }
     }
 
-    /// Error of light that is left, in shares of full intensity, if a shade is also off by `rounding` shades.
+    /// The error left for light, as a fraction of full intensity, if a shade is also off by
+    /// `rounding` shades.
     fn spare(&self, rounding: f32) -> f32 {
         (self.allowed - rounding) / 255.0
     }

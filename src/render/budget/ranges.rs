@@ -8,10 +8,10 @@ pub(super) type Vectors = [Lanes<f32>; 3];
 
 pub(super) const ZERO: Lanes<f32> = [0.0; LANES];
 
-/// The error of cosines in f32 is less.
+/// Bound on the error of cosines in f32.
 const ROUNDING: f32 = 4e-6;
 
-/// Greatest distance or bound: greater ones are not distinguished. Its square is still finite.
+/// Largest distance or bound: larger ones are clamped to it. Its square is still finite.
 pub(super) const HUGE: f32 = 1e15;
 
 /// Eight vectors, by axis and lane.
@@ -252,7 +252,7 @@ impl Patches for EightClusters {
     }
 }
 
-/// One vector eight times.
+/// Splats a vector to eight lanes.
 #[inline(always)]
 pub(super) fn splat([x, y, z]: [f32; 3]) -> Vectors {
     [[x; LANES], [y; LANES], [z; LANES]]
@@ -290,7 +290,8 @@ fn mirror(light: &Lanes<f32>, eye: &Lanes<f32>, between: &Lanes<f32>) -> Lanes<f
     each!(lane => 2.0 * light[lane] * eye[lane] - between[lane])
 }
 
-/// The greatest and the least of three cosines, each off by at most `off`. NaN may count as anything.
+/// The greatest and the least of three cosines, each off by at most `off`. The result for NaN is
+/// arbitrary.
 #[inline(always)]
 fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
     let (mut most, mut least) = ([-1.0; LANES], [1.0; LANES]);
@@ -304,7 +305,7 @@ fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
     [most, least]
 }
 
-/// The greater one; the second if one is NaN. In this form it is one instruction.
+/// The greater one; the second if one is NaN. Written this way, it is one instruction.
 #[inline(always)]
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -321,7 +322,7 @@ pub(super) fn dot(a: &Vectors, b: &Vectors) -> Lanes<f32> {
     each!(lane => a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }
 
-/// Both are correctly rounded, so they are equal. The compiler vectorises the first.
+/// Square root; both functions round correctly, so they agree. The compiler vectorises the first.
 #[inline(always)]
 pub(super) fn square_root(square: f32) -> f32 {
     #[cfg(feature = "std")]

@@ -1,7 +1,8 @@
 //! The most common vertex stages, eight at a time: f32 suffices, and suns light matt surfaces.
 //!
-//! Each vertex gets the same values as by [`ObjectView::project`] and [`both_sides`](crate::light::both_sides): the
-//! operations and their order are the same, and each rounds equally in a vector and in a scalar.
+//! Each vertex gets the same values as from [`ObjectView::project`] and
+//! [`both_sides`](crate::light::both_sides): the operations and their order are the same, and each
+//! rounds the same in a vector as in a scalar.
 
 use glam::Vec3;
 
@@ -64,7 +65,7 @@ fn project_eight<S: F32Lanes8>(
     let nothing = s.splat_i32(0);
     let x = s.select_i32(within, units(s, x), s.splat_i32(ScreenPos::BEYOND));
     let y = s.select_i32(within, units(s, y), nothing);
-    // As in `ObjectView::depth`: 1 to 2³⁰ for what is within.
+    // As in `ObjectView::depth`: 1 to 2³⁰ for vertices within it.
     let part = s.mul(s.div(s.splat_f64(narrow.near.into()), s.widen(w)), s.splat_f64(1_073_741_824.0));
     let depth = s.max_i32(s.whole(s.add(part, s.splat_f64(0.5))), s.splat_i32(1));
 
@@ -92,7 +93,7 @@ fn row<S: F32Lanes8>(s: S, narrow: &Narrow, at: [S::F32; 3], k: usize) -> S::F32
     s.add_f32(s.add_f32(s.add_f32(a, b), c), s.splat_f32(offset.to_array()[k]))
 }
 
-/// Within the limit; NaN is not.
+/// True within the limit; false for NaN.
 #[inline(always)]
 fn is_near<S: F32Lanes8>(s: S, c: S::F32) -> S::Mask {
     s.and(s.is_at_least(c, s.splat_f32(-Narrow::LIMIT)), s.is_at_least(s.splat_f32(Narrow::LIMIT), c))
@@ -120,7 +121,7 @@ fn units<S: F32Lanes8>(s: S, pixels: S::F32) -> S::I32 {
     s.add_i32(nearest, s.select_i32(is_less, s.splat_i32(1), s.splat_i32(0)))
 }
 
-/// The definition, for vertices from index `first` on.
+/// Projects vertices one by one, from index `first` on: the definition.
 #[inline(never)]
 pub(super) fn one_by_one<const TESTED: bool>(
     view: &ObjectView,
@@ -171,7 +172,7 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
     light_one_by_one::<BOTH>(rest, rest_surfaces, paints, lights, rest_shades);
 }
 
-/// The definition.
+/// Lights vertices one by one: the definition.
 #[inline(never)]
 fn light_one_by_one<const BOTH: bool>(
     normals: &[Vec3],
@@ -227,7 +228,7 @@ fn shade<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
 /// [`SurfaceMaterial::shade`].
 #[inline(always)]
 pub(in crate::render) fn shade_of_intensities<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
-    // For NaN the second of both: 0.
+    // NaN gives the second argument, 0.
     let clamped = s.min_f32(s.max_f32(s.narrow(light), s.splat_f32(0.0)), s.splat_f32(1.0));
     let units = s.splat_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
     let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.splat_f64(0.5)));
@@ -307,7 +308,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
-        /// Every vertex has the same position as alone, or needs clipping exactly if it does alone.
+        /// Every vertex gets the same position as on its own, or needs clipping exactly if it does
+        /// on its own.
         #[test]
         fn eight_vertices_are_where_each_is_alone(
             view in view(),
@@ -335,7 +337,7 @@ mod tests {
             }
         }
 
-        /// Every vertex has the same shades as alone, with one surface or several.
+        /// Every vertex gets the same shades as on its own, with one surface or several.
         #[test]
         fn eight_vertices_are_lit_as_each_is_alone(
             normals in prop::collection::vec(vector(), 0..40),

@@ -52,11 +52,12 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
     lanes::project::<TESTED>(kernel.simd_level(), view, &narrow, positions, vertices);
 }
 
-/// Rounds vertices that are already rounded again, to fewer fraction bits, half up.
+/// Rounds already rounded vertices again, to fewer fraction bits, half up.
 #[cold]
 pub(super) fn requantize(bits: u8, vertices: &mut VertexColumns) {
     let unit = 1 << (8 - bits.min(8));
-    // Within the guard band, which is a multiple of the unit, so no sum is near the ends of i32, and none leaves it.
+    // The guard band is a multiple of the unit, so no sum is near the ends of i32 and no result
+    // leaves the band.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
     for at in vertices.at.iter_mut().filter(|at| !at.needs_clipping()) {
         *at = ScreenPos::new(round(at.x()), round(at.y()));
@@ -182,7 +183,7 @@ fn texels(part: f32, size: u32) -> i32 {
     let size = f64::from(size);
     let at = f64::from(part) * size;
     let near = if at.abs() <= FARTHEST { at } else { at - libm::floor(at / size) * size };
-    // Within ±2³⁰; if too great to have a fraction, still a number.
+    // Within ±2³⁰; a value too large to have a fraction is still a number.
     libm::floor(near * 65_536.0 + 0.5) as i32
 }
 
@@ -198,7 +199,8 @@ pub(super) fn environment_coordinates(
     for ((texture, &normal), &surface) in texture.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
         if let Some([width, height]) = paints[usize::from(surface)].environment_size {
             let seen = to_eye * normal;
-            // To the centres of the outermost texels, so that no coordinate wraps to the opposite side.
+            // Up to the centres of the outermost texels, so that no coordinate wraps to the
+            // opposite side.
             let within = |c: f32, size: u32| texels(0.5 + 0.5 * c * (1.0 - 1.0 / size as f32), size);
             *texture = [within(seen.x, width), within(seen.y, height)];
         }

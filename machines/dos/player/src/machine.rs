@@ -59,7 +59,8 @@ impl Machine {
 
     /// An interrupt of DOS or the BIOS with AX, BX, CX, DX and DS; returns AX, and whether the carry flag is clear.
     fn interrupt(&mut self, number: u32, [ax, bx, cx, dx]: [u32; 4], ds: Option<u32>) -> (u32, bool, bool) {
-        // SAFETY: the table is the stub's; its service reads and writes it alone, and what the interrupts below do.
+        // SAFETY: the table is the stub's; its service accesses only the table, and what the
+        // interrupts below access.
         unsafe {
             let p = self.parameters;
             (*p).number = number;

@@ -1,5 +1,5 @@
-//! A triangle that turns in mode 13h until Esc is pressed. With the word `/W` it draws once, and writes what the card then
-//! holds to SCREEN.BIN: 64,000 bytes, and the DAC.
+//! A triangle that turns in mode 13h until Esc is pressed. With the argument `/W` it draws once,
+//! and writes the card's contents to SCREEN.BIN: 64,000 bytes, and the DAC.
 #![no_std]
 
 extern crate alloc;
@@ -17,7 +17,7 @@ use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
 /// Called once the program's memory is ready; returns the exit status.
 ///
 /// # Safety
-/// The stub gives its own table.
+/// The stub passes its own table.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn dos_main(parameters: *mut Parameters) -> i32 {
     // SAFETY: it is the stub's, which calls once.
@@ -43,7 +43,7 @@ unsafe extern "C" fn dos_main(parameters: *mut Parameters) -> i32 {
             break true;
         }
         for [x, y] in &mut corners {
-            // A turn by 1/64, in which lengths stay.
+            // A turn by 1/64 that preserves lengths.
             *x -= *y >> 6;
             *y += *x >> 6;
         }
@@ -52,7 +52,7 @@ unsafe extern "C" fn dos_main(parameters: *mut Parameters) -> i32 {
     i32::from(!is_drawn)
 }
 
-/// Draws the triangle round the middle of the screen, by integers alone.
+/// Draws the triangle around the middle of the screen, in integers only.
 fn draw(pixels: &mut [u8], corners: &[[i32; 2]; 3]) -> bool {
     pixels.fill(0);
     let Ok(frame) = Frame::new(pixels, 320, 200, 320) else { return false };

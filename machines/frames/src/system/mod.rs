@@ -1,4 +1,4 @@
-//! What the program needs from a machine: an entry point, its arguments, printing a line, and exiting.
+//! The interface to a machine: an entry point, its arguments, printing a line, and exiting.
 
 #[cfg(not(feature = "std"))]
 #[cfg_attr(target_os = "linux", path = "linux.rs")]

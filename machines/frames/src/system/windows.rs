@@ -16,7 +16,7 @@ unsafe extern "system" {
 /// Standard output, -11.
 const OUTPUT: u32 = 0xFFFF_FFF5;
 
-/// The linker requires it if a program uses floats.
+/// Required by the linker if a program uses floats.
 #[unsafe(no_mangle)]
 static _fltused: i32 = 0;
 
