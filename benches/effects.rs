@@ -1,5 +1,4 @@
-//! Times the pixel loops other than the span's, portable against optimized, at typical span
-//! lengths.
+//! Times the pixel loops other than spans, portable against optimized, at typical span lengths.
 //!
 //! ```text
 //! cargo bench --bench effects

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 /// Marks a free slot: an edge's ends differ.
 const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 
-/// Map from an edge, two different numbers, to a number.
+/// Map from an edge, a pair of different numbers, to a number.
 #[derive(Debug, Default)]
 pub(super) struct EdgeMap {
     /// Edges and their numbers, at indices by hash. The length is a power of two, or zero.

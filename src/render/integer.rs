@@ -1,5 +1,4 @@
-//! Converts a scene for the integer path: its floats become 16.16 here, and none are used further
-//! on.
+//! Converts a scene for the integer path: its floats become 16.16 here, and none remain after it.
 //!
 //! Powers of two bring everything into range. A mesh is scaled about its pivot until its farthest coordinate lies
 //! between 16,384 and 32,767: 30 bits, whatever its size. The scene is scaled about the eye until its farthest object
@@ -181,7 +180,7 @@ impl IntegerPath {
         }
         self.convert(scene.objects());
 
-        // Everything relative to the eye.
+        // From here on everything is relative to the eye.
         let eye = scene.camera.eye;
         let from_eye = |p: Vec3| {
             let (p, eye) = (p.to_array(), eye.to_array());

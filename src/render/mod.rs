@@ -3,12 +3,12 @@
 //! | file | what |
 //! |---|---|
 //! | `object` | the cached state of an object: its vertices, and their inputs |
-//! | `vertex`, `columns` | the vertex stages: projected, lit, given values for effects; their results, in columns |
+//! | `vertex`, `columns` | vertex stages (projection, light, effects); their results in columns |
 //! | `tessellate`, `edge_map` | faces split along their edges; a map from edges to numbers |
 //! | `faces` | the input for an object's faces |
-//! | `pick` | which faces are drawn, and how, with `clip`: near plane and guard band |
+//! | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
 //! | `budget` | the error budget: the shading for each triangle |
-//! | `hidden_surfaces` | the methods for hidden surfaces: faces drawn in their order, far to near, or row by row |
+//! | `hidden_surfaces` | hidden-surface methods: faces in scene order, far to near, or row by row |
 //! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 //! | `integer` | a scene in 16.16 |
 //! | `pace` | the least error that fits in a time, independent of the renderer |

@@ -155,7 +155,7 @@ pub(super) struct ObjectState {
     is_tessellated: bool,
     /// The mesh and the index of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
-    /// Where each face is lit, and the mesh they belong to, if faces are lit.
+    /// Where each face is lit, and the mesh of these faces, if faces are lit.
     face_points: Option<(Shared<Mesh>, FacePoints)>,
     /// One for each surface, with its inputs.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
@@ -392,8 +392,7 @@ impl ObjectState {
         }
     }
 
-    /// Updates the tables of shades by normal in eye space, which stay valid while the object
-    /// turns.
+    /// Updates the tables of shades by normal in eye space; they stay valid as the object turns.
     fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {

@@ -1,5 +1,4 @@
-//! Chooses the error budget of the next frames, the least that fits in a time, from earlier frames'
-//! times.
+//! Chooses the least error budget that fits in a given time, from the times of earlier frames.
 //!
 //! Frames are grouped in blocks of eight drawn within the same error. A block's mean time is the
 //! cost of its error. It also scales the costs of the other errors, since a pose that takes longer
@@ -306,8 +305,7 @@ mod tests {
         [2.00, 2.30, 3.10, 2.90, 3.60, 3.30],
     ];
 
-    /// Eight successive poses around a full turn, as the study draws them, each with its relative
-    /// time.
+    /// Eight successive poses in a full turn, as the study draws them, each with its relative time.
     const POSES: [f32; 8] = [0.8, 1.0, 1.3, 1.1, 0.7, 0.9, 1.2, 1.0];
 
     /// On every model, with a first frame that takes three times as long, and a machine whose

@@ -170,7 +170,7 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds the faces, of 64 with the same look, whose bits are set.
+    /// Adds the faces whose bits are set, out of 64; they all have this look.
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
         self.begin(look);
@@ -474,8 +474,7 @@ impl Faces<'_> {
         fit.shading
     }
 
-    /// Picks a face that reaches beyond the near plane or the guard band. Separate because it is
-    /// rare.
+    /// Picks a face that reaches beyond the near plane or the guard band. Separate, as it is rare.
     #[cold]
     #[inline(never)]
     fn clipped(

@@ -10,7 +10,7 @@ use crate::span::Kernel;
 
 /// One surface of an object, lit pixel by pixel in object space.
 ///
-/// Where the normals of two ends cancel, there is none, and only ambient light remains.
+/// Where the normals of two ends cancel, none is left, and only ambient light remains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,

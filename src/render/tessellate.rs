@@ -152,7 +152,7 @@ impl Tessellated {
         // Below 2³¹, like a mesh's vertices, and splitting ends before there are twice as many.
         let mut points = self.points.iter().max().map_or(0, |last| last + 1);
         for (&[a, b, c], straight) in self.triangles.iter().zip(&self.straight) {
-            // An edge that did not bend does not bend now.
+            // Edges that did not bend before do not bend now.
             if *straight {
                 continue;
             }
@@ -268,7 +268,7 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
 struct Bend<'a> {
     lights: &'a Lights<'a>,
     paints: &'a [SurfaceMaterial],
-    /// The greatest allowed error, as a share of full intensity.
+    /// The greatest allowed error, as a fraction of full intensity.
     tolerance: f64,
     /// True if any surface has a highlight.
     has_highlights: bool,

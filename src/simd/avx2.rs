@@ -288,7 +288,7 @@ impl Lanes8 for Avx2 {
         let low = (bits % 16).count_ones() as usize;
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: `self` proves that the processor has the instructions. The first store goes
-            // to the first four of eight; the second begins after at most four of them.
+            // to the first four of eight, the second to four that begin after at most four of them.
             unsafe {
                 let to = to.as_mut_ptr();
                 for (half, to) in [to, to.add(low)].into_iter().enumerate() {

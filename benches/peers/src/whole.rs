@@ -220,7 +220,7 @@ pub fn measure(
             let started = seconds();
             match ours.get_mut(which) {
                 Some((renderer, vga)) => drop(renderer.draw(&scene, vga)?),
-                // SAFETY: as many matrices of 16.
+                // SAFETY: `models` has this many matrices of 16.
                 None => unsafe { peers_mesa_frame(models.as_flattened().as_ptr(), models.len() as c_int) },
             }
             if round > 0 {

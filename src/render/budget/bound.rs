@@ -145,7 +145,7 @@ struct Share {
 }
 
 impl Share {
-    /// Lemma 12, from the range of the cosine at the corners and the turn of the direction.
+    /// Lemma 12, from the cosine's range at the corners and the turn of the direction.
     #[inline(always)]
     fn new(cone: &ConeBeam, (most, least): (f32, f32), turn: f32) -> Self {
         let (inner, inverse_width) = (cone.inner as f32, cone.inverse_width as f32);
@@ -154,13 +154,14 @@ impl Share {
         let x = |cosine: f32| lesser(greater(1.0 - (inner - cosine) * inverse_width, 0.0), 1.0);
         let (high, low) = (x(most), x(least));
         let share = |x: f32| x * x * (3.0 - 2.0 * x);
-        // The x of the range nearest to the steepest one, and the farther end, where the curve bends most.
+        // The range's x nearest the steepest point, and its farther end, where the curve bends
+        // most.
         let steepest = greater(lesser(0.5, high), low);
         let is_edge = if low < 1.0 && high > 0.0 { 1.0 } else { 0.0 };
         let slope = is_edge * 6.0 * steepest * (1.0 - steepest) * inverse_width;
         let bend =
             is_edge * greater((6.0 - 12.0 * low).abs(), (6.0 - 12.0 * high).abs()) * inverse_width * inverse_width;
-        // Where it has an edge, the cosine is no less than the outer one.
+        // At the cone's edge, the cosine is no less than the outer one.
         let cosine = greater(greater(least, inner - 1.0 / inverse_width), 0.0);
         let sine = square_root(greater(1.0 - cosine * cosine, 0.0) + ROUNDING);
         Self {
@@ -296,8 +297,7 @@ fn put(terms: &mut Terms, lane: usize, term: Term) {
     (errors[lane], ranges[lane], most[lane], least[lane]) = (term.error, term.range, term.most, term.least);
 }
 
-/// The eye, for a surface with highlights: their power, the sight of the eye, and how far its
-/// direction turns.
+/// The eye, for highlights: their power, the sight of the eye, and how far its direction turns.
 struct Eye<D> {
     lobe: Lobe,
     sight: Sight<D>,

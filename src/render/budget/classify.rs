@@ -1,5 +1,4 @@
-//! Classifies the faces of a chunk as linear or not, by the bound on clusters and on eight faces at
-//! a time.
+//! Classifies a chunk's faces as linear or not, bounding clusters, and eight faces at a time.
 
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
@@ -18,13 +17,12 @@ pub(in crate::render) struct Classes {
     pub(in crate::render) linear: u64,
     /// Other faces, linear on the face.
     pub(in crate::render) float: u64,
-    /// Bounds of the remaining faces, for shades that are linear on the face, as fractions of full
-    /// intensity.
+    /// Bounds of the other faces for shades linear on the face, as fractions of full intensity.
     pub(in crate::render) errors: [f32; CHUNK],
 }
 
-/// Fraction of its range by which perspective shifts a shade, on each of eight clusters: (ρ − 1) /
-/// 4 (Lemma 9). Nothing drawn unclipped is nearer than the near plane.
+/// Fraction of its range by which perspective shifts a shade, (ρ − 1) / 4 (Lemma 9), on each of
+/// eight clusters. Nothing drawn unclipped is nearer than the near plane.
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
     let ((row, offset), scale) = (view.along_view(), view.scale() as f32);

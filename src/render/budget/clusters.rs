@@ -25,7 +25,7 @@ pub(super) fn radius(points: [Vec3; 3]) -> f32 {
     let longest = a.max(b).max(c);
     let others = a + b + c - longest;
     // Half of the longest edge or, for an acute triangle, the circumradius: R² = a²b²c² / 16K²,
-    // from the squared sides. That is at most a third of the longest edge's square.
+    // from the squared sides. R² is at most a third of the longest edge's square.
     let around = a * b * c / (2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c));
     let square = if others > longest && around <= longest / 3.0 { around.max(longest / 4.0) } else { longest / 3.0 };
     let square = if others <= longest { longest / 4.0 } else { square };

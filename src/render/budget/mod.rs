@@ -61,8 +61,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Updates the budget to the object's current state. `mesh` is the object's, if it is drawn
-    /// unsplit.
+    /// Updates the budget to the object's current state. `mesh` is its mesh, if drawn unsplit.
     #[inline(never)]
     pub(super) fn renew(
         &mut self,
@@ -79,8 +78,7 @@ impl Budget {
         }
     }
 
-    /// The error left for light, as a fraction of full intensity, if a shade is also off by
-    /// `rounding` shades.
+    /// Error left for light if a shade is also off by `rounding`, as a fraction of full intensity.
     fn spare(&self, rounding: f32) -> f32 {
         (self.allowed - rounding) / 255.0
     }

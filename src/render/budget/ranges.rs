@@ -35,7 +35,7 @@ pub(super) struct Sight<D> {
     pub(super) far: Lanes<f32>,
 }
 
-/// Eight patches with known ranges. A range is the greatest value and the least.
+/// Eight patches with known ranges, each range being the greatest and the least value.
 pub(super) trait Patches {
     /// Directions from the patches to a light or the eye.
     type Directions;
@@ -290,8 +290,7 @@ fn mirror(light: &Lanes<f32>, eye: &Lanes<f32>, between: &Lanes<f32>) -> Lanes<f
     each!(lane => 2.0 * light[lane] * eye[lane] - between[lane])
 }
 
-/// The greatest and the least of three cosines, each off by at most `off`. The result for NaN is
-/// arbitrary.
+/// The greatest and the least of three cosines, each off by at most `off`; arbitrary for NaN.
 #[inline(always)]
 fn ends(cosines: &[Lanes<f32>; 3], off: &Lanes<f32>) -> [Lanes<f32>; 2] {
     let (mut most, mut least) = ([-1.0; LANES], [1.0; LANES]);

@@ -41,7 +41,7 @@ fn project_by<S: F32Lanes8, const TESTED: bool>(
     for (i, points) in eights[..n].iter().enumerate() {
         project_eight(s, narrow, points, &mut places[i], &mut depths[i]);
     }
-    // The remaining ones; or all, for an object that is claimed to lie inside but does not.
+    // The remaining vertices, or all of an object that is claimed to lie inside but does not.
     let whole = positions.len() - rest.len();
     let strays = !TESTED && vertices.at[..whole].iter().any(|place| place.needs_clipping());
     one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, vertices);

@@ -56,8 +56,8 @@ fn project<const TESTED: bool>(view: &ObjectView, positions: &[Vec3], kernel: Ke
 #[cold]
 pub(super) fn requantize(bits: u8, vertices: &mut VertexColumns) {
     let unit = 1 << (8 - bits.min(8));
-    // The guard band is a multiple of the unit, so no sum is near the ends of i32 and no result
-    // leaves the band.
+    // Vertices lie within the guard band, a multiple of the unit, so no sum is near the ends of
+    // i32, and no result leaves the band.
     let round = |c: i32| (c + unit / 2).div_euclid(unit) * unit;
     for at in vertices.at.iter_mut().filter(|at| !at.needs_clipping()) {
         *at = ScreenPos::new(round(at.x()), round(at.y()));
