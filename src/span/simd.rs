@@ -368,12 +368,17 @@ pub(crate) mod avx2 {
         let first = Block { even, odd: _mm256_add_epi16(even, steps) };
         let to_last = step.wrapping_mul((n - 32) as u16);
         let last = first.raised(_mm256_set1_epi16(to_last as i16));
-        let by = _mm256_set1_epi16(step.wrapping_mul(32) as i16);
-        let mut block = first;
-        let (blocks, _) = row.as_chunks_mut::<32>();
-        for to in blocks {
-            block.store(to);
-            block = block.raised(by);
+        if let Some(to) = row.first_chunk_mut::<32>() {
+            first.store(to);
+        }
+        if n > 64 {
+            let by = _mm256_set1_epi16(step.wrapping_mul(32) as i16);
+            let (blocks, _) = row.as_chunks_mut::<32>();
+            let mut block = first;
+            for to in blocks.iter_mut().skip(1) {
+                block = block.raised(by);
+                block.store(to);
+            }
         }
         if let Some(to) = row.last_chunk_mut::<32>() {
             last.store(to);
