@@ -4,6 +4,7 @@
 //! otherwise 255. The loops that show texels or copy bytes write under these masks, so a hidden
 //! block costs no more than its test.
 
+use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 
@@ -48,6 +49,21 @@ pub(crate) fn test_span<S: Lanes8>(
     nearer
 }
 
+/// Tests up to eight pixels as [`test_span`] does. Returns their mask.
+#[inline(always)]
+pub(crate) fn test_block<S: Lanes8>(
+    s: S,
+    cells: &mut [u32; LANES],
+    depths: [i64; 2],
+    length: usize,
+    keeps: bool,
+) -> u64 {
+    match cells.first_chunk_mut() {
+        Some(four) if length <= FOUR => u64::from(u32::MAX) << 32 | u64::from(s.test_four(four, depths, length, keeps)),
+        _ => s.test_eight(cells, depths, length, keeps),
+    }
+}
+
 /// The test of the last pixels of the buffer, fewer than eight.
 #[cold]
 #[inline(never)]
@@ -75,17 +91,23 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
         }
         let Some((eight, rest)) = row.split_first_chunk_mut::<LANES>() else { break };
         let Some((new, behind)) = bytes.split_first_chunk::<LANES>() else { break };
-        if stays >> 32 == u64::from(u32::MAX) {
-            // Bytes just stored are then less often reloaded in different pieces.
-            if let (Some(four), Some(new)) = (eight.first_chunk_mut(), new.first_chunk()) {
-                // The lower half.
-                let stay = stays as u32;
-                *four = (u32::from_le_bytes(*new) & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
-            }
-        } else {
-            *eight = (u64::from_le_bytes(*new) & !stays | u64::from_le_bytes(*eight) & stays).to_le_bytes();
-        }
+        copy_block(eight, *new, stays);
         (row, bytes) = (rest, behind);
+    }
+}
+
+/// Copies eight bytes, except where the mask lets pixels stay.
+#[inline(always)]
+fn copy_block(block: &mut [u8; LANES], new: [u8; LANES], stays: u64) {
+    if stays >> 32 == u64::from(u32::MAX) {
+        // Bytes just stored are then less often reloaded in different pieces.
+        if let (Some(four), Some(new)) = (block.first_chunk_mut(), new.first_chunk()) {
+            // The lower half.
+            let stay = stays as u32;
+            *four = (u32::from_le_bytes(*new) & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+        }
+    } else {
+        *block = (u64::from_le_bytes(new) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }
 }
 
@@ -100,6 +122,15 @@ pub(crate) fn copy_span<S: Lanes8>(
     keeps: bool,
     depths: [i64; 2],
 ) -> u32 {
+    if !IS_COMPACT
+        && length <= LANES
+        && let (Some(block), Some(eight), Some(new)) =
+            (row.first_chunk_mut(), cells.first_chunk_mut(), bytes.first_chunk())
+    {
+        let stays = test_block(s, eight, depths, length, keeps);
+        copy_block(block, *new, stays);
+        return stays.count_zeros() / 8;
+    }
     let mut masks = Masks::default();
     let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return 0 };
     let nearer = test_span(s, (cells, length), depths, keeps, masks);

@@ -2,10 +2,11 @@
 //! where they are nearer.
 
 use super::spans::Spans;
+use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
-use crate::span::depth_test::{Masks, test_span};
-use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_masked};
+use crate::span::depth_test::{Masks, test_block, test_span};
+use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.
 pub(super) trait Destination {
@@ -91,31 +92,54 @@ impl Destination for Masked<'_> {
         (spans, i, before): (&Spans<'_>, usize, u32),
         (at, length): (usize, usize),
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
+        mut places: impl PlacesAlong<S>,
     ) {
+        let Some(row) = self.pixels.get_mut(at..) else { return };
+        let (mut cells, mut depths) = (None, [0; 2]);
+        if let Some(all) = &mut self.cells {
+            let (cell, [z, dz]) = spans.depth(i);
+            let Some(of_span) = all.get_mut(cell + before as usize..) else { return };
+            (cells, depths) = (Some(of_span), [z.wrapping_add(dz.wrapping_mul(before.into())), dz]);
+        }
+        // Most spans are a single block, whose mask needs no memory.
+        if !IS_COMPACT
+            && length <= LANES
+            && let Some(block) = row.first_chunk_mut()
+        {
+            let mut tested = None;
+            match &mut cells {
+                Some(cells) => {
+                    if let Some(eight) = cells.first_chunk_mut() {
+                        tested = Some(test_block(s, eight, depths, length, self.keeps));
+                    }
+                }
+                None => tested = Some(behind(length)),
+            }
+            if let Some(stays) = tested {
+                if stays != u64::MAX {
+                    self.nearer += stays.count_zeros() / 8;
+                    show_block(s, (block, stays), texels, (tint, along), &mut places);
+                }
+                return;
+            }
+        }
         let mut masks = Masks::default();
-        let (Some(masks), Some(row)) = (masks.get_mut(..length.div_ceil(LANES)), self.pixels.get_mut(at..)) else {
-            return;
-        };
-        match &mut self.cells {
-            Some(cells) => {
-                let (cell, [z, dz]) = spans.depth(i);
-                let Some(cells) = cells.get_mut(cell + before as usize..) else { return };
-                let z = z.wrapping_add(dz.wrapping_mul(before.into()));
-                let nearer = test_span(s, (cells, length), [z, dz], self.keeps, masks);
-                self.nearer += nearer;
-                if nearer == 0 {
-                    return;
-                }
+        let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
+        if let Some(cells) = cells {
+            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+            self.nearer += nearer;
+            if nearer == 0 {
+                return;
             }
-            // Everything except what follows the last pixel.
-            None if length % LANES > 0 => {
-                if let Some(last) = masks.last_mut() {
-                    *last = u64::MAX << (8 * (length % LANES));
-                }
-            }
-            None => {}
+        } else if let Some(last) = masks.last_mut() {
+            *last = behind((length - 1) % LANES + 1);
         }
         show_masked(s, (row, masks), texels, (tint, along), places);
     }
+}
+
+/// The mask of a block in which only the first pixels of this number are drawn, at most eight.
+#[inline(always)]
+fn behind(length: usize) -> u64 {
+    if length < LANES { u64::MAX << (8 * length) } else { 0 }
 }

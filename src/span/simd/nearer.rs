@@ -24,7 +24,7 @@ const FOUR: usize = 4;
 /// Fills every span of a list. Returns the number of pixels written.
 pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill(pixels, cells, spans.tested_spans(), |_, _| Own::Linear) }
+    unsafe { fill(pixels, cells, spans, |_, _| Own::Linear) }
 }
 
 /// Fills every span of a list where it is nearer, with shades in 16.16: `shades` gives the first one and the step. Returns the
@@ -47,7 +47,7 @@ fn fill_16_16(
     spans: &SpanList,
     shades: impl Fn(usize, u32) -> (u32, u32),
 ) -> u32 {
-    fill(pixels, cells, spans.tested_spans(), |number, span| {
+    fill(pixels, cells, spans, |number, span| {
         let (start, step) = shades(number, span.paint);
         Own::Fixed16(start, step)
     })
@@ -67,28 +67,40 @@ enum Own {
 /// A span that does not lie inside the pixels and cells is not drawn. (One function fills a whole
 /// list: one for each span, which is too large to be inlined in the loop, is a quarter slower.)
 #[target_feature(enable = "avx2")]
-fn fill(
-    pixels: &mut [u8],
-    cells: &mut [u32],
-    spans: impl Iterator<Item = (Span, SpanDepth)>,
-    own: impl Fn(usize, &Span) -> Own,
-) -> u32 {
+fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
     // Pixels of all iterations, and per lane those that were not written, as a negative count. Sums are modulo 2³².
     let mut turned = 0_u32;
     let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());
-    for (number, (span, depth)) in spans.enumerate() {
-        let own = own(number, &span);
-        let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
-        // No overflow: all are below 2³², and usize has 64 bits.
-        if length <= FOUR {
-            let row = pixels.get_mut(at..at + FOUR).and_then(|row| row.first_chunk_mut());
-            let near = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut());
-            if let (Some(row), Some(near)) = (row, near) {
-                of_four = _mm_add_epi32(of_four, four(row, near, span, depth, own));
+    let (mut number, count) = (0, spans.len());
+    while number < count {
+        // Spans are usually short: a loop of their own has registers for all its values.
+        while number < count {
+            let (span, depth) = (spans.span(number), spans.depth(number));
+            let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
+            // No overflow: both are below 2³², and usize has 64 bits.
+            if length <= FOUR {
+                let row = pixels.get_mut(at..at + FOUR).and_then(|row| row.first_chunk_mut());
+                let near = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut());
+                let (Some(row), Some(near)) = (row, near) else { break };
+                of_four = _mm_add_epi32(of_four, four(row, near, span, depth, own(number, &span)));
                 turned = turned.wrapping_add(FOUR as u32);
-                continue;
+            } else if length <= EIGHT {
+                let row = pixels.get_mut(at..at + EIGHT);
+                let (Some(row), Some(near)) = (row, cells.get_mut(cell..cell + EIGHT)) else { break };
+                of_eight = _mm256_add_epi32(of_eight, eights(row, near, span, depth, own(number, &span)));
+                turned = turned.wrapping_add(EIGHT as u32);
+            } else {
+                break;
             }
+            number += 1;
         }
+        if number == count {
+            break;
+        }
+        let (span, depth) = (spans.span(number), spans.depth(number));
+        let own = own(number, &span);
+        number += 1;
+        let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
         if let Own::Linear = own
             && length > EIGHT
         {
@@ -151,14 +163,14 @@ impl Depths {
         Self { z, step: _mm256_slli_epi64(dz, 3), left: length }
     }
 
-    /// One iteration: −1 where a pixel stays, because it is not nearer than its cell, or is not part of the span. With
-    /// `KEEPS` nearer depths are stored in the cells.
+    /// One iteration: −1 where a pixel stays, because it is not nearer than its cell, or is not part of the span. The
+    /// cells store nearer depths.
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn stay<const KEEPS: bool>(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
+    fn stay(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
         let there = first_eight(self.left);
         let depths = _mm256_and_si256(self.next(), there);
-        stay::<KEEPS>(cells, depths)
+        stay(cells, depths)
     }
 
     /// The depths of the next eight pixels.
@@ -173,17 +185,15 @@ impl Depths {
     }
 }
 
-/// −1 where a depth is not greater than its cell; with `KEEPS` the cells store the greater one.
+/// −1 where a depth is not greater than its cell; the cells store the greater one.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn stay<const KEEPS: bool>(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
+fn stay(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
     // SAFETY: eight u32; the load requires no alignment.
     let before = unsafe { _mm256_loadu_si256(cells.as_ptr().cast()) };
     let after = _mm256_max_epu32(before, depths);
-    if KEEPS {
-        // SAFETY: eight u32; the store requires no alignment.
-        unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
-    }
+    // SAFETY: eight u32; the store requires no alignment.
+    unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), after) };
     _mm256_cmpeq_epi32(before, after)
 }
 
@@ -204,22 +214,21 @@ fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
     [_mm_unpacklo_epi32(low, high), _mm_unpackhi_epi32(low, high)]
 }
 
-/// −1 where one of up to four pixels stays; with `KEEPS` as in [`Depths::stay`].
+/// −1 where one of up to four pixels stays, as in [`Depths::stay`].
 #[inline]
 #[target_feature(enable = "avx2")]
-fn four_stay<const KEEPS: bool>(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i {
+fn four_stay(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i {
     let dz = _mm_set1_epi64x(dz);
     let z0 = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
     let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
+    // (From a comparison of the length, the compiler would make a masked store of the depths.)
     let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first_eight(length)));
     // SAFETY: four u32; the load requires no alignment.
     let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
     let after = _mm_max_epu32(before, depths);
-    if KEEPS {
-        // SAFETY: four u32; the store requires no alignment.
-        unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
-    }
+    // SAFETY: four u32; the store requires no alignment.
+    unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
     _mm_cmpeq_epi32(before, after)
 }
 
@@ -249,7 +258,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
     let n = pixels.len().min(cells.len());
     let cells = &mut cells[..n];
     for (i, pixels) in pixels[..n].iter_mut().enumerate() {
-        let stay = depths.stay::<true>(&mut cells[i]);
+        let stay = depths.stay(&mut cells[i]);
         // SAFETY: eight bytes; the load requires no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let after = match own {
@@ -303,7 +312,7 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
 #[target_feature(enable = "avx2")]
 fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m256i; 2], shades: __m256i) -> __m256i {
     let [first, second] = cells.as_chunks_mut::<EIGHT>().0 else { unreachable!("sixteen are twice eight") };
-    let stay = [stay::<true>(first, depths[0]), stay::<true>(second, depths[1])];
+    let stay = [stay(first, depths[0]), stay(second, depths[1])];
     // 0 or 255.
     let stays = _mm256_srli_epi16(halves(stay), 8);
     let [bytes, stays] = bytes_of(_mm256_srli_epi16(shades, 8), stays);
@@ -319,7 +328,7 @@ fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m2
 #[inline]
 #[target_feature(enable = "avx2")]
 fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own) -> __m128i {
-    let stay = four_stay::<true>(cells, depth.z, depth.dz, span.length as usize);
+    let stay = four_stay(cells, depth.z, depth.dz, span.length as usize);
     let lanes = _mm_setr_epi32(0, 1, 2, 3);
     let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
     let after = match own {

@@ -80,7 +80,6 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     if texels.bytes.is_empty() {
         return;
     }
-    let image = (texels, texels.bytes.len() - 1);
     let mut rest = row;
     for &stays in masks {
         if rest.len() < LANES {
@@ -89,43 +88,61 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
             let places = s.low_words(places.next());
             for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
                 if stay == 0 {
-                    *pixel = texel(tint, rows, places, image, k % LANES);
+                    *pixel = texel(tint, rows, places, (texels, texels.bytes.len() - 1), k % LANES);
                 }
             }
             break;
         }
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
         rest = behind;
-        // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each
-        // case extracts its own lanes: all of them, extracted up front, would not fit into the
-        // registers.)
-        if stays == 0 && !IS_COMPACT {
-            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
-            let mut k = 0;
-            while k < LANES {
-                block[k] = texel(tint, rows, places, image, k);
-                k += 1;
-            }
-        } else if stays == u64::MAX {
+        if stays == u64::MAX {
             tint.rows(s, along, block);
             places.skip();
-        } else if stays >> 32 == u64::from(u32::MAX) {
-            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
-            let Some(four) = block.first_chunk_mut() else { break };
-            // The lower half.
-            let stay = stays as u32;
-            let bytes = u32::from_le_bytes([
-                texel(tint, rows, places, image, 0),
-                texel(tint, rows, places, image, 1),
-                texel(tint, rows, places, image, 2),
-                texel(tint, rows, places, image, 3),
-            ]);
-            *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
         } else {
-            let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
-            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
-            *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
+            show_block(s, (block, stays), texels, (tint, along), &mut places);
         }
+    }
+}
+
+/// Shows texels in eight pixels, except for those that the mask lets stay.
+#[inline(always)]
+pub(crate) fn show_block<S: Lanes8, T: Tint>(
+    s: S,
+    (block, stays): (&mut [u8; LANES], u64),
+    texels: Texels<'_>,
+    (tint, along): (T, &mut T::Along<S>),
+    places: &mut impl PlacesAlong<S>,
+) {
+    // Never true: see `show_along`.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let image = (texels, texels.bytes.len() - 1);
+    // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case
+    // extracts its own lanes: all of them, extracted up front, would not fit into the registers.)
+    if stays == 0 && !IS_COMPACT {
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+        let mut k = 0;
+        while k < LANES {
+            block[k] = texel(tint, rows, places, image, k);
+            k += 1;
+        }
+    } else if stays >> 32 == u64::from(u32::MAX) {
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+        let Some(four) = block.first_chunk_mut() else { return };
+        // The lower half.
+        let stay = stays as u32;
+        let bytes = u32::from_le_bytes([
+            texel(tint, rows, places, image, 0),
+            texel(tint, rows, places, image, 1),
+            texel(tint, rows, places, image, 2),
+            texel(tint, rows, places, image, 3),
+        ]);
+        *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+    } else {
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+        let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
+        *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }
 }
 

@@ -22,7 +22,7 @@ mod tint;
 use core::fmt;
 
 #[cfg(feature = "alloc")]
-pub(crate) use self::along::{AffineAlong, FirstPlace, LevelTexels, PlacesAlong, show_along, show_masked};
+pub(crate) use self::along::{AffineAlong, FirstPlace, LevelTexels, PlacesAlong, show_along, show_block, show_masked};
 #[cfg(feature = "alloc")]
 pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along};
 #[cfg(feature = "alloc")]
