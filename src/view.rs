@@ -81,7 +81,7 @@ impl View {
         let (eye, up) = (widen(eye), widen(up));
         let to_target = widen(target);
         let Some(forward) = unit([to_target[0] - eye[0], to_target[1] - eye[1], to_target[2] - eye[2]]) else {
-            return Err("it looks at the point where it is");
+            return Err("it looks at its own position");
         };
         let Some([right, up, backward]) = axes(forward, up) else {
             return Err("it has no right-hand side");

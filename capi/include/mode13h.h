@@ -67,7 +67,7 @@ uint32_t m13_version(void);
 /* ---- Errors ---------------------------------------------------------------------------------------------------------- */
 
 #define M13_OK 0
-#define M13_NULL (-1)         /* a pointer is null that must not be */
+#define M13_NULL (-1)         /* a pointer is null, but must not be */
 #define M13_STRUCT_SIZE (-2)  /* the size of a struct is not set: call its m13_..._init */
 #define M13_SIDE (-3)         /* each side of a frame must be 1 to 4,096 pixels */
 #define M13_PITCH (-4)        /* the pitch is less than the width */
@@ -75,13 +75,13 @@ uint32_t m13_version(void);
 #define M13_SHORT (-6)        /* there are fewer bytes than the rows need, or more than memory can hold */
 #define M13_DEPTH (-7)        /* a depth buffer must have 16 or 32 bits, and a value for each pixel */
 #define M13_ALIGNMENT (-8)    /* a depth buffer, a picture or memory is not aligned */
-#define M13_OVERLAP (-9)      /* what is read overlaps with what is drawn into */
-#define M13_INDEX (-10)       /* an index names a vertex that is not there */
+#define M13_OVERLAP (-9)      /* an input overlaps what is drawn into */
+#define M13_INDEX (-10)       /* an index refers to a vertex that does not exist */
 #define M13_COUNT (-11)       /* triangles need a multiple of three vertices or indices */
 #define M13_LAYOUT (-12)      /* an attribute is missing, or does not fit into the stride */
-#define M13_VALUE (-13)       /* a number is none of those that are allowed */
+#define M13_VALUE (-13)       /* a number is not one of the allowed values */
 #define M13_VERTEX (-14)      /* a vertex is not finite or out of range; other triangles were drawn */
-#define M13_CONTEXT (-15)     /* this needs a context that m13_init has made */
+#define M13_CONTEXT (-15)     /* this needs a context made by m13_init */
 #define M13_NAME (-16)        /* there is no palette of this name */
 #define M13_UNSUPPORTED (-17) /* this library was built without effects */
 

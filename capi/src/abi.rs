@@ -23,7 +23,7 @@ macro_rules! codes {
                         Err(_) => panic!(),
                     }
                 },)*
-                _ => c"no code of mode13h",
+                _ => c"not an error code of mode13h",
             }
         }
 
@@ -33,7 +33,7 @@ macro_rules! codes {
 }
 
 codes! {
-    Null = -1, "a pointer is null that must not be";
+    Null = -1, "a pointer is null, but must not be";
     StructSize = -2, "the size of a struct is not set: call its m13_..._init";
     Side = -3, "each side of a frame must be 1 to 4,096 pixels";
     Pitch = -4, "the pitch is less than the width";
@@ -41,13 +41,13 @@ codes! {
     Short = -6, "there are fewer bytes than the rows need, or more than memory can hold";
     Depth = -7, "a depth buffer must have 16 or 32 bits, and a value for each pixel";
     Alignment = -8, "a depth buffer, a picture or memory is not aligned";
-    Overlap = -9, "what is read overlaps with what is drawn into";
-    Index = -10, "an index names a vertex that is not there";
+    Overlap = -9, "an input overlaps what is drawn into";
+    Index = -10, "an index refers to a vertex that does not exist";
     Count = -11, "triangles need a multiple of three vertices or indices";
     Layout = -12, "an attribute is missing, or does not fit into the stride";
-    Value = -13, "a number is none of those that are allowed";
+    Value = -13, "a number is not one of the allowed values";
     Vertex = -14, "a vertex is not finite or out of range; other triangles were drawn";
-    Context = -15, "this needs a context that m13_init has made";
+    Context = -15, "this needs a context made by m13_init";
     Name = -16, "there is no palette of this name";
     Unsupported = -17, "this library was built without effects";
 }

@@ -39,11 +39,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let Some(case) = hard_cases::by_id(id) else {
         let ids: Vec<&str> = CASES.iter().map(|case| case.id).collect();
-        return Err(Failure::words(format!("no picture of '{id}': there are {}", ids.join(", "))));
+        return Err(Failure::words(format!("no case '{id}'; there are {}", ids.join(", "))));
     };
     let path = match out {
         Some(out) if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => {
-            return Err(Failure::words(format!("{}: a picture is written as .png", out.display())));
+            return Err(Failure::words(format!("{}: the name of a picture must end in .png", out.display())));
         }
         Some(out) => out.clone(),
         None => {

@@ -206,7 +206,7 @@ fn bands(row: &Row) -> String {
     if jumps.is_empty() {
         return String::new();
     }
-    let mut text = String::from("\nMach bands: the eye sees a line where the slope jumps, most at column\n");
+    let mut text = String::from("\nMach bands: the eye sees a line where the slope jumps, most clearly at column\n");
     for (x, before, after) in jumps {
         text += &format!("{x:>10}  from {before:+.2} to {after:+.2} shades a pixel\n");
     }

@@ -23,8 +23,8 @@ pub(crate) struct Options {
     input: OsString,
     /// Explain this pixel, counted from 0 at the upper left
     ///
-    /// Says which triangle shows and why, how its shade was computed, the exact value, light computed at this very pixel,
-    /// and the stages that made the byte.
+    /// Says which triangle is visible and why, how its shade was computed, the exact value, the light at this very pixel, and
+    /// the stages that made the byte.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pixel: Option<(u32, u32)>,
     /// Chart this row, counted from 0 at the top
@@ -50,18 +50,18 @@ pub(crate) struct Options {
 fn place(words: &str) -> Result<(u32, u32), String> {
     let whole = |word: &str| word.trim().parse::<u32>().ok();
     let place = words.split_once(',').and_then(|(x, y)| Some((whole(x)?, whole(y)?)));
-    place.ok_or_else(|| "not two whole numbers with a comma between them, such as 160,100".to_string())
+    place.ok_or_else(|| "not two whole numbers separated by a comma, such as 160,100".to_string())
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, pixel, row, out, json, moment, drawing, shading } = options;
     if out.is_some() && row.is_none() {
-        return Err(Failure::words("--out is for the chart of a --row"));
+        return Err(Failure::words("--out is only for the chart of a --row"));
     }
     if let Some(out) = out
         && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
     {
-        return Err(Failure::words(format!("{}: a chart's name must end in .svg", out.display())));
+        return Err(Failure::words(format!("{}: the name of a chart must end in .svg", out.display())));
     }
     let kernel = drawing.kernel()?;
     let screen = Screen::MODE_13H;

@@ -37,7 +37,7 @@ enum What {
     ///
     /// Without -o the page of `mode13h` is printed: mode13h generate man | man -l -
     Man {
-        /// The directory to write mode13h.1, mode13h-render.1 and so on into
+        /// Write mode13h.1, mode13h-render.1 and so on to DIR
         #[arg(short, long, value_name = "DIR")]
         out: Option<PathBuf>,
     },

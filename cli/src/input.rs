@@ -99,8 +99,8 @@ pub(crate) const HELP: &str =
 /// Meaning of INPUT, for the long help.
 pub(crate) fn long_help() -> String {
     format!(
-        "{HELP}. `mode13h list scenes` shows the names; one that a scene and a shape share means the scene. Files may be \
-         gzipped. A scene on standard input names its files relative to the current directory."
+        "{HELP}. `mode13h list scenes` shows the names; if a scene and a shape share a name, it means the scene. Files may be \
+         gzipped. In a scene on standard input, file names are relative to the current directory."
     )
 }
 
@@ -237,7 +237,7 @@ fn warn(warning: impl Display) {
 /// The model in a file or the shape with a name. Warnings go to standard error, a line each.
 pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> {
     model_or(words, options, &format!("models are {} files", Format::extensions()), &|| {
-        format!("neither a file nor a shape; shapes are {}", shapes::NAMES.join(", "))
+        format!("no such file or shape; shapes are {}", shapes::NAMES.join(", "))
     })
 }
 
@@ -260,7 +260,7 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
         let shown = path.display();
         Err(match path.metadata() {
             Ok(metadata) if metadata.is_dir() => Failure::file(format!("{shown}: is a directory, not a model")),
-            Ok(_) => Failure::words(format!("{shown}: nothing that can be read: {kinds}")),
+            Ok(_) => Failure::words(format!("{shown}: unknown kind of file: {kinds}")),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Failure::words(format!("{shown}: {}", known())),
             Err(error) => Failure::file(format!("{shown}: {error}")),
         })
@@ -374,10 +374,10 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
             let names = palette_names();
             let near = words.to_str().and_then(|word| typo::nearest(word, names.iter().copied().chain([AUTO])));
             let known = near.map_or_else(
-                || format!("those are {}", names.join(", ")),
-                |name| format!("did you mean {name}? (mode13h palette lists them)"),
+                || format!("built-in palettes are {}", names.join(", ")),
+                |name| format!("did you mean {name}? (mode13h list palettes shows them)"),
             );
-            let reason = format!("{shown}: neither a file nor a built-in palette; {known}");
+            let reason = format!("{shown}: no such file or built-in palette; {known}");
             // A word without an extension is an unknown name.
             if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
         }

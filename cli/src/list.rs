@@ -107,7 +107,7 @@ fn summary(shading: Shading) -> &'static str {
         Shading::Gouraud1616 => "linear in 16.16",
         Shading::GouraudHyperbolic => "perspective-correct, by an exact quotient at every pixel",
         Shading::GouraudTessellated => "faces split until linear shading fits the light",
-        Shading::PhongTable => "the normal's x and y interpolated; a table has the light",
+        Shading::PhongTable => "the normal's x and y interpolated; light from a table",
         Shading::Phong => "the normal interpolated, the whole lighting model at every pixel",
         Shading::Float => "perspective-correct in f32, by a division at every pixel",
         _ => "",

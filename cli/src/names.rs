@@ -17,12 +17,12 @@ impl Names {
         let numbered = out.file_name().and_then(|name| number_in(name.to_str()?));
         if numbered.as_ref().is_some_and(|(_, _, behind)| number_in(behind).is_some()) {
             return Err(Failure::words(format!(
-                "{}: a name holds one number, and here are two places for it",
+                "{}: a name can hold one number, but this has two places for it",
                 out.display()
             )));
         }
         if frames > 1 && numbered.is_none() {
-            let reason = format!("a row of {of} needs a place for the number in the name, such as %04d");
+            let reason = format!("a series of {of} needs a place for the number in its name, such as %04d");
             return Err(Failure::words(format!("{}: {reason}", out.display())));
         }
         Ok(Names { numbered, out: out.to_path_buf() })

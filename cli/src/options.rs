@@ -36,17 +36,17 @@ pub(crate) struct Drawing {
     /// Enlarge by FACTOR
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     zoom: Option<f64>,
-    /// Look from the point EYE at TARGET
+    /// Look from EYE at TARGET
     ///
-    /// A point is X,Y,Z, in units of the scene; a model's centre is 0,0,0, unless it brings lights.
+    /// Both are X,Y,Z in scene units; a model's centre is 0,0,0, unless its file has lights.
     ///
     /// [default: the scene's or the model's camera, or one that shows the whole model; TARGET is 0,0,0]
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
-    /// The axis of a model that points up [default: y; z for a flat sheet facing z]
+    /// Set the axis of a model that points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_enum, hide_short_help = true)]
     up: Option<Up>,
-    /// Keep a model's edges sharp from DEGREES on
+    /// Keep a model's edges sharp at DEGREES and above
     ///
     /// For models without normals: 180 makes everything smooth, 0 everything flat.
     ///
@@ -55,7 +55,7 @@ pub(crate) struct Drawing {
     crease: Option<Angle>,
     /// Play this animation of a model
     ///
-    /// A name, or a number from 0. A wrong one gets a list of those there are.
+    /// A name, or a number from 0; an unknown one lists the model's animations.
     ///
     /// [default: the first]
     #[arg(long, value_name = "NAME|N", hide_short_help = true)]
@@ -112,7 +112,7 @@ struct Pipeline {
     /// Draw distant textures from smaller copies [default: if the scene needs it]
     #[arg(long, conflicts_with = "no_mipmaps", hide_short_help = true)]
     mipmaps: bool,
-    /// Draw all textures in full resolution
+    /// Draw all textures at full resolution
     #[arg(long, hide_short_help = true)]
     no_mipmaps: bool,
     /// Split faces until linear shading is off by at most N shades
@@ -128,14 +128,14 @@ struct Pipeline {
         value_parser = one_of(DitherPattern::ALL, DitherPattern::name),
         hide_possible_values = true,
         conflicts_with = "no_dither",
-        help = "Mix shades between two colours as a pattern",
+        help = "Dither shades between two colours",
         long_help = long_help_on_dither(),
     )]
     dither: Option<DitherPattern>,
     /// Draw without dither
     #[arg(long, hide_short_help = true)]
     no_dither: bool,
-    /// Round vertices to N bits after the point, 0 to 8
+    /// Round vertices to N fractional bits, 0 to 8
     ///
     /// 0 puts them on whole pixels.
     ///
@@ -147,7 +147,7 @@ struct Pipeline {
         value_name = "NAME",
         value_parser = one_of(VertexPath::ALL, VertexPath::name),
         hide_possible_values = true,
-        help = "The numbers that vertices are computed in",
+        help = "Compute vertices in this arithmetic",
         long_help = long_help_on_arithmetic(),
     )]
     arithmetic: Option<VertexPath>,
@@ -387,7 +387,7 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
     let point = |words: &str| {
         let numbers: Option<Vec<f32>> = words.split(',').map(|word| word.trim().parse().ok()).collect();
         let point = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok()).map(Vec3::from_array);
-        let why = || format!("{words:?} is no point: three numbers with commas between them, such as 0,1.5,4");
+        let why = || format!("{words:?} is not a point: three numbers separated by commas, such as 0,1.5,4");
         point.filter(|point| point.is_finite()).ok_or_else(why)
     };
     let (eye, target) = match words.split_once(':') {
@@ -395,7 +395,7 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
         None => (point(words)?, Vec3::ZERO),
     };
     if eye == target {
-        return Err("it looks at the point where it is".to_string());
+        return Err("EYE and TARGET are the same point".to_string());
     }
     Ok((eye, target))
 }
@@ -441,15 +441,15 @@ fn long_help_on_names(what: &str, names: &[&str]) -> String {
 
 fn long_help_on_dither() -> String {
     format!(
-        "Mix shades between two colours as a pattern of both: {}\n\n[default: the scene's, or else none]",
+        "Dither shades between two colours in a pattern: {}\n\n[default: the scene's, or else none]",
         DitherPattern::ALL.map(DitherPattern::name).join(", ")
     )
 }
 
 fn long_help_on_looks() -> String {
     format!(
-        "The look of an old machine: {}. It sets --palette, --dither, --mapping, --no-mipmaps and --vertex-bits, and what these \
-         options say comes first.\n\n[default: the scene's, or else none]",
+        "Look like an old machine: {}. Sets --palette, --dither, --mapping, --no-mipmaps and --vertex-bits; those options \
+         override it.\n\n[default: the scene's, or else none]",
         Look::ALL.map(Look::name).join(", ")
     )
 }
@@ -457,7 +457,7 @@ fn long_help_on_looks() -> String {
 fn long_help_on_arithmetic() -> String {
     let names = VertexPath::ALL.map(VertexPath::name).join(", ");
     format!(
-        "The numbers that vertices are computed in: {names}. `fixed` is 16.16, as a 386 without a coprocessor needs it.\n\n\
+        "Compute vertices in this arithmetic: {names}. `fixed` is 16.16, for a 386 without a coprocessor.\n\n\
          [default: {}]",
         VertexPath::default()
     )
@@ -466,7 +466,7 @@ fn long_help_on_arithmetic() -> String {
 fn long_help_on_palettes() -> String {
     format!(
         "A palette file ({}), an indexed picture (.png, .gif, .pcx, .aseprite), a built-in palette (`mode13h list \
-         palettes`), or `auto`, which makes one for what is seen\n\n\
+         palettes`), or `auto`, which makes one for what is visible\n\n\
          [default: the scene's; for a model, auto if it has colours of its own, or else grey]",
         input::palette_extensions()
     )

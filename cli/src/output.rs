@@ -130,7 +130,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     if force || path.symlink_metadata().is_err() {
         return Ok(());
     }
-    Err(Failure::file(format!("{}: exists already; --force overwrites it, and -o names another place", path.display())))
+    Err(Failure::file(format!("{}: already exists; --force overwrites it, -o writes elsewhere", path.display())))
 }
 
 /// Returns whether [`print`] prints to a terminal that shows colours.

@@ -29,14 +29,14 @@ pub(crate) struct Options {
     palette: Option<OsString>,
     /// Make a palette for a model
     ///
-    /// It holds black, white, a ramp for each material and colours for the textures. A material that shows more over a
-    /// turn of the model gets a longer ramp.
+    /// It holds black, white, a ramp for each material and colours for the textures. The more of a material is visible over
+    /// a turn of the model, the longer its ramp.
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
-    /// The axis of the model that points up [default: y; z for a flat sheet facing z]
+    /// Set the axis of the model that points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
     up: Option<Up>,
-    /// Keep edges of the model sharp from DEGREES on, if it has no normals
+    /// Keep the model's edges sharp at DEGREES and above, if it has no normals
     ///
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
@@ -152,7 +152,7 @@ fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
     }
     let Some(format) = Format::by_extension(&extension) else {
         let known = input::palette_extensions();
-        let reason = format!("{}: no kind of palette that can be written: {known}, or .png", out.display());
+        let reason = format!("{}: not a palette format that can be written: {known}, or .png", out.display());
         return Err(Failure::words(reason));
     };
     let bytes = format.write(palette, name);

@@ -33,7 +33,7 @@ pub(crate) struct Options {
     measure: bool,
     /// Print the plan as JSON
     ///
-    /// Only what --measure adds differs from run to run.
+    /// Identical in every run, except for what --measure adds.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -170,19 +170,19 @@ impl Head<'_> {
             "all: {shading}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{reason}"
         ));
         if !stats.redrawn {
-            paragraph("nothing changed since the frame before, so this one is not drawn again");
+            paragraph("nothing changed since the previous frame, so this one is not redrawn");
         }
         if let Some(near) = plan.near_needed() {
             paragraph(&near_warning(near));
         }
         let each = if objects > 1 { format!(", {:.0} ns an object", planning / objects as f64) } else { String::new() };
-        paragraph(&format!("making the plan takes {planning:.0} ns{each}, the median of many"));
+        paragraph(&format!("making the plan takes {planning:.0} ns{each} (median)"));
         if let Some(frame) = frame {
-            paragraph(&format!("drawing the frame takes {frame:.0} ns, even where it need not be drawn again"));
+            paragraph(&format!("drawing the frame takes {frame:.0} ns, redrawn even if nothing changed"));
             paragraph(
-                "ns: by how much the frame is longer with the effect than without it, on this object alone; in brackets \
-                 what one that is off would cost; 0 is less than can be told from noise. Hidden surfaces and palette \
-                 animation are measured for all objects together",
+                "ns: how much longer the frame takes with the effect on this object alone; in brackets, what an effect \
+                 that is off would cost; 0 is lost in the noise. Hidden surfaces and palette animation are measured \
+                 for all objects together",
             );
         }
         text
@@ -194,8 +194,8 @@ fn near_warning(needed: f32) -> String {
     let needed = f64::from(needed);
     let unit = 10_f64.powf(needed.log10().floor() - 2.0);
     format!(
-        "the near distance is less than a millionth of the farthest one: depths are too coarse for what is far, and the \
-         error budget does not hold there; take at least {:.2e}",
+        "the near distance is less than a millionth of the farthest one: depths are too coarse in the distance, and the \
+         error budget does not hold there; set it to at least {:.2e}",
         (needed / unit).ceil() * unit
     )
 }

@@ -85,9 +85,9 @@ pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
     let Some((_, path, what)) = used.iter().find(|(other, ..)| *other == identity) else { return Ok(()) };
     let out_name = out.display();
     let reason = match path == out {
-        true => format!("{out_name}: was {what}, and is not overwritten; give another name to write to"),
+        true => format!("{out_name}: was {what} and is not overwritten; choose another output name"),
         false => format!(
-            "{out_name}: is {}, which was {what}, and is not overwritten; give another name to write to",
+            "{out_name}: is {}, which was {what} and is not overwritten; choose another output name",
             path.display()
         ),
     };

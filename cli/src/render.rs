@@ -36,11 +36,11 @@ pub(crate) struct Options {
     input: OsString,
     /// Write to FILE: .png, .gif, .apng, or - for ffmpeg
     ///
-    /// A .png is a picture; for several frames its name holds %04d or the like. A .gif or .apng is an animation. An existing
+    /// A .png is a picture; for several frames, put %04d or the like in its name. A .gif or .apng is an animation. An existing
     /// file is overwritten.
     ///
-    /// With - an animation goes to standard output in Y4M: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
-    /// Y4M rounds colours to YCbCr; those of .apng are exact. If standard output is a terminal, - shows a picture there: see
+    /// With -, an animation goes to standard output as Y4M: `mode13h render torus -o - | ffmpeg -i - -pix_fmt yuv420p torus.mp4`.
+    /// Y4M rounds colours to YCbCr; .apng keeps them exact. If standard output is a terminal, - shows a picture there: see
     /// --to.
     ///
     /// [default: INPUT.png in the current directory, never overwritten without --force]
@@ -48,10 +48,10 @@ pub(crate) struct Options {
     out: Option<PathBuf>,
     /// Show the picture in the terminal: sixel or kitty
     ///
-    /// It goes to standard output, by DEC's sixels or by the graphics protocol of kitty. Sixels give colours in whole percents;
-    /// those of kitty are exact.
+    /// It is written to standard output as DEC sixels or in kitty's graphics protocol. Sixels round colours to whole percents;
+    /// kitty's are exact.
     ///
-    /// [default: with -o - on a terminal kitty, if the environment names kitty or Ghostty, or else sixel]
+    /// [default: with -o - on a terminal, kitty if the environment names kitty or Ghostty, or else sixel]
     #[arg(
         long,
         value_name = "PROTOCOL",
@@ -70,8 +70,8 @@ pub(crate) struct Options {
     frames: Option<u32>,
     /// Rotate by DEGREES, spread over all frames
     ///
-    /// A single frame is rotated by all of it. Frame i of N is rotated by i/N of DEGREES, so 360 loops seamlessly. A scene or a model that moves by itself goes through one round in 360
-    /// degrees; around one that does not, the camera circles.
+    /// A single frame is rotated by the whole angle, frame i of N by i/N of it, so 360 loops seamlessly. A scene or model that
+    /// moves by itself goes through one round in 360 degrees; around one that does not, the camera circles.
     ///
     /// [default: 0; for an animation 360]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
@@ -80,7 +80,7 @@ pub(crate) struct Options {
     moment: Moment,
     /// Frames per second [default: 35]
     ///
-    /// Up to 50 in an animation. For pictures without --turn, it sets the time from one to the next.
+    /// At most 50 in an animation. For pictures without --turn, it sets the time step.
     #[arg(long, value_name = "N", value_parser = rate)]
     fps: Option<f64>,
     /// Draw WxH square pixels instead of mode 13h's 320x200
@@ -98,13 +98,13 @@ pub(crate) struct Options {
     /// Write true colour instead of a palette; PNG only
     #[arg(long)]
     rgb: bool,
-    /// Draw N frames at a time [default: one for each processor]
+    /// Draw N frames at a time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
     /// Print figures for each frame to standard error
     #[arg(long)]
     stats: bool,
-    /// Print the files' names as JSON, with --stats the figures
+    /// Print file names, and with --stats the figures, as JSON
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
     #[command(flatten)]
@@ -149,7 +149,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let path = options.out();
     let mut out = Out::new(options, &path)?;
     if options.json && film_kind(&path) == Some(Kind::Stream) {
-        return Err(Failure::words("-: the animation is on standard output, which leaves no room for --json"));
+        return Err(Failure::words("-: standard output carries the animation, so there is no place for --json"));
     }
     let input = options.drawing.input(&options.input)?;
     let is_still = matches!(out, Out::Pictures(_, 1) | Out::Terminal(_));
@@ -303,7 +303,7 @@ impl Out {
         }
         if is_stream && (to.is_some() || io::stdout().is_terminal()) {
             if frames.is_some_and(|frames| frames > 1) {
-                return Err(Failure::words("a terminal is shown one picture; `mode13h demo --terminal` moves"));
+                return Err(Failure::words("a terminal shows one picture; `mode13h demo --terminal` shows motion"));
             }
             Ok(Out::Terminal(to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)))))
         } else if ends_in("png") {
@@ -314,7 +314,7 @@ impl Out {
             Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
         } else if let Some(kind) = film_kind(out) {
             if *rgb {
-                return Err(wrong(&"--rgb is for .png: an animation has the colours that it needs"));
+                return Err(wrong(&"--rgb is for .png; an animation gets the colours it needs"));
             }
             if kind != Kind::Stream && out.file_name().and_then(|name| number_in(name.to_str()?)).is_some() {
                 return Err(wrong(&"an animation is one file: its name needs no number"));
@@ -329,7 +329,7 @@ impl Out {
                 true => wrong(&format!(
                     "animations are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p {shown}`"
                 )),
-                false => wrong(&"no kind of picture that can be written: the name must end in .png, .gif or .apng"),
+                false => wrong(&"not a format that can be written: the name must end in .png, .gif or .apng"),
             })
         }
     }
@@ -426,7 +426,7 @@ struct Timed {
 
 impl fmt::Display for Timed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let says = if self.fits { "the least in" } else { "takes more than" };
+        let says = if self.fits { "fits in" } else { "takes more than" };
         write!(f, ", {says} {} ms", self.max_time)
     }
 }
@@ -464,7 +464,7 @@ impl Run {
         }
         let late = run.timed.iter().filter(|frame| !frame.fits).count();
         if late > 0 {
-            eprintln!("mode13h: even the greatest error takes longer than it may in {late} of {frames} frames");
+            eprintln!("mode13h: {late} of {frames} frames take longer than {max_time} ms even with the largest error");
         }
         Ok(run)
     }

@@ -39,7 +39,7 @@ struct CopyOptions {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Some(What::Copy(CopyOptions { name, out, force })) = &options.what else {
         return Err(Failure::words(
-            "scenes are listed by `mode13h list scenes`, and copied by `mode13h scenes copy NAME`",
+            "`mode13h list scenes` lists the scenes, and `mode13h scenes copy NAME` copies one",
         ));
     };
     let Ok(scene) = name.parse::<Shipped>() else {
@@ -49,7 +49,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let path = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-        return Err(Failure::words(format!("{}: the file of a scene ends in .toml", path.display())));
+        return Err(Failure::words(format!("{}: the name of a scene file must end in .toml", path.display())));
     }
     if out.is_none() {
         output::refuse_overwriting(&path, *force)?;

@@ -35,7 +35,7 @@ pub(crate) fn no_input(word: &str) -> String {
         Some(name) => format!("; did you mean {name}?"),
         None => String::new(),
     };
-    format!("neither a file nor a scene nor a shape{near} (mode13h list scenes shows the names)")
+    format!("no such file, scene or shape{near} (mode13h list scenes shows the names)")
 }
 
 /// The names of scenes and shapes.

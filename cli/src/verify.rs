@@ -30,10 +30,10 @@ pub(crate) struct Options {
     seed: u64,
     /// Check only the frame NAME, or all whose names begin with NAME/
     ///
-    /// Such as effect/fog or shipped/torus/picture. No loop is checked then.
+    /// For example effect/fog or shipped/torus/picture. No loops are checked then.
     #[arg(long, value_name = "NAME", conflicts_with = "seed")]
     frame: Option<String>,
-    /// List the names of the frames, and check nothing
+    /// List the names of the frames without checking them
     #[arg(long, conflicts_with_all = ["json", "quiet", "seed", "out"])]
     list: bool,
     /// Write a picture of the first wrong frame to FILE, which ends in .png
@@ -68,7 +68,9 @@ impl std::fmt::Display for Wrong {
         match (&self.error, &self.difference) {
             (Some(error), _) => write!(f, "{}: {error}", self.name),
             (None, Some(difference)) => write!(f, "{}: {difference}", self.name),
-            (None, None) => write!(f, "{}: as the portable kernel draws it, and not as other machines do", self.name),
+            (None, None) => {
+                write!(f, "{}: equals the portable kernel's frame, but not that of other machines", self.name)
+            }
         }
     }
 }
@@ -127,7 +129,7 @@ fn check(options: &Options) -> Result<(), Failure> {
         return Err(Failure::words(format!("{name}: there is no such frame{near}")));
     }
     if let Some(path) = options.out.as_ref().filter(|path| path.extension().is_none_or(|kind| kind != "png")) {
-        return Err(Failure::words(format!("{}: the name of a picture ends in .png", path.display())));
+        return Err(Failure::words(format!("{}: the name of a picture must end in .png", path.display())));
     }
     if options.list {
         return output::print(&chosen.iter().fold(String::new(), |list, frame| list + &frame.name + "\n"));

@@ -14,8 +14,8 @@ const WIDTH: usize = 100;
 
 /// Draw scenes and models as a 386 with a VGA card did
 ///
-/// Every frame has 320 x 200 pixels in a palette of 256 colours. Without a command, `mode13h INPUT` is `mode13h demo
-/// INPUT`.
+/// Frames have 320 x 200 pixels and a palette of 256 colours. `mode13h INPUT` is short for
+/// `mode13h demo INPUT`.
 #[derive(Parser)]
 #[command(name = "mode13h", version, args_conflicts_with_subcommands = true)]
 pub(crate) struct Words {
@@ -29,22 +29,22 @@ pub(crate) struct Words {
 enum Command {
     /// Show a scene or a model in a window
     ///
-    /// This is the default command. An INPUT is reloaded when one of its files changes; an error in it shows in the
+    /// This is the default command. An INPUT is reloaded when one of its files changes; errors are shown in the
     /// window. Without a display, one frame of each INPUT is saved under the first free name of mode13h-0001.png,
     /// mode13h-0002.png and so on.
     Demo(demo::Options),
     /// Write a picture, numbered pictures, or an animation
     ///
-    /// Without -o, the picture is INPUT.png in the current directory; several are INPUT-0000.png and so on. Their names
-    /// are printed.
+    /// Without -o, the picture is saved as INPUT.png in the current directory, several as INPUT-0000.png and so on, and
+    /// their names are printed.
     Render(render::Options),
     /// List shadings, palettes, kernels, or scenes
     List(list::Options),
-    /// Copy a shipped scene, to edit it
+    /// Copy a shipped scene for editing
     Scenes(scenes::Options),
-    /// Say which effects each object of a scene needs, and why
+    /// Show which effects each object of a scene needs, and why
     ///
-    /// The frame comes 1/35 s after another one, so that the plan shows what can be reused from frame to frame.
+    /// The plan is for a frame 1/35 s after another, so it also shows what can be reused from frame to frame.
     Plan(plan::Options),
     /// Explain the byte of one pixel, or chart the intensity of a row
     Explain(explain::Options),
@@ -59,12 +59,11 @@ enum Command {
     ///
     /// Both are enlarged 16 times. Without an ID, all cases are listed.
     Cases(cases::Options),
-    /// Write a program for DOS, or a bootable floppy, that shows a scene
+    /// Write a DOS program, or a bootable floppy, that shows a scene
     ///
-    /// The program draws one round of the scene over and over in mode 13h, until Esc is pressed. It needs a 386 with 4 MB,
-    /// HIMEM.SYS and a VGA, and computes in integers, so it leaves out the effects that `--arithmetic fixed` leaves out;
-    /// palettes do not change. Started with /B, it prints frames per second and a hash of its frames, which must equal the
-    /// one printed here.
+    /// The program loops one round of the scene in mode 13h until Esc is pressed. It needs a 386 with 4 MB, HIMEM.SYS and a
+    /// VGA. It computes in integers, so it leaves out the effects that `--arithmetic fixed` leaves out, and palettes do not
+    /// change. Started with /B, it prints frames per second and a hash of its frames, which must equal the one printed here.
     Dos(dos::Options),
     /// Check that this machine draws the right bytes
     ///
@@ -101,7 +100,7 @@ pub(crate) fn command() -> clap::Command {
 /// Parses the command line; if it asks for help or is wrong, deals with that and returns the outcome.
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
-        return Err(Err(Failure::words(format!("{word}: an empty word names nothing ({} shows the options)", help()))));
+        return Err(Err(Failure::words(format!("{word}: empty argument ({} shows the options)", help()))));
     }
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
@@ -114,7 +113,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
     match &words.command {
         None => {
             if let Some(command) = words.demo.more_inputs().iter().find_map(|word| named(word)) {
-                return Err(Failure::words(format!("{command} is a command, and stands before its INPUT")));
+                return Err(Failure::words(format!("{command} is a command and goes before INPUT")));
             }
             mistyped_command().map_or(Ok(()), |sentence| Err(Failure::words(sentence)))?;
             demo::run(&words.demo)
@@ -181,7 +180,7 @@ fn mistyped_command() -> Option<String> {
     let word = first_word()?;
     let command = typo::mistyped_command(&word)?;
     Some(format!(
-        "{}: neither a command nor a file nor a scene nor a shape; did you mean {command}? (mode13h --help lists the \
+        "{}: no such command, file, scene or shape; did you mean {command}? (mode13h --help lists the \
          commands)",
         word.display()
     ))

@@ -96,7 +96,7 @@ def render(
 
     Raises:
         ValueError: for a wrong shape or type, a number that is not finite or out of range, a face that
-            names a vertex that is not there, an unknown name. Nothing is drawn then.
+            refers to a vertex that does not exist, an unknown name. Nothing is drawn then.
     """
     points = _numbers("vertices", vertices, ("n", 3))
     _finite("vertex", points)

@@ -83,7 +83,7 @@ impl View {
         let towards = match (self.eye, self.direction) {
             (Some(eye), _) => {
                 let way = std::array::from_fn(|i| eye[i] - self.target[i]);
-                scaled("the way from target to eye", way)?
+                scaled("the vector from target to eye", way)?
             }
             (None, Some(direction)) => scaled("direction", direction)?,
             (None, None) => Quat::from_rotation_arc(Vec3::Y, up) * Vec3::new(0.5, 0.4, 1.0),
@@ -106,7 +106,7 @@ impl View {
             None => {
                 let from = Viewpoint { direction: towards, up, field_of_view, target: None };
                 let everything = [Swept::new(object, Turning::Still, None)];
-                from.camera(&everything).ok_or_else(|| fault("no camera holds these vertices"))?
+                from.camera(&everything).ok_or_else(|| fault("no camera can frame these vertices"))?
             }
         };
         Ok((camera, [right, towards.cross(right), towards]))
@@ -130,7 +130,7 @@ impl Look {
                 Some(builtin) => Ok(builtin.palette.clone()),
                 None => {
                     let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
-                    Err(fault(format!("palette {name:?}: there are {}", names.join(", "))))
+                    Err(fault(format!("palette {name:?}: unknown palette; there are {}", names.join(", "))))
                 }
             },
             Colors::Bytes(bytes) => palette_of(bytes),

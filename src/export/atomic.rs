@@ -79,12 +79,12 @@ impl fmt::Display for ExportError {
             ExportErrorKind::MissingDirectory => {
                 write!(f, "the directory {} does not exist", directory_of(&self.path).display())
             }
-            ExportErrorKind::NotADirectory => write!(f, "{} is no directory", directory_of(&self.path).display()),
+            ExportErrorKind::NotADirectory => write!(f, "{} is not a directory", directory_of(&self.path).display()),
             ExportErrorKind::NoNewFiles => {
-                write!(f, "no file can be made in the directory {}", directory_of(&self.path).display())
+                write!(f, "no file can be created in the directory {}", directory_of(&self.path).display())
             }
             ExportErrorKind::IsDirectory => f.write_str("is a directory"),
-            ExportErrorKind::NotPermitted => f.write_str("no right to write there"),
+            ExportErrorKind::NotPermitted => f.write_str("no permission to write there"),
             ExportErrorKind::DiskFull => f.write_str("the disk is full"),
             #[cfg(feature = "png")]
             ExportErrorKind::Picture(error) => write!(f, "{error}"),

@@ -131,16 +131,16 @@ impl IntegerError {
             Self::Size => "each side of the picture must be 1 to 4,096 pixels",
             Self::FieldOfView => "the field of view must be below 180°, and focal lengths 1/65,536 to 16,384 pixels",
             Self::Near => "the near distance must be above 0",
-            Self::Direction => "the camera looks at the point where it is",
+            Self::Direction => "the camera looks at its own position",
             Self::Scale => "an object's scale must not be negative",
             Self::TooFar => "an object reaches farther than 65,535 units from the eye",
             Self::Light => "a sun must have a direction, and there may be 4,096 of them",
-            Self::Paints { .. } => "each surface of a mesh must have a paint",
-            Self::Room { .. } => "there is too little room for vertices or beams",
+            Self::Paints { .. } => "each surface of a mesh must have a material",
+            Self::Room { .. } => "there is too little room for vertices or lights",
             Self::Count { .. } => "the slices of a mesh must fit together",
             Self::Position { .. } => "each vertex of a mesh must lie within ±32,767",
             Self::NormalNotUnit { .. } => "each normal of a mesh must be of length 1",
-            Self::IndexOutOfRange { .. } => "each triangle of a mesh must name vertices that are there",
+            Self::IndexOutOfRange { .. } => "each triangle of a mesh must refer to vertices that exist",
         }
     }
 }

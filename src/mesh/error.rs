@@ -64,8 +64,12 @@ impl fmt::Display for MeshError {
             Self::TexcoordNotFinite { vertex } => {
                 write!(f, "the texture coordinates of vertex {vertex} are not finite")
             }
-            Self::IndexOutOfRange { triangle } => write!(f, "triangle {triangle} names a vertex that there is not"),
-            Self::SurfaceOutOfRange { triangle } => write!(f, "triangle {triangle} names a surface that there is not"),
+            Self::IndexOutOfRange { triangle } => {
+                write!(f, "triangle {triangle} refers to a vertex that does not exist")
+            }
+            Self::SurfaceOutOfRange { triangle } => {
+                write!(f, "triangle {triangle} refers to a surface that does not exist")
+            }
             Self::Factors => write!(f, "factors must be finite and above 0"),
             Self::Count { what, given, needed } => write!(f, "{given} {what}, but {needed} are needed"),
         }

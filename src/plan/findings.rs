@@ -55,12 +55,12 @@ impl fmt::Display for FaceCounts {
 fn why(shading: FaceShading) -> &'static str {
     match shading {
         FaceShading::By(Shading::Flat) => "one shade at their corners, or near enough",
-        FaceShading::By(Shading::Float) => "so it is, but not on the screen",
-        FaceShading::By(Shading::Phong) => "it is not known to be",
+        FaceShading::By(Shading::Float) => "light is linear enough in space, but not on the screen",
+        FaceShading::By(Shading::Phong) => "light is not known to be linear enough",
         FaceShading::By(_) => "light is linear enough on them",
-        FaceShading::Quadratic => "it is quadratic on the screen",
-        FaceShading::PhongEvery(SampleSpacing::Sixteen) => "at every 16th pixel of a row, and so it is between",
-        FaceShading::PhongEvery(SampleSpacing::Eight) => "at every 8th",
-        FaceShading::PhongEvery(SampleSpacing::Four) => "at every 4th",
+        FaceShading::Quadratic => "light is quadratic on the screen",
+        FaceShading::PhongEvery(SampleSpacing::Sixteen) => "lit at every 16th pixel, linear enough between",
+        FaceShading::PhongEvery(SampleSpacing::Eight) => "lit at every 8th",
+        FaceShading::PhongEvery(SampleSpacing::Four) => "lit at every 4th",
     }
 }

@@ -70,7 +70,7 @@ impl fmt::Display for RasterError {
             }
             Self::Pitch { pitch, width } => write!(f, "a pitch of {pitch} bytes is less than the width, {width}"),
             Self::Band { first, end, height } => {
-                write!(f, "rows {first} to {end} are no band of a frame of {height} rows")
+                write!(f, "rows {first} to {end} are not a band of a frame of {height} rows")
             }
             Self::Short { given, needed } => write!(f, "{given} bytes given for a frame that needs {needed}"),
             Self::Depths { given, needed } => write!(f, "{given} depths given for a frame that needs {needed}"),

@@ -212,7 +212,7 @@ impl IntegerPath {
         self.paints.clear();
         for (index, object) in scene.objects().iter().enumerate() {
             if object.parent.is_some_and(|parent| scene.get(parent).is_some()) {
-                return Err(RenderError::of_object(scene, index, "it has a parent, which 16.16 does not know"));
+                return Err(RenderError::of_object(scene, index, "it has a parent, which 16.16 does not support"));
             }
             let first = self.paints.len();
             for material in &object.materials {

@@ -327,7 +327,7 @@ impl Default for Scene {
 #[cold]
 #[track_caller]
 fn not_there(what: &str) -> ! {
-    panic!("this {what} was removed from the scene, or its id is another scene's")
+    panic!("this {what} was removed from the scene, or its id is from another scene")
 }
 
 impl Index<ObjectId> for Scene {

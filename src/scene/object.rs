@@ -307,10 +307,10 @@ impl Scene {
             return Ok(());
         }
         if self.ancestors(index).count() == self.objects().len() {
-            return Err("its parents go round in a circle");
+            return Err("its parents form a cycle");
         }
         if !self.placement(index).is_finite() {
-            return Err("its place among its parents must be finite");
+            return Err("its position under its parents must be finite");
         }
         Ok(())
     }

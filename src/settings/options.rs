@@ -7,7 +7,7 @@ use crate::names::named;
 
 named! {
     /// A method for removing hidden surfaces.
-    pub enum HiddenSurfaces, "way to hidden surfaces" {
+    pub enum HiddenSurfaces, "hidden-surface method" {
         /// Back faces are culled, which is enough for a single convex object.
         BackFaces = "back-faces",
         /// Far to near, each object over those before it. Correct for convex objects that lie one

@@ -263,7 +263,7 @@ fn ways_are_typed_by_name() {
         assert_eq!(way.to_string(), way.name());
     }
     let error = "z-buffer".parse::<HiddenSurfaces>().expect_err("no such name").to_string();
-    assert_eq!(error, "unknown way to hidden surfaces; there are back-faces, painter, depth-buffer, scan-line");
+    assert_eq!(error, "unknown hidden-surface method; there are back-faces, painter, depth-buffer, scan-line");
 }
 
 /// `MODE13H_MODEL=model.obj cargo test --release --test render a_model`: a full turn at 1°.

@@ -73,7 +73,7 @@ fn an_id_that_was_removed_panics_in_plain_words() {
         let panic = catch_unwind(AssertUnwindSafe(index)).unwrap_err();
         panic.downcast_ref::<String>().cloned().unwrap_or_default()
     };
-    let words = |what: &str| format!("this {what} was removed from the scene, or its id is another scene's");
+    let words = |what: &str| format!("this {what} was removed from the scene, or its id is from another scene");
     assert_eq!(said(&mut || scene[object].visible = false), words("object"));
     assert_eq!(said(&mut || _ = &scene[object]), words("object"));
     assert_eq!(said(&mut || scene[light] = Light::sun([0.0, 1.0, 0.0])), words("light"));

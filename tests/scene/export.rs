@@ -349,7 +349,7 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
 
     for (path, says, kind) in [
         (folder.path().join("none").join("frame.png"), "none does not exist", ExportErrorKind::MissingDirectory),
-        (file.join("frame.png"), "file is no directory", ExportErrorKind::NotADirectory),
+        (file.join("frame.png"), "file is not a directory", ExportErrorKind::NotADirectory),
     ] {
         let error = write_atomically(&path, nothing).expect_err("no such folder");
         assert_eq!(core::mem::discriminant(&error.kind), core::mem::discriminant(&kind), "{error}");

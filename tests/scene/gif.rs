@@ -521,12 +521,12 @@ fn a_film_without_a_frame_is_refused() {
     let film = GifWriter::new(Vec::new(), Scale::One, FrameRate::default());
     let error = film.finish().expect_err("refused");
     assert!(matches!(error.kind, AnimationErrorKind::NoFrames) && error.path.is_none(), "{error}");
-    assert_eq!(error.to_string(), "a film without a frame");
+    assert_eq!(error.to_string(), "an animation without frames");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("film.gif");
     let film = GifFile::create(&path, Scale::One, FrameRate::default()).expect("created");
     let error = film.finish().expect_err("refused");
-    assert_eq!(error.to_string(), format!("{}: a film without a frame", path.display()));
+    assert_eq!(error.to_string(), format!("{}: an animation without frames", path.display()));
     assert!(names_in(folder.path()).is_empty());
 }
 

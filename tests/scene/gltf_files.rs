@@ -411,11 +411,11 @@ fn errors_say_part_or_place() {
             file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":0,\"children\":[0]}".into();
             file.add("scenes", "{\"nodes\":[0]}");
         }),
-        "a.glb: nodes[0] stands twice in the scene"
+        "a.glb: nodes[0] is in the scene twice"
     );
     assert_eq!(
         with(&|file| file.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]".into()),
-        "a.glb: needs KHR_draco_mesh_compression, which is not read"
+        "a.glb: needs KHR_draco_mesh_compression, which is not supported"
     );
     assert!(
         with(&|file| file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":7}".into())
@@ -425,9 +425,9 @@ fn errors_say_part_or_place() {
     whole.floats(&triangle);
     let whole = whole.glb();
     let cut = whole.len() - 1;
-    assert_eq!(refused(&whole[..cut]), format!("a.glb: byte {cut}: the file ends where a chunk of bytes should stand"));
-    assert_eq!(refused(&whole[..9]), "a.glb: byte 9: the file ends where a chunk of JSON should stand");
-    assert_eq!(refused(b"glTF\x01\0\0\0"), "a.glb: byte 4: only glTF 2 is read, this is 1");
+    assert_eq!(refused(&whole[..cut]), format!("a.glb: byte {cut}: the file ends where a binary chunk is expected"));
+    assert_eq!(refused(&whole[..9]), "a.glb: byte 9: the file ends where a JSON chunk is expected");
+    assert_eq!(refused(b"glTF\x01\0\0\0"), "a.glb: byte 4: only glTF 2 is supported, this is 1");
     assert!(refused(b"{\n\"asset\": 7\n}").starts_with("a.glb:2: not glTF: invalid type: integer `7`"));
     let missing = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3,\"uri\":\"no.bin\"}]}";
     assert_eq!(refused(missing.as_bytes()), "a.glb: buffers[0]: no.bin: entity not found");
@@ -449,6 +449,6 @@ fn what_is_left_out_is_one_warning() {
         .into();
     assert_eq!(
         loaded(&file.glb(), "a.glb").warnings,
-        ["a.glb: left out: morph targets, points and lines, textures of normals, that materials are unlit"]
+        ["a.glb: left out: morph targets, normal maps, points and lines, unlit shading"]
     );
 }

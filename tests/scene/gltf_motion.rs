@@ -79,7 +79,7 @@ fn lights_have_the_files_ratios_where_the_model_is() {
         ],
     );
     let Loaded { lights, warnings, camera, rig, .. } = loaded(&file.glb(), "a.glb");
-    assert_eq!(warnings, ["a.glb: left out: lights that do not shine"]);
+    assert_eq!(warnings, ["a.glb: left out: lights that emit no light"]);
     assert!(camera.is_none() && rig.is_none());
     let [lamp, spot, sun] = *lights.as_slice() else { panic!("{lights:?}") };
     // 3200/16², 400/8², and 2.5; of red 0.299 counts.
@@ -132,7 +132,7 @@ fn the_first_camera_in_perspective_is_the_camera() {
     file.add("nodes", "{\"camera\":2}");
     let Loaded { camera, warnings, .. } = loaded(&file.glb(), "a.glb");
     let camera = camera.expect("a camera");
-    assert_eq!(warnings, ["a.glb: left out: cameras without perspective"]);
+    assert_eq!(warnings, ["a.glb: left out: orthographic cameras"]);
     assert_eq!((camera.eye, camera.up, camera.near), (Vec3::new(3.0, 0.0, -8.0), Vec3::NEG_Y, 0.25));
     assert_eq!(camera.target, Vec3::new(3.0, 0.0, 0.0), "as far as the middle of the cube");
     assert_eq!(camera.field_of_view.to_radians(), 0.75);
@@ -556,7 +556,7 @@ fn errors_of_motion_say_their_part() {
         moving(&[0.0, 2.0, 1.0], &[[0.0; 3]; 3], "STEP"),
         "a.glb: animations[0].samplers[0]: key 2 is before key 1"
     );
-    assert_eq!(moving(&[f32::NAN], &[[0.0; 3]], "STEP"), "a.glb: animations[0].samplers[0]: a key at the time NaN");
+    assert_eq!(moving(&[f32::NAN], &[[0.0; 3]], "STEP"), "a.glb: animations[0].samplers[0]: a key at time NaN");
     assert!(moving(&[0.0], &[[0.0; 3]], "BOUNCE").starts_with("a.glb: animations[0].samplers[0].interpolation: "));
     let edited = |list: &str, from: &str, to: &str| {
         let mut file = bar("u8", &half_weights(), 5126, "");
@@ -568,7 +568,7 @@ fn errors_of_motion_say_their_part() {
     assert_eq!(edited("nodes", "", ""), "read");
     assert_eq!(
         edited("animations", "\"node\":2", "\"node\":9"),
-        "a.glb: animations[0].channels[0]: there is no such node"
+        "a.glb: animations[0].channels[0]: its node does not exist"
     );
     assert_eq!(edited("animations", "\"translation\"}", "\"pointer\"}"), "read");
     assert_eq!(edited("skins", "[1,2]", "[1]"), "a.glb: meshes[0].primitives[0]: there is no joint 1, only 1");
@@ -579,7 +579,7 @@ fn errors_of_motion_say_their_part() {
     file.add("nodes", "{\"children\":[3]}");
     file.add("scenes", "{\"nodes\":[0,1]}");
     file.lists.get_mut("skins").unwrap()[0] = "{\"joints\":[1,3]}".into();
-    assert_eq!(refused(&file), "a.glb: skins[0]: nodes[3] stands in a circle");
+    assert_eq!(refused(&file), "a.glb: skins[0]: nodes[3] is in a cycle");
     assert!(
         refused(&with_lights(with_shape(&shapes::cube()), &[("\"type\":\"sky\"", "")]))
             .starts_with("a.glb: extensions.")

@@ -292,7 +292,7 @@ fn broken_meshes_are_refused() {
     assert_eq!(Mesh::new(vec![], vec![]), Err(MeshError::NoTriangles));
     let refused = Mesh::new(positions.clone(), vec![[0, 1, 2], [0, 3, 1]]);
     assert_eq!(refused, Err(MeshError::IndexOutOfRange { triangle: 1 }));
-    assert_eq!(refused.unwrap_err().to_string(), "triangle 1 names a vertex that there is not");
+    assert_eq!(refused.unwrap_err().to_string(), "triangle 1 refers to a vertex that does not exist");
     let zero = Mesh::with_normals(positions.clone(), vec![Vec3::Z, Vec3::ZERO, Vec3::Z], vec![[0, 1, 2]]);
     assert_eq!(zero, Err(MeshError::NormalZero { vertex: 1 }));
     let few = Mesh::with_normals(positions, vec![Vec3::Z], vec![[0, 1, 2]]);

@@ -56,7 +56,7 @@ fn what_a_model_lacks_is_said_beside_the_scene() {
     let path = folder.path().join("a.jpg");
     assert!(!is_textured(&scene));
     let [warning] = warnings.as_slice() else { panic!("{warnings:?}") };
-    assert!(warning.starts_with(&format!("{}: no picture that can be read: ", path.display())), "{warning}");
+    assert!(warning.starts_with(&format!("{}: not a picture that can be read: ", path.display())), "{warning}");
     assert!(warning.ends_with("; drawn without it"), "{warning}");
     let (_folder, scene, warnings) = with_texture("a.png", b"");
     assert!(!is_textured(&scene));

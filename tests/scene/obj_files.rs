@@ -174,7 +174,10 @@ fn a_model_far_from_0_keeps_its_shape() {
     let near = parse(text([0.0; 3])).unwrap();
     assert_eq!(near.warnings, [""; 0]);
     let far = parse(text([4_500_000.25, -610_000.5, 240.0])).unwrap();
-    assert_eq!(far.warnings, ["model.obj: lies far from 0; its middle, 4500000.25 -610000.5 240, is now at 0"]);
+    assert_eq!(
+        far.warnings,
+        ["model.obj: lies far from the origin; its centre, 4500000.25 -610000.5 240, was moved there"]
+    );
     assert_eq!(far.mesh, near.mesh);
 }
 
@@ -611,7 +614,7 @@ fn bodies_inside_out_are_turned_round() {
         }
         text
     };
-    let one = "model.obj: turned round a body that was inside out";
+    let one = "model.obj: flipped a solid that was inside out";
     for (text, due) in [
         (body([1, 2, 3, 4], 0, false), None),
         (body([1, 2, 3, 4], 0, true), Some(one)),
@@ -698,7 +701,7 @@ fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
     }
     let unseen = load(TRIANGLE, "newmtl a\nd 0\n");
     assert_eq!(unseen.mesh.surfaces()[0].opacity, 1.0);
-    assert_eq!(unseen.warnings, ["a.mtl:2: a material that cannot be seen is drawn; its d or Tr is left out"]);
+    assert_eq!(unseen.warnings, ["a.mtl:2: a fully transparent material is drawn opaque; its d or Tr is left out"]);
     let colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\n";
     let mtl = "newmtl a\nmap_d a.png\nmap_Kd -s 2 2 -clamp on a.png\nnewmtl b\nmap_d a.png\n";
     assert_eq!(
@@ -706,7 +709,7 @@ fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
         [
             "a.mtl:2: map_d left out, 2 times",
             "a.mtl:3: options of map_Kd (-s, -o, -clamp) left out",
-            "model.obj:2: colours of vertices left out"
+            "model.obj:2: vertex colours left out"
         ]
     );
 }
@@ -757,7 +760,7 @@ fn vertices_have_colours_as_in_ply() {
     ] {
         let loaded = parse(&text);
         assert!(loaded.warnings.len() == 1 && loaded.textures.is_empty(), "{:?}", loaded.warnings);
-        assert!(loaded.warnings[0].ends_with(": colours of vertices left out"), "{:?}", loaded.warnings);
+        assert!(loaded.warnings[0].ends_with(": vertex colours left out"), "{:?}", loaded.warnings);
     }
     // What is grey is their light, as with a texture, and a highlight stays.
     let shiny = parse(&format!("mtllib a.mtl\n{first}usemtl red\nusemtl shiny\n{faces}"));

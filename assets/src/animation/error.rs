@@ -81,17 +81,17 @@ impl fmt::Display for AnimationErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Picture(error) => write!(f, "{error}"),
-            Self::OtherColors => f.write_str("a frame in a colour that the film's palette has not"),
+            Self::OtherColors => f.write_str("a frame uses a colour that is not in the animation's palette"),
             Self::OtherSize { first, now } => {
-                write!(f, "a frame of {} x {} pixels in a film that began with {} x {}", now.0, now.1, first.0, first.1)
+                write!(f, "a frame of {} x {} pixels in an animation of {} x {}", now.0, now.1, first.0, first.1)
             }
             Self::FrameRate { frames_per_second: given } => {
                 let (lowest, highest) = FRAME_RATES.into_inner();
                 let too_fast = if *given > highest { ": browsers slow down anything faster" } else { "" };
                 write!(f, "an animation shows {lowest} to {highest} frames a second, not {given}{too_fast}")
             }
-            Self::NoFrames => f.write_str("a film without a frame"),
-            Self::FrameCount { promised, given } => write!(f, "a film of {promised} frames was given {given}"),
+            Self::NoFrames => f.write_str("an animation without frames"),
+            Self::FrameCount { promised, given } => write!(f, "an animation of {promised} frames was given {given}"),
             Self::Io(error) => write!(f, "{error}"),
             Self::Export(error) => write!(f, "{error}"),
         }

@@ -111,7 +111,7 @@ impl fmt::Display for ModelFileErrorKind {
             Self::Missing(what) => write!(f, "too few numbers for {what}"),
             Self::NotNumber(word) => write!(f, "`{word}` is not a number"),
             Self::NotFinite(word) => write!(f, "`{word}` is not a finite number"),
-            Self::Ends(what) => write!(f, "the file ends where {what} should stand"),
+            Self::Ends(what) => write!(f, "the file ends where {what} is expected"),
             Self::Expected { expected, found } => write!(f, "expected {expected}, found `{found}`"),
             Self::Fault(what) => f.write_str(what),
             Self::NotCorner(word) => write!(f, "`{word}` is not the corner of a face"),

@@ -333,7 +333,7 @@ pub(crate) fn finish(
     }
     let middle = lists::far_middle(&lists.positions, &lists.corners);
     if let Some([x, y, z]) = middle {
-        warnings.push(|| format!("{shown}: lies far from 0; its middle, {x} {y} {z}, is now at 0"));
+        warnings.push(|| format!("{shown}: lies far from the origin; its centre, {x} {y} {z}, was moved there"));
     }
     // In place, since a file may have many.
     let positions = core::mem::take(&mut lists.positions).into_iter().map(|p| p.narrow(middle)).collect();
@@ -353,8 +353,8 @@ pub(crate) fn finish(
     }
     match mended.turned {
         0 => {}
-        1 => warnings.push(|| format!("{shown}: turned round a body that was inside out")),
-        turned => warnings.push(|| format!("{shown}: turned round {turned} bodies that were inside out")),
+        1 => warnings.push(|| format!("{shown}: flipped a solid that was inside out")),
+        turned => warnings.push(|| format!("{shown}: flipped {turned} solids that were inside out")),
     }
     let origin = middle.unwrap_or_default();
     let staged = nodes.stage(&mesh, &corners, origin);

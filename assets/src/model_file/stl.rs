@@ -170,10 +170,10 @@ fn read_binary(bytes: &[u8], path: &Path, draft: &mut Draft, merged: &mut Merged
     if left > 0 {
         draft
             .warnings
-            .push(|| format!("{shown}: byte {}: {left} bytes behind the triangles left out", bytes.len() - left));
+            .push(|| format!("{shown}: byte {}: {left} bytes after the triangles left out", bytes.len() - left));
     }
     if colored {
-        draft.warnings.push(|| format!("{shown}: colours of triangles left out"));
+        draft.warnings.push(|| format!("{shown}: triangle colours left out"));
     }
     Ok(())
 }

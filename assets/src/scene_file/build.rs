@@ -93,7 +93,7 @@ impl<'a> Builder<'a> {
                 let List([first, last]) = cycle.get_ref();
                 let (first, last) = (first.index(), last.index());
                 if first > last {
-                    return Err(Fault::value(cycle.span(), "the first entry lies behind the last"));
+                    return Err(Fault::value(cycle.span(), "the first entry is after the last"));
                 }
                 Ok(PaletteAnimation::Cycle { range: first..=last, period })
             }
@@ -230,7 +230,7 @@ impl<'a> Builder<'a> {
         }
         self.scene.set_time(0.0);
         if self.scene.camera.eye == self.scene.camera.target {
-            return Err(Fault::value(own.span(), "the camera looks at the point where it is"));
+            return Err(Fault::value(own.span(), "the camera looks at its own position"));
         }
         Ok(())
     }

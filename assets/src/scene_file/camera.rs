@@ -22,7 +22,7 @@ pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept
     let from = own.and_then(|own| own.from.as_ref());
     let mut camera = match (eye, from) {
         (Some(_), Some(from)) => {
-            return Err(Fault::value(from.span(), "beside an `eye`, which says where the camera is"));
+            return Err(Fault::value(from.span(), "not allowed with an `eye`, which says where the camera is"));
         }
         (Some(eye), None) => {
             let (eye, target) = (eye.vec3(), target.unwrap_or(Vec3::ZERO));

@@ -25,7 +25,7 @@ pub(super) fn path(layout: &Spanned<PathLayout>, duration: f64) -> Result<Path, 
         }
         (None, Some(circle)) => {
             if let Some(back) = back {
-                return Err(Fault::value(back.span(), "only a line has a way back"));
+                return Err(Fault::value(back.span(), "only a line can go back"));
             }
             let (from, towards) = radii(circle.get_ref(), circle.span())?;
             let towards = if backwards { -towards } else { towards };
@@ -55,7 +55,7 @@ fn radii(circle: &CircleLayout, span: Range<usize>) -> Result<(Vec3, Vec3), Faul
         }
         _ => Err(Fault::value(
             span,
-            "a circle has either a `radius`, with an `axis` and a `start` if wanted, or `from` and `towards`",
+            "a circle has either a `radius`, with an optional `axis` and `start`, or `from` and `towards`",
         )),
     }
 }

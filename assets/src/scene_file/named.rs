@@ -58,7 +58,7 @@ impl<'a> Named<'a> {
         }
         if Format::of_path(&path).is_none() {
             let known = Format::extensions();
-            return Err(Fault::value(name.span(), format!("no model that can be read: models are {known} files")));
+            return Err(Fault::value(name.span(), format!("not a model that can be read: models are {known} files")));
         }
         let file = self.opened(&path, name)?;
         let open = &mut *self.open;

@@ -72,10 +72,13 @@ impl Objects {
         };
         let positions: Vec<Vec3> = match (&layout.position, &layout.positions) {
             (Some(_), Some(positions)) => {
-                return Err(Fault::value(positions.span(), "beside a `position`"));
+                return Err(Fault::value(positions.span(), "not allowed with a `position`"));
             }
             (None, Some(positions)) if layout.path.is_some() => {
-                return Err(Fault::value(positions.span(), "beside a `path`, which says where the object is"));
+                return Err(Fault::value(
+                    positions.span(),
+                    "not allowed with a `path`, which says where the object is",
+                ));
             }
             (None, Some(positions)) if positions.get_ref().is_empty() => {
                 return Err(Fault::value(positions.span(), "at least one is needed"));
@@ -109,7 +112,7 @@ impl Objects {
                 (mesh, origin, up, rig)
             }
             (Some(_), Some(model)) => {
-                return Err(Fault::value(model.span(), "beside a `shape`: an object is one of both"));
+                return Err(Fault::value(model.span(), "not allowed with a `shape`: an object is one or the other"));
             }
             (None, None) => return Err(Fault::value(span, "an object needs a `shape` or a `model`")),
         };
@@ -202,7 +205,7 @@ impl Objects {
                 let names: Vec<&str> = object.materials.iter().map(|material| material.name.as_str()).collect();
                 let what = match names.as_slice() {
                     [""] => String::from("the object's only material has no name; write `material`"),
-                    names => format!("no material of the object; it has {}", names.join(", ")),
+                    names => format!("the object has no such material; it has {}", names.join(", ")),
                 };
                 return Err(Fault::value(name.span(), what));
             }

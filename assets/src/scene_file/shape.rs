@@ -76,7 +76,7 @@ impl Shape {
         for (&(name, least, most, _), &number) in self.subdivisions.iter().zip(given) {
             match u32::try_from(number) {
                 Ok(number) if (least..=most).contains(&number) => numbers.push(number),
-                _ => return Err(format!("{number} {name}; a {} has from {least} to {most}", self.name)),
+                _ => return Err(format!("{number} {name}; a {} can have {least} to {most}", self.name)),
             }
         }
         Ok(numbers)

@@ -98,7 +98,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
     for _ in 0..chunks {
         let size = file.double()?;
         let kind = file.word()?;
-        let mut chunk = Bytes(file.take(size.checked_sub(6).ok_or_else(|| broken("a chunk of no size"))?)?);
+        let mut chunk = Bytes(file.take(size.checked_sub(6).ok_or_else(|| broken("an empty chunk"))?)?);
         match kind {
             LAYER => {
                 let flags = chunk.word()?;
@@ -160,7 +160,7 @@ fn old_palette(mut chunk: Bytes<'_>, is_of_dac: bool, colors: &mut [Rgb; 256]) -
 /// Draws a cel if its layer and the groups that contain it are visible.
 fn cel(mut chunk: Bytes<'_>, layers: &[Layer], transparent: u8, picture: &mut Indexed) -> Result<(), LoadErrorKind> {
     let number = usize::from(chunk.word()?);
-    let layer = layers.get(number).ok_or_else(|| broken("a cel of a layer that there is not"))?;
+    let layer = layers.get(number).ok_or_else(|| broken("a cel of a layer that does not exist"))?;
     let (left, top) = (chunk.word()? as i16, chunk.word()? as i16);
     chunk.byte()?;
     let kind = chunk.word()?;

@@ -59,7 +59,7 @@ impl fmt::Display for LoadErrorKind {
         match self {
             Self::Read(error) => write!(f, "{error}"),
             Self::NotAFile => f.write_str("not a file"),
-            Self::Picture(reason) => write!(f, "no picture that can be read: {reason}"),
+            Self::Picture(reason) => write!(f, "not a picture that can be read: {reason}"),
             Self::Texture(error) => write!(f, "{error}"),
         }
     }

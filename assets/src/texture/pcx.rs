@@ -19,7 +19,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
     let header: &[u8; HEADER] = bytes.first_chunk().ok_or_else(|| broken("the header is cut short"))?;
     let word = |at: usize| u32::from(u16::from_le_bytes([header[at], header[at + 1]]));
     if (header[3], header[65]) != (8, 1) {
-        return Err(broken(&format!("{} bits in {} planes; only 8 in one are read", header[3], header[65])));
+        return Err(broken(&format!(
+            "{} bits in {} planes; only 8 bits in one plane are supported",
+            header[3], header[65]
+        )));
     }
     let side =
         |first: usize, last: usize| (word(last) + 1).checked_sub(word(first)).ok_or_else(|| broken("a negative size"));

@@ -28,7 +28,7 @@ fn is_of_a_study(path: &Path, mark: &str) -> bool {
 /// Files of an earlier study are overwritten if the user named the directory, others only by force.
 pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
-        return Err(Failure::file(format!("{}: is no directory", directory.display())));
+        return Err(Failure::file(format!("{}: is not a directory", directory.display())));
     }
     if directory.is_dir() {
         return NAMES.iter().zip(MARKS).try_for_each(|(name, mark)| {
@@ -36,7 +36,7 @@ pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<()
             read_files::spare(&path)?;
             if is_named && !forced && path.symlink_metadata().is_ok() && !is_of_a_study(&path, mark) {
                 let path = path.display();
-                let reason = "exists already, and is no file of a study; --force overwrites it";
+                let reason = "already exists and is not part of a study; --force overwrites it";
                 return Err(Failure::file(format!("{path}: {reason}")));
             }
             output::refuse_overwriting(&path, forced || is_named)?;

@@ -87,12 +87,12 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         .arg("--counted")
         .output();
     let out = out.map_err(|error| match error.kind() {
-        ErrorKind::NotFound => Failure::file("--instructions needs valgrind, which is not there"),
+        ErrorKind::NotFound => Failure::file("--instructions needs valgrind, which was not found"),
         _ => Failure::file(format!("valgrind: {error}")),
     })?;
     if !out.status.success() {
         let said = String::from_utf8_lossy(&out.stderr);
-        let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it ended without a word");
+        let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it failed without a message");
         return Err(Failure::file(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
     }
     let mut of = BTreeMap::new();
@@ -100,8 +100,8 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         // Numbered from 1.
         let path = directory.0.join(format!("counts.{number}"));
         let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
-        let all =
-            all.ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of names?"))?;
+        let all = all
+            .ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of its symbols?"))?;
         of.insert(*shading, all / frames.max(1) as u64);
     }
     Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })

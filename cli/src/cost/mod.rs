@@ -28,9 +28,9 @@ const STEPS: u32 = 5;
 pub(crate) struct Options {
     #[arg(help = input::HELP, long_help = input::long_help())]
     input: OsString,
-    /// Write the study into DIR
+    /// Write the study to DIR
     ///
-    /// report.html, chart.svg, cost.json, and samples.csv with every single time. Those of an earlier study are overwritten.
+    /// report.html, chart.svg, cost.json, and samples.csv with every single time. An earlier study is overwritten.
     ///
     /// [default: cost-INPUT in the current directory, never overwritten without --force; none with --json]
     #[arg(short, long, value_name = "DIR")]
@@ -58,23 +58,23 @@ pub(crate) struct Options {
     shadings: Vec<Shading>,
     /// Measure N frames of one round
     ///
-    /// They are evenly spread. A model turns once; a scene says how long its round is.
+    /// They are evenly spaced. A model turns once; a scene sets the length of its round.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
     frames: u32,
     /// Count instructions as well, with valgrind
     ///
-    /// Valgrind lacks some vector instructions; times are then taken with the kernel that ran there.
+    /// Valgrind lacks some vector instructions; times are then taken with the kernel that it can run.
     #[arg(long)]
     instructions: bool,
     /// Stop timing after SECONDS
     ///
-    /// At least seven rounds are timed; fewer rounds make wider intervals. Finding the errors takes a second or two for each
-    /// frame before that.
+    /// At least seven rounds are timed; fewer rounds give wider intervals. Before that, finding the errors takes a second or
+    /// two per frame.
     ///
     /// [default: 10, up to 20 until every ratio is known to 2 %]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Draw what instructions are counted of, and nothing else
+    /// Only draw the frames whose instructions are counted
     #[arg(long, hide = true)]
     counted: bool,
     #[command(flatten)]
@@ -133,9 +133,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(seconds) => format!("at most {seconds} s"),
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
     };
-    let compared = if frames.len() == 1 { "1 frame is".to_string() } else { format!("{} frames are", frames.len()) };
+    let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
     if !output::is_quiet() {
-        eprintln!("mode13h: {compared} compared with the truth; then times are taken, for {times}");
+        eprintln!("mode13h: comparing {compared} with the truth, then timing for {times}");
     }
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
@@ -217,11 +217,11 @@ impl Progress {
                 }
             }
             self.bar.set_message(match step {
-                Step::Errors => "frames compared with the truth",
-                Step::Times => "of the time, frames being timed side by side",
-                Step::Split => "of the time, frames being timed part by part",
-                Step::Goals => "of the time, frames being drawn as well as a time allows",
-                Step::Claims => "of what the sources claim",
+                Step::Errors => "comparing frames with the truth",
+                Step::Times => "timing frames side by side",
+                Step::Split => "timing frames part by part",
+                Step::Goals => "drawing frames as well as a time allows",
+                Step::Claims => "checking what the sources claim",
                 _ => "",
             });
         }

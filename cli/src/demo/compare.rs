@@ -47,7 +47,7 @@ impl Panel for Divider {
             show.divider = Some(self.column);
             match (is_click, self.is_fixed) {
                 (false, _) => return Ok(()),
-                (true, true) => "divider fixed; a click lets it go".to_string(),
+                (true, true) => "divider fixed; a click releases it".to_string(),
                 (true, false) => "the divider follows the mouse".to_string(),
             }
         };

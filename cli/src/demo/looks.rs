@@ -17,8 +17,8 @@ use crate::toggles::Switch;
 use crate::turntable::{Colors, Turntable};
 
 pub(super) const KEYS: Keys = &[
-    ("K, P, M", "The next kernel, palette, texture mapping"),
-    ("L, O, T", "Lights, fog, textures off and on"),
+    ("K, P, M", "Next kernel, palette, texture mapping"),
+    ("L, O, T", "Switch lights, fog, textures off and on"),
     ("D", "Dither: ordered, blue noise, ps1, off"),
 ];
 

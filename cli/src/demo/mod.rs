@@ -133,15 +133,15 @@ pub(crate) struct Options {
     inputs: Vec<OsString>,
     /// Show INPUT in the terminal instead of a window
     ///
-    /// The terminal must show pictures, as xterm, foot, kitty and others do, also over ssh. Arrows turn, + and - zoom, Space
-    /// stops time; q, Esc or Ctrl-C ends.
+    /// The terminal must support images, as xterm, foot, kitty and others do, even over ssh. Arrows turn, + and - zoom, Space
+    /// stops time; q, Esc or Ctrl-C quits.
     #[arg(long, conflicts_with = "max_time")]
     terminal: bool,
-    /// How the terminal takes pictures: sixel or kitty
+    /// Send pictures to the terminal as sixel or kitty
     ///
-    /// Sixels give colours in whole percents; those of kitty are exact.
+    /// Sixels round colours to whole percents; kitty's are exact.
     ///
-    /// [default: kitty, if the environment names kitty or Ghostty, or else sixel]
+    /// [default: kitty if the environment names kitty or Ghostty, or else sixel]
     #[arg(
         long,
         value_name = "PROTOCOL",
@@ -153,10 +153,10 @@ pub(crate) struct Options {
     to: Option<Protocol>,
     /// Enlarge the frame in the terminal: 2, 5x6, or to a size like 640x480
     ///
-    /// [default: 640x480, or 320x240 if the terminal has no room for that or does not say]
+    /// [default: 640x480, or 320x240 if the terminal is too small for that or does not tell its size]
     #[arg(long, value_name = "SCALE", hide_short_help = true, requires = "terminal")]
     scale: Option<Scale>,
-    /// End after N frames in the terminal
+    /// Quit after N frames in the terminal
     #[arg(
         long,
         value_name = "N",
@@ -194,7 +194,7 @@ const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
 fn long_help_on_inputs() -> String {
-    format!("{}\n\nOf several, the first is shown; the key N goes to the next.", input::long_help())
+    format!("{}\n\nOf several, the first is shown; press N for the next.", input::long_help())
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
@@ -311,7 +311,7 @@ impl Demo {
             Ok(stage) => {
                 scenes.wrong = None;
                 if is_again {
-                    show.say("loaded again");
+                    show.say("reloaded");
                 } else if count > 1 {
                     show.say(format!("{} of {count}: {}", at + 1, show.inputs.name(at)));
                 }
@@ -365,7 +365,7 @@ impl Demo {
             self.draw()?;
             let path = output::numbered_picture(&self.show.screen)?;
             let of = if count == 1 { String::new() } else { format!(" of {}", inputs.name(at)) };
-            eprintln!("mode13h: {no_display}; one frame{of} is in {}", path.display());
+            eprintln!("mode13h: {no_display}; saved one frame{of} as {}", path.display());
         }
         match worst {
             Some(worst) => Err(worst.saying(format!("{failed} of {count} inputs could not be drawn"))),

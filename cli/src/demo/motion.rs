@@ -5,8 +5,7 @@ use mode13h::vga::Vga;
 use super::{Failure, Input, Key, Keys, Panel, Row, Show};
 use crate::turntable::Pose;
 
-pub(super) const KEYS: Keys =
-    &[("Space", "Stop time, start it again"), ("arrows, mouse", "Turn"), ("+ -, wheel", "Zoom")];
+pub(super) const KEYS: Keys = &[("Space", "Stop time, restart it"), ("arrows, mouse", "Turn"), ("+ -, wheel", "Zoom")];
 
 /// The note on a stopped picture.
 pub(super) const STOPPED: &str = "stopped";

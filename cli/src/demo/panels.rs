@@ -10,8 +10,8 @@ pub(super) const SHADES: Keys = &[
     ("[ and ]", "Step through the shadings"),
     ("1 to 9", "The first nine shadings"),
     ("0", "The error budget"),
-    ("B, Shift-B", "A smaller budget, a larger one: 16, 8, 4, 2, 1, 1/2 shades"),
-    ("F, Shift-F", "The smallest error that fits a time: less time, more time"),
+    ("B, Shift-B", "Smaller budget, larger budget: 16, 8, 4, 2, 1, 1/2 shades"),
+    ("F, Shift-F", "Smallest error that fits a time: less time, more time"),
 ];
 
 pub(super) const MAPS: Keys = &[("E", "The error map")];

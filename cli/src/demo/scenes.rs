@@ -4,7 +4,7 @@ use super::{Failure, Input, Key, Keys, Panel, Row, Sheet, Show};
 use crate::input;
 use crate::overlay;
 
-pub(super) const KEYS: Keys = &[("N, Shift-N", "The next INPUT, the one before")];
+pub(super) const KEYS: Keys = &[("N, Shift-N", "Next INPUT, previous INPUT")];
 
 /// Formats a number of things, in words.
 pub(super) fn counted(number: usize, thing: &str) -> String {

@@ -39,7 +39,7 @@ impl Sending {
         }
         if self.frames.is_none() && !(cfg!(unix) && io::stdin().is_terminal()) {
             return Err(Failure::words(
-                "--terminal: standard input is not a terminal, so no key can end it; --frames N ends it after N frames",
+                "--terminal: standard input is not a terminal, so no key can quit; --frames N quits after N frames",
             ));
         }
         Ok(())

@@ -129,7 +129,7 @@ impl Bytes {
     }
 
     fn count(&mut self, count: usize) -> Result<(), String> {
-        self.word(u32::try_from(count).map_err(|_| "there is too much in the scene")?);
+        self.word(u32::try_from(count).map_err(|_| "the scene is too large")?);
         Ok(())
     }
 

@@ -51,7 +51,7 @@ pub(crate) struct Options {
     input: OsString,
     /// Write to FILE: .exe for a program, .img for a floppy
     ///
-    /// The floppy has 1.44 MB and starts the program without DOS. An existing file is overwritten.
+    /// The 1.44 MB floppy starts the program without DOS. An existing file is overwritten.
     ///
     /// [default: INPUT.EXE in the current directory, never overwritten without --force]
     #[arg(short, long, value_name = "FILE")]
@@ -59,10 +59,10 @@ pub(crate) struct Options {
     /// Overwrite INPUT.EXE
     #[arg(long)]
     force: bool,
-    /// Frames in a round of the scene
+    /// Draw one round of the scene in N frames
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u16).range(1..=1024))]
     frames: u16,
-    /// Shade every face by this method; these work in integers
+    /// Shade every face by one of the integer methods
     #[arg(long, value_name = "NAME", value_parser = shading_of(SHADINGS))]
     shading: Option<Shading>,
     #[command(flatten)]
@@ -89,7 +89,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let ends_in = |out: &Path, wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
     let out = match out {
         Some(out) if !(ends_in(out, "exe") || ends_in(out, "img")) => {
-            return Err(Failure::words(format!("{}: a program for DOS ends in .exe, a floppy in .img", out.display())));
+            return Err(Failure::words(format!(
+                "{}: the name of a DOS program must end in .exe, that of a floppy in .img",
+                out.display()
+            )));
         }
         Some(out) => out.clone(),
         None => {
@@ -113,7 +116,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     // The frames are drawn from what the program unpacks.
     let sum = unpack(&packed)
         .and_then(|film| hash_of(&film))
-        .ok_or_else(|| Failure::words("a mesh of the scene is not sound in 16.16"))?;
+        .ok_or_else(|| Failure::words("a mesh of the scene cannot be drawn in 16.16"))?;
     output::file(&out, || export::write_atomically(&out, |file| file.write_all(&program)))?;
     output::say(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
 }
@@ -180,7 +183,7 @@ fn body(film: &[u8], unpacked: usize, vertices: usize) -> Result<Vec<u8>, Failur
     // For the unpacked film, and for its meshes with two copies of their indices. A vertex takes less than 64 bytes.
     let heap = 4 * unpacked + 5 * PIXELS + 64 * vertices + 65_536;
     if body.len() > MAX_SIZE {
-        let line = format!("the program would have {} bytes, and DOS has room for {MAX_SIZE}", body.len());
+        let line = format!("the program would take {} bytes, but DOS has room for {MAX_SIZE}", body.len());
         return Err(Failure::words(line));
     }
     // All below 2³².

@@ -33,9 +33,9 @@ pub(crate) struct ShadingOptions {
     /// A shade is 1/255 of full intensity. Not with --shading.
     #[arg(long, value_name = "E", value_parser = shades, conflicts_with = "shading")]
     max_error: Option<f32>,
-    /// Find the smallest error that fits into T milliseconds
+    /// Draw with the smallest error that fits in T milliseconds
     ///
-    /// The error is chosen from the times of frames on this machine, up to 16 shades or --max-error. Not with --shading.
+    /// It is found by timing frames on this machine, up to 16 shades or --max-error. Not with --shading.
     #[arg(long, value_name = "T", value_parser = milliseconds, conflicts_with = "shading")]
     max_time: Option<f32>,
 }
@@ -97,7 +97,7 @@ impl ShadingOptions {
         calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
         let accuracy = pace.accuracy();
         match pace.fits() {
-            true => eprintln!("mode13h: {accuracy}, the least in {max_time} ms"),
+            true => eprintln!("mode13h: {accuracy}, the smallest error that fits in {max_time} ms"),
             false => eprintln!("mode13h: {accuracy}, which takes more than {max_time} ms"),
         }
         renderer.settings.accuracy = Some(accuracy);

@@ -54,7 +54,7 @@ fn cases_without_a_name_says_where_and_overwrites_by_force_alone() {
     let output = run(&directory, &["cases", "r5"]);
     let line = String::from_utf8_lossy(&output.stderr);
     assert_eq!((output.status.code(), read()), (Some(3), b"mine".to_vec()), "{line}");
-    assert!(line.starts_with("mode13h: R5.png: exists already; --force ") && line.lines().count() == 1, "{line}");
+    assert!(line.starts_with("mode13h: R5.png: already exists; --force ") && line.lines().count() == 1, "{line}");
     says_where(&run(&directory, &["cases", "r5", "--force"]));
     assert_eq!((read(), names_in(&directory)), (picture, vec!["R5.png".to_string()]));
 }
@@ -64,7 +64,7 @@ fn cases_of_wrong_words_is_one_line_and_status_2() {
     let directory = tempfile::tempdir().expect("a directory");
     let cases: [(&[&str], i32, &str); 5] = [
         (&["cases", "R99"], 2, "there are R1, R2"),
-        (&["cases", "S4"], 2, "no picture of 'S4'"),
+        (&["cases", "S4"], 2, "no case 'S4'"),
         (&["cases", "R5", "-o", "r5.gif"], 2, "r5.gif"),
         (&["cases", "-o", "r5.png"], 2, "<ID>"),
         (&["cases", "R5", "-o", "no/such/place.png"], 3, "place.png"),

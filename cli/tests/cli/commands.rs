@@ -105,22 +105,22 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         (
             model("model.3ds"),
             2,
-            "model.3ds: nothing that can be read: models are .obj, .stl, .ply, .gltf and .glb files, scenes .toml",
+            "model.3ds: unknown kind of file: models are .obj, .stl, .ply, .gltf and .glb files, scenes .toml",
         ),
-        (model("toroid"), 2, "toroid: neither a file nor a scene nor a shape (mode13h list scenes shows the names)"),
-        (model(""), 2, "mode13h: '': an empty word names nothing (mode13h render --help"),
-        (palette(""), 2, "mode13h: --palette '': an empty word names nothing"),
-        (vec![""], 2, "mode13h: '': an empty word names nothing"),
-        (vec!["scenes", "copy", ""], 2, "mode13h: '': an empty word names nothing"),
-        (vec!["render", "torus", "--palette="], 2, "mode13h: --palette=: an empty word names nothing"),
+        (model("toroid"), 2, "toroid: no such file, scene or shape (mode13h list scenes shows the names)"),
+        (model(""), 2, "mode13h: '': empty argument (mode13h render --help"),
+        (palette(""), 2, "mode13h: --palette '': empty argument"),
+        (vec![""], 2, "mode13h: '': empty argument"),
+        (vec!["scenes", "copy", ""], 2, "mode13h: '': empty argument"),
+        (vec!["render", "torus", "--palette="], 2, "mode13h: --palette=: empty argument"),
         (palette("broken.pal"), 2, "broken.pal: line 5"),
         (palette("short.vga"), 2, "short.vga: "),
         (palette("empty.gpl"), 2, "empty.gpl: "),
-        (palette("none.pal"), 3, "none.pal: neither a file nor a built-in palette; those are grey"),
+        (palette("none.pal"), 3, "none.pal: no such file or built-in palette; built-in palettes are grey"),
         (palette("."), 3, ".: is a directory"),
         (vec!["palette", "broken.pal"], 2, "broken.pal: line 5"),
-        (vec!["palette", "mauve"], 2, "mauve: neither a file nor a built-in palette; those are grey"),
-        (palette("coper"), 2, "coper: neither a file nor a built-in palette; did you mean copper?"),
+        (vec!["palette", "mauve"], 2, "mauve: no such file or built-in palette; built-in palettes are grey"),
+        (palette("coper"), 2, "coper: no such file or built-in palette; did you mean copper?"),
         (vec!["demo", "nan.obj"], 2, "nan.obj:2: "),
         (vec!["nan.obj"], 2, "nan.obj:2: "),
         (vec!["none.obj"], 3, "none.obj: No such file"),
@@ -144,14 +144,14 @@ fn wrong_words_end_with_2() {
             vec!["render", "torus", "-o", "x.png", "--shading", "mirror"],
             "[possible values: flat, gouraud-vintage, gouraud-8.8, ",
         ),
-        (vec!["render", "torus", "-o", "x.tif"], "x.tif: no kind of picture"),
+        (vec!["render", "torus", "-o", "x.tif"], "x.tif: not a format that can be written"),
         (vec!["render", "torus", "-o", "x"], "x: "),
         (
             vec!["render", "torus", "-o", "a.mp4"],
             "a.mp4: animations are .gif or .apng; for others pipe the frames: `-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`",
         ),
         (vec!["render", "torus", "-o", "a.mp4", "--fps", "30"], "`-o - | ffmpeg -i - -pix_fmt yuv420p a.mp4`"),
-        (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a row of pictures needs"),
+        (vec!["render", "torus", "-o", "x.png", "--frames", "2"], "x.png: a series of pictures needs"),
         (vec!["render", "torus", "-o", "x%d.png", "--frames", "0"], "--frames"),
         (vec!["render", "torus", "-o", "x%d.png", "--threads", "0"], "--threads"),
         (vec!["render", "torus", "-o", "x.png", "--scale", "3"], "a scale is 1, 2, 5x6"),
@@ -167,9 +167,9 @@ fn wrong_words_end_with_2() {
         (vec!["explain", "torus", "--pixel", "-1,2"], "'-1,2' for '--pixel <X,Y>': not two whole numbers"),
         (vec!["render", "torus", "-o", "x.png", "--background", "#fff"], "#fff: a colour has six digits: '#ffffff'"),
         (vec!["render", "torus", "-o", "x.png", "--background", "#a0G"], "neither a colour such as '#203040'"),
-        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2"], "\"1,2\" is no point: three numbers"),
-        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2,3:inf,0,0"], "\"inf,0,0\" is no point"),
-        (vec!["render", "torus", "-o", "x.png", "--camera", "-1,2,3:-1,2,3"], "it looks at the point where it is"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2"], "\"1,2\" is not a point: three numbers"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "1,2,3:inf,0,0"], "\"inf,0,0\" is not a point"),
+        (vec!["render", "torus", "-o", "x.png", "--camera", "-1,2,3:-1,2,3"], "EYE and TARGET are the same point"),
         (
             vec!["render", "torus", "-o", "x.png", "--background", "256"],
             "neither a colour such as '#203040' nor an entry",
@@ -188,7 +188,7 @@ fn wrong_words_end_with_2() {
         (vec!["list"], "<WHAT>"),
         (vec!["list", "colours"], "[possible values: shadings, palettes, kernels, scenes]"),
         (vec!["palette"], "`mode13h list palettes` shows the built-in ones"),
-        (vec!["scenes"], "scenes are listed by `mode13h list scenes`"),
+        (vec!["scenes"], "`mode13h list scenes` lists the scenes"),
         (vec!["render", "torus", "-o", "x.png", "--fps", "0"], "--fps"),
         (vec!["render", "torus", "-o", "x.png", "--turn", "9", "--fps", "9"], "x.png: both --turn and --fps"),
         (vec!["render", "torus", "-o", "x.png", "--up", "x"], "--up"),
@@ -203,8 +203,8 @@ fn wrong_words_end_with_2() {
             "x.gif: an animation shows 0.1 to 50 frames a second",
         ),
         (vec!["render", "torus", "-o", "x.gif", "--frames", "0"], "--frames"),
-        (vec!["render", "torus", "-o", "x%d-%04d.png"], "x%d-%04d.png: a name holds one number"),
-        (vec!["render", "torus", "-o", "x%d%d.png", "--frames", "2"], "x%d%d.png: a name holds one number"),
+        (vec!["render", "torus", "-o", "x%d-%04d.png"], "x%d-%04d.png: a name can hold one number"),
+        (vec!["render", "torus", "-o", "x%d%d.png", "--frames", "2"], "x%d%d.png: a name can hold one number"),
         (vec!["render", "torus", "-o", "x.apng", "--rgb"], "x.apng: --rgb is for .png"),
         (vec!["render", "torus", "-o", "x%d.apng"], "x%d.apng: an animation is one file"),
         (vec!["render", "torus", "-o", "-", "--fps", "60"], "-: an animation shows 0.1 to 50 frames a second, not 60"),
@@ -225,7 +225,7 @@ fn wrong_words_end_with_2() {
         (vec!["render", "--xml"], "(mode13h render --help shows"),
         (vec!["--xml"], "(mode13h --help shows"),
         (vec!["torus", "--xml"], "(mode13h --help shows"),
-        (vec!["torus", "verify"], "verify is a command, and stands before its INPUT"),
+        (vec!["torus", "verify"], "verify is a command and goes before INPUT"),
         (vec!["plan"], "<INPUT>"),
         (vec!["plan", "torus", "--time", "inf"], "--time takes a number of SECONDS; --measure"),
         (vec!["plan", "torus", "--time"], "--time takes a number of SECONDS; --measure"),
@@ -761,10 +761,18 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
     // Integers know no budget, so the status does not hang on the clock.
     let cost = ["cost", "cube", "--frames", "1", "--seconds", "0", "--arithmetic", "fixed", "-o"];
     for (words, status, line) in [
-        (vec!["dos", "cube", "-o", "house.obj"], 2, "house.obj: a program for DOS ends in .exe, a floppy in .img"),
-        (vec!["dos", "cube", "-o", "house"], 2, "ends in .exe"),
-        (vec!["scenes", "copy", "torus", "-o", "house.obj"], 2, "house.obj: the file of a scene ends in .toml"),
-        ([&cost[..], &["."]].concat(), 3, "report.html: exists already, and is no file of a study"),
+        (
+            vec!["dos", "cube", "-o", "house.obj"],
+            2,
+            "house.obj: the name of a DOS program must end in .exe, that of a floppy in .img",
+        ),
+        (vec!["dos", "cube", "-o", "house"], 2, "must end in .exe"),
+        (
+            vec!["scenes", "copy", "torus", "-o", "house.obj"],
+            2,
+            "house.obj: the name of a scene file must end in .toml",
+        ),
+        ([&cost[..], &["."]].concat(), 3, "report.html: already exists and is not part of a study"),
     ] {
         assert_fails(&run(&directory, &words), status, line);
         tried.add(1);
@@ -880,7 +888,7 @@ const TWO_CLIPS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [
         {"name": "Aside", "samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]},
         {"name": "Up", "samplers": [{"input": 1, "output": 3}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}"#;
 
-/// `--clip` chooses an animation by its name or number; a wrong one gets a list of those there are.
+/// `--clip` chooses an animation by its name or number; an unknown one lists those of the model.
 #[test]
 fn an_animation_is_chosen() {
     let directory = directory();
@@ -915,10 +923,7 @@ fn a_model_brings_lights_and_a_camera() {
     let picture = |words: &[&str]| {
         let output = run(&directory, &[&["render", "lit.glb", "-o", "x.png"], words].concat());
         let said = String::from_utf8_lossy(&output.stderr);
-        assert!(
-            output.status.success() && said == "mode13h: lit.glb: left out: cameras without perspective\n",
-            "{said}"
-        );
+        assert!(output.status.success() && said == "mode13h: lit.glb: left out: orthographic cameras\n", "{said}");
         read(&directory, "x.png")
     };
     let own = picture(&[]);
@@ -1031,7 +1036,7 @@ fn the_near_distance_that_a_plan_names_is_enough() {
             fs::write(directory.path().join("near.toml"), scene).expect("written");
             let text = printed(&directory, &["plan", "near.toml"]);
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            let (_, after) = text.split_once("take at least ")?;
+            let (_, after) = text.split_once("set it to at least ")?;
             Some(after.split(' ').next().expect("a number").to_string())
         };
         let needed = plan("1e-12").expect("it is told");
@@ -1200,7 +1205,7 @@ fn a_picture_lends_its_palette() {
     put("cut.png", &read(&directory, "a.png")[..60]);
     for picture in ["rgb.png", "cut.png"] {
         for words in [&["render", "cube", "-o", "y.png", "--palette", picture][..], &["palette", picture]] {
-            assert_fails(&run(&directory, words), 2, &format!("{picture}: no picture that can be read: "));
+            assert_fails(&run(&directory, words), 2, &format!("{picture}: not a picture that can be read: "));
         }
     }
 }
@@ -1250,7 +1255,7 @@ fn palettes_are_made_for_models() {
     assert!(output.status.success(), "{output:?}");
     let warnings = String::from_utf8(output.stderr).expect("text");
     assert_eq!(warnings.lines().count(), 2, "{warnings}");
-    assert!(warnings.contains("chest planks.ppm: no picture that can be read: "), "{warnings}");
+    assert!(warnings.contains("chest planks.ppm: not a picture that can be read: "), "{warnings}");
     assert!(String::from_utf8(output.stdout).expect("text").contains("wood: a ramp, entries 1 to "));
 
     assert_fails(&run(&directory, &["palette", "-o", "x.pal"]), 2, "no palette: give FILE|NAME or --from MODEL");
@@ -1500,7 +1505,7 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     let text = "fog".parse::<shipped::Shipped>().expect("a scene").text;
     assert!(read(&directory, "fog.toml") == text.as_bytes() && read(&directory, "other.toml") == text.as_bytes());
     fs::write(directory.path().join("fog.toml"), "what stood there").expect("written");
-    assert_fails(&run(&directory, &["scenes", "copy", "fog"]), 3, "fog.toml: exists already; --force");
+    assert_fails(&run(&directory, &["scenes", "copy", "fog"]), 3, "fog.toml: already exists; --force");
     assert_eq!(read(&directory, "fog.toml"), b"what stood there");
     assert_fails(&run(&directory, &["scenes", "copy", "frog"]), 2, "frog: no such scene; did you mean fog?");
     assert_fails(&run(&directory, &["scenes", "copy", "fog", "-o", "none/x.toml"]), 3, "none does not exist");
@@ -1717,9 +1722,9 @@ fn explain_refuses_what_is_not_there() {
         (vec!["explain", "cone", "--pixel", "160"], 2, "such as 160,100"),
         (vec!["explain", "cone", "--pixel", "1.5,2"], 2, "such as 160,100"),
         (vec!["explain", "cone", "--pixel", "1,2", "--row", "3"], 2, "cannot be used with"),
-        (vec!["explain", "cone", "--pixel", "1,2", "-o", "x.svg"], 2, "--out is for the chart of a --row"),
+        (vec!["explain", "cone", "--pixel", "1,2", "-o", "x.svg"], 2, "--out is only for the chart of a --row"),
         (vec!["explain", "cone", "--row", "200"], 2, "no row 200 in a frame of 200 rows"),
-        (vec!["explain", "cone", "--row", "2", "-o", "x.png"], 2, "x.png: a chart's name must end in .svg"),
+        (vec!["explain", "cone", "--row", "2", "-o", "x.png"], 2, "x.png: the name of a chart must end in .svg"),
         (vec!["explain", "none.obj", "--pixel", "1,2"], 3, "none.obj: No such file"),
         (vec!["explain", "cone", "--row", "2", "-o", "none/x.svg"], 3, "none"),
     ] {

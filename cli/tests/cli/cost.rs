@@ -311,17 +311,17 @@ fn what_is_wrong_is_said_in_one_line() {
         (&["torus", "--max-error", "2"], 2, "unexpected argument '--max-error'"),
         (&["torus", "--frames", "0"], 2, "--frames"),
         (&["nothing.toml"], 3, "nothing.toml"),
-        (&["torus", "-o", "/dev/null"], 3, "/dev/null: is no directory"),
+        (&["torus", "-o", "/dev/null"], 3, "/dev/null: is not a directory"),
         // Before anything is measured.
         #[cfg(target_os = "linux")]
-        (&["torus", "-o", "/proc/a/b"], 3, "/proc/a: no file can be made in the directory /proc"),
+        (&["torus", "-o", "/proc/a/b"], 3, "/proc/a: no file can be created in the directory /proc"),
         (&["torus", "--seconds", "-1"], 2, "--seconds"),
     ] {
         assert_fails(&directory, &run(&directory, words), status, says);
     }
     let without =
         program(&directory).args(["cost", "torus", "--instructions"]).env("PATH", "").output().expect("started");
-    assert_fails(&directory, &without, 3, "needs valgrind, which is not there");
+    assert_fails(&directory, &without, 3, "needs valgrind, which was not found");
 }
 
 #[cfg(unix)]
@@ -336,10 +336,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
     let output = child.wait_with_output().expect("it ends");
     let lines = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(130), "{lines}");
-    assert!(
-        lines.lines().next().is_some_and(|line| line.ends_with("then times are taken, for at most 600 s")),
-        "{lines}"
-    );
+    assert!(lines.lines().next().is_some_and(|line| line.ends_with("then timing for at most 600 s")), "{lines}");
     assert_eq!(lines.lines().last(), Some("mode13h: interrupted"));
     assert!(output.stdout.is_empty() && fs::read_dir(&directory).expect("a directory").next().is_none());
 }

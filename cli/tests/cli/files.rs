@@ -566,7 +566,7 @@ fn f4_no_right_to_write() {
                 command.uid(65_534).gid(65_534);
             }
             let said = assert_failed(&command.output().expect("started"), 3);
-            assert!(said.ends_with(&format!("{name}: no right to write there\n")), "{said}");
+            assert!(said.ends_with(&format!("{name}: no permission to write there\n")), "{said}");
             // So that it can be removed.
             set(&place, 0o755);
             match stands {
@@ -587,7 +587,7 @@ fn f4_a_folder_that_is_not_there() {
     for (words, name) in WRITERS {
         let folder = folder();
         fs::write(folder.path().join("file"), OLD).expect("written");
-        for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is no directory")] {
+        for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is not a directory")] {
             let path = format!("{directory}/{name}");
             let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
             let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);

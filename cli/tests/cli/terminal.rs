@@ -282,7 +282,7 @@ fn a_terminal_is_asked_for_what_it_can_do() {
     let cases: [(&[&str], &str); 6] = [
         (
             &["demo", "torus", "--terminal"],
-            "--terminal: standard input is not a terminal, so no key can end it; --frames N ends it after N frames",
+            "--terminal: standard input is not a terminal, so no key can quit; --frames N quits after N frames",
         ),
         (&["demo", "a", "b", "--terminal", "--frames", "1"], "--terminal shows one INPUT, not several"),
         (&["demo", "no-such", "--terminal", "--frames", "1"], "no-such: "),
@@ -292,7 +292,7 @@ fn a_terminal_is_asked_for_what_it_can_do() {
         ),
         (
             &["render", "torus", "--to", "kitty", "--frames", "2"],
-            "a terminal is shown one picture; `mode13h demo --terminal` moves",
+            "a terminal shows one picture; `mode13h demo --terminal` shows motion",
         ),
         (&["render", "torus", "--to", "vt52"], "invalid value 'vt52' for '--to <PROTOCOL>'"),
     ];

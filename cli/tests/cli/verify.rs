@@ -83,7 +83,7 @@ fn one_frame_is_drawn() {
     for (words, says) in [
         ("verify --frame canvas/bands/plian", "did you mean canvas/bands/plain?"),
         ("verify --frame nothing-like-it", "--list shows them"),
-        ("verify --frame canvas -o a.gif", "a.gif: the name of a picture ends in .png"),
+        ("verify --frame canvas -o a.gif", "a.gif: the name of a picture must end in .png"),
     ] {
         let output = run(words);
         let line = String::from_utf8(output.stderr).expect("text");

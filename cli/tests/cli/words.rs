@@ -130,7 +130,7 @@ fn a_time_chooses_an_error_and_says_so() {
     assert!(of_error("0.5") != of_error("16"));
     for (time, error, says) in [
         ("100000", "0.5", ""),
-        ("0.0000001", "16", "mode13h: even the greatest error takes longer than it may in 1 of 1 frames\n"),
+        ("0.0000001", "16", "mode13h: 1 of 1 frames take longer than 0.0000001 ms even with the largest error\n"),
     ] {
         let (bytes, said) = picture(&format!("plain.toml --max-time {time}"));
         assert!(bytes == of_error(error) && said == says, "{time}: {said}");
@@ -143,7 +143,10 @@ fn a_time_chooses_an_error_and_says_so() {
     assert_eq!((&frame["max_error"], &frame["max_time"], &frame["fits"]), (&0.5.into(), &1e5.into(), &true.into()));
     assert!(frame["milliseconds"].as_f64().is_some_and(|time| time > 0.0), "{frame}");
     for (words, says) in [
-        ("explain plain.toml --row 9 --max-time 100000", "mode13h: within 0.5 shades, the least in 100000 ms"),
+        (
+            "explain plain.toml --row 9 --max-time 100000",
+            "mode13h: within 0.5 shades, the smallest error that fits in 100000 ms",
+        ),
         ("plan plain.toml --max-time 0.0000001", "mode13h: within 16 shades, which takes more than 0.0000001 ms"),
     ] {
         let output = run(&directory, words);
@@ -425,14 +428,14 @@ fn a_report_is_opened_in_the_browser() {
 fn typos_are_answered_with_the_nearest_word() {
     let directory = directory();
     for (words, says) in [
-        ("rendr torus -o x.png", "rendr: neither a command nor a file nor a scene nor a shape; did you mean render?"),
+        ("rendr torus -o x.png", "rendr: no such command, file, scene or shape; did you mean render?"),
         ("rendr torus", "did you mean render?"),
         ("rendr", "did you mean render?"),
         ("scnees copy fog", "did you mean scenes?"),
         ("verfiy", "did you mean verify?"),        // typo
         ("genrate man", "did you mean generate?"), // typo
         ("palete grey", "did you mean palette?"),  // typo
-        ("torsu", "torsu: neither a file nor a scene nor a shape; did you mean torus?"),
+        ("torsu", "torsu: no such file, scene or shape; did you mean torus?"),
         ("render spere", "did you mean sphere?"), // typo
         ("demo rendr", "did you mean the command render?"),
         ("scenes copy frog", "frog: no such scene; did you mean fog?"),
@@ -449,7 +452,7 @@ fn typos_are_answered_with_the_nearest_word() {
     // A file of that name is an INPUT, whatever is near to it.
     fs::write(directory.path().join("rendr"), "no model").expect("written");
     let line = failed(&run(&directory, "rendr"), 2, "rendr");
-    assert!(line.contains("rendr: nothing that can be read"), "{line}");
+    assert!(line.contains("rendr: unknown kind of file"), "{line}");
 }
 
 /// Each command's end by each status that it can have.
@@ -672,7 +675,7 @@ fn only_files_that_were_named_are_overwritten() {
         for file in first {
             fs::write(path(file), "mine").expect("written");
             let line = failed(&run(&directory, words), 3, words);
-            assert!(line.contains(&format!("{file}: exists already; --force overwrites it")), "{line}");
+            assert!(line.contains(&format!("{file}: already exists; --force overwrites it")), "{line}");
             assert_eq!(fs::read(path(file)).expect("there"), b"mine", "{words}");
             for more in ["--force", out] {
                 // Behind -o a study replaces an earlier one, and nothing else.

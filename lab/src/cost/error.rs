@@ -26,7 +26,7 @@ impl fmt::Display for CostError {
             Self::Scene(error) => error.fmt(f),
             Self::Probe(error) => error.fmt(f),
             Self::Truth(error) => error.fmt(f),
-            Self::NoFrames => f.write_str("there is no frame to be drawn"),
+            Self::NoFrames => f.write_str("there is no frame to draw"),
         }
     }
 }

@@ -81,14 +81,14 @@ pub(super) fn say_account(text: &mut Text, shade_trace: &ShadeTrace, x: u32) {
 
 fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
     let Accumulator { first, start_at, start, steps, half, .. } = *sums;
-    let anew = if start_at == first { String::new() } else { format!(", and anew every 64 pixels: at {start_at}") };
-    let half_words = if half > 0 { ", half a shade added to make the byte the nearest" } else { ", no half added" };
+    let anew = if start_at == first { String::new() } else { format!(", restarted every 64 pixels: at {start_at}") };
+    let half_words = if half > 0 { ", plus half a shade so that the byte is the nearest" } else { ", no half added" };
     let back = match sums.step {
         0 => "cut",
-        step if step < 0 => "rounded up, back to where it falls from",
-        _ => "rounded down, back to where it rises from",
+        step if step < 0 => "rounded up because it falls",
+        _ => "rounded down because it rises",
     };
-    let back = if half > 0 { format!("the exact shade there {back}") } else { "its left edge's shade".into() };
+    let back = if half > 0 { format!("the exact shade there, {back}") } else { "its left edge's shade".into() };
     text.say("span", &format!("begins at column f = {first}{anew}; this is column {x}"));
     let in_shades = in_units(sums, f64::from(start));
     text.say("start", &format!("0x{} = {in_shades:.3}: {back}{half_words}", hex(sums, start)));
@@ -103,7 +103,7 @@ fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
         return text.say("step", &format!("0: the shade is the same all along the row, {whole}"));
     }
     let step = in_units(sums, sums.step as f64);
-    text.say("step", &format!("{} = {step:+.4} a pixel: the slope, cut toward zero", step_in_hex(sums)));
+    text.say("step", &format!("{} = {step:+.4} a pixel: the slope, rounded toward zero", step_in_hex(sums)));
     // If there are many, only the first and the last few are shown.
     let ends = |k: &i32| steps < 2 * ENDS || *k < ENDS || *k > steps - ENDS;
     let mut shown: Vec<String> = (0..=steps).filter(ends).map(|k| hex(sums, sums.after(k))).collect();

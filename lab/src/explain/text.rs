@@ -126,7 +126,7 @@ impl Pixel {
     }
 
     fn say_seen(&self, text: &mut Text, face: &FaceHere, seen: &Seen) {
-        let through = if face.fate == Fate::SeenThrough { ", which shines through" } else { "" };
+        let through = if face.fate == Fate::SeenThrough { ", which is transparent" } else { "" };
         text.say("seen", &format!("{}{through}", self.name(face)));
         self.say_corners(text, face, seen);
         self.say_shading(text, face, seen);
@@ -134,8 +134,8 @@ impl Pixel {
             (ShadedBy::Light { normal, position, shades }, _) => {
                 let point = |p: &[f32; 3]| format!("({:.4}, {:.4}, {:.4})", p[0], p[1], p[2]);
                 let words = format!(
-                    "normal {}, not yet of unit length, at {} in the object's own space: interpolated \
-                     perspective-correctly from the corners' and lit by the whole model: {}",
+                    "normal {}, not yet normalised, at {} in object space: interpolated \
+                     perspective-correctly from the corners and lit by the whole model: {}",
                     point(normal),
                     point(position),
                     in_shades(seen, shades),
@@ -155,7 +155,7 @@ impl Pixel {
                 let shades = |first: usize| corners.map(|of| format!("{:.2}", of[first] / 256.0)).join(", ");
                 let words = format!(
                     "quadratic on the screen through light at six points: {} at the corners, {} at the middles of the \
-                     edges opposite to them, where light above 1 or below the horizon goes on and is cut off here",
+                     edges opposite to them, where light above 1 or below the horizon is continued, and clamped here",
                     shades(0),
                     shades(3),
                 );
@@ -163,8 +163,8 @@ impl Pixel {
             }
             (ShadedBy::NormalTable, [across, down]) => {
                 let words = format!(
-                    "column {} and row {} of a table of 256 x 256 normals: x and y as the eye sees them, linear from \
-                     corner to corner as shades are",
+                    "column {} and row {} of a table of 256 x 256 normals: x and y in eye space, linear from corner \
+                     to corner like shades",
                     across.byte, down.byte
                 );
                 text.say("normal", &words);
@@ -244,7 +244,7 @@ impl Pixel {
         } else if drawn == self.shading.into() {
             format!("{drawn}: {}", self.shading_why)
         } else if drawn == Shading::Flat.into() && !runs {
-            format!("{drawn}: its corners have one shade (else {}: {})", self.shading, self.shading_why)
+            format!("{drawn}: its corners have one shade (otherwise {}: {})", self.shading, self.shading_why)
         } else {
             format!("{drawn}, where {} is on ({})", self.shading, self.shading_why)
         };
@@ -274,7 +274,7 @@ impl Pixel {
             let fate = match face.fate {
                 Fate::Behind => "behind",
                 Fate::PaintedOver => "painted over",
-                Fate::NotItsEdge => "its right or bottom edge: not its pixel",
+                Fate::NotItsEdge => "on its right or bottom edge: not its pixel",
                 Fate::Seen | Fate::SeenThrough => "seen",
             };
             text.row("", &format!("{:>12}  {fate}: {}", face.depth, self.name(face)));

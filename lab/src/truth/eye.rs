@@ -36,7 +36,7 @@ impl Eye {
             return Err("its field of view must lie between 0 and π");
         }
         let (at, up) = (wide(eye), wide(up));
-        let forward = unit(sub(wide(target), at)).ok_or("it looks at the point where it is")?;
+        let forward = unit(sub(wide(target), at)).ok_or("it looks at its own position")?;
         // If up points along the view, to 10⁻⁶, the axis farthest from the view is used instead.
         let right = match unit(up).map(|up| cross(forward, up)) {
             Some(right) if dot(right, right) > 1e-12 => right,

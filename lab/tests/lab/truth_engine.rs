@@ -769,7 +769,7 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
     with_hole.faces.truncate(count - 40);
     let eight = eight();
 
-    let (left_out, turned) = ("pairs of faces back to back", "a body that was inside out");
+    let (left_out, turned) = ("pairs of faces back to back", "a solid that was inside out");
     vec![
         ("as it is", body.clone(), vec![]),
         ("faces doubled both ways", with(&[&twice]), vec![left_out]),

@@ -96,7 +96,7 @@ impl Stage {
 
     pub(crate) fn show(&mut self, seconds: f64, pose: Pose) -> Result<(), String> {
         if ![seconds, pose.turn, pose.tilt, pose.zoom].iter().all(|number| number.is_finite()) || pose.zoom <= 0.0 {
-            return Err("the moment is no number".into());
+            return Err("the moment is not a number".into());
         }
         if self.moment != (seconds, pose) {
             self.moment = (seconds, pose);

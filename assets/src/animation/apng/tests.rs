@@ -229,11 +229,11 @@ fn a_film_has_as_many_frames_as_it_says() {
     let mut film = create(2);
     film.add(&made).expect("added");
     let error = film.finish().expect_err("one is missing");
-    assert_eq!(error.to_string(), format!("{}: a film of 2 frames was given 1", path.display()));
+    assert_eq!(error.to_string(), format!("{}: an animation of 2 frames was given 1", path.display()));
     let mut film = create(1);
     film.add(&made).expect("added");
     let error = film.add(&made).expect_err("one too many");
-    assert_eq!(error.to_string(), format!("{}: a film of 1 frames was given 2", path.display()));
+    assert_eq!(error.to_string(), format!("{}: an animation of 1 frames was given 2", path.display()));
     drop(film);
     let larger = ApngFrame::new(None, &picture(&frames[0]), Scale::Double, &FilmColors::True).expect("a frame");
     let mut film = create(2);
@@ -246,6 +246,6 @@ fn a_film_has_as_many_frames_as_it_says() {
     assert!(matches!(error.kind, AnimationErrorKind::OtherColors), "{error}");
     drop(film);
     let error = create(0).finish().expect_err("no frame");
-    assert_eq!(error.to_string(), format!("{}: a film without a frame", path.display()));
+    assert_eq!(error.to_string(), format!("{}: an animation without frames", path.display()));
     assert_eq!(std::fs::read_dir(directory.path()).expect("a directory").count(), 0, "nothing is left");
 }

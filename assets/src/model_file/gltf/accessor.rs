@@ -42,7 +42,7 @@ impl Buffers {
             let part = format!("buffers[{}]", buffer.index());
             let bytes = match buffer.source() {
                 Source::Bin => {
-                    binary.map(<[u8]>::to_vec).ok_or_else(|| format!("{part}: the file has no chunk of bytes"))?
+                    binary.map(<[u8]>::to_vec).ok_or_else(|| format!("{part}: the file has no binary chunk"))?
                 }
                 Source::Uri(uri) => match data(uri) {
                     Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?,
@@ -53,7 +53,7 @@ impl Buffers {
                 },
             };
             if bytes.len() < buffer.length() {
-                return Err(format!("{part}: {} bytes, but it says {}", bytes.len(), buffer.length()));
+                return Err(format!("{part}: {} bytes, but byteLength is {}", bytes.len(), buffer.length()));
             }
             buffers.push(bytes);
         }
@@ -86,7 +86,7 @@ impl Buffers {
     pub(super) fn rows<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, String> {
         let part = format!("accessors[{}]", accessor.index());
         if accessor.dimensions().multiplicity() < N {
-            return Err(format!("{part} has fewer than {N} numbers in a row"));
+            return Err(format!("{part} has fewer than {N} components"));
         }
         let (kind, size) = (accessor.data_type(), accessor.size());
         let row = |bytes: &[u8]| row::<N>(bytes, kind, accessor.normalized());
@@ -116,7 +116,8 @@ impl Buffers {
             let new = slices(self.view(&view)?, values.offset(), stride, size, sparse.count()).ok_or_else(beyond)?;
             for (at, new) in at.zip(new) {
                 let [at] = self::row::<1>(at, kind, false);
-                *rows.get_mut(at as usize).ok_or_else(|| format!("{part}.sparse: there is no row {at}"))? = row(new);
+                *rows.get_mut(at as usize).ok_or_else(|| format!("{part}.sparse: there is no element {at}"))? =
+                    row(new);
             }
         }
         Ok(rows)
@@ -125,7 +126,7 @@ impl Buffers {
     /// The integers of an accessor.
     pub(super) fn read_indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, String> {
         if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32) || accessor.normalized() {
-            return Err(format!("accessors[{}] has no indices", accessor.index()));
+            return Err(format!("accessors[{}] does not hold indices", accessor.index()));
         }
         Ok(self.rows::<1>(accessor)?.into_iter().map(|[index]| index as u32).collect())
     }

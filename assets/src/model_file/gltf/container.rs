@@ -35,24 +35,24 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     })?;
     let fault = |what: String| ModelFileError::of_file(path, ModelFileErrorKind::Fault(what));
     if let Some(needed) = root.extensions_required.iter().find(|name| NEEDED.contains(&name.as_str())) {
-        return Err(fault(format!("needs {needed}, which is not read")));
+        return Err(fault(format!("needs {needed}, which is not supported")));
     }
     if !root.asset.version.starts_with("2.") {
-        return Err(fault(String::from("only glTF 2 is read")));
+        return Err(fault(String::from("only glTF 2 is supported")));
     }
     // `gltf` uses these before it has checked them.
     let positions = json::validation::Checked::Valid(json::mesh::Semantic::Positions);
     for (i, mesh) in root.meshes.iter().enumerate() {
         let mut named = mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&positions));
         if named.any(|accessor| accessor.value() >= root.accessors.len()) {
-            return Err(fault(format!("meshes[{i}]: there are no such positions")));
+            return Err(fault(format!("meshes[{i}]: its positions do not exist")));
         }
     }
     // It does not check the targets of animations, either.
     for (i, animation) in root.animations.iter_mut().enumerate() {
         let beyond = |channel: &json::animation::Channel| channel.target.node.value() >= root.nodes.len();
         if let Some(channel) = animation.channels.iter().position(beyond) {
-            return Err(fault(format!("animations[{i}].channels[{channel}]: there is no such node")));
+            return Err(fault(format!("animations[{i}].channels[{channel}]: its node does not exist")));
         }
         // Properties of extensions.
         animation.channels.retain(|channel| matches!(channel.target.path, json::validation::Checked::Valid(_)));
@@ -85,7 +85,7 @@ fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError
     let word = |offset: usize| bytes.get(offset..)?.first_chunk().map(|word| u32::from_le_bytes(*word));
     let version = word(4).ok_or_else(|| ends("the header of a glb"))?;
     if version != 2 {
-        return Err(at(4, ModelFileErrorKind::Fault(format!("only glTF 2 is read, this is {version}"))));
+        return Err(at(4, ModelFileErrorKind::Fault(format!("only glTF 2 is supported, this is {version}"))));
     }
     let chunk = |offset: usize, what: &'static str| -> Result<(&'b [u8], u32), ModelFileError> {
         let (Some(length), Some(kind)) = (word(offset), word(offset + 4)) else { return Err(ends(what)) };
@@ -99,13 +99,13 @@ fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError
     const JSON: u32 = u32::from_le_bytes(*b"JSON");
     const BINARY: u32 = u32::from_le_bytes(*b"BIN\0");
     const FIRST: usize = 12;
-    let (text, kind) = chunk(FIRST, "a chunk of JSON")?;
+    let (text, kind) = chunk(FIRST, "a JSON chunk")?;
     if kind != JSON {
         return Err(at(FIRST + 4, ModelFileErrorKind::Fault("the first chunk is not JSON".into())));
     }
     let next = FIRST + 8 + text.len();
     let binary = match next < bytes.len() {
-        true => Some(chunk(next, "a chunk of bytes")?).filter(|(_, kind)| *kind == BINARY).map(|(bytes, _)| bytes),
+        true => Some(chunk(next, "a binary chunk")?).filter(|(_, kind)| *kind == BINARY).map(|(bytes, _)| bytes),
         false => None,
     };
     Ok((text, Some(FIRST + 8), binary))

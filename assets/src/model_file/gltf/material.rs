@@ -103,7 +103,7 @@ impl<'a> Materials<'a> {
         let mut shininess = (2.0 / (roughness * roughness * roughness * roughness) - 2.0).clamp(0.0, MAX_SHININESS);
         if material.unlit() {
             (diffuse, specular, shininess) = (base, [0.0; 3], 0.0);
-            self.leave_out("that materials are unlit");
+            self.leave_out("unlit shading");
         }
         let mut image = pbr.base_color_texture();
         let emission = material.emissive_factor().map(|channel| encoded(channel.into()));
@@ -113,14 +113,14 @@ impl<'a> Materials<'a> {
                 Some(emissive) if image.is_none() && base == [0.0; 3] => {
                     (diffuse, image) = (emission, Some(emissive));
                 }
-                Some(_) => self.leave_out("textures of emission"),
+                Some(_) => self.leave_out("emissive textures"),
             }
         }
         if material.normal_texture().is_some() {
-            self.leave_out("textures of normals");
+            self.leave_out("normal maps");
         }
         if material.occlusion_texture().is_some() {
-            self.leave_out("textures of occlusion");
+            self.leave_out("occlusion maps");
         }
         let is_opaque = material.alpha_mode() == AlphaMode::Opaque;
         let mut surface = Surface {
@@ -139,7 +139,7 @@ impl<'a> Materials<'a> {
             surface.texture = self.texture(info, is_opaque);
             let sampler = info.texture().sampler();
             if [sampler.wrap_s(), sampler.wrap_t()].contains(&WrappingMode::MirroredRepeat) {
-                self.leave_out("that textures are mirrored");
+                self.leave_out("mirrored textures");
             }
         }
         self.surfaces.push(surface);
@@ -149,7 +149,7 @@ impl<'a> Materials<'a> {
     /// The name of a texture: that of a file, or of an image inside the model file.
     fn texture(&mut self, info: &Info<'_>, is_opaque: bool) -> Option<String> {
         let Some(source) = info.texture().source() else {
-            self.leave_out("textures in formats that are not read");
+            self.leave_out("textures in unsupported formats");
             return None;
         };
         let buffers = self.buffers;
@@ -157,11 +157,11 @@ impl<'a> Materials<'a> {
             return Some(path.clone());
         }
         let Some((texture, was_transparent)) = self.image(source.index()) else {
-            self.leave_out("textures in formats that are not read");
+            self.leave_out("textures in unsupported formats");
             return None;
         };
         if was_transparent && !is_opaque {
-            self.leave_out("transparency of textures");
+            self.leave_out("texture transparency");
         }
         let name = format!("{}#{}", self.path.display(), source.index());
         self.textures.insert(name.clone(), texture);

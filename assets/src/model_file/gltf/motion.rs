@@ -85,7 +85,7 @@ fn keys(sampler: &::gltf::animation::Sampler<'_>, is_rotation: bool, buffers: &B
         return Err(format!("{} values for {} keys", values.len(), times.len()));
     }
     if let Some(time) = times.iter().find(|time| !time.is_finite()) {
-        return Err(format!("a key at the time {time}"));
+        return Err(format!("a key at time {time}"));
     }
     if let Some(key) = times.windows(2).position(|pair| pair[0] > pair[1]) {
         return Err(format!("key {} is before key {key}", key + 1));

@@ -53,7 +53,7 @@ impl Tree {
         while let Some((node, parent)) = waiting.pop() {
             if core::mem::replace(&mut self.is_placed[node], true) {
                 if once {
-                    return Err(format!("nodes[{node}] stands twice in the scene"));
+                    return Err(format!("nodes[{node}] is in the scene twice"));
                 }
                 continue;
             }
@@ -91,7 +91,7 @@ pub(super) fn lights(scene: &[Node<'_>], left_out: &mut LeftOut) -> Vec<Source> 
         if has_angle && shines {
             lights.push(source);
         } else {
-            left_out.add("lights that do not shine", 1);
+            left_out.add("lights that emit no light", 1);
         }
     }
     lights
@@ -108,7 +108,7 @@ pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut Lef
         // `gltf` looks for the numbers of the other kind if the file says one and has the other.
         let perspective = document.as_json().cameras.get(camera.index()).and_then(|camera| camera.perspective.as_ref());
         let Some(perspective) = perspective else {
-            left_out.add("cameras without perspective", 1);
+            left_out.add("orthographic cameras", 1);
             continue;
         };
         let (field_of_view, near) = (f64::from(perspective.yfov), f64::from(perspective.znear));
@@ -119,7 +119,7 @@ pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut Lef
                 near: if near > 0.0 { near } else { f64::MIN_POSITIVE },
             });
         }
-        left_out.add("cameras without an angle", 1);
+        left_out.add("cameras without a valid field of view", 1);
     }
     None
 }

@@ -39,7 +39,7 @@ impl Skins {
         for (i, joint) in skin.joints().enumerate() {
             let node = joint.index();
             if !stands[node] {
-                return Err(format!("{part}: nodes[{node}] stands in a circle"));
+                return Err(format!("{part}: nodes[{node}] is in a cycle"));
             }
             let before = before.as_ref().map(|rows| {
                 let columns: [[f64; 4]; 4] =

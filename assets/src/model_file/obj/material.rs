@@ -148,7 +148,7 @@ fn read(
                 has_d |= word == b"d";
                 surface.opacity = if word == b"d" { share } else { 1.0 - share };
                 if surface.opacity == 0.0 {
-                    left_out.add("a material that cannot be seen is drawn; its d or Tr is", line);
+                    left_out.add("a fully transparent material is drawn opaque; its d or Tr is", line);
                     surface.opacity = 1.0;
                 }
             }),
@@ -189,7 +189,7 @@ fn set(component: &mut [f32; 3], color: Option<[f32; 3]>, path: &Path, line: u64
         Some(color) => *component = color,
         None => {
             warnings
-                .push(|| format!("{}:{line}: only red, green and blue are read; this is left alone", path.display()));
+                .push(|| format!("{}:{line}: only red, green and blue are supported; this is ignored", path.display()));
         }
     }
 }

@@ -123,7 +123,7 @@ pub(crate) fn draft(
                 own.name = painted.name;
             }
         }
-        _ => draft.warnings.push(|| format!("{}:{colored}: colours of vertices left out", path.display())),
+        _ => draft.warnings.push(|| format!("{}:{colored}: vertex colours left out", path.display())),
     }
     Ok(draft)
 }

@@ -146,7 +146,7 @@ impl Header {
                     let element = rest.next().unwrap_or_default();
                     let count = rest.next().unwrap_or_default();
                     let Some(count) = str::from_utf8(count).ok().and_then(|count| count.parse().ok()) else {
-                        return Err(at(expected("a number of rows", count)));
+                        return Err(at(expected("a row count", count)));
                     };
                     elements.push(Element { name: name(element), count, properties: Vec::new() });
                 }
@@ -175,7 +175,7 @@ impl Header {
 }
 
 fn property<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Property, ModelFileErrorKind> {
-    let number = |word: &[u8]| Number::of_name(word).ok_or_else(|| expected("a type of number", word));
+    let number = |word: &[u8]| Number::of_name(word).ok_or_else(|| expected("a number type", word));
     let kind = match words.next().unwrap_or_default() {
         b"list" => Kind::List {
             count: number(words.next().unwrap_or_default())?,

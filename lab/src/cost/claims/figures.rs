@@ -92,7 +92,7 @@ impl Figures {
         };
         let measured = format!(
             "Spheres, vertices on whole pixels; root mean square against exact and share of pixels that show another \
-             face, by pixels of a face. {}. {}. Ignored could be less than {INSIGNIFICANT} shade and {} % of the pixels.",
+             face, by pixels of a face. {}. {}. Anything below {INSIGNIFICANT} shade and {} % of the pixels could be ignored.",
             say(&coarse),
             say(&fine),
             100.0 * FEW

@@ -13,8 +13,8 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
         @if !study.budget.is_empty() { section {
             h2 { "The budget" }
             p {
-                "Given how many shades of error are accepted, each face is drawn by the cheapest shading that keeps to it, by a bound from normals, lights and vertices; "
-                "the time to decide is in the time. The promise: every covered pixel is within the budget of lit. The aim: at most 5 % slower than the cheapest "
+                "Each face is drawn by the cheapest shading that stays within the accepted error, judging by a bound from normals, lights and vertices; "
+                "times include this decision. The promise: every covered pixel is within the budget of lit. The aim: at most 5 % slower than the cheapest "
                 "single shading with exact cover that keeps the same promise."
             }
             (chart())

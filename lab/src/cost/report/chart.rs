@@ -268,12 +268,12 @@ fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     let y = 18;
     root.draw(&PathElement::new([(80, y), (104, y)], SHADINGS.stroke_width(2)))?;
     root.draw(&Circle::new((92, y), 5, SHADINGS.filled()))?;
-    root.draw(&Text::new("efficient shadings: none is as near and surely faster", (112, y), style.clone()))?;
+    root.draw(&Text::new("efficient shadings: none as accurate is surely faster", (112, y), style.clone()))?;
     root.draw(&Circle::new((440, y), 4, BEATEN.stroke_width(2)))?;
     root.draw(&Text::new("other shadings", (452, y), style.clone()))?;
     if !no_budget {
         root.draw(&TriangleMarker::new((560, y), 6, BUDGETS.filled()))?;
-        root.draw(&Text::new("budgets: errors up to so many shades accepted", (572, y), style))?;
+        root.draw(&Text::new("budgets: largest error accepted, in shades", (572, y), style))?;
     }
     Ok(())
 }

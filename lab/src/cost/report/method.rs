@@ -23,17 +23,17 @@ pub(super) fn section(study: &Study) -> Markup {
             }
             p {
                 "In every round each shading and each budget draws the same frames, in an order that is shuffled again for each round, so that none is always first or always after the "
-                "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, also one that shows nothing new. A time is the median over the rounds; "
+                "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, even one that shows nothing new. A time is the median over the rounds; "
                 "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
             }
             p {
-                "All shadings share one road, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ by what they do at pixels "
-                "and by their planes. Two walk a way of their own: gouraud-vintage is drawn triangle by triangle, and gouraud-tessellated splits faces first; phong-table and phong pass "
+                "All shadings share one path, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ by what they do at pixels "
+                "and by their planes. Two take a path of their own: gouraud-vintage is drawn triangle by triangle, and gouraud-tessellated splits faces first; phong-table and phong pass "
                 "their spans through the stages of effects. Spans are separated from set-up by a frame of the same scene that is twice as wide."
             }
             p {
-                "Truth is reckoned in 64-bit floating point by code that shares nothing with the engine but scene and mesh. Errors are taken where frame and truth show the same triangle; "
+                "The truth is computed in 64-bit floating point by code that shares nothing with the engine but scene and mesh. Errors are taken where frame and truth show the same triangle; "
                 "all other pixels are counted as cover errors. Every time that was taken is in samples.csv."
             }
         }

@@ -83,8 +83,8 @@ fn error_chart(study: &Study) -> Markup {
     markup! {
         (chart(description, axes, &points_json(study), Some(&chart_svg(study))))
         p.key {
-            span { "Filled and joined: efficient shadings, of which none is as near and surely faster." }
-            span { "Triangles: budgets, errors up to so many shades accepted." }
+            span { "Filled and joined: efficient shadings; none as accurate is surely faster." }
+            span { "Triangles: budgets, labelled with the accepted error in shades." }
         }
     }
 }
@@ -102,9 +102,8 @@ fn budget_chart(study: &Study) -> Markup {
 }
 
 fn time_chart(study: &Study) -> Markup {
-    let description =
-        "Largest error against the time that is given for a frame, both logarithmic; the table has the figures";
-    let axes = ["time that is given for a frame", "largest error in shades"];
+    let description = "Largest error against the time allowed for a frame, both logarithmic; the table has the figures";
+    let axes = ["time allowed for a frame", "largest error in shades"];
     chart(description, axes, &time_points_json(study), None)
 }
 

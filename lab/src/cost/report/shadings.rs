@@ -30,7 +30,7 @@ pub(super) fn tables(study: &Study) -> Markup {
                 (times(study).html())
                 p.key {
                     @for (name, class, _) in PARTS { span { i.swatch.(class) {} " " (name) } }
-                    span { "A frame’s time leaves scan-out to the screen’s colours out; the bars show it." }
+                    span { "A frame’s time excludes scan-out to the screen’s colours; the bars show it." }
                 }
                 (ties_list(study))
                 h3 { "Error, in shades" }
@@ -153,8 +153,8 @@ pub(super) fn errors(study: &Study) -> Table {
         .note("½ is the best that rounding to 256 steps can do.")
         .page_note("R.m.s. of 4 × 4: of the means over blocks, where dither earns its keep.")
         .page_note("Palette adds: what the nearest entry of the scene’s ramp or palette is off by, at most.")
-        .note("Swim: how much errors change from a frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling.")
-        .note("Cover errors: pixels over all frames that show another face than they should, vertices rounded alike.")
+        .note("Swim: how much errors change from one frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling.")
+        .note("Cover errors: pixels over all frames that show a different face than they should, with equally rounded vertices.")
         .note("Not compared: the share of covered pixels that show another face than lit does; no error is taken there.")
 }
 

@@ -12,8 +12,8 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
         @if !study.times.is_empty() { section {
             h2 { "The time for a frame" }
             p {
-                "Given the time for a frame, each frame is drawn within the least error that fits, by the times of the frames before it. "
-                "The frames of the study follow each other round and round; those in which every error is tried are left out."
+                "Given the time for a frame, each frame is drawn with the smallest error that fits, judging by the frames before it. "
+                "The frames of the study are repeated over and over; those that try out every error are left out."
             }
             (chart())
             (table(study).html())
@@ -48,5 +48,5 @@ pub(super) fn table(study: &Study) -> Table {
         cells.map(Into::into).to_vec()
     };
     Table::new(&columns, study.times.iter().map(row).collect())
-        .note("Least budget that fits: by the times of the budgets above.")
+        .note("Least budget that fits: judging by the times of the budgets above.")
 }

@@ -289,7 +289,7 @@ pub(crate) fn every_float_near_zero_is_zero(tried: &mut Tried) {
                         "must be above 0",
                         "must lie between 0",
                         "must not be zero",
-                        "it looks at the point where it is",
+                        "it looks at its own position",
                     ];
                     tiny != 0.0 && above.iter().any(|why| text.contains(why))
                 }
