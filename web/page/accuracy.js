@@ -42,12 +42,12 @@ const LIT = 0.52;
  * @param {Errors} errors
  */
 function promiseText({ max, maxError, beyond, edgeOn }) {
-  if (!maxError) return "No limit is promised: the largest error is what it happens to be.";
+  if (!maxError) return "No limit is promised: the largest error is whatever it turns out to be.";
   if (beyond) return `The promise is broken at ${group(beyond)} pixels, by up to ${errorText(max)} shades: please report this.`;
   const kept = `Kept: no pixel is off by more than ${maxError < LIT ? "0.52: ½ for rounding to a byte, 0.02 for arithmetic" : shadesText(maxError)}`;
   const faces = edgeOn.pixels === 1 ? "1 pixel of a face" : `${group(edgeOn.pixels)} pixels of faces`;
   if (!edgeOn.pixels) return `${kept}.`;
-  return `${kept}. Apart from ${faces} seen edge on, up to ${errorText(Math.ceil(100 * edgeOn.max) / 100)}: rounding corners to 1/256 pixel moves their light that far.`;
+  return `${kept}, except for ${faces} seen edge on, off by up to ${errorText(Math.ceil(100 * edgeOn.max) / 100)}: rounding corners to 1/256 pixel moves their light that far.`;
 }
 
 /**
@@ -73,7 +73,7 @@ function whyText(state, found) {
   if (from < budgets.length && state.maxError <= OCTAVES[from - 1]) return `Already as exact as it gets: from ${budgetText(OCTAVES[from - 1])} on the slider changes nothing.`;
   const here = budgets[clamp(Math.round(Math.log2(OCTAVES[0] / state.maxError)), 0, budgets.length - 1)];
   const isDearer = here.isRedrawn && (here.ms ?? 0) > DEARER * (finest.ms ?? Infinity);
-  return isDearer ? "Dearer than ½ shade here: proving how far off a blend may be takes longer than lighting its pixels." : "";
+  return isDearer ? "Slower than ½ shade here: bounding the error of a blend takes longer than lighting its pixels." : "";
 }
 
 /** How much longer a coarser picture must take for the page to say why. */
@@ -158,7 +158,7 @@ export class Accuracy {
     const cell = element("ms");
     setText(cell, timeOf(left));
     cell.classList.toggle("settling", !left.isSettled);
-    setText(element("once"), left.isRedrawn || left.ms === null ? "" : `Drawn once, in ${msText(left.ms)}, and then left as it is.`);
+    setText(element("once"), left.isRedrawn || left.ms === null ? "" : `Drawn once, in ${msText(left.ms)}, and then kept.`);
     const rate = left.ms === null ? "…" : left.isRedrawn ? group(Math.round(1000 / left.ms)) : "–";
     setText(element("rate"), rate);
     this.page.curve.draw();

@@ -173,11 +173,11 @@ export class Magnifier {
     parts.swatch.style.background = color;
     setText(parts.name, ` Pixel ${x}, ${y}: byte ${byte} `);
     setText(parts.color, `${hex(byte, 2)}h ${color}`);
-    setText(parts.face, object === undefined ? "No face is here: the background." : `Triangle ${triangle} of ${object}.`);
+    setText(parts.face, object === undefined ? "No face here: the background." : `Triangle ${triangle} of ${object}.`);
     parts.registers.hidden = !registers;
     if (registers) this.#sayRegisters(registers, hex);
     const lit = against.find(([standard]) => standard === "lit");
-    setText(parts.exact, typeof exact === "number" ? `Exactly, the shade here is ${exact.toFixed(4)}.` : "");
+    setText(parts.exact, typeof exact === "number" ? `The exact shade here is ${exact.toFixed(4)}.` : "");
     const off = lit && `${lit[2] < 0 ? "−" : "+"}${Math.abs(lit[2]).toFixed(2)}`;
     setText(parts.off, lit ? `Lit at the pixel itself it would be ${lit[1].toFixed(2)} shades: this is off by ${off}.` : "");
     setText(parts.text, account.text.trim());

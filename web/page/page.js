@@ -481,7 +481,7 @@ export class Page {
  * @param {Parts} parts
  */
 export async function begin({ wasm, worker }) {
-  if (!WebAssembly.validate(wasm)) throw new Error("this browser has no WebAssembly with vectors of 128 bits");
+  if (!WebAssembly.validate(wasm)) throw new Error("this browser does not support 128-bit vectors in WebAssembly");
   const engine = new Engine(await WebAssembly.compile(wasm));
   const page = new Page(engine, new Background(worker, wasm));
   globalThis.page = page;

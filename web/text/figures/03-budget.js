@@ -116,7 +116,7 @@ M.figure("budget", (stage, engine) => {
     show();
   };
   M.handle(board, {
-    label: "E, the error that is allowed", kind: "level", anywhere: true,
+    label: "E, the allowed error", kind: "level", anywhere: true,
     at: () => [LEFT + 24, y(E)],
     move: (px, py) => put(back(py)),
     nudge: (dx, dy) => put(Math.abs(E) * 1.1 ** (dx - dy) + (dx - dy) * .05),
@@ -124,9 +124,9 @@ M.figure("budget", (stage, engine) => {
   });
   const say = M.readout(stage);
   const bar = M.controls(stage);
-  M.slider(bar, { label: "Faces round half the body", min: 4, max: 64, value: faces, input: (v) => ((faces = v), show()) });
+  M.slider(bar, { label: "Faces around half the body", min: 4, max: 64, value: faces, input: (v) => ((faces = v), show()) });
   M.slider(bar, {
-    label: "Where the sun is", min: -80, max: 80, value: Math.round(sun * 180 / HALF_TURN),
+    label: "Position of the sun", min: -80, max: 80, value: Math.round(sun * 180 / HALF_TURN),
     format: (v) => `${v}°`, input: (v) => ((sun = v / 180 * HALF_TURN), show()),
   });
   const real = engine ? reality(stage, engine) : () => {};
@@ -151,7 +151,7 @@ function reality(stage, engine) {
   let [picture, E] = [null, 4];
   const pair = M.make("div", "fig-pair", stage);
   const shown = M.frame(pair, "The engine within E", () => picture);
-  const off = M.frame(pair, "What it is off: bright is E", () => picture, (b, i) => {
+  const off = M.frame(pair, "Its error: bright is E", () => picture, (b, i) => {
     const t = Math.min(1, Math.abs(b - truth.bytes[i]) / Math.max(E, 1)) * 255;
     return (t << 16) | ((t * .7) << 8) | (t * .4);
   });
