@@ -31,7 +31,7 @@ await suite.run(async () => {
       for (const [words] of shown.matchAll(/The engine \w+ other \w+/g)) faults.push(`${name}: ${words}`);
       // The promise, on the engine's own picture; rounding the exact light to a byte adds a half.
       const [, worst] = shown.match(/Worst pixel of the picture: (\d+)/) ?? [];
-      const [, E] = shown.match(/allowed: ([\d.]+) shades/) ?? [];
+      const [, E] = shown.match(/allowed error: ([\d.]+) shades/) ?? [];
       if (worst > +E + .5) faults.push(`${name}: ${worst} shades off within ${E}`);
       compared += worst !== undefined && E !== undefined;
       return shown;
