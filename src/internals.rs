@@ -52,7 +52,6 @@ pub mod span {
 
 /// The stages of the raster.
 pub mod raster {
-    pub use crate::raster::triangles::Batch;
 
     modules! { raster:
         /// Clipping of triangles.

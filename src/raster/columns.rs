@@ -11,7 +11,7 @@ use super::pick::{MAX_PIECES, Pick};
 use super::reference::shade::RESEED;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
-use crate::lanes::three;
+use crate::lanes::{LANES, three};
 
 /// Screen position of a vertex, x and y in 1/256 pixel within the guard band, or a mark that it
 /// needs clipping, packed into one integer so that a single load reads it.
@@ -71,6 +71,13 @@ pub(crate) struct Columns<'a> {
     pub(crate) shade: &'a [[U8F8; 2]],
     #[cfg(feature = "alloc")]
     pub(crate) effects: EffectColumns<'a>,
+}
+
+/// A value of the corners of eight consecutive triangles, of a column by corner.
+#[inline(always)]
+pub(super) fn eight_corners<T>(column: &[T], [a, b, c]: [usize; 3]) -> Option<[&[T; LANES]; 3]> {
+    let from = |corner: usize| column.get(corner..)?.first_chunk();
+    Some([from(a)?, from(b)?, from(c)?])
 }
 
 /// Vertex values for effects.
@@ -187,6 +194,9 @@ impl LitColumn<'_> {
 pub(crate) struct Triangles<'a> {
     pub(crate) columns: Columns<'a>,
     pub(crate) indices: &'a [[u32; 3]],
+    /// How many triangles the columns have room for if they are [`Corners`](super::triangles::Corners), from which eight
+    /// triangles are loaded without gathering.
+    pub(crate) by_corner: Option<usize>,
 }
 
 /// Triangles to be drawn, in order. None of them needs clipping.
@@ -225,8 +235,15 @@ impl Triangles<'_> {
     pub(crate) const NONE: Self = {
         let lit = LitColumn::Values(&[]);
         let effects = EffectColumns { texture: &[], fog: &[], channels: &[], slope: &[], lit };
-        Self { columns: Columns { at: &[], depth: &[], shade: &[], effects }, indices: &[] }
+        Self { columns: Columns { at: &[], depth: &[], shade: &[], effects }, indices: &[], by_corner: None }
     };
+
+    /// The indices of the corners of the first of eight consecutive triangles, if columns are by corner.
+    #[inline(always)]
+    pub(super) fn consecutive(&self, picks: &Picks<'_>) -> Option<[usize; 3]> {
+        let (room, first) = (self.by_corner?, Pick(*picks.picks.first()?).index());
+        Some([first, room + first, 2 * room + first])
+    }
 
     /// The corners of a triangle.
     #[inline(always)]

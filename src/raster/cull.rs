@@ -44,29 +44,61 @@ compiled_for_each_level! {
 fn cull_by<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]], clip: Rect, culls: bool) -> CullMasks {
     // Without f64, so that a microcontroller's program contains no soft-float code.
     if !HAS_F64 {
-        return cull_in_integers(at, triangles, culls);
+        return cull_in_integers(triangles.iter().map(|corners| three(*corners, |corner| at[corner as usize])), culls);
     }
     let mut masks = CullMasks::default();
     let triangles = &triangles[..triangles.len().min(CHUNK)];
     let (eights, rest) = triangles.as_chunks::<LANES>();
     for (number, eight) in eights.iter().enumerate() {
-        masks.add(LANES * number, u64::MAX, cull_eight(s, at, eight, clip, culls));
+        masks.add(LANES * number, u64::MAX, cull_eight(s, s.gather(at, eight), clip, culls));
     }
     if let Some(&first) = rest.first() {
         let mut eight = [first; LANES];
         eight[..rest.len()].copy_from_slice(rest);
         let are_triangles = (1 << rest.len()) - 1;
-        masks.add(LANES * eights.len(), are_triangles, cull_eight(s, at, &eight, clip, culls));
+        masks.add(LANES * eights.len(), are_triangles, cull_eight(s, s.gather(at, &eight), clip, culls));
     }
     masks
 }
 
+/// The positions of one corner of triangles, eight at a time.
+type Eights<'a> = &'a [[ScreenPos; LANES]];
+
+compiled_for_each_level! {
+    /// Culls up to 64 triangles, seen from either side, a multiple of eight, whose first, second and third corners are
+    /// consecutive.
+    pub(super) fn cull_eights[][](at: [Eights<'_>; 3], clip: Rect) -> CullMasks = cull_eights_by;
+}
+
+#[inline(always)]
+fn cull_eights_by<S: Lanes8>(s: S, [a, b, c]: [Eights<'_>; 3], clip: Rect) -> CullMasks {
+    // As in `cull_by`.
+    if !HAS_F64 {
+        let (b, c) = (b.as_flattened(), c.as_flattened());
+        return cull_in_integers(a.as_flattened().iter().zip(b).zip(c).map(|((a, b), c)| [*a, *b, *c]), false);
+    }
+    let mut masks = CullMasks::default();
+    for (number, ((a, b), c)) in a.iter().zip(b).zip(c).take(CHUNK / LANES).enumerate() {
+        let corners = [load(s, a), load(s, b), load(s, c)];
+        masks.add(LANES * number, u64::MAX, cull_eight(s, corners, clip, false));
+    }
+    masks
+}
+
+#[inline(always)]
+fn load<S: Lanes8>(s: S, at: &[ScreenPos; LANES]) -> S::I64 {
+    let mut lanes = [0; LANES];
+    for lane in 0..LANES {
+        lanes[lane] = u64::from(at[lane]).cast_signed();
+    }
+    s.load_i64(&lanes)
+}
+
 /// Culls up to 64 triangles by facing alone. Each visible one may cover something, and is drawn
 /// individually.
-fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> CullMasks {
+fn cull_in_integers(triangles: impl Iterator<Item = [ScreenPos; 3]>, culls: bool) -> CullMasks {
     let mut masks = CullMasks::default();
-    for (i, triangle) in triangles.iter().take(CHUNK).enumerate() {
-        let [a, b, c] = three(*triangle, |corner| at[corner as usize]);
+    for (i, [a, b, c]) in triangles.take(CHUNK).enumerate() {
         if a.needs_clipping() || b.needs_clipping() || c.needs_clipping() {
             masks.clipped |= 1 << i;
             continue;
@@ -85,8 +117,7 @@ fn cull_in_integers(at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool) -> Cu
 
 /// The bits of eight triangles, in the order of the fields of [`CullMasks`].
 #[inline(always)]
-fn cull_eight<S: Lanes8>(s: S, at: &[ScreenPos], triangles: &[[u32; 3]; LANES], clip: Rect, culls: bool) -> [u32; 7] {
-    let [a, b, c] = s.gather(at, triangles);
+fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) -> [u32; 7] {
     let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
     // The mark is the smallest i32. The other values of such a triangle are meaningless.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
@@ -130,7 +161,6 @@ impl CullMasks {
     }
 
     /// All triangles as seen from the front.
-    #[cfg(feature = "alloc")]
     pub(crate) fn front_only(self) -> Self {
         Self { back: 0, ..self }
     }
@@ -368,7 +398,8 @@ mod tests {
             for culls in [false, true] {
                 let clip = Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
                 let lanes = cull(Kernel::PORTABLE.simd_level(), &at, &triangles, clip, culls);
-                let integers = cull_in_integers(&at, &triangles, culls);
+                let corners = triangles.iter().map(|corners| corners.map(|i| at[i as usize]));
+                let integers = cull_in_integers(corners, culls);
                 assert_eq!((integers.clipped, integers.front, integers.back), (lanes.clipped, lanes.front, lanes.back));
                 assert_eq!(lanes.covers & !integers.covers, 0);
             }

@@ -53,6 +53,13 @@ impl Pick {
         (self.0 & Self::INDEX) as usize
     }
 
+    /// The pick of another triangle of the same class.
+    #[inline(always)]
+    pub(super) const fn with_index(self, index: usize) -> Self {
+        // Below `MAX_COUNT`.
+        Self(self.0 & !Self::INDEX | index as u32)
+    }
+
     /// The visible side: 0 for the front, 1 for the back.
     #[inline(always)]
     pub(crate) const fn side(self) -> usize {

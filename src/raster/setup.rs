@@ -36,7 +36,7 @@
 //! more than 2⁻²⁸·¹², from the middle between two integers. The quotient is below 2²³·¹, and off by at most 2⁻⁵² of
 //! that: less than 2⁻²⁸·⁹.
 
-use super::columns::{Columns, Picks, Triangles};
+use super::columns::{Columns, Picks, Triangles, eight_corners};
 use super::pick::Pick;
 use super::reference::depth::DepthPlane;
 use crate::fixed::ROUND_MAGIC;
@@ -87,6 +87,12 @@ impl Corners8 {
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
         self.are_flat = FLAT || !picks.flat.is_empty();
+        if let Some(first) = triangles.consecutive(picks)
+            && !self.are_flat
+            && self.load(triangles, first).is_some()
+        {
+            return;
+        }
         for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
             let pick = Pick(pick);
             let indices = triangles.indices[pick.index()];
@@ -104,6 +110,22 @@ impl Corners8 {
         for (lane, flat) in picks.flat.iter().take(LANES).enumerate() {
             self.shade[0][lane] = i32::from(flat[0].to_bits());
         }
+    }
+
+    /// Reads eight consecutive triangles, all seen from the front, from these indices of corners on.
+    #[inline(always)]
+    fn load(&mut self, triangles: &Triangles<'_>, first: [usize; 3]) -> Option<()> {
+        let Columns { at, depth, shade, .. } = triangles.columns;
+        let (at, depth) = (eight_corners(at, first)?, eight_corners(depth, first)?);
+        let shade = eight_corners(shade, first)?;
+        for corner in 0..3 {
+            for lane in 0..LANES {
+                self.at[corner][lane] = u64::from(at[corner][lane]).cast_signed();
+                self.shade[corner][lane] = i32::from(shade[corner][lane][0].to_bits());
+                self.depth[corner][lane] = depth[corner][lane].cast_signed();
+            }
+        }
+        Some(())
     }
 }
 

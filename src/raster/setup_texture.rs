@@ -12,7 +12,7 @@
 //! its terms' magnitudes. A triangle's coordinates are relative to the texel of a corner, its base,
 //! so that f32 resolves them if the other corners are near.
 
-use super::columns::{Picks, Triangles};
+use super::columns::{Picks, Triangles, eight_corners};
 use super::pick::Pick;
 use super::reference::cover::SortedTriangle;
 use super::reference::level;
@@ -31,6 +31,14 @@ use crate::span::texture::{PerspectiveSums, fits_singles};
 pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -> [[Ints; 3]; 2] {
     let mut gathered = [[[0; LANES]; 3]; 2];
     let column = triangles.columns.effects.texture;
+    if let Some(texture) = triangles.consecutive(picks).and_then(|first| eight_corners(column, first)) {
+        for corner in 0..3 {
+            for lane in 0..LANES {
+                (gathered[0][corner][lane], gathered[1][corner][lane]) = texture[corner][lane].into();
+            }
+        }
+        return gathered;
+    }
     for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
         let indices = triangles.indices[Pick(pick).index()];
         for (corner, vertex) in indices.into_iter().enumerate() {

@@ -63,28 +63,12 @@ impl Drawn<'_> {
 }
 
 /// Memory for the spans of picked triangles, reused because clearing it takes 6 % of the time of a small object.
-#[cfg(feature = "alloc")]
 #[derive(Debug)]
 pub(crate) struct SpanScratch(SpanList);
 
-#[cfg(feature = "alloc")]
 impl Default for SpanScratch {
     fn default() -> Self {
         Self(SpanList::NONE)
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<D: Cell> Raster<'_, D> {
-    /// [`picks`](Self::picks) with the caller's memory.
-    pub(crate) fn picks_with(
-        &mut self,
-        triangles: &Triangles<'_>,
-        picks: Picks<'_>,
-        interpolation: Interpolation,
-        SpanScratch(list): &mut SpanScratch,
-    ) -> DrawStats {
-        self.picks_by(triangles, picks, interpolation, list)
     }
 }
 
@@ -96,17 +80,7 @@ impl<D: Cell> Raster<'_, D> {
         triangles: &Triangles<'_>,
         picks: Picks<'_>,
         interpolation: Interpolation,
-    ) -> DrawStats {
-        self.picks_by(triangles, picks, interpolation, &mut { SpanList::NONE })
-    }
-
-    #[inline]
-    fn picks_by(
-        &mut self,
-        triangles: &Triangles<'_>,
-        picks: Picks<'_>,
-        interpolation: Interpolation,
-        list: &mut SpanList,
+        SpanScratch(list): &mut SpanScratch,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
@@ -382,7 +356,7 @@ mod tests {
             let indices: Vec<[u32; 3]> =
                 triangles.iter().map(|(indices, _)| indices.map(|i| i % corners.len() as u32)).collect();
             let columns = Columns { at: &at, depth: &depth, shade: &shade, effects: Default::default() };
-            let all = Triangles { columns, indices: &indices };
+            let all = Triangles { columns, indices: &indices, by_corner: None };
             for kernel in Kernel::available() {
                 let draw = |are_together: bool| {
                     let (mut bytes, mut cells) = (vec![9; (SIDE * SIDE) as usize], vec![0_u32; (SIDE * SIDE) as usize]);
@@ -398,7 +372,7 @@ mod tests {
                     let picks = Picks { picks: list.as_slice(), flat: &flat };
                     let mut drawn = DrawStats::default();
                     if are_together {
-                        drawn = raster.picks(&all, picks, Interpolation::Gouraud);
+                        drawn = raster.picks(&all, picks, Interpolation::Gouraud, &mut SpanScratch::default());
                     } else {
                         for k in 0..flat.len() {
                             drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud);

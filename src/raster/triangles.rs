@@ -1,118 +1,119 @@
 //! Many triangles at once, given as vertices.
 
 use super::columns::{Columns, Picks, ScreenPos, Triangles};
-use super::cull::{PickList, cull, pick};
+use super::cull::{PickList, cull, cull_eights, pick};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
+use super::frame::Rect;
 use super::interpolation::Interpolation;
-use super::pick::CHUNK;
+use super::pick::{CHUNK, Pick};
+use super::spans::SpanScratch;
 use super::triangle::Raster;
-use super::vertex::{Vertex, misses_centres};
+use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 use crate::lanes::{LANES, three};
+use crate::simd::Level;
 
-/// The corners of all triangles of a batch.
-const CORNERS: usize = 3 * Batch::CAPACITY;
+/// The most triangles that are culled and drawn together.
+const CAPACITY: usize = 2 * CHUNK;
 
-/// The indices of triangles whose corners are consecutive.
-#[expect(clippy::cast_possible_truncation, reason = "no more than 384")]
-const INDICES: [[u32; 3]; Batch::CAPACITY] = {
-    let mut indices = [[0; 3]; Batch::CAPACITY];
+/// A value of the corners of `N` triangles: of all first corners, of all second ones, and of all third ones. So eight
+/// triangles are loaded without gathering.
+pub(super) type Corners<T, const N: usize> = [[T; N]; 3];
+
+/// The indices of the corners of triangles stored as [`Corners`].
+#[expect(clippy::cast_possible_truncation, reason = "at most three times the triangles of a batch")]
+pub(super) const fn corner_indices<const N: usize>() -> [[u32; 3]; N] {
+    let mut indices = [[0; 3]; N];
     let mut i = 0;
-    while i < Batch::CAPACITY {
-        let first = 3 * i as u32;
-        indices[i] = [first, first + 1, first + 2];
+    while i < N {
+        indices[i] = [i as u32, (N + i) as u32, (2 * N + i) as u32];
         i += 1;
     }
     indices
-};
-
-/// Triangles to be drawn in order.
-#[derive(Clone, Debug)]
-pub struct Batch {
-    count: usize,
-    at: [ScreenPos; CORNERS],
-    depth: [u32; CORNERS],
-    shade: [[U8F8; 2]; CORNERS],
-    interpolation: [Interpolation; Self::CAPACITY],
 }
 
-impl Batch {
-    /// The most triangles that a batch can hold.
-    pub const CAPACITY: usize = 128;
+/// Triangles given as vertices that wait to be drawn, in order and by one method.
+struct Pending<'t> {
+    drawn_by: Interpolation,
+    triangles: [(&'t [Vertex; 3], Interpolation); CAPACITY],
+    /// Positions of all, for culling.
+    all: Corners<ScreenPos, CAPACITY>,
+    /// The corners of those that are drawn.
+    at: Corners<ScreenPos, CAPACITY>,
+    depth: Corners<u32, CAPACITY>,
+    shade: Corners<[U8F8; 2], CAPACITY>,
+    spans: SpanScratch,
+}
 
-    /// An empty batch.
-    #[must_use]
-    pub const fn new() -> Self {
+impl<'t> Pending<'t> {
+    fn new() -> Self {
+        const NOWHERE: [Vertex; 3] = [Vertex::ORIGIN; 3];
         Self {
-            count: 0,
-            at: [ScreenPos::new(0, 0); CORNERS],
-            depth: [0; CORNERS],
-            shade: [[U8F8::from_bits(0); 2]; CORNERS],
-            interpolation: [Interpolation::Flat(0); Self::CAPACITY],
+            drawn_by: Interpolation::Gouraud,
+            triangles: [(&NOWHERE, Interpolation::Gouraud); CAPACITY],
+            all: [[ScreenPos::new(0, 0); CAPACITY]; 3],
+            at: [[ScreenPos::new(0, 0); CAPACITY]; 3],
+            depth: [[0; CAPACITY]; 3],
+            shade: [[[U8F8::from_bits(0); 2]; CAPACITY]; 3],
+            spans: SpanScratch::default(),
         }
     }
 
-    /// Returns whether triangles of this shading can be put into a batch: only shadings with exact coverage can.
-    #[must_use]
-    #[inline]
-    pub const fn takes(interpolation: Interpolation) -> bool {
-        interpolation.has_exact_cover()
+    /// Appends a triangle to `count` others. There must be room.
+    #[inline(always)]
+    fn push(&mut self, count: usize, vertices: &'t [Vertex; 3], interpolation: Interpolation) {
+        self.triangles[count % CAPACITY] = (vertices, interpolation);
+        put_positions(&mut self.all, count, vertices);
     }
 
-    /// Appends a triangle. Returns `false`, and leaves it out, if the batch is full or does not [take](Self::takes)
-    /// this shading.
-    #[inline]
-    pub fn push(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> bool {
-        if self.count >= Self::CAPACITY || !Self::takes(interpolation) {
-            return false;
+    /// Copies the corners of the triangle of a pick. It becomes number `to` of those that are drawn.
+    #[inline(always)]
+    fn copy(&mut self, pick: Pick, to: usize, with_depth: bool) {
+        let (vertices, interpolation) = self.triangles[pick.index() % CAPACITY];
+        put_positions(&mut self.at, to, vertices);
+        let shades = match interpolation {
+            Interpolation::Flat(index) => [U8F8::from(index); 3],
+            _ => three([0, 1, 2], |corner: usize| vertices[corner].shade()),
+        };
+        for (corner, shade) in shades.into_iter().enumerate() {
+            // All are seen from the front.
+            self.shade[corner][to % CAPACITY][0] = shade;
         }
-        let first = 3 * self.count;
-        for (corner, v) in vertices.iter().enumerate() {
-            self.at[first + corner] = ScreenPos::of(v);
-            self.depth[first + corner] = v.depth();
-            self.shade[first + corner] = [corner_shade(v, interpolation); 2];
+        if with_depth {
+            for (corner, vertex) in vertices.iter().enumerate() {
+                self.depth[corner][to % CAPACITY] = vertex.depth();
+            }
         }
-        self.interpolation[self.count] = interpolation;
-        self.count += 1;
-        true
     }
+}
 
-    /// Number of triangles in the batch.
-    #[must_use]
-    #[inline]
-    pub const fn len(&self) -> usize {
-        self.count
+/// Stores the positions of triangle `at` among those of all.
+#[inline(always)]
+pub(super) fn put_positions<const N: usize>(to: &mut Corners<ScreenPos, N>, at: usize, vertices: &[Vertex; 3]) {
+    for (corner, vertex) in vertices.iter().enumerate() {
+        to[corner][at % N] = ScreenPos::of(vertex);
     }
+}
 
-    /// Returns whether the batch is empty.
-    #[must_use]
-    #[inline]
-    pub const fn is_empty(&self) -> bool {
-        self.count == 0
+/// Culls the first `count` triangles, and picks those that cover something.
+pub(super) fn cull_corners<const N: usize, const PICKS: usize>(
+    level: Level,
+    at: &Corners<ScreenPos, N>,
+    count: usize,
+    clip: Rect,
+) -> PickList<PICKS> {
+    let mut list = PickList::new();
+    for first in (0..count.min(N)).step_by(CHUNK) {
+        let in_chunk = (count - first).min(CHUNK);
+        let eights = first / LANES..(first + in_chunk).div_ceil(LANES);
+        let masks = cull_eights(level, at.each_ref().map(|corner| &corner.as_chunks().0[eights.clone()]), clip);
+        // From 1 to 64.
+        let are_triangles = u64::MAX >> (CHUNK - in_chunk);
+        // Below the capacity.
+        pick(level, &mut list, first as u32, &masks.front_only(), masks.covers & are_triangles);
     }
-
-    /// Returns whether there is no room left.
-    #[must_use]
-    #[inline]
-    pub const fn is_full(&self) -> bool {
-        self.count == Self::CAPACITY
-    }
-
-    /// Empties the batch.
-    #[inline]
-    pub const fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    /// The end of the triangles from `first` on that are drawn together, and their common shading: flat ones are drawn
-    /// like ones whose rows are not reseeded.
-    fn run(&self, first: usize) -> (usize, Interpolation) {
-        let drawn_by = |at: usize| drawn_by(self.interpolation[at]);
-        let of_first = drawn_by(first);
-        let end = (first..self.count).find(|at| drawn_by(*at) != of_first).unwrap_or(self.count);
-        (end, of_first)
-    }
+    list
 }
 
 /// Vertices that triangles share and refer to by index, at most `N`, for [`Raster::indexed`].
@@ -174,12 +175,6 @@ fn drawn_by(interpolation: Interpolation) -> Interpolation {
     }
 }
 
-impl Default for Batch {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles in the order given: bytes, depths and counts are those of calling [`triangle`](Self::triangle)
     /// for each. All but vintage ones are culled 128 and set up eight at a time, which is several times as fast for
@@ -202,23 +197,48 @@ impl<D: Cell> Raster<'_, D> {
         &mut self,
         triangles: impl IntoIterator<Item = (&'t [Vertex; 3], Interpolation)>,
     ) -> DrawStats {
-        let (mut drawn, mut batch) = (DrawStats::default(), Batch::new());
+        let (mut drawn, mut pending, mut count) = (DrawStats::default(), Pending::new(), 0);
         for (vertices, interpolation) in triangles {
-            // Most triangles of a detailed model are like that, and not worth storing.
-            if Batch::takes(interpolation) && misses_centres(vertices) {
-                continue;
+            let drawn_by = drawn_by(interpolation);
+            if count == CAPACITY || drawn_by != pending.drawn_by {
+                drawn += self.draw_pending(&mut pending, count);
+                (pending.drawn_by, count) = (drawn_by, 0);
             }
-            if batch.push(vertices, interpolation) {
-                continue;
-            }
-            drawn += self.batch(&batch);
-            batch.clear();
-            if !batch.push(vertices, interpolation) {
+            if interpolation.has_exact_cover() {
+                pending.push(count, vertices, interpolation);
+                count += 1;
+            } else {
                 drawn += self.triangle(vertices, interpolation);
             }
         }
-        drawn += self.batch(&batch);
+        drawn += self.draw_pending(&mut pending, count);
         drawn
+    }
+
+    /// Draws the first `count` pending triangles.
+    fn draw_pending(&mut self, pending: &mut Pending<'_>, count: usize) -> DrawStats {
+        const INDICES: [[u32; 3]; CAPACITY] = corner_indices();
+        if count == 0 {
+            return DrawStats::default();
+        }
+        let mut list: PickList<{ CAPACITY + LANES }> =
+            cull_corners(self.kernel.simd_level(), &pending.all, count, self.clip);
+        let with_depth = self.depth.is_some() || pending.drawn_by.is_linear_on_the_face();
+        for (to, pick) in list.as_mut_slice().iter_mut().enumerate() {
+            pending.copy(Pick(*pick), to, with_depth);
+            *pick = Pick(*pick).with_index(to).0;
+        }
+        let Pending { at, depth, shade, spans, drawn_by, .. } = &mut *pending;
+        let columns = Columns {
+            at: at.as_flattened(),
+            depth: depth.as_flattened(),
+            shade: shade.as_flattened(),
+            #[cfg(feature = "alloc")]
+            effects: Default::default(),
+        };
+        let picks = Picks { picks: list.as_slice(), flat: &[] };
+        let triangles = Triangles { columns, indices: &INDICES, by_corner: Some(CAPACITY) };
+        self.picks(&triangles, picks, *drawn_by, spans)
     }
 
     /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are those of
@@ -261,7 +281,7 @@ impl<D: Cell> Raster<'_, D> {
         let (mut drawn, count) = (DrawStats::default(), columns.at.len());
         let is_there = |corners: &[u32; 3]| corners.iter().all(|i| (*i as usize) < count);
         let most = triangles.as_flattened().iter().fold(0, |most, i| (*i).max(most));
-        if !Batch::takes(interpolation) || most as usize >= count {
+        if !interpolation.has_exact_cover() || most as usize >= count {
             for corners in triangles.iter().filter(|corners| is_there(corners)) {
                 let vertices = three(*corners, |i| columns.vertex(i as usize, 0, None));
                 drawn += self.triangle(&vertices, interpolation);
@@ -269,12 +289,12 @@ impl<D: Cell> Raster<'_, D> {
             return drawn;
         }
         let one_shade = match interpolation {
-            Interpolation::Flat(shade) => Some([[U8F8::from(shade); 3]; Batch::CAPACITY]),
+            Interpolation::Flat(shade) => Some([[U8F8::from(shade); 3]; CAPACITY]),
             _ => None,
         };
-        let level = self.kernel.simd_level();
-        for of_list in triangles.chunks(Batch::CAPACITY) {
-            let mut list = PickList::<{ Batch::CAPACITY + LANES }>::new();
+        let (level, mut spans) = (self.kernel.simd_level(), SpanScratch::default());
+        for of_list in triangles.chunks(CAPACITY) {
+            let mut list = PickList::<{ CAPACITY + LANES }>::new();
             for (number, chunk) in of_list.chunks(CHUNK).enumerate() {
                 let masks = cull(level, columns.at, chunk, self.clip, false);
                 // Below 128.
@@ -282,8 +302,8 @@ impl<D: Cell> Raster<'_, D> {
             }
             let picks = list.as_slice();
             let flat = one_shade.as_ref().map_or(&[][..], |shades| &shades[..picks.len()]);
-            let triangles = Triangles { columns, indices: of_list };
-            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation));
+            let triangles = Triangles { columns, indices: of_list, by_corner: None };
+            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation), &mut spans);
         }
         drawn
     }
@@ -307,37 +327,8 @@ impl<D: Cell> Raster<'_, D> {
         let mut list = PickList::<{ 1 + LANES }>::new();
         pick(self.kernel.simd_level(), &mut list, 0, &masks, 1);
         let picks = Picks { picks: list.as_slice(), flat: &[] };
-        self.picks(&Triangles { columns, indices: &INDICES }, picks, drawn_by(interpolation))
-    }
-
-    internal! {
-    /// Draws the triangles of a batch in order: bytes, depths and counts are those of calling
-    /// [`triangle`](Self::triangle) for each.
-    fn batch(&mut self, batch: &Batch) -> DrawStats {
-        let mut drawn = DrawStats::default();
-        let columns = Columns {
-            at: &batch.at,
-            depth: &batch.depth,
-            shade: &batch.shade,
-            #[cfg(feature = "alloc")]
-            effects: Default::default(),
-        };
-        let triangles = Triangles { columns, indices: &INDICES };
-        let level = self.kernel.simd_level();
-        let mut first = 0;
-        while first < batch.count {
-            let (end, interpolation) = batch.run(first);
-            let mut list = PickList::<{ Batch::CAPACITY + LANES }>::new();
-            for chunk in (first..end).step_by(CHUNK) {
-                let masks = cull(level, &batch.at, &INDICES[chunk..end.min(chunk + CHUNK)], self.clip, false);
-                // Below 128.
-                pick(level, &mut list, chunk as u32, &masks, masks.covers);
-            }
-            drawn += self.picks(&triangles, Picks { picks: list.as_slice(), flat: &[] }, interpolation);
-            first = end;
-        }
-        drawn
-    }
+        let triangles = Triangles { columns, indices: &INDICES, by_corner: None };
+        self.picks(&triangles, picks, drawn_by(interpolation), &mut SpanScratch::default())
     }
 }
 
@@ -392,34 +383,6 @@ mod tests {
         };
         let counts = triangles.iter().map(draw).collect();
         (counts, bytes, cells)
-    }
-
-    /// Triangles that [`Raster::triangles`] leaves out draw nothing, at every side of a box and of
-    /// a centre; and every triangle whose box alone shows that it draws nothing is left out.
-    #[test]
-    fn triangles_that_miss_all_centres_draw_nothing() {
-        let coordinates = [-129_i32, -128, -127, 0, 127, 128, 129, 255, 384];
-        let points: Vec<Vertex> = coordinates
-            .into_iter()
-            .flat_map(|x| coordinates.map(|y| [x, y].map(|bits| I24F8::from_bits(bits + 1_024))))
-            .map(|[x, y]| Vertex::new(x, y, U8F8::from(9), 0).expect("within the guard band"))
-            .collect();
-        let mut bytes = [0; 64];
-        let mut raster = Raster::new(Frame::new(&mut bytes, 8, 8, 8).expect("a legal frame"));
-        let mut left_out = 0;
-        for a in &points {
-            for b in &points {
-                for corners in points.iter().map(|c| [*a, *b, *c]).filter(misses_centres) {
-                    assert_eq!(raster.triangle_by_rows(&corners, Interpolation::Gouraud).pixels, 0, "{corners:?}");
-                    left_out += 1;
-                }
-            }
-        }
-        // The first two, the next four and the last three each lie between the same centres: all corners in one such
-        // interval, for x or y.
-        let of_one = [2_usize, 4, 3].map(|n| n.pow(3)).iter().sum::<usize>();
-        let of_all = coordinates.len().pow(3);
-        assert_eq!(left_out, 2 * of_one * of_all - of_one * of_one);
     }
 
     proptest! {

@@ -65,7 +65,7 @@ impl VertexColumns {
     #[inline]
     pub(super) fn triangles<'a>(&'a self, geometry: &Geometry<'a>) -> Triangles<'a> {
         let lit = LitColumn::Points(geometry.normals, geometry.positions);
-        Triangles { columns: self.columns(lit), indices: geometry.triangles }
+        Triangles { columns: self.columns(lit), indices: geometry.triangles, by_corner: None }
     }
 
     /// Its size in bytes.
@@ -154,7 +154,11 @@ impl AddedTriangles {
 
     /// The triangles.
     pub(super) fn triangles(&self) -> Triangles<'_> {
-        Triangles { columns: self.vertices.columns(LitColumn::Values(&self.lit)), indices: &self.indices }
+        Triangles {
+            columns: self.vertices.columns(LitColumn::Values(&self.lit)),
+            indices: &self.indices,
+            by_corner: None,
+        }
     }
 
     /// The face that each is part of.

@@ -114,7 +114,7 @@ impl Painter<'_, '_> {
     /// Draws faces of one look, in order.
     fn draw(&mut self, object: usize, look: Look, triangles: &Triangles<'_>, picks: Picks<'_>) -> DrawStats {
         if !look.effects {
-            return self.raster.picks_with(triangles, picks, look.interpolation(), self.spans);
+            return self.raster.picks(triangles, picks, look.interpolation(), self.spans);
         }
         let Look { surface, shading, .. } = look;
         let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);

@@ -195,7 +195,7 @@ impl<'a> Picker<'a> {
         let end = self.scratch.added.len();
         let exact_cover = look.interpolation().has_exact_cover();
         for from in (first..end).step_by(CHUNK) {
-            let Triangles { columns, indices } = self.scratch.added.triangles();
+            let Triangles { columns, indices, .. } = self.scratch.added.triangles();
             let masks = self.cull(columns.at, &indices[from..end.min(from + CHUNK)], false, exact_cover);
             for at in 0..end.min(from + CHUNK) - from {
                 if masks.covers >> at & 1 == 1 {

@@ -56,4 +56,9 @@ impl<const N: usize> Packed<N> {
     pub(crate) fn as_slice(&self) -> &[u32] {
         &self.numbers[..self.count]
     }
+
+    #[inline(always)]
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [u32] {
+        &mut self.numbers[..self.count]
+    }
 }

@@ -457,8 +457,11 @@ impl<const N: usize> SpanNumbers<N> {
     /// Stores the first `count` numbers of the lanes of the mask at the indices from `at` on.
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), numbers: [S::I32; N], count: usize) {
-        for (numbers, to) in numbers.into_iter().zip(&mut self.0).take(count) {
-            s.compress_i32(mask, [numbers], [eight(to, at)]);
+        // The condition is inside, so that the loop is unrolled and the numbers stay in registers.
+        for (i, (numbers, to)) in numbers.into_iter().zip(&mut self.0).enumerate() {
+            if i < count {
+                s.compress_i32(mask, [numbers], [eight(to, at)]);
+            }
         }
     }
 

@@ -6,7 +6,7 @@ mod shapes;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
-use mode13h::internals::raster::Batch;
+use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
@@ -61,6 +61,14 @@ fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)
     sum
 }
 
+/// Draws triangles together.
+fn together<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
+    raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
+}
+
+/// The most triangles in a list, so that some are drawn in two parts.
+const MOST: usize = 150;
+
 /// The number of triangles for each kernel, out of `triangles`.
 fn per_kernel(triangles: u64) -> u64 {
     triangles * Kernel::available().count() as u64
@@ -96,13 +104,11 @@ fn small_triangles_are_the_oracles_with_every_kernel() {
             expected[(pixel.y * SIDE + pixel.x) as usize] = Some(pixel.byte);
             pixels += 1;
         }
-        let mut batch = Batch::new();
-        assert!(batch.push(&vertices, interpolation));
         for kernel in Kernel::available() {
             let on = |empty: u8| {
                 let mut bytes = vec![empty; (SIDE * SIDE) as usize];
                 let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE as usize).expect("legal");
-                Raster::new(frame).with_kernel(kernel).batch(&batch);
+                together(&mut Raster::new(frame).with_kernel(kernel), &[(vertices, interpolation)]);
                 bytes
             };
             let drawn: Vec<Option<u8>> =
@@ -164,12 +170,10 @@ fn batches_draw_what_single_triangles_do() {
             band: if round % 4 == 0 { band.y0..band.y1 + 1 } else { 0..height as u32 },
             depth: round % 2 == 0,
         };
-        let count = random.within(0, Batch::CAPACITY as i64);
+        let count = random.within(0, MOST as i64);
         let mut interpolation = interpolations(&mut random);
         let triangles: Vec<([Vertex; 3], Interpolation)> =
             (0..count).map(|_| (any(&mut random, width, height), interpolation(&mut random))).collect();
-        let mut batch = Batch::new();
-        assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
         let expected = drawn(
             &place,
             Kernel::PORTABLE,
@@ -177,7 +181,8 @@ fn batches_draw_what_single_triangles_do() {
             |raster| one_by_one(raster, &triangles),
         );
         for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            let batched =
+                drawn(&place, kernel, |raster| together(raster, &triangles), |raster| together(raster, &triangles));
             assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
         }
         total += expected.2;
@@ -206,9 +211,8 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
             random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
         let (across, down) = (across.min(width * 256), down.min(height * 256));
         let level = random.one_of(&[None, None, Some(9)]);
-        let some = random.within(1, Batch::CAPACITY as i64);
-        let count = random.one_of(&[Batch::CAPACITY as i64, some]);
-        let mut batch = Batch::new();
+        let some = random.within(1, MOST as i64);
+        let count = random.one_of(&[MOST as i64, some]);
         let mut triangles = Vec::new();
         for _ in 0..count {
             let corner = |most: i64, random: &mut Random| {
@@ -221,13 +225,13 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
                 vertex(x, y, random.within(0, 0xFF00), level.unwrap_or(random.log_uniform(30) as i64))
             });
             let interpolation = interpolation(&mut random);
-            assert!(batch.push(&vertices, interpolation));
             triangles.push((vertices, interpolation));
         }
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |raster| raster.batch(&batch));
+            let batched =
+                drawn(&place, kernel, |raster| together(raster, &triangles), |raster| together(raster, &triangles));
             assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
         }
         total += expected.2;
@@ -262,19 +266,17 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
             band: 0..height as u32,
             depth: round / frames.len() % 2 == 0,
         };
-        let mut batch = Batch::new();
         let mut triangles = Vec::new();
         for _ in 0..random.within(1, 12) {
             let level = random.one_of(&[None, None, Some(9), Some(10)]);
             let vertices = [0; 3].map(|_| corner(&mut random, width, height, level));
             let interpolation = interpolation(&mut random);
-            assert!(batch.push(&vertices, interpolation));
             triangles.push((vertices, interpolation));
         }
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
         for kernel in Kernel::available() {
-            let draw = |raster: &mut Raster<'_>| raster.batch(&batch);
+            let draw = |raster: &mut Raster<'_>| together(raster, &triangles);
             let batched = drawn(&place, kernel, draw, draw);
             assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
         }
@@ -306,8 +308,6 @@ fn r4_large_triangles_of_batches_start_exactly() {
             (along.iter().max().expect("three") - along.iter().min().expect("three")) / 256
         });
         *if columns * rows > 1 << 18 { &mut larger } else { &mut smaller } += 1;
-        let mut batch = Batch::new();
-        assert!(batch.push(&triangle.0, interpolation));
         let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &[triangle]);
         let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| DrawStats::default());
         // The bytes of the first pixels of rows, from the oracle.
@@ -321,7 +321,7 @@ fn r4_large_triangles_of_batches_start_exactly() {
             }
         }
         for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| raster.batch(&batch), |_| DrawStats::default());
+            let batched = drawn(&place, kernel, |raster| together(raster, &[triangle]), |_| DrawStats::default());
             assert!(batched == expected, "{kernel}: {:?} and {:?} of {triangle:?}", batched.2, expected.2);
             tried.add(1);
         }
@@ -337,10 +337,9 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
     let (mut missed, mut written) = (0, 0);
     for (rows, held) in [(0..8, 8..16), (8..16, 0..8), (0..8, 3..11), (3..11, 0..8), (0..8, 0..5), (0..5, 0..8)] {
         for _ in 0..50 {
-            let (mut batch, mut triangles) = (Batch::new(), Vec::new());
+            let mut triangles = Vec::new();
             for _ in 0..50 {
                 let (vertices, interpolation) = (small(&mut random, WIDTH.into(), 16, 900), interpolation(&mut random));
-                assert!(batch.push(&vertices, interpolation));
                 triangles.push((vertices, interpolation));
             }
             let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> DrawStats| {
@@ -356,24 +355,10 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
             missed += expected.2.covered - expected.2.tested;
             written += expected.2.pixels;
             for kernel in Kernel::available() {
-                let batched = on(kernel, &|raster| raster.batch(&batch));
+                let batched = on(kernel, &|raster| together(raster, &triangles));
                 assert!(batched == expected, "{kernel}, {rows:?} and {held:?}: {:?}, {:?}", batched.2, expected.2);
             }
         }
     }
     assert!(missed > 5_000 && written > 5_000, "{missed} pixels missed, {written} written");
-}
-
-#[test]
-fn a_batch_takes_what_it_has_room_for() {
-    let vertices = [vertex(0, 0, 0, 0), vertex(512, 0, 0, 0), vertex(0, 512, 0, 0)];
-    let mut batch = Batch::default();
-    assert!(!batch.push(&vertices, Interpolation::GouraudVintage) && batch.is_empty());
-    for _ in 0..Batch::CAPACITY {
-        assert!(!batch.is_full() && batch.push(&vertices, Interpolation::Flat(3)));
-    }
-    assert!(batch.is_full() && !batch.push(&vertices, Interpolation::Flat(3)));
-    assert_eq!(batch.len(), Batch::CAPACITY);
-    batch.clear();
-    assert!(batch.is_empty());
 }

@@ -1,6 +1,8 @@
 //! Our raster: one triangle per call, in batches, and in batches with effects.
 
-use mode13h::internals::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureStage};
+use mode13h::internals::raster::effects::{
+    Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource, TextureStage,
+};
 use mode13h::internals::span::texture::Texels;
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
 use mode13h::settings::Mapping;
@@ -133,7 +135,7 @@ impl Candidate for Batches {
 
 /// The pixel stages, many faces at a time. Packing the batches is timed, too.
 pub struct Effects<'a> {
-    faces: Vec<([Vertex; 3], [Attributes; 3])>,
+    faces: Vec<EffectFace>,
     drawing: Drawing,
     mapping: Mapping,
     material: &'a Material,
@@ -197,13 +199,7 @@ impl Candidate for Effects<'_> {
             ..PixelPipeline::PLAIN
         };
         let mut raster = self.target.raster();
-        for (vertices, attributes) in &self.faces {
-            if self.batch.is_full() {
-                raster.batch_with_effects(&mut self.batch, &pipeline);
-            }
-            self.batch.push(vertices, attributes);
-        }
-        raster.batch_with_effects(&mut self.batch, &pipeline);
+        raster.faces_with_effects(&self.faces, &pipeline, &mut self.batch);
     }
 
     fn read(&mut self, bytes: &mut [u8]) {

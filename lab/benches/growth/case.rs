@@ -6,7 +6,6 @@ use allocation_counter::measure;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
-use mode13h::internals::raster::Batch;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
@@ -181,22 +180,8 @@ pub(crate) fn pixels() -> Vec<Case> {
         let mut bytes = vec![0; Vga::WIDTH * Vga::HEIGHT];
         let frame = move || {
             let frame = Frame::new(&mut bytes, Vga::WIDTH as u32, Vga::HEIGHT as u32, Vga::WIDTH).expect("legal");
-            let (mut raster, mut batch, mut written) = (Raster::new(frame), Batch::new(), 0);
-            let draw = |batch: &mut Batch, raster: &mut Raster<'_>| {
-                let pixels: u64 = raster.batch(batch).pixels.into();
-                batch.clear();
-                pixels
-            };
-            for triangle in &triangles {
-                while !batch.push(triangle, Interpolation::GouraudReseeded) {
-                    if batch.is_empty() {
-                        written += u64::from(raster.triangle(triangle, Interpolation::GouraudReseeded).pixels);
-                        break;
-                    }
-                    written += draw(&mut batch, &mut raster);
-                }
-            }
-            written + draw(&mut batch, &mut raster)
+            let all = triangles.iter().map(|triangle| (triangle, Interpolation::GouraudReseeded));
+            Raster::new(frame).triangles(all).pixels.into()
         };
         Case::new(pixels, count as f64, frame)
     };

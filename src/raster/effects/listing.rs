@@ -83,9 +83,30 @@ const COORDINATES: usize = 4;
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
+/// Which texture coordinates spans have: known to the compiler, so that the others take no registers, or only at run
+/// time.
+pub(super) mod mapped {
+    /// Known at run time.
+    pub(in super::super) const ANY: u8 = 0;
+    pub(in super::super) const NONE: u8 = 1;
+    pub(in super::super) const AFFINE: u8 = 2;
+    /// Linear on the face.
+    pub(in super::super) const ON_FACE: u8 = 3;
+}
+
+#[inline(always)]
+const fn mapping<const MAPPED: u8>(at_run_time: Option<Mapping>) -> Option<Mapping> {
+    match MAPPED {
+        mapped::NONE => None,
+        mapped::AFFINE => Some(Mapping::Affine),
+        mapped::ON_FACE => Some(Mapping::Perspective),
+        _ => at_run_time,
+    }
+}
+
 /// The numbers of eight spans.
 #[derive(Clone, Copy)]
-pub(crate) struct Marks8<S: Lanes8> {
+pub(crate) struct Marks8<S: Lanes8, const MAPPED: u8> {
     /// The mark's two numbers, and those of the slots in use.
     numbers: [S::I32; NUMBERS],
     count: usize,
@@ -95,14 +116,17 @@ pub(crate) struct Marks8<S: Lanes8> {
     sums: Starts8<S, SUMS>,
 }
 
-impl<S: Lanes8> SpanColumns<S> for Marks8<S> {
+impl<S: Lanes8, const MAPPED: u8> SpanColumns<S> for Marks8<S, MAPPED> {
     #[inline(always)]
     fn zip(self, s: S, other: Self) -> [Self; 2] {
         let (mut low, mut high) = (self, other);
-        for i in 0..self.count.min(NUMBERS) {
-            [low.numbers[i], high.numbers[i]] = s.interleave_i32(self.numbers[i], other.numbers[i]);
+        // The condition is inside, so that the loop is unrolled and the numbers stay in registers.
+        for i in 0..NUMBERS {
+            if i < self.count {
+                [low.numbers[i], high.numbers[i]] = s.interleave_i32(self.numbers[i], other.numbers[i]);
+            }
         }
-        match self.texture {
+        match mapping::<MAPPED>(self.texture) {
             Some(Mapping::Affine) => {
                 for i in 0..COORDINATES {
                     [low.coordinates[i], high.coordinates[i]] =
@@ -329,7 +353,7 @@ impl Listed<'_> {
 }
 
 /// Spans with effects: the set-up of their faces, and the stages they pass through.
-pub(in crate::raster) struct EffectSpans<'a> {
+pub(in crate::raster) struct EffectSpans<'a, const MAPPED: u8 = { mapped::ANY }> {
     pub(super) listed: Listed<'a>,
     pipeline: &'a PixelPipeline<'a>,
     buffers: &'a mut Buffers,
@@ -348,6 +372,17 @@ impl<'a> EffectSpans<'a> {
         let (batches, walked) = (Batches::NONE, None);
         let listed = Listed { faces, wanted, planes, batches, numbers, coordinates, sums, walked, direct };
         Self { listed, pipeline, buffers }
+    }
+
+    /// The mapping of the texture coordinates that spans have.
+    pub(super) fn mapping(&self) -> Option<Mapping> {
+        self.listed.wanted.texture
+    }
+
+    /// The spans, with a mapping that the compiler knows.
+    pub(super) fn with_mapping<const MAPPED: u8>(self) -> EffectSpans<'a, MAPPED> {
+        let Self { listed, pipeline, buffers } = self;
+        EffectSpans { listed, pipeline, buffers }
     }
 
     /// Begins face `k`, whose rows are added one by one.
@@ -409,18 +444,19 @@ impl<'a> EffectSpans<'a> {
             x = end;
         }
     }
+}
 
+impl<const MAPPED: u8> EffectSpans<'_, MAPPED> {
     /// Draws the spans of a list, and empties it.
-    #[inline(never)]
     pub(super) fn draw_spans(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
         list.clear(nearer);
     }
 }
 
-impl Shades8 for EffectSpans<'_> {
+impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Marks8<S>;
+    type Columns<S: Lanes8> = Marks8<S, MAPPED>;
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -441,7 +477,7 @@ impl Shades8 for EffectSpans<'_> {
         let picks = &picks.range(first, picks.picks.len().min(first + LANES));
         let planes = &mut planes[batches.current()];
         (planes.column, planes.row) = (setup.column, setup.row);
-        if let Some(mapping) = wanted.texture {
+        if let Some(mapping) = mapping::<MAPPED>(wanted.texture) {
             let of_corners = texture_of_corners(triangles, picks);
             match mapping {
                 Mapping::Affine => {
@@ -473,7 +509,7 @@ impl Shades8 for EffectSpans<'_> {
         setup: &TriangleSetup8,
         (ends, j): (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, Marks8<S>) {
+    ) -> (S::I32, Marks8<S, MAPPED>) {
         let (row, seed) = (s.low_bits(parts.row), s.low_bits(parts.seed));
         let before = s.sub_i32(seed, row);
         let Wanted { values: wanted, slots, reseeds, texture, .. } = &self.listed.wanted;
@@ -484,7 +520,10 @@ impl Shades8 for EffectSpans<'_> {
         }
         let planes = &self.listed.planes[self.listed.batches.current()];
         let mut values = [s.splat_i32(0); Value::MAX_COUNT];
-        for slot in 0..(*slots).min(Value::MAX_COUNT) {
+        for slot in 0..Value::MAX_COUNT {
+            if slot >= *slots {
+                continue;
+            }
             let Some(value) = wanted[slot] else { continue };
             let reseeds = *reseeds || !matches!(value, Value::Channel(_));
             let begin = if reseeds { parts.seed } else { parts.row };
@@ -505,7 +544,7 @@ impl Shades8 for EffectSpans<'_> {
         let numbers = [mark, s.or_i32(seed, s.shl_i32(number, 16)), v0, v1, v2, v3];
         let (mut coordinates, mut sums) = ([s.splat_i32(0); COORDINATES], Starts8([s.splat_i64(0); SUMS]));
         let planes = &self.listed.planes[self.listed.batches.current()];
-        match texture {
+        match mapping::<MAPPED>(*texture) {
             Some(Mapping::Affine) => {
                 let [u, v] = planes.affine.starts(s, lane, (j, parts.seed), [seed, number]);
                 let [du, dv] = planes.affine.steps(s, lane);
@@ -525,13 +564,13 @@ impl Shades8 for EffectSpans<'_> {
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S, Marks8<S>>,
+        spans: &Spans8<S, Marks8<S, MAPPED>>,
         dz: DepthSteps<S>,
     ) {
         let places = list.append::<S, _, DEPTHS>(s, spans, dz);
         let Marks8 { numbers, texture, coordinates, sums, .. } = spans.columns;
         self.listed.numbers.put(s, places, numbers, 2 + self.listed.wanted.slots);
-        match texture {
+        match mapping::<MAPPED>(texture) {
             Some(Mapping::Affine) => self.listed.coordinates.put(s, places, coordinates, COORDINATES),
             Some(_) => self.listed.sums.put(s, places, sums),
             None => {}

@@ -39,8 +39,8 @@ mod texture;
 
 use alloc::vec::Vec;
 
-pub use self::batch::EffectBatch;
-use self::listing::{Columns, EffectSpans, Faces, Listed};
+pub use self::batch::{EffectBatch, EffectFace};
+use self::listing::{Columns, EffectSpans, Faces, Listed, mapped};
 pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
@@ -53,7 +53,8 @@ use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::{HAS_F64, IS_COMPACT};
-use crate::simd::{Lanes8, at_best_level, compiled_for_each_level};
+use crate::mapping::Mapping;
+use crate::simd::{Lanes8, Level, at_best_level, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
 use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
@@ -308,23 +309,38 @@ fn mixed<'a>(
 compiled_for_each_level! {
     /// Draws triangles with effects; with `DEPTHS`, only their nearer pixels.
     #[inline(never)]
-    fn draw_effects[const DEPTHS: bool][DEPTHS](
+    fn draw_effects[const DEPTHS: bool, const MAPPED: u8][DEPTHS, MAPPED](
         of: Drawn<'_>,
-        effects: (&mut EffectSpans<'_>, &mut SpanList),
+        effects: (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
         place: Place,
         target: &mut Target<'_>,
     ) -> DrawStats = draw_effects_by;
 }
 
 #[inline(always)]
-fn draw_effects_by<S: Lanes8, const DEPTHS: bool>(
+fn draw_effects_by<S: Lanes8, const DEPTHS: bool, const MAPPED: u8>(
     s: S,
     of: Drawn<'_>,
-    (effects, list): (&mut EffectSpans<'_>, &mut SpanList),
+    (effects, list): (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
     draw_triangles::<S, _, true, DEPTHS>(s, of, place, target, effects, list)
+}
+
+/// Draws triangles with effects.
+fn draw_mapped<const MAPPED: u8>(
+    level: Level,
+    of: Drawn<'_>,
+    (spans, list): (EffectSpans<'_>, &mut SpanList),
+    place: Place,
+    target: &mut Target<'_>,
+) -> DrawStats {
+    let mut spans = spans.with_mapping::<MAPPED>();
+    match target.cells {
+        None if !IS_COMPACT => draw_effects::<false, MAPPED>(level, of, (&mut spans, list), place, target),
+        _ => draw_effects::<true, MAPPED>(level, of, (&mut spans, list), place, target),
+    }
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -352,14 +368,16 @@ impl<D: Cell> Raster<'_, D> {
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             if together > 0 {
                 let picks = picks.range(first, first + together);
-                let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
+                let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
                 let of = Drawn { triangles, picks, in_pieces: true };
                 let (pixels, _) = self.frame.pixels_mut();
                 let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
                 let (level, place) = (kernel.simd_level(), (layout, clip));
-                drawn += match target.cells {
-                    None if !IS_COMPACT => draw_effects::<false>(level, of, (&mut spans, list), place, target),
-                    _ => draw_effects::<true>(level, of, (&mut spans, list), place, target),
+                drawn += match spans.mapping() {
+                    _ if IS_COMPACT => draw_mapped::<{ mapped::ANY }>(level, of, (spans, list), place, target),
+                    None => draw_mapped::<{ mapped::NONE }>(level, of, (spans, list), place, target),
+                    Some(Mapping::Affine) => draw_mapped::<{ mapped::AFFINE }>(level, of, (spans, list), place, target),
+                    Some(_) => draw_mapped::<{ mapped::ON_FACE }>(level, of, (spans, list), place, target),
                 };
                 first += together;
                 continue;

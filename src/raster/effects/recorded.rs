@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::listing::{Columns, EffectSpans, Faces, Marks8};
+use super::listing::{Columns, EffectSpans, Faces, Marks8, mapped};
 use super::spans::{Span, Spans};
 use super::texture::{affine_texture, exact_level};
 use super::{Buffers, PixelPipeline};
@@ -48,7 +48,7 @@ struct Recorder<'a> {
 
 impl Shades8 for Recorder<'_> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Marks8<S>;
+    type Columns<S: Lanes8> = Marks8<S, { mapped::ANY }>;
 
     fn is_full(&self) -> bool {
         self.spans.is_full()
@@ -71,7 +71,7 @@ impl Shades8 for Recorder<'_> {
         setup: &TriangleSetup8,
         rows: (&RowEnds<S>, S::F64),
         parts: &Parts<S>,
-    ) -> (S::I32, Marks8<S>) {
+    ) -> (S::I32, Marks8<S, { mapped::ANY }>) {
         self.spans.fill_of(s, lane, setup, rows, parts)
     }
 
@@ -80,7 +80,7 @@ impl Shades8 for Recorder<'_> {
         &mut self,
         s: S,
         list: &mut SpanList,
-        spans: &Spans8<S, Marks8<S>>,
+        spans: &Spans8<S, Marks8<S, { mapped::ANY }>>,
         dz: DepthSteps<S>,
     ) {
         self.spans.append::<S, DEPTHS>(s, list, spans, dz);

@@ -471,7 +471,7 @@ mod tests {
             }
             let effects = EffectColumns { texture: &coordinates, ..EffectColumns::default() };
             let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
-            let all = Triangles { columns, indices: &indices };
+            let all = Triangles { columns, indices: &indices, by_corner: None };
             let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
             for (kernel, which) in
                 Kernel::available().flat_map(|k| [(k, Mapping::Affine), (k, Mapping::Perspective)])
@@ -567,7 +567,7 @@ mod tests {
             let shade = std::vec![[U8F8::default(); 2]; at.len()];
             let effects = EffectColumns { texture: &coordinates, ..EffectColumns::default() };
             let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
-            let all_triangles = Triangles { columns, indices: &indices };
+            let all_triangles = Triangles { columns, indices: &indices, by_corner: None };
             let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
             let (texels, levels) = (std::vec![0; 65_536], std::vec![0; Levels::length(8, 8)]);
             let stage = TextureStage {

@@ -1,12 +1,11 @@
 //! Batches against the oracle, at every kernel level: bytes, depths and counts.
 
-use mode13h::internals::raster::Batch;
 use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 
-use super::interpolations;
 use super::shapes::{CLASSES, shape};
+use super::{MOST, interpolations, together};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -113,14 +112,14 @@ impl Place {
 
     /// Drawn by the raster.
     fn drawn(&self, triangles: &[Triangle], kernel: Kernel) -> Picture {
-        let mut batch = Batch::new();
-        assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
         let mut bytes = vec![self.background; self.pitch * self.height as usize];
         let frame = Frame::new(&mut bytes, self.width, self.height, self.pitch).expect("legal");
         let (depths, drawn) = match self.cells {
-            Cells::None => (Vec::new(), Raster::new(frame).with_kernel(kernel).with_clip(self.clip).batch(&batch)),
-            Cells::Wide => self.drawn_with_depth::<u32>(frame, &batch, kernel),
-            Cells::Narrow => self.drawn_with_depth::<u16>(frame, &batch, kernel),
+            Cells::None => {
+                (Vec::new(), together(&mut Raster::new(frame).with_kernel(kernel).with_clip(self.clip), triangles))
+            }
+            Cells::Wide => self.drawn_with_depth::<u32>(frame, triangles, kernel),
+            Cells::Narrow => self.drawn_with_depth::<u16>(frame, triangles, kernel),
         };
         let DrawStats { covered, tested, pixels, .. } = drawn;
         Picture { bytes, depths, covered, tested, pixels }
@@ -129,12 +128,13 @@ impl Place {
     fn drawn_with_depth<D: Cell + Into<u32>>(
         &self,
         frame: Frame<'_>,
-        batch: &Batch,
+        triangles: &[Triangle],
         kernel: Kernel,
     ) -> (Vec<u32>, DrawStats) {
         let mut depths = vec![D::default(); self.width as usize * self.height as usize];
         let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
-        let drawn = Raster::new(frame).with_depth(depth).with_kernel(kernel).with_clip(self.clip).batch(batch);
+        let mut raster = Raster::new(frame).with_depth(depth).with_kernel(kernel).with_clip(self.clip);
+        let drawn = together(&mut raster, triangles);
         (depths.into_iter().map(Into::into).collect(), drawn)
     }
 
@@ -170,10 +170,10 @@ pub(crate) fn batches_against_the_oracle(mut tried: Tried) {
         let first = least(&of_class);
         let mut interpolation = interpolations(&mut random);
         // Until the frame is full, so that little of what is drawn gets overdrawn.
-        while expected.covered < place.width * place.height && triangles.len() < Batch::CAPACITY {
+        while expected.covered < place.width * place.height && triangles.len() < MOST {
             let class = if is_mixed { least(&of_class) } else { first };
             for vertices in shape(&mut random, CLASSES[class], (place.width.into(), place.height.into())) {
-                if triangles.len() < Batch::CAPACITY {
+                if triangles.len() < MOST {
                     let triangle = (vertices, interpolation(&mut random));
                     covering[class] += u64::from(place.draw_by_oracle(&triangle, &mut expected) > 0);
                     of_class[class] += 1;
@@ -210,12 +210,12 @@ pub(crate) fn orders_and_windings(mut tried: Tried) {
         let size = (place.width.into(), place.height.into());
         let mut interpolation = interpolations(&mut random);
         let mut triangles = Vec::new();
-        while triangles.len() < Batch::CAPACITY / 2 {
+        while triangles.len() < MOST / 2 {
             let class = random.one_of(&CLASSES);
             let shapes = shape(&mut random, class, size);
             triangles.extend(shapes.into_iter().map(|vertices| (vertices, interpolation(&mut random))));
         }
-        triangles.truncate(random.within(1, Batch::CAPACITY as i64) as usize);
+        triangles.truncate(random.within(1, MOST as i64) as usize);
         let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
         let turned: Vec<Triangle> = triangles
             .iter()

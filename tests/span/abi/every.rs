@@ -6,7 +6,6 @@
 //! end of their pages, with nothing readable or writable beside them. A fault ends the test program.
 
 use mode13h::glam::Vec3;
-use mode13h::internals::raster::Batch;
 use mode13h::internals::span::channels;
 use mode13h::internals::span::depth::Cell;
 use mode13h::internals::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
@@ -129,7 +128,7 @@ fn s7_rows_keep_the_rules() {
 
 /// Triangles of a batch: some in or near a frame, of one size or many, plus those of `support`.
 fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 3], Interpolation)> {
-    let some = random.within(1, Batch::CAPACITY as i64);
+    let some = random.within(1, 128);
     let reach = random.one_of(&[None, Some(200), Some(500), Some(1_500), Some(8_000)]);
     (0..some)
         .map(|_| {
@@ -149,8 +148,16 @@ fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 
         .collect()
 }
 
-fn deep<'a, D: Cell>(raster: Raster<'a>, batch: &Batch, (cells, like): (&'a mut [D], &Frame<'_>)) -> DrawStats {
-    raster.with_depth(DepthBuffer::new(cells, like).expect("long enough")).batch(batch)
+fn together<D: Cell>(mut raster: Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
+    raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
+}
+
+fn deep<'a, D: Cell>(
+    raster: Raster<'a>,
+    triangles: &[([Vertex; 3], Interpolation)],
+    (cells, like): (&'a mut [D], &Frame<'_>),
+) -> DrawStats {
+    together(raster.with_depth(DepthBuffer::new(cells, like).expect("long enough")), triangles)
 }
 
 #[test]
@@ -166,24 +173,19 @@ fn s7_batches_keep_the_rules() {
         let whole = Rect { x0: 0, y0: 0, x1: width, y1: height };
         let clip = random.one_of(&[whole, whole, Rect { x0: width / 3, y0: height / 4, ..whole }]);
         let frame = || own(&vec![3; pitch * (height as usize - 1) + width as usize]);
-        let batch = || {
-            let mut batch = Box::new(Batch::new());
-            assert!(triangles.iter().all(|(vertices, interpolation)| batch.push(vertices, *interpolation)));
-            batch
-        };
         for cells in 0..3 {
             let what = ["a batch", "a batch with depths", "a batch with narrow ones"][cells];
             try_kernels(what, &mut random, &mut tried, |kernel| {
-                let (mut bytes, mut like, batch) = (frame(), frame(), batch());
+                let (mut bytes, mut like, triangles) = (frame(), frame(), triangles.clone());
                 let frame = Frame::new(&mut bytes, width, height, pitch).expect("legal");
                 let like = Frame::new(&mut like, width, height, pitch).expect("legal");
                 let raster = Raster::new(frame).with_kernel(kernel).with_clip(clip);
                 let mut wide = vec![0_u32; (width * height) as usize];
                 let mut narrow = vec![0_u16; (width * height) as usize];
                 let drawn = match cells {
-                    0 => { raster }.batch(&batch),
-                    1 => deep(raster, &batch, (&mut wide, &like)),
-                    _ => deep(raster, &batch, (&mut narrow, &like)),
+                    0 => together(raster, &triangles),
+                    1 => deep(raster, &triangles, (&mut wide, &like)),
+                    _ => deep(raster, &triangles, (&mut narrow, &like)),
                 };
                 (bytes, wide, narrow, drawn)
             });
