@@ -482,7 +482,10 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
             match mapping {
                 Mapping::Affine => {
                     let fits = planes.affine.set_up(s, basis, &of_corners, wanted.last_level);
-                    for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {
+                    // Usually all are small and fit.
+                    let all_fit = fits & 0xFF == 0xFF && Pick::are_small(picks.picks);
+                    let lanes = if all_fit { 0 } else { LANES };
+                    for (lane, &pick) in picks.picks.iter().take(lanes).enumerate() {
                         if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
                             let face = faces.corners(first + lane);
                             let pixel = [setup.column[lane], setup.row[lane]];

@@ -184,7 +184,14 @@ fn texels(part: f32, size: u32) -> i32 {
     let at = f64::from(part) * size;
     let near = if at.abs() <= FARTHEST { at } else { at - libm::floor(at / size) * size };
     // Within ±2³⁰; a value too large to have a fraction is still a number.
-    libm::floor(near * 65_536.0 + 0.5) as i32
+    floor(near * 65_536.0 + 0.5)
+}
+
+/// The greatest whole number that is not greater, or the i32 nearest to it; 0 for NaN. `libm::floor` takes twice the
+/// instructions.
+fn floor(x: f64) -> i32 {
+    let toward_zero = x as i32;
+    toward_zero.saturating_sub(i32::from(f64::from(toward_zero) > x))
 }
 
 /// Coordinates at which an image of the surroundings is mirrored, from the normal in eye space.
@@ -228,5 +235,29 @@ pub(super) fn slopes(geometry: &Geometry<'_>, view: &ObjectView, slopes: &mut [[
         let seen = to_eye * normal;
         let slope = |c: f32| U8F8::from_intensity(0.5 + 0.5 * c, 0, Ramp::WHOLE.entries());
         *slopes = [slope(seen.x), slope(seen.y)];
+    }
+}
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn floors_at_the_ends() {
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, 0.5, -0.5, -1.0, 2_147_483_647.5, -2_147_483_648.5]
+        {
+            assert_eq!(floor(x), libm::floor(x) as i32, "{x}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn floors_are_those_of_libm(bits: u64, whole: i32, part in -1.0..1.0_f64) {
+            for x in [f64::from_bits(bits), f64::from(whole), f64::from(whole) + part] {
+                prop_assert_eq!(floor(x), libm::floor(x) as i32, "{}", x);
+            }
+        }
     }
 }
