@@ -6,6 +6,7 @@ mod shapes;
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
+use mode13h::internals::raster::effects::{Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource};
 use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
@@ -361,4 +362,37 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
         }
     }
     assert!(missed > 5_000 && written > 5_000, "{missed} pixels missed, {written} written");
+}
+
+/// Lists of which most triangles miss all pixel centres, and then few, and then most again: what is left out early
+/// changes nothing, with effects or without.
+#[test]
+fn tiny_triangles_together_are_those_one_by_one() {
+    let mut random = Random::named("tiny triangles");
+    let mut covered = 0;
+    for reach in [20, 60] {
+        let triangles: Vec<_> = (0..3_000)
+            .map(|i| {
+                let reach = if (1_000..1_300).contains(&i) { 900 } else { reach };
+                (small(&mut random, 64, 32, reach), Interpolation::Gouraud)
+            })
+            .collect();
+        let faces: Vec<EffectFace> =
+            triangles.iter().map(|(vertices, _)| (*vertices, [Attributes::default(); 3])).collect();
+        let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> DrawStats| {
+            let mut bytes = [0; 64 * 32];
+            let frame = Frame::new(&mut bytes, 64, 32, 64).expect("legal");
+            let drawn = draw(&mut Raster::new(frame).with_kernel(kernel));
+            (drawn, bytes)
+        };
+        let plain = PixelPipeline { source: ShadeSource::Shaded(Interpolation::Gouraud), ..PixelPipeline::PLAIN };
+        let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, &triangles));
+        covered += expected.0.covered;
+        for kernel in Kernel::available() {
+            assert!(on(kernel, &|raster| together(raster, &triangles)) == expected, "{kernel}");
+            let effects = |raster: &mut Raster<'_>| raster.faces_with_effects(&faces, &plain, &mut EffectBatch::new());
+            assert!(on(kernel, &effects) == expected, "{kernel}, with effects");
+        }
+    }
+    assert!(covered > 1_000, "{covered}");
 }

@@ -12,7 +12,7 @@ use crate::raster::depth::Cell;
 use crate::raster::draw_stats::DrawStats;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::triangle::Raster;
-use crate::raster::triangles::{Corners, corner_indices, cull_corners, put_positions};
+use crate::raster::triangles::{Corners, Sieve, corner_indices, cull_corners, put_positions};
 use crate::raster::vertex::Vertex;
 
 /// The vertices and attributes of a face's corners. Their order and winding do not matter.
@@ -168,21 +168,30 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         let EffectBatch { columns, scratch, .. } = batch;
         let mut drawn = DrawStats::default();
-        if faces.is_empty() {
-            return drawn;
-        }
         if columns.is_empty() {
             columns.push(CornerColumns::NONE);
         }
         let Some(columns) = columns.first_mut() else { return drawn };
         let (level, uses) = (self.kernel().simd_level(), Uses::of(pipeline));
-        for faces in faces.chunks(CAPACITY) {
-            for (face, (vertices, _)) in faces.iter().enumerate() {
-                put_positions(&mut columns.all, face, vertices);
+        let (mut sieve, mut left) = (Sieve::default(), faces);
+        while !left.is_empty() {
+            let (mut count, mut seen, mut chosen) = (0, 0, [&left[0]; CAPACITY]);
+            for face in left {
+                if count == CAPACITY {
+                    break;
+                }
+                seen += 1;
+                if !sieve.leaves_out(&face.0) {
+                    chosen[count] = face;
+                    put_positions(&mut columns.all, count, &face.0);
+                    count += 1;
+                }
             }
-            let mut list: PickList<{ CAPACITY + LANES }> = cull_corners(level, &columns.all, faces.len(), self.clip());
+            left = &left[seen..];
+            let mut list: PickList<{ CAPACITY + LANES }> = cull_corners(level, &columns.all, count, self.clip());
+            sieve.adapt(list.as_slice().len(), count);
             for (to, pick) in list.as_mut_slice().iter_mut().enumerate() {
-                columns.copy(&faces[Pick(*pick).index()], to, uses);
+                columns.copy(chosen[Pick(*pick).index() % CAPACITY], to, uses);
                 *pick = Pick(*pick).with_index(to).0;
             }
             let CornerColumns { at, depth, shade, texture, fog, channels, slope, lit, .. } = &*columns;
