@@ -194,8 +194,8 @@ impl LitColumn<'_> {
 pub(crate) struct Triangles<'a> {
     pub(crate) columns: Columns<'a>,
     pub(crate) indices: &'a [[u32; 3]],
-    /// How many triangles the columns have room for if they are [`Corners`](super::triangles::Corners), from which eight
-    /// triangles are loaded without gathering.
+    /// The most triangles that the columns hold, if they are [`Corners`](super::triangles::Corners): eight triangles are
+    /// then loaded without gathering.
     pub(crate) by_corner: Option<usize>,
 }
 

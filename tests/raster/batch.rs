@@ -392,6 +392,19 @@ fn tiny_triangles_together_are_those_one_by_one() {
             assert!(on(kernel, &|raster| together(raster, &triangles)) == expected, "{kernel}");
             let effects = |raster: &mut Raster<'_>| raster.faces_with_effects(&faces, &plain, &mut EffectBatch::new());
             assert!(on(kernel, &effects) == expected, "{kernel}, with effects");
+            // A batch that is refilled leaves out specks when they are added.
+            let refilled = |raster: &mut Raster<'_>| {
+                let (mut drawn, mut batch) = (DrawStats::default(), EffectBatch::new());
+                for (vertices, attributes) in &faces {
+                    if batch.is_full() {
+                        drawn += raster.batch_with_effects(&mut batch, &plain);
+                    }
+                    assert!(batch.push(vertices, attributes));
+                }
+                drawn += raster.batch_with_effects(&mut batch, &plain);
+                drawn
+            };
+            assert!(on(kernel, &refilled) == expected, "{kernel}, a batch refilled");
         }
     }
     assert!(covered > 1_000, "{covered}");

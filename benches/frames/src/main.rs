@@ -1,7 +1,8 @@
 //! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects
-//! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces. A fourth
-//! argument is an error budget in shades, or a shading. A fifth one replaces the 35 frames per
-//! second; the camera then orbits a scene that does not move by itself.
+//! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces; `list` is a
+//! list of small triangles for the rasterizer, without a scene. A fourth argument is an error budget
+//! in shades, or a shading. A fifth one replaces the 35 frames per second; the camera then orbits a
+//! scene that does not move by itself.
 //!
 //!     cargo run --release -p frames -- fog 35 portable
 //!
@@ -16,12 +17,14 @@ use mode13h::glam::Quat;
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
+use mode13h::raster::{Frame, Interpolation, Raster, RasterError, Vertex};
 use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::{Motion, Object, Scene};
 use mode13h::settings::{Accuracy, Shading};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_assets::shipped;
+use mode13h_conformance::Random;
 use mode13h_conformance::hash::{START, fnv_1a};
 
 /// The first frame, in a function of its own so that a profiler can separate it from the rest: one-off work happens
@@ -36,6 +39,29 @@ fn first_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<
 #[inline(never)]
 fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(), RenderError> {
     renderer.draw(scene, vga).map(|_| ())
+}
+
+/// Each frame of a list of triangles.
+#[inline(never)]
+fn next_frame_of_list(triangles: &[[Vertex; 3]], vga: &mut Vga, kernel: Kernel) -> Result<(), RasterError> {
+    let frame = Frame::new(vga.pixels_mut(), Vga::WIDTH as u32, Vga::HEIGHT as u32, Vga::WIDTH)?;
+    let all = triangles.iter().map(|corners| (corners, Interpolation::Gouraud));
+    Raster::new(frame).with_kernel(kernel).triangles(all);
+    Ok(())
+}
+
+/// Small triangles of up to 12 pixels a side, a third of them specks.
+fn list() -> Vec<[Vertex; 3]> {
+    let mut random = Random::named("a list of triangles");
+    let mut triangle = |i: u32| {
+        let most = if i.is_multiple_of(3) { 1.0 } else { 12.0 };
+        let (x, y) = (308.0 * random.unit(), 188.0 * random.unit());
+        [0; 3].map(|_| {
+            let (dx, dy) = (most * random.unit(), most * random.unit());
+            Vertex::at((x + dx) as f32, (y + dy) as f32, (255.0 * random.unit()) as f32)
+        })
+    };
+    (0..4_000).map(&mut triangle).collect()
 }
 
 /// A sphere half of whose faces cover no pixel, as in a scanned model.
@@ -56,6 +82,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [name, frames, kernel, more @ ..] = words.as_slice() else {
         return Err("usage: frames SCENE FRAMES KERNEL [MAX_ERROR | SHADING [RATE]]".into());
     };
+    if name == "list" {
+        let (triangles, mut vga, kernel) = (list(), Vga::new(), kernel.parse()?);
+        for _ in 1..frames.parse::<u32>()? {
+            next_frame_of_list(&triangles, &mut vga, kernel)?;
+        }
+        println!("hash {:016x}", fnv_1a(START, vga.pixels()));
+        return Ok(());
+    }
     let (max_error, rate) = (more.first(), more.get(1).map(|rate| rate.parse::<f64>()).transpose()?);
     let mut scene = match name.parse::<shipped::Shipped>() {
         Ok(shipped) => shipped.load()?.scene,

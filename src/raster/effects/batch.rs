@@ -27,6 +27,7 @@ pub struct EffectBatch {
     faces: Vec<EffectFace>,
     /// Empty before the first drawing.
     columns: Vec<CornerColumns>,
+    sieve: Sieve,
     scratch: EffectScratch,
 }
 
@@ -119,11 +120,14 @@ impl EffectBatch {
         self.faces.len() >= CAPACITY
     }
 
-    /// Adds a face. One without area draws nothing. Returns `false`, and adds nothing, if the batch is full.
+    /// Adds a face, unless it is certain to draw nothing. Returns `false`, and adds nothing, if the batch is full.
     #[inline]
     pub fn push(&mut self, vertices: &[Vertex; 3], attributes: &[Attributes; 3]) -> bool {
         if self.is_full() {
             return false;
+        }
+        if self.sieve.leaves_out(vertices) {
+            return true;
         }
         if self.faces.capacity() == 0 {
             self.faces.reserve_exact(CAPACITY);
@@ -166,14 +170,14 @@ impl<D: Cell> Raster<'_, D> {
         pipeline: &PixelPipeline<'_>,
         batch: &mut EffectBatch,
     ) -> DrawStats {
-        let EffectBatch { columns, scratch, .. } = batch;
+        let EffectBatch { columns, sieve, scratch, .. } = batch;
         let mut drawn = DrawStats::default();
         if columns.is_empty() {
             columns.push(CornerColumns::NONE);
         }
         let Some(columns) = columns.first_mut() else { return drawn };
         let (level, uses) = (self.kernel().simd_level(), Uses::of(pipeline));
-        let (mut sieve, mut left) = (Sieve::default(), faces);
+        let mut left = faces;
         while !left.is_empty() {
             let (mut count, mut seen, mut chosen) = (0, 0, [&left[0]; CAPACITY]);
             for face in left {

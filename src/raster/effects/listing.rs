@@ -83,10 +83,10 @@ const COORDINATES: usize = 4;
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
-/// Which texture coordinates spans have: known to the compiler, so that the others take no registers, or only at run
-/// time.
+/// The mapping of spans' texture coordinates, as a constant that the compiler knows, so that unused coordinates take no
+/// registers.
 pub(super) mod mapped {
-    /// Known at run time.
+    /// Decided at run time.
     pub(in super::super) const ANY: u8 = 0;
     pub(in super::super) const NONE: u8 = 1;
     pub(in super::super) const AFFINE: u8 = 2;

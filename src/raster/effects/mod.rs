@@ -328,7 +328,7 @@ fn draw_effects_by<S: Lanes8, const DEPTHS: bool, const MAPPED: u8>(
     draw_triangles::<S, _, true, DEPTHS>(s, of, place, target, effects, list)
 }
 
-/// Draws triangles with effects.
+/// Draws triangles with effects, whose mapping the compiler knows.
 fn draw_mapped<const MAPPED: u8>(
     level: Level,
     of: Drawn<'_>,
