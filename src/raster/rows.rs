@@ -379,6 +379,22 @@ impl<S: Lanes8> RowCursor8<S> {
 
     /// Returns row `number`, and advances to the next.
     #[inline(always)]
+    fn next<P: Shades8, const DEPTHS: bool>(
+        &mut self,
+        s: S,
+        setup: &TriangleSetup8,
+        shades: &P,
+        list: &SpanList,
+        number: i32,
+    ) -> Spans8<S, P::Columns<S>> {
+        if const { is_apart::<S, P>() } {
+            apart(|| self.row::<P, DEPTHS>(s, setup, shades, list, number))
+        } else {
+            self.row::<P, DEPTHS>(s, setup, shades, list, number)
+        }
+    }
+
+    #[inline(always)]
     fn row<P: Shades8, const DEPTHS: bool>(
         &mut self,
         s: S,
@@ -416,6 +432,41 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
+/// Calls a part of the baseline's code that would otherwise be inlined several times: with many columns in narrow vectors
+/// that takes longer to compile than all other levels.
+#[inline(never)]
+fn apart<R>(part: impl FnOnce() -> R) -> R {
+    part()
+}
+
+/// Returns whether vectors have more than 128 bits: they are aligned to their size.
+#[inline(always)]
+pub(super) const fn has_wide_vectors<S: Lanes8>() -> bool {
+    align_of::<S::F64>() > 16
+}
+
+/// Returns whether [`apart`] earns anything: linear shades have few columns.
+#[inline(always)]
+const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
+    !has_wide_vectors::<S>() && !P::IS_LINEAR
+}
+
+/// [`Shades8::append`].
+#[inline(always)]
+fn append<S: Lanes8, P: Shades8, const DEPTHS: bool>(
+    s: S,
+    shades: &mut P,
+    list: &mut SpanList,
+    spans: &Spans8<S, P::Columns<S>>,
+    dz: DepthSteps<S>,
+) {
+    if const { is_apart::<S, P>() } {
+        apart(|| shades.append::<S, DEPTHS>(s, list, spans, dz));
+    } else {
+        shades.append::<S, DEPTHS>(s, list, spans, dz);
+    }
+}
+
 /// Lists all rows of eight small triangles of at most [`MAX_SHORT_ROWS`] rows each, triangle by triangle. The list must
 /// have room.
 #[inline(always)]
@@ -431,13 +482,13 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     if most_rows <= 0 {
         return;
     }
-    let first = cursor.row::<P, DEPTHS>(s, setup, shades, list, 0);
+    let first = cursor.next::<P, DEPTHS>(s, setup, shades, list, 0);
     if most_rows == 1 {
         let dz = if DEPTHS { DepthSteps::Each(s.load_i64(&setup.z_per_column)) } else { DepthSteps::All(0) };
-        shades.append::<S, DEPTHS>(s, list, &first, dz);
+        append::<S, P, DEPTHS>(s, shades, list, &first, dz);
         return;
     }
-    let second = cursor.row::<P, DEPTHS>(s, setup, shades, list, 1);
+    let second = cursor.next::<P, DEPTHS>(s, setup, shades, list, 1);
     if most_rows == 2 {
         let [low, high] = first.zip(s, &second, list, DEPTHS);
         let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
@@ -446,19 +497,19 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             let [low, high] = s.interleave_i64(dz, dz);
             (of_low, of_high) = (DepthSteps::Each(low), DepthSteps::Each(high));
         }
-        shades.append::<S, DEPTHS>(s, list, &low, of_low);
-        shades.append::<S, DEPTHS>(s, list, &high, of_high);
+        append::<S, P, DEPTHS>(s, shades, list, &low, of_low);
+        append::<S, P, DEPTHS>(s, shades, list, &high, of_high);
         return;
     }
-    let third = cursor.row::<P, DEPTHS>(s, setup, shades, list, 2);
-    let fourth = cursor.row::<P, DEPTHS>(s, setup, shades, list, 3);
+    let third = cursor.next::<P, DEPTHS>(s, setup, shades, list, 2);
+    let fourth = cursor.next::<P, DEPTHS>(s, setup, shades, list, 3);
     let even = first.zip(s, &third, list, DEPTHS);
     let odd = second.zip(s, &fourth, list, DEPTHS);
     for (half, even) in even.iter().enumerate() {
         for (quarter, spans) in even.zip(s, &odd[half], list, DEPTHS).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
             let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
-            shades.append::<S, DEPTHS>(s, list, spans, dz);
+            append::<S, P, DEPTHS>(s, shades, list, spans, dz);
         }
     }
 }
@@ -469,6 +520,21 @@ type EightRows<S, P> = (RowEnds<S>, <S as Lanes8>::F64, Spans8<S, <P as Shades8>
 /// Eight rows of triangle `i` from row `first` on. Rows beyond its last have no length.
 #[inline(always)]
 fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
+    s: S,
+    setup: &TriangleSetup8,
+    shades: &P,
+    at: (usize, i32),
+    list: &SpanList,
+) -> EightRows<S, P> {
+    if const { is_apart::<S, P>() } {
+        apart(|| eight_rows_of::<S, P, DEPTHS>(s, setup, shades, at, list))
+    } else {
+        eight_rows_of::<S, P, DEPTHS>(s, setup, shades, at, list)
+    }
+}
+
+#[inline(always)]
+fn eight_rows_of<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
     shades: &P,
@@ -512,7 +578,7 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let (_, _, spans) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
-    shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+    append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
 /// Lists eight rows of triangle `i` from row `first` on, each split into reseeded pieces of up to `longest` pixels.
@@ -566,7 +632,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             columns,
         };
-        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
         if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;

@@ -4,14 +4,15 @@ use super::pipeline::{Image, PixelPipeline, ShadeSource};
 use crate::fixed::IS_SMALL;
 use crate::mapping::Mapping;
 use crate::raster::interpolation::Interpolation;
+use crate::span::texture::Painted;
 
 /// How one loop per span draws the pixels of faces, with no buffer in between.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Direct<'a> {
     /// Linear shades, to be fogged.
     Shades,
-    /// Texels of an image.
-    Texture { image: (Image<'a>, Mapping), tint: DirectTint<'a> },
+    /// Texels of an image. `painted` looks them up in the pipeline's table, whatever the tint.
+    Texture { image: (Image<'a>, Mapping), tint: DirectTint<'a>, painted: Painted<'a> },
 }
 
 /// How texels are tinted.
@@ -22,7 +23,7 @@ pub(super) enum DirectTint<'a> {
     /// One row of a table, for one shade.
     Row(&'a [u8; 256]),
     /// A table, for linear shades.
-    Lit(&'a [u8; 65_536]),
+    Lit,
 }
 
 /// A table row that leaves every texel unchanged.
@@ -50,14 +51,14 @@ impl<'a> Direct<'a> {
             return None;
         }
         let table = stage.tables[0];
-        let tint = match pipeline.source {
+        let (tint, flat) = match pipeline.source {
             ShadeSource::Shaded(Interpolation::Flat(shade)) => {
                 let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
-                if *row == IDENTITY { DirectTint::None } else { DirectTint::Row(row) }
+                (if *row == IDENTITY { DirectTint::None } else { DirectTint::Row(row) }, Some(shade))
             }
-            _ if is_linear => DirectTint::Lit(table),
+            _ if is_linear => (DirectTint::Lit, None),
             _ => return None,
         };
-        Some(Self::Texture { image: (Image::new(stage), stage.mapping), tint })
+        Some(Self::Texture { image: (Image::new(stage), stage.mapping), tint, painted: Painted { table, flat } })
     }
 }

@@ -2,15 +2,15 @@
 
 use super::destination::{Destination, InFrame, Masked};
 use super::direct::{Direct, DirectTint};
-use super::pipeline::PixelPipeline;
+use super::pipeline::{Image, PixelPipeline};
 use super::spans::Spans;
-use super::texture::show_texture;
+use super::texture::{show_mipmaps, show_texture};
 use crate::fixed::{IS_COMPACT, IS_SMALL};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
 use crate::span::list::Target;
-use crate::span::texture::{Blended, FirstPlace, Fogged, Painted, Texels, Tint, Untextured};
+use crate::span::texture::{Blended, FirstPlace, Fogged, Texels, Tint, Untextured};
 
 impl Direct<'_> {
     /// Draws the pixels of every span, fogged or blended as the pipeline says; if there are cells,
@@ -18,47 +18,43 @@ impl Direct<'_> {
     /// if there is no loop for this pipeline.
     pub(super) fn show(self, spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, target: &mut Target<'_>) -> Option<u32> {
         let Target { pixels, cells, kernel } = target;
-        let (fog, keeps) = (pipeline.fog(), pipeline.keeps_depth);
-        match (cells, fog, pipeline.blend()) {
-            (None, None, None) => self.show_in(spans, &mut InFrame(pixels), *kernel)?,
-            (None, None, Some(blend)) if !IS_COMPACT => {
-                self.show_blended(spans, blend, &mut InFrame(pixels), *kernel)?
+        let (fog, has_few_loops) = (pipeline.fog(), self.has_few_loops());
+        let cells = match (cells, pipeline.blend()) {
+            (None, None) if fog.is_none() && !has_few_loops => {
+                self.show_in(spans, &mut InFrame(pixels), *kernel)?;
+                return Some(0);
             }
-            (None, Some(fog), None) => {
-                self.show_fogged(spans, fog, &mut Masked { pixels, cells: None, keeps, nearer: 0 }, *kernel)?;
+            (None, Some(blend)) if fog.is_none() && !has_few_loops && !IS_COMPACT => {
+                self.show_blended(spans, blend, &mut InFrame(pixels), *kernel)?;
+                return Some(0);
             }
-            (Some(Cells::U32(cells)), fog, None) => {
-                let mut to = Masked { pixels, cells: Some(cells), keeps, nearer: 0 };
-                self.show_nearer(spans, fog, &mut to, *kernel)?;
-                return Some(to.nearer);
-            }
+            (None, None) => None,
+            (Some(Cells::U32(cells)), None) => Some(&mut **cells),
             _ => return None,
-        }
-        Some(0)
+        };
+        let has_cells = cells.is_some();
+        let to = &mut Masked { pixels, cells, keeps: pipeline.keeps_depth, nearer: 0 };
+        match fog {
+            _ if has_few_loops => self.show_mipmaps(spans, fog, to, *kernel),
+            None => self.show_nearer(spans, to, *kernel),
+            Some(fog) => self.show_fogged(spans, fog, to, *kernel),
+        }?;
+        Some(if has_cells { to.nearer } else { 0 })
     }
 
     /// Draws pixels where they are nearer than the cells.
     #[inline(never)]
-    fn show_nearer(
-        self,
-        spans: &Spans<'_>,
-        fog: Option<&[u8; 65_536]>,
-        to: &mut Masked<'_>,
-        kernel: Kernel,
-    ) -> Option<()> {
-        match fog {
-            None => self.show_in(spans, to, kernel),
-            Some(fog) => self.show_fogged(spans, fog, to, kernel),
-        }
+    fn show_nearer(self, spans: &Spans<'_>, to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
+        self.show_in(spans, to, kernel)
     }
 
     fn show_in(self, spans: &Spans<'_>, to: &mut impl Destination, kernel: Kernel) -> Option<()> {
         // Shades alone have kernels of their own.
-        let Self::Texture { image, tint } = self else { return None };
+        let Self::Texture { image, tint, painted } = self else { return None };
         match tint {
             DirectTint::None => show_texture(spans, image, (), to, kernel),
             DirectTint::Row(row) => show_texture(spans, image, row, to, kernel),
-            DirectTint::Lit(table) => show_texture(spans, image, Painted(table), to, kernel),
+            DirectTint::Lit => show_texture(spans, image, painted, to, kernel),
         }
         Some(())
     }
@@ -69,22 +65,44 @@ impl Direct<'_> {
             // With narrow vectors, stages are 3 % faster.
             Self::Shades if !kernel.has_wide_lanes() => return None,
             Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
-            Self::Texture { image, tint } => match tint {
-                DirectTint::None => show_texture(spans, image, Fogged((), fog), to, kernel),
-                DirectTint::Row(row) => show_texture(spans, image, Fogged(row, fog), to, kernel),
-                DirectTint::Lit(table) => show_texture(spans, image, Fogged(Painted(table), fog), to, kernel),
-            },
+            Self::Texture { image, tint: DirectTint::None, .. } => {
+                show_texture(spans, image, Fogged((), fog), to, kernel)
+            }
+            Self::Texture { image, painted, .. } => show_texture(spans, image, Fogged(painted, fog), to, kernel),
         }
         Some(())
     }
 
     fn show_blended(self, spans: &Spans<'_>, blend: &[u8; 65_536], to: &mut InFrame<'_>, kernel: Kernel) -> Option<()> {
-        // Blending shades is 14 % faster in stages.
-        let Self::Texture { image, tint } = self else { return None };
-        match tint {
-            DirectTint::None => show_texture(spans, image, Blended((), blend), to, kernel),
-            DirectTint::Row(row) => show_texture(spans, image, Blended(row, blend), to, kernel),
-            DirectTint::Lit(table) => show_texture(spans, image, Blended(Painted(table), blend), to, kernel),
+        match self {
+            // Blending shades is 14 % faster in stages.
+            Self::Shades => return None,
+            Self::Texture { image, tint: DirectTint::None, .. } => {
+                show_texture(spans, image, Blended((), blend), to, kernel)
+            }
+            Self::Texture { image, painted, .. } => show_texture(spans, image, Blended(painted, blend), to, kernel),
+        }
+        Some(())
+    }
+
+    /// Returns whether the image has mipmap levels. Their loops take the longest to compile, so there are only three,
+    /// each for several kinds of pipeline. A build for size has no other loops.
+    fn has_few_loops(self) -> bool {
+        matches!(self, Self::Texture { image: (Image { levels: Some(_), .. }, _), .. } if !IS_COMPACT)
+    }
+
+    fn show_mipmaps(
+        self,
+        spans: &Spans<'_>,
+        fog: Option<&[u8; 65_536]>,
+        to: &mut Masked<'_>,
+        kernel: Kernel,
+    ) -> Option<()> {
+        let Self::Texture { image, tint, painted } = self else { return None };
+        match (tint, fog) {
+            (DirectTint::None, None) => show_mipmaps(spans, image, (), to, kernel),
+            (_, None) => show_mipmaps(spans, image, painted, to, kernel),
+            (_, Some(fog)) => show_mipmaps(spans, image, Fogged(painted, fog), to, kernel),
         }
         Some(())
     }

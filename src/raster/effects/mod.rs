@@ -307,9 +307,9 @@ fn mixed<'a>(
 }
 
 compiled_for_each_level! {
-    /// Draws triangles with effects; with `DEPTHS`, only their nearer pixels.
+    /// Draws triangles with effects; if there are cells, only their nearer pixels.
     #[inline(never)]
-    fn draw_effects[const DEPTHS: bool, const MAPPED: u8][DEPTHS, MAPPED](
+    fn draw_effects[const MAPPED: u8][MAPPED](
         of: Drawn<'_>,
         effects: (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
         place: Place,
@@ -318,14 +318,14 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn draw_effects_by<S: Lanes8, const DEPTHS: bool, const MAPPED: u8>(
+fn draw_effects_by<S: Lanes8, const MAPPED: u8>(
     s: S,
     of: Drawn<'_>,
     (effects, list): (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_triangles::<S, _, true, DEPTHS>(s, of, place, target, effects, list)
+    draw_triangles::<S, _, true, true>(s, of, place, target, effects, list)
 }
 
 /// Draws triangles with effects, whose mapping the compiler knows.
@@ -336,11 +336,7 @@ fn draw_mapped<const MAPPED: u8>(
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    let mut spans = spans.with_mapping::<MAPPED>();
-    match target.cells {
-        None if !IS_COMPACT => draw_effects::<false, MAPPED>(level, of, (&mut spans, list), place, target),
-        _ => draw_effects::<true, MAPPED>(level, of, (&mut spans, list), place, target),
-    }
+    draw_effects::<MAPPED>(level, of, (&mut spans.with_mapping::<MAPPED>(), list), place, target)
 }
 
 impl<D: Cell> Raster<'_, D> {

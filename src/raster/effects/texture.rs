@@ -24,7 +24,7 @@ use crate::span::texture::{
 const EVERY: i32 = 16;
 
 /// Draws the texels of every span, linear on the face if the mapping is in perspective, otherwise
-/// on the screen.
+/// on the screen. The image has no levels, or this is a build for size.
 #[inline(always)]
 pub(super) fn show_texture<T: Tint, D: Destination>(
     spans: &Spans<'_>,
@@ -34,12 +34,26 @@ pub(super) fn show_texture<T: Tint, D: Destination>(
     kernel: Kernel,
 ) {
     let level = kernel.simd_level();
-    // One function for each, so that leaving one out does not change how another is compiled.
-    match (mapping, image.levels) {
-        (Mapping::Affine, None) if !IS_COMPACT => show_affine::<T, D>(level, spans, image.texels, tint, to),
-        (Mapping::Affine, _) => show_affine_levels::<T, D>(level, spans, image, tint, to),
-        (_, None) if !IS_COMPACT => show_exact::<T, D>(level, spans, image.texels, tint, to),
-        (_, _) => show_levels::<T, D>(level, spans, image, tint, to),
+    match mapping {
+        _ if IS_COMPACT => show_mipmaps(spans, (image, mapping), tint, to, kernel),
+        Mapping::Affine => show_affine::<T, D>(level, spans, image.texels, tint, to),
+        _ => show_exact::<T, D>(level, spans, image.texels, tint, to),
+    }
+}
+
+/// [`show_texture`], of an image with levels.
+#[inline(always)]
+pub(super) fn show_mipmaps<T: Tint, D: Destination>(
+    spans: &Spans<'_>,
+    (image, mapping): (Image<'_>, Mapping),
+    tint: T,
+    to: &mut D,
+    kernel: Kernel,
+) {
+    let level = kernel.simd_level();
+    match mapping {
+        Mapping::Affine => show_affine_levels::<T, D>(level, spans, image, tint, to),
+        _ => show_levels::<T, D>(level, spans, image, tint, to),
     }
 }
 
@@ -49,6 +63,7 @@ impl Spans<'_> {
         let image = Image::new(stage);
         match stage.mapping {
             Mapping::Every16 => self.every_16(image, out),
+            mapping if image.levels.is_some() => show_mipmaps(self, (image, mapping), (), &mut InBuffer(out), kernel),
             mapping => show_texture(self, (image, mapping), (), &mut InBuffer(out), kernel),
         }
     }

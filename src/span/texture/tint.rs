@@ -78,16 +78,21 @@ impl Tint for &[u8; 256] {
     }
 }
 
-/// Texels lit by a table, with the shades of the span.
-#[derive(Clone, Copy)]
-pub(crate) struct Painted<'a>(pub(crate) &'a [u8; 65_536]);
+/// Texels lit by a table, with the shades of the span or with one shade.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Painted<'a> {
+    pub(crate) table: &'a [u8; 65_536],
+    /// The shade of all spans, if they share one.
+    pub(crate) flat: Option<u8>,
+}
 
 impl Tint for Painted<'_> {
     type Along<S: Lanes8> = Ramp8<S>;
     type Rows = [u16; LANES];
     #[inline(always)]
     fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
-        ramp_from(s, values.paint, values.skipped)
+        let paint = self.flat.map_or(values.paint, |shade| u32::from(shade) << 8);
+        ramp_from(s, paint, values.skipped)
     }
     #[inline(always)]
     fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
@@ -95,7 +100,7 @@ impl Tint for Painted<'_> {
     }
     #[inline(always)]
     fn show(self, rows: [u16; LANES], k: usize, texel: u8) -> u8 {
-        self.0[usize::from(rows[k] | u16::from(texel))]
+        self.table[usize::from(rows[k] | u16::from(texel))]
     }
 }
 
