@@ -432,8 +432,8 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Calls a part of the baseline's code that would otherwise be inlined several times: with many columns in narrow vectors
-/// that takes longer to compile than all other levels.
+/// Calls code of the baseline that would otherwise be inlined several times. Spans with many columns in narrow vectors take
+/// long to compile: a tenth of the time of the engine.
 #[inline(never)]
 fn apart<R>(part: impl FnOnce() -> R) -> R {
     part()
