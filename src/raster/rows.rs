@@ -433,7 +433,7 @@ impl<S: Lanes8> RowCursor8<S> {
 }
 
 /// Calls code of the baseline that would otherwise be inlined several times. Spans with many columns in narrow vectors take
-/// long to compile: a tenth of the time of the engine.
+/// long to compile; large triangles, whose rows are inlined once, are faster without the call.
 #[inline(never)]
 fn apart<R>(part: impl FnOnce() -> R) -> R {
     part()
@@ -441,7 +441,7 @@ fn apart<R>(part: impl FnOnce() -> R) -> R {
 
 /// Returns whether vectors have more than 128 bits: they are aligned to their size.
 #[inline(always)]
-pub(super) const fn has_wide_vectors<S: Lanes8>() -> bool {
+const fn has_wide_vectors<S: Lanes8>() -> bool {
     align_of::<S::F64>() > 16
 }
 
@@ -523,21 +523,6 @@ fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     setup: &TriangleSetup8,
     shades: &P,
-    at: (usize, i32),
-    list: &SpanList,
-) -> EightRows<S, P> {
-    if const { is_apart::<S, P>() } {
-        apart(|| eight_rows_of::<S, P, DEPTHS>(s, setup, shades, at, list))
-    } else {
-        eight_rows_of::<S, P, DEPTHS>(s, setup, shades, at, list)
-    }
-}
-
-#[inline(always)]
-fn eight_rows_of<S: Lanes8, P: Shades8, const DEPTHS: bool>(
-    s: S,
-    setup: &TriangleSetup8,
-    shades: &P,
     (i, first): (usize, i32),
     list: &SpanList,
 ) -> EightRows<S, P> {
@@ -578,7 +563,7 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let (_, _, spans) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
-    append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+    shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
 /// Lists eight rows of triangle `i` from row `first` on, each split into reseeded pieces of up to `longest` pixels.
@@ -632,7 +617,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             columns,
         };
-        append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
         if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;

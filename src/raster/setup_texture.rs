@@ -153,6 +153,12 @@ impl AffinePlanes8 {
         self.falls = [s.to_bitmask(s.is_less(u[0], zero)), s.to_bitmask(s.is_less(v[0], zero))];
     }
 
+    /// Sets the level of triangle 0.
+    pub(super) fn set_level(&mut self, AffineLevel { level, falls }: AffineLevel) {
+        self.level[0] = level.cast_signed();
+        self.falls = falls.map(u32::from);
+    }
+
     /// The level of triangle `lane`.
     #[inline(always)]
     pub(super) fn level(&self, lane: usize) -> AffineLevel {
@@ -409,6 +415,14 @@ impl PerspectivePlanes8 {
         let off = 1.0 / 65_536.0;
         let (least, most) = (level(quotient * (1.0 - off)).min(last), level(quotient * (1.0 + off)).min(last));
         (self.fits_levels >> lane & 1 != 0 && least == most).then_some(least)
+    }
+
+    /// Sets the change of triangle 0's sums per pixel; neither its quotients in f32 nor estimates decide anything.
+    pub(super) fn set_steps(&mut self, steps: [f64; 3]) {
+        for (to, step) in self.step.iter_mut().zip(steps) {
+            to[0] = step;
+        }
+        (self.base, self.fits, self.fits_levels) = ([[0; LANES]; 2], 0, 0);
     }
 
     /// The sums along a span of triangle `lane`, from those at its first pixel.

@@ -41,9 +41,9 @@ use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
-use crate::fixed::ROUND_MAGIC;
+use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, NUMBERS};
-use crate::simd::Lanes8;
+use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer};
 use crate::span::depth_test::copy_span;
 #[cfg(feature = "alloc")]
@@ -387,17 +387,33 @@ impl Shades8 for Shaded8<'_> {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
-        match self.kind {
-            Kind::Fixed16 => {
-                let shades = |k: usize, face: u32| (self.starts.of(k)[0] as u32, self.listed.step_16_16(face as usize));
-                let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, shades);
-                list.clear(nearer);
-            }
-            Kind::Hyperbolic => self.draw_by(s, &Hyperbolic, list, target),
-            #[cfg(feature = "alloc")]
-            Kind::Float => self.draw_by(s, &Float, list, target),
+    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+        draw_listed(target.kernel.simd_level(), self, list, target);
+    }
+}
+
+compiled_for_each_level! {
+    /// [`Shades8::draw`], compiled once for all its calls.
+    #[inline(never)]
+    fn draw_listed[][](shades: &mut Shaded8<'_>, list: &mut SpanList, target: &mut Target<'_>) = draw_listed_by;
+}
+
+#[inline(always)]
+fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList, target: &mut Target<'_>) {
+    // As in `draw_triangles`.
+    if !HAS_F64 {
+        return;
+    }
+    match shades.kind {
+        Kind::Fixed16 => {
+            let of_span =
+                |k: usize, face: u32| (shades.starts.of(k)[0] as u32, shades.listed.step_16_16(face as usize));
+            let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
+            list.clear(nearer);
         }
+        Kind::Hyperbolic => shades.draw_by(s, &Hyperbolic, list, target),
+        #[cfg(feature = "alloc")]
+        Kind::Float => shades.draw_by(s, &Float, list, target),
     }
 }
 

@@ -238,7 +238,7 @@ impl SpanList {
 
     /// Draws the spans, with `DEPTHS` only where they are nearer than the cells, and empties the
     /// list. If there are fewer pixels or cells than the list was made for, nothing is drawn.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn draw_by<const DEPTHS: bool>(&mut self, Target { pixels, cells, kernel }: &mut Target<'_>) {
         if self.count == 0 {
             return;
@@ -432,6 +432,13 @@ impl<const N: usize> SpanStarts<N> {
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S, N>) {
         s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
+    }
+
+    #[cfg(feature = "alloc")]
+    pub(crate) fn set(&mut self, k: usize, starts: [i64; N]) {
+        for (to, start) in self.0.iter_mut().zip(starts) {
+            to[k.min(CAPACITY)] = start;
+        }
     }
 
     /// The sums of span `k`.

@@ -4,7 +4,6 @@
 use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
-use crate::raster::rows::has_wide_vectors;
 use crate::simd::Lanes8;
 use crate::span::depth_test::{Masks, test_block, test_span};
 use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
@@ -102,41 +101,40 @@ impl Destination for Masked<'_> {
             let Some(of_span) = all.get_mut(cell + before as usize..) else { return };
             (cells, depths) = (Some(of_span), [z.wrapping_add(dz.wrapping_mul(before.into())), dz]);
         }
-        let (mut masks, first, after);
-        let room = cells.as_ref().map_or(row.len(), |cells| row.len().min(cells.len()));
-        if !IS_COMPACT && length <= LANES && room >= LANES {
-            // Most spans are a single block, whose mask needs no memory.
-            first = match cells.and_then(<[u32]>::first_chunk_mut) {
-                Some(eight) => test_block(s, eight, depths, length, self.keeps),
-                None => behind(length),
-            };
-            after = &[][..];
-            self.nearer += first.count_zeros() / 8;
-            if first == u64::MAX {
+        // Most spans are a single block, whose mask needs no memory.
+        if !IS_COMPACT
+            && length <= LANES
+            && let Some(block) = row.first_chunk_mut()
+        {
+            let mut tested = None;
+            match &mut cells {
+                Some(cells) => {
+                    if let Some(eight) = cells.first_chunk_mut() {
+                        tested = Some(test_block(s, eight, depths, length, self.keeps));
+                    }
+                }
+                None => tested = Some(behind(length)),
+            }
+            if let Some(stays) = tested {
+                if stays != u64::MAX {
+                    self.nearer += stays.count_zeros() / 8;
+                    show_block(s, (block, stays), texels, (tint, along), &mut places);
+                }
                 return;
             }
-            // No state for a block after it.
-            if const { has_wide_vectors::<S>() }
-                && let Some(block) = row.first_chunk_mut()
-            {
-                return show_block(s, (block, first), texels, (tint, along), &mut places);
-            }
-        } else {
-            masks = Masks::default();
-            let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
-            if let Some(cells) = cells {
-                let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
-                self.nearer += nearer;
-                if nearer == 0 {
-                    return;
-                }
-            } else if let Some(last) = masks.last_mut() {
-                *last = behind((length - 1) % LANES + 1);
-            }
-            let Some((&of_first, others)) = masks.split_first() else { return };
-            (first, after) = (of_first, others);
         }
-        show_masked(s, (row, first, after), texels, (tint, along), places);
+        let mut masks = Masks::default();
+        let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
+        if let Some(cells) = cells {
+            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+            self.nearer += nearer;
+            if nearer == 0 {
+                return;
+            }
+        } else if let Some(last) = masks.last_mut() {
+            *last = behind((length - 1) % LANES + 1);
+        }
+        show_masked(s, (row, masks), texels, (tint, along), places);
     }
 }
 

@@ -20,7 +20,10 @@ use crate::raster::interpolation::Interpolation;
 use crate::raster::pick::{Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
+use crate::raster::reference::level;
+use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::shade::{RESEED, ShadePlane};
+use crate::raster::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture};
 use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value_of};
 use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
@@ -193,6 +196,19 @@ impl FaceCorners<'_> {
         three(self.face.corners, |vertex| self.columns.texture[vertex][i])
     }
 
+    /// Texture coordinates linear on the screen, and the level of the face if the image has levels up to this one.
+    pub(super) fn affine_texture(&self, last: Option<u32>) -> ([AffinePlane; 2], AffineLevel) {
+        let area = Divisor::new(self.triangle.area());
+        let planes = [0, 1].map(|i| AffinePlane::new(&self.triangle, area, self.texture(i)));
+        let level = last.map(|last| level::of_face(&planes, area.get(), last));
+        (planes, level.unwrap_or_default())
+    }
+
+    /// Texture coordinates linear on the face.
+    pub(super) fn perspective_texture(&self) -> PerspectiveTexture {
+        PerspectiveTexture::new(&self.triangle, [self.texture(0), self.texture(1)])
+    }
+
     /// A linear value.
     #[inline]
     pub(super) fn value(&self, value: Value) -> [i64; 3] {
@@ -291,6 +307,13 @@ pub(super) struct WalkedFace {
     shade: ShadePlane,
     depth: DepthPlane,
     values: [Option<ShadePlane>; Value::MAX_COUNT],
+    texture: Option<WalkedTexture>,
+}
+
+/// Texture coordinates of a walked face.
+enum WalkedTexture {
+    Affine([AffinePlane; 2]),
+    OnFace(PerspectiveTexture),
 }
 
 /// The spans of a list as the stages see them: their marks, and the planes of their faces.
@@ -389,6 +412,22 @@ impl<'a> EffectSpans<'a> {
     pub(super) fn walk(&mut self, k: usize) -> SortedTriangle {
         let corners = self.listed.faces.corners(k);
         let triangle = corners.triangle;
+        let Wanted { texture, last_level, .. } = self.listed.wanted;
+        let planes = &mut self.listed.planes[0];
+        // Columns and rows are those of the frame.
+        (planes.column, planes.row) = ([0; LANES], [0; LANES]);
+        let texture = texture.map(|mapping| match mapping {
+            Mapping::Affine => {
+                let (coordinates, level) = corners.affine_texture(last_level);
+                planes.affine.set_level(level);
+                WalkedTexture::Affine(coordinates)
+            }
+            _ => {
+                let coordinates = corners.perspective_texture();
+                planes.perspective.set_steps(coordinates.steps());
+                WalkedTexture::OnFace(coordinates)
+            }
+        });
         self.listed.walked = Some(WalkedFace {
             face: corners.face,
             shade: ShadePlane::of_values(&triangle, triangle.shades()),
@@ -397,10 +436,9 @@ impl<'a> EffectSpans<'a> {
                 let value = value?;
                 Some(ShadePlane::of_values(&triangle, corners.value(value)))
             }),
+            texture,
         });
-        // Columns and rows are those of the frame.
         self.listed.batches = Batches::from_pick(k);
-        (self.listed.planes[0].column, self.listed.planes[0].row) = ([0; LANES], [0; LANES]);
         triangle
     }
 
@@ -414,7 +452,7 @@ impl<'a> EffectSpans<'a> {
             if !list.has_room(1) {
                 self.draw_spans(list, target);
             }
-            let Some(WalkedFace { shade, depth, values, .. }) = &self.listed.walked else { return };
+            let Some(WalkedFace { shade, depth, values, texture, .. }) = &self.listed.walked else { return };
             let reseeds = self.listed.wanted.reseeds;
             let value = |plane: &ShadePlane, reseeds: bool| {
                 let start = match reseeds {
@@ -439,6 +477,19 @@ impl<'a> EffectSpans<'a> {
                 let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);
+                match texture {
+                    Some(WalkedTexture::Affine([u, v])) => {
+                        let starts = [u, v].map(|plane| plane.start(seed, row.y));
+                        // Modulo 2³²: texels repeat.
+                        let steps = [u, v].map(|plane| plane.step() as u32);
+                        self.listed.coordinates.set(k, [starts[0], starts[1], steps[0], steps[1]]);
+                    }
+                    Some(WalkedTexture::OnFace(coordinates)) => {
+                        let sums = coordinates.sums(seed, row.y).map(|sum| sum.to_bits().cast_signed());
+                        self.listed.sums.set(k, sums);
+                    }
+                    None => {}
+                }
             }
             number += 1;
             x = end;

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::listing::{Columns, EffectSpans, Faces, Marks8, mapped};
 use super::spans::{Span, Spans};
-use super::texture::{affine_texture, exact_level};
+use super::texture::exact_level;
 use super::{Buffers, PixelPipeline};
 use crate::mapping::Mapping;
 use crate::raster::columns::{Picks, Triangles};
@@ -34,7 +34,7 @@ pub(super) struct Recorded {
 /// The levels of span `i`, the last being `last`.
 fn levels(spans: &Spans<'_>, i: usize, mapping: Option<Mapping>, last: u32) -> Vec<(Option<AffineLevel>, AffineLevel)> {
     if mapping == Some(Mapping::Affine) {
-        return Vec::from([(Some(spans.affine_level(i)), affine_texture(spans, i, Some(last)).1)]);
+        return Vec::from([(Some(spans.affine_level(i)), spans.corners(&spans.span(i)).affine_texture(Some(last)).1)]);
     }
     let of = |level: u32| AffineLevel { level, ..AffineLevel::default() };
     let at = |k: i32| (spans.level(i, k, last).map(of), of(exact_level(spans, i, k, last)));

@@ -185,13 +185,6 @@ impl<'a> Spans<'a> {
         self.listed.numbers.of(self.first + i, 2 + value.slot())
     }
 
-    /// Returns whether the list has the texture coordinates of all spans; otherwise there is a
-    /// single face.
-    #[inline(always)]
-    pub(super) fn have_texture(&self) -> bool {
-        self.listed.walked.is_none()
-    }
-
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {

@@ -11,13 +11,12 @@ use super::spans::Spans;
 use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
-use crate::raster::reference::level::{self, LevelPlane};
-use crate::raster::reference::quotient::Divisor;
-use crate::raster::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture, depth};
+use crate::raster::reference::level::LevelPlane;
+use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
-    AffineAlong, LevelTexels, Levels, PlacesAlong, Texels, Tint, fill_affine, perspective_along, singles_along,
+    AffineAlong, LevelTexels, PlacesAlong, Texels, Tint, fill_affine, perspective_along, singles_along,
 };
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
@@ -73,7 +72,7 @@ impl Spans<'_> {
     #[inline(never)]
     fn every_16(&self, image: Image<'_>, out: &mut [u8]) {
         let (all, last_level) = (image.all(), image.last());
-        let planes = |face: &FaceCorners<'_>| (perspective(face), (last_level > 0).then(|| level_plane(face)));
+        let planes = |face: &FaceCorners<'_>| (face.perspective_texture(), (last_level > 0).then(|| level_plane(face)));
         self.each(out, planes, |(plane, levels), span, pixels| {
             let (y, last) = (span.y, span.x + span.last());
             for (x, part) in (span.x..).step_by(EVERY as usize).zip(pixels.chunks_mut(EVERY as usize)) {
@@ -132,9 +131,6 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
-    if !spans.have_texture() {
-        return show_affine_levels_by(s, spans, Image { texels: image, levels: None }, tint, to);
-    }
     for i in 0..spans.count() {
         show_line(s, (spans, i), spans.affine_start(i), (image, tint), to);
     }
@@ -148,21 +144,10 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
-    let (has_texture, has_levels, all) = (spans.have_texture(), image.levels.is_some(), image.all());
-    // The only face, if the list has no coordinates.
-    let walked = (!has_texture && spans.count() > 0).then(|| affine_texture(spans, 0, image.levels.map(Levels::last)));
+    let (has_levels, all) = (image.levels.is_some(), image.all());
     for i in 0..spans.count() {
-        let (level, [start, step]) = match &walked {
-            Some((planes, level)) => {
-                let span = spans.span(i);
-                let at = |plane: &AffinePlane| [plane.start(span.x, span.y), plane.step() as u32];
-                // Wrapping is intended: texels repeat.
-                let [[u, du], [v, dv]] = planes.each_ref().map(at);
-                (*level, [[u, v], [du, dv]])
-            }
-            None if has_levels => (spans.affine_level(i), spans.affine_start(i)),
-            None => (AffineLevel::default(), spans.affine_start(i)),
-        };
+        let level = if has_levels { spans.affine_level(i) } else { AffineLevel::default() };
+        let [start, step] = spans.affine_start(i);
         let texels = all[level.level as usize % LEVELS];
         show_line(s, (spans, i), [level.of(start), level.of(step)], (texels, tint), to);
     }
@@ -196,11 +181,10 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
-    let has_sums = spans.have_texture();
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
-        show_part(s, (spans, i, 0, has_sums), (at, length), skipped as usize, (image, 0), tint, to);
+        show_part(s, (spans, i, 0), (at, length), skipped as usize, (image, 0), tint, to);
     }
 }
 
@@ -213,14 +197,14 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     to: &mut D,
 ) {
     const EVERY: usize = self::EVERY as usize;
-    let (texels, last_level, has_sums) = (image.all(), image.last(), spans.have_texture());
+    let (texels, last_level) = (image.all(), image.last());
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         // At most 64, all of them.
         let (mut first, end, last) = (skipped as usize, skipped as usize + length, spans.last(i));
         let level_of_16 = |begin: usize| {
             let k = middle(begin as i32, last);
-            let estimated = if HAS_F64 && has_sums { spans.level(i, k, last_level) } else { None };
+            let estimated = if HAS_F64 { spans.level(i, k, last_level) } else { None };
             match estimated {
                 _ if last_level == 0 => 0,
                 Some(level) => level,
@@ -237,19 +221,18 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
                     level = level_of_16(next);
                 }
             }
-            let (place, n) = ((spans, i, before as u32, has_sums), next.min(end) - first);
+            let (place, n) = ((spans, i, before as u32), next.min(end) - first);
             show_part(s, place, (at + before, n), first, (texels[shown as usize % LEVELS], shown), tint, to);
             first += n;
         }
     }
 }
 
-/// Draws texels of a level in a span from its pixel `first` on, linear on the face. The list may
-/// have sums for it.
+/// Draws texels of a level in a span from its pixel `first` on, linear on the face.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     s: S,
-    (spans, i, before, has_sums): (&Spans<'_>, usize, u32, bool),
+    (spans, i, before): (&Spans<'_>, usize, u32),
     (at, length): (usize, usize),
     first: usize,
     image: LevelTexels<'_>,
@@ -261,23 +244,12 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
     // At most 64.
     let along = &mut tint.begin(s, spans.values::<T>(i, first as u32));
-    if !IS_COMPACT
-        && has_sums
-        && let Some(sums) = spans.singles(i)
-    {
+    if !IS_COMPACT && let Some(sums) = spans.singles(i) {
         let places = singles_along(s, image, sums, first, exact);
         to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
         return;
     }
-    let sums = match has_sums {
-        true => Some(spans.sums(i)),
-        false if HAS_F64 => {
-            let span = spans.span(i);
-            Some(perspective_texture(spans, i).sums(span.x, span.y))
-        }
-        false => None,
-    };
-    let places = perspective_along(s, image, sums, (first, first + length), exact);
+    let places = perspective_along(s, image, spans.sums(i), (first, first + length), exact);
     to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
 }
 
@@ -288,7 +260,7 @@ pub(super) fn exact_level(spans: &Spans<'_>, i: usize, k: i32, last: u32) -> u32
     let span = spans.span(i);
     let face = spans.corners(&span);
     // Below 64.
-    level_at(&perspective(&face), &level_plane(&face), span.x + k, span.y, last)
+    level_at(&face.perspective_texture(), &level_plane(&face), span.x + k, span.y, last)
 }
 
 /// The indices of eight texels of span `i`, from its pixel `first` on, where its quotients cannot decide.
@@ -303,16 +275,16 @@ fn exact_eight(
 ) {
     let span = spans.span(i);
     // Quotients in f64, where those in f32 could not.
-    if HAS_F64 && !IS_COMPACT && spans.have_texture() {
+    if HAS_F64 && !IS_COMPACT {
         let (range, mut is_sure) = ((first, span.len.min(first + LANES)), true);
         let eight_in_f64 =
-            perspective_along(BASELINE, (texels, level), Some(spans.sums(i)), range, |_, _| is_sure = false).next();
+            perspective_along(BASELINE, (texels, level), spans.sums(i), range, |_, _| is_sure = false).next();
         if is_sure {
             BASELINE.store_i32(eight_in_f64, eight);
             return;
         }
     }
-    let plane = plane.get_or_insert_with(|| perspective_texture(spans, i));
+    let plane = plane.get_or_insert_with(|| spans.corners(&spans.span(i)).perspective_texture());
     for (place, k) in eight.iter_mut().zip(first..span.len) {
         // Below 64.
         let [u, v] = plane.at(span.x + k as i32, span.y).map(|coordinate| (coordinate >> level).cast_unsigned());
@@ -327,31 +299,13 @@ fn level_plane(face: &FaceCorners<'_>) -> LevelPlane {
     LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)])
 }
 
-fn perspective(face: &FaceCorners<'_>) -> PerspectiveTexture {
-    PerspectiveTexture::new(&face.triangle, [face.texture(0), face.texture(1)])
-}
-
-#[inline(never)]
-fn perspective_texture(spans: &Spans<'_>, i: usize) -> PerspectiveTexture {
-    perspective(&spans.corners(&spans.span(i)))
-}
-
-/// The coordinates of the face of span `i`, linear on the screen, and its level, if the image has levels up to this one.
-#[inline(never)]
-pub(super) fn affine_texture(spans: &Spans<'_>, i: usize, last: Option<u32>) -> ([AffinePlane; 2], AffineLevel) {
-    let face = spans.corners(&spans.span(i));
-    let area = Divisor::new(face.triangle.area());
-    let planes = [0, 1].map(|i| AffinePlane::new(&face.triangle, area, face.texture(i)));
-    let level = last.map(|last| level::of_face(&planes, area.get(), last));
-    (planes, level.unwrap_or_default())
-}
-
 #[cfg(all(test, feature = "std"))]
 mod tests {
+    use alloc::vec::Vec;
+
     use proptest::prelude::*;
 
     use super::*;
-    use alloc::vec::Vec;
 
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
@@ -363,9 +317,12 @@ mod tests {
     use crate::raster::pick::Pick;
     use crate::raster::reference::cover::SortedTriangle;
     use crate::raster::reference::depth::DepthPlane;
+    use crate::raster::reference::quotient::Divisor;
+    use crate::raster::reference::texture::AffinePlane;
     use crate::raster::reference::texture::exact;
     use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
+    use crate::span::texture::Levels;
     use crate::span::texture::PerspectiveSums;
 
     /// The definition in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.

@@ -4,7 +4,6 @@ use super::cover::SortedTriangle;
 use super::quotient::Divisor;
 use super::weights::{Weights, in_f64};
 use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
-use crate::span::texture::PerspectiveSums;
 
 /// The depth of a corner, at least 1.
 #[inline]
@@ -197,11 +196,18 @@ impl PerspectiveTexture {
         exact(self.weights.at(x, y), self.values[2])
     }
 
-    /// The numerators and their divisor from a pixel on, in f64.
-    pub(in crate::raster) fn sums(&self, x: i32, y: i32) -> PerspectiveSums<f64> {
+    /// The numerators and their divisor at a pixel, in f64; without f64, zeros.
+    pub(in crate::raster) fn sums(&self, x: i32, y: i32) -> [f64; 3] {
+        if !HAS_F64 {
+            return [0.0; 3];
+        }
         let at = in_f64(self.weights.at(x, y));
-        let [[u, v, d], [du, dv, dd]] = [self.estimated.map(|values| estimate(at, values)), self.steps];
-        PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base: [0; 2] }
+        self.estimated.map(|values| estimate(at, values))
+    }
+
+    /// The change of the [sums](Self::sums) from one pixel to the next.
+    pub(in crate::raster) fn steps(&self) -> [f64; 3] {
+        self.steps
     }
 
     /// The coordinates at a pixel, rounded down; 16.16.

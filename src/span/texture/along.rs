@@ -67,12 +67,11 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     }
 }
 
-/// [`show_along`] under the masks of [`depth_test`](super::depth_test), one for each block: the first one, and those after
-/// it.
+/// [`show_along`] under the masks of [`depth_test`](super::depth_test), one for each block.
 #[inline(always)]
 pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     s: S,
-    (row, first, after): (&mut [u8], u64, &[u64]),
+    (row, masks): (&mut [u8], &[u64]),
     texels: Texels<'_>,
     (tint, along): (T, &mut T::Along<S>),
     mut places: impl PlacesAlong<S>,
@@ -81,8 +80,8 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     if texels.bytes.is_empty() {
         return;
     }
-    let (mut rest, mut stays, mut after) = (row, first, after.iter());
-    loop {
+    let mut rest = row;
+    for &stays in masks {
         if rest.len() < LANES {
             // At the frame's end.
             let rows = tint.rows(s, along, &[0; LANES]);
@@ -92,9 +91,9 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
                     *pixel = texel(tint, rows, places, (texels, texels.bytes.len() - 1), k % LANES);
                 }
             }
-            return;
+            break;
         }
-        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
+        let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
         rest = behind;
         if stays == u64::MAX {
             tint.rows(s, along, block);
@@ -102,8 +101,6 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         } else {
             show_block(s, (block, stays), texels, (tint, along), &mut places);
         }
-        let Some(&next) = after.next() else { return };
-        stays = next;
     }
 }
 
@@ -121,18 +118,17 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
         return;
     }
     let image = (texels, texels.bytes.len() - 1);
-    let next = places.next();
     // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case
     // extracts its own lanes: all of them, extracted up front, would not fit into the registers.)
     if stays == 0 && !IS_COMPACT {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(next));
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
         let mut k = 0;
         while k < LANES {
             block[k] = texel(tint, rows, places, image, k);
             k += 1;
         }
     } else if stays >> 32 == u64::from(u32::MAX) {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(next));
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
         let Some(four) = block.first_chunk_mut() else { return };
         // The lower half.
         let stay = stays as u32;
@@ -144,7 +140,7 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
         ]);
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     } else {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(next));
+        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
         let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
         *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }

@@ -88,7 +88,7 @@ fn fill_perspective_estimated(
                 *place = exact_place(texels, [u, v], d) as i32;
             }
         };
-        let places = perspective_along(BASELINE, (texels, 0), Some(sums), (0, n), exact);
+        let places = perspective_along(BASELINE, (texels, 0), sums, (0, n), exact);
         show_along(BASELINE, (piece, n), texels, ((), &mut ()), places);
     }
 }
@@ -114,20 +114,19 @@ impl PerspectiveSums<f64> {
 }
 
 /// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by
-/// [`Quotients`], if there are sums to begin with. Where a quotient cannot decide, `exact` stores the indices of
+/// [`Quotients`]. Where a quotient cannot decide, `exact` stores the indices of
 /// eight texels, from the one with this number on.
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
     s: S,
     texels: LevelTexels<'_>,
-    sums: Option<PerspectiveSums<f64>>,
+    sums: PerspectiveSums<f64>,
     range: (usize, usize),
     exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl PlacesAlong<S> {
-    let has_sums = sums.is_some();
-    let sums = sums.unwrap_or(PerspectiveSums::NONE);
+    let sums = if HAS_F64 { sums } else { PerspectiveSums::NONE };
     let mut quotients = Quotients::new(s, texels, &sums, range.1);
-    quotients.are_sure &= has_sums;
+    quotients.are_sure &= HAS_F64;
     // At most 64.
     let numbers = s.add_i32(s.splat_i32(range.0 as i32), s.load_i32(&NUMBERS));
     PerspectiveAlong { places: quotients.places, quotients, numbers, first: range.0, exact }
