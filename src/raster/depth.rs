@@ -14,6 +14,9 @@ pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],
     width: u32,
     first_row: u32,
+    /// What is added to depths before they are compared and stored, so that all that `values` hold is farther: 0, or
+    /// chosen by [`DepthMemory`].
+    pub(super) base: u32,
 }
 
 impl<'a, D: Cell> DepthBuffer<'a, D> {
@@ -27,7 +30,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
         let needed = frame.width() as usize * (rows.end - rows.start) as usize;
         let given = values.len();
         match values.get_mut(..needed) {
-            Some(values) => Ok(Self { values, width: frame.width(), first_row: rows.start }),
+            Some(values) => Ok(Self { values, width: frame.width(), first_row: rows.start, base: 0 }),
             None => Err(RasterError::Depths { given, needed }),
         }
     }
@@ -83,6 +86,88 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     }
 }
 
+/// Cells of a depth buffer for one frame after the other, which are cleared in one frame of three.
+///
+/// Depths are at most 2³⁰, a quarter of what a cell can hold. So the second frame after a clear adds 2³⁰ to its depths,
+/// and the third adds 2³¹: whatever the frames before it have stored is farther than all that it draws.
+///
+/// ```
+/// use mode13h::raster::{DepthMemory, Frame, Interpolation, Raster, Vertex};
+///
+/// let mut bytes = [0; 32 * 32];
+/// let mut depths = DepthMemory::new();
+/// for shade in [10.0, 20.0, 30.0, 40.0] {
+///     let frame = Frame::new(&mut bytes, 32, 32, 32)?;
+///     let mut raster = Raster::new(frame).with_depth_memory(&mut depths);
+///     // Each is farther away than the one of the frame before.
+///     let corner = |x, y| Vertex::at(x, y, shade).with_depth(1_000 - shade as u32);
+///     raster.triangle(&[corner(0.0, 0.0), corner(31.0, 0.0), corner(0.0, 31.0)], Interpolation::Gouraud);
+/// }
+/// assert_eq!(bytes[0], 40);
+/// # Ok::<(), mode13h::raster::RasterError>(())
+/// ```
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug, Default)]
+pub struct DepthMemory {
+    cells: alloc::vec::Vec<u32>,
+    /// The columns and the rows of the frame whose depths they hold.
+    shape: (u32, core::ops::Range<u32>),
+    /// What the current frame adds to its depths.
+    base: u32,
+    /// A rectangle that holds every pixel drawn since the last clear.
+    drawn: Rect,
+}
+
+#[cfg(feature = "alloc")]
+impl DepthMemory {
+    /// The number of depths that a frame can have: 1 to 2³⁰.
+    const DEPTHS: u32 = 1 << 30;
+    /// The base of the last frame before a clear. One more would overflow for a depth of 2³⁰.
+    const LAST_BASE: u32 = 2 * Self::DEPTHS;
+
+    /// No cells: the first frame allocates them.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { cells: alloc::vec::Vec::new(), shape: (0, 0..0), base: 0, drawn: Rect::NOWHERE }
+    }
+
+    /// The memory that it has allocated, in bytes.
+    pub(crate) fn capacity(&self) -> usize {
+        self.cells.capacity() * size_of::<u32>()
+    }
+
+    /// The depth buffer of the next frame, as if cleared. Nothing may be drawn outside `within`, and no depth may be 0
+    /// or above 2³⁰, unless `within` is [`Rect::EVERYWHERE`].
+    pub(super) fn next(&mut self, frame: &Frame<'_>, within: Rect) -> Option<DepthBuffer<'_>> {
+        let shape = (frame.width(), frame.rows());
+        let is_bounded = within != Rect::EVERYWHERE;
+        let within = within.intersection(frame.bounds());
+        if shape != self.shape {
+            self.cells.clear();
+            self.cells.resize(shape.0 as usize * (shape.1.end - shape.1.start) as usize, 0);
+            (self.shape, self.base, self.drawn) = (shape, 0, Rect::NOWHERE);
+        } else if is_bounded && self.base < Self::LAST_BASE {
+            self.base += Self::DEPTHS;
+        } else {
+            let mut buffer = DepthBuffer::new(&mut self.cells, frame).ok()?;
+            if !self.drawn.is_empty() {
+                buffer.clear_within(self.drawn);
+            }
+            (self.base, self.drawn) = (0, Rect::NOWHERE);
+        }
+        if !within.is_empty() {
+            self.drawn = self.drawn.hull(within);
+        }
+        let mut buffer = DepthBuffer::new(&mut self.cells, frame).ok()?;
+        buffer.base = self.base;
+        if !is_bounded {
+            // Its depths may be anything, so the next frame clears.
+            self.base = Self::LAST_BASE;
+        }
+        Some(buffer)
+    }
+}
+
 #[cfg(all(test, feature = "std"))]
 mod tests {
     use super::*;
@@ -100,6 +185,20 @@ mod tests {
                 let is_inside = (x0..x1).contains(&x) && (4..6).contains(&y);
                 assert_eq!(value == 0, is_inside, "{x}, {y}");
             }
+        }
+    }
+
+    /// After a frame whose depths may be anything, the nearest included, the next one is cleared.
+    #[test]
+    fn a_frame_of_any_depths_hides_nothing_of_the_next() {
+        let mut memory = DepthMemory::new();
+        let mut pixels = [0_u8; 4];
+        for within in [Rect::EVERYWHERE, Rect { x0: 0, y0: 0, x1: 2, y1: 2 }].repeat(4) {
+            let frame = Frame::new(&mut pixels, 2, 2, 2).unwrap();
+            let buffer = memory.next(&frame, within).unwrap();
+            let nearest = if within == Rect::EVERYWHERE { u32::MAX } else { buffer.base + DepthMemory::DEPTHS };
+            assert!(buffer.values.iter().all(|value| *value <= buffer.base), "{:?} is not cleared", buffer);
+            buffer.values.fill(nearest);
         }
     }
 }

@@ -68,6 +68,8 @@ pub(crate) mod vertex;
 pub(crate) mod vintage;
 
 pub use depth::DepthBuffer;
+#[cfg(feature = "alloc")]
+pub use depth::DepthMemory;
 pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;

@@ -54,6 +54,8 @@ pub(super) struct FrameLayout {
     pub(super) pitch: u32,
     /// Cells of the depth buffer from one row to the next.
     pub(super) width: u32,
+    /// What is added to depths: [`DepthBuffer::base`](super::depth::DepthBuffer).
+    pub(super) depth_base: u32,
 }
 
 pub(super) type Floats = [f64; LANES];
@@ -364,7 +366,8 @@ impl TriangleSetup8 {
             // The plane goes through the first corner by (y, x).
             let is_second = s.and(s.is_equal(y0, y1), s.is_greater(x0, x1));
             let (x, d) = (s.select_i32(is_second, x1, x0), s.select_i32(is_second, d1, d0));
-            let z = s.add_i64(s.shl_i64(s.unsigned_to_i64(d), 24), s.splat_i64(1 << 23));
+            let moved = (i64::from(layout.depth_base) << 24) + (1 << 23);
+            let z = s.add_i64(s.shl_i64(s.unsigned_to_i64(d), 24), s.splat_i64(moved));
             let z = s.sub_i64(z, s.mul_i64(gx, s.to_i64(x)));
             let z = s.sub_i64(z, s.mul_i64(gy, s.to_i64(y0)));
             s.store_i64(s.shl_i64(z, 8), &mut self.z);
@@ -488,7 +491,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         /// Depths and steps equal those of the plane computed in integers, to the bit, at every level.
         #[test]
-        fn eight_planes_are_each_its_own(triangles in prop::collection::vec(triangle(), LANES), width in 1_u32..=4_096) {
+        fn eight_planes_are_each_its_own(triangles in prop::collection::vec(triangle(), LANES), width in 1_u32..=4_096, depth_base in prop_oneof![Just(0), any::<u32>()]) {
             let mut corners = Corners8::NONE;
             for (lane, of_triangle) in triangles.iter().enumerate() {
                 for (corner, &(x, y, d)) in of_triangle.iter().enumerate() {
@@ -496,7 +499,7 @@ mod tests {
                     corners.depth[corner][lane] = d.cast_signed();
                 }
             }
-            let layout = FrameLayout { first_row: 3, pitch: width + 5, width };
+            let layout = FrameLayout { first_row: 3, pitch: width + 5, width, depth_base };
             for kernel in Kernel::available() {
                 let mut setup = TriangleSetup8::NONE;
                 set_up(kernel.simd_level(), &mut setup, &corners, layout);
@@ -506,7 +509,7 @@ mod tests {
                         prop_assert_eq!(setup.rows[lane], 0);
                         continue;
                     }
-                    let plane = DepthPlane::of_corners(*corners);
+                    let plane = DepthPlane::of_corners(*corners).raised_by(depth_base);
                     let (column, row) = (setup.column[lane], setup.row[lane]);
                     prop_assert_eq!(setup.cell[lane], (row - 3) * width as i32 + column);
                     for j in 0..=MAX_ROWS {

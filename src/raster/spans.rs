@@ -100,7 +100,8 @@ impl<D: Cell> Raster<'_, D> {
             }
         };
         let level = self.kernel.simd_level();
-        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width };
+        let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
+        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width, depth_base };
         let (mut first, count) = (0, picks.picks.len());
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
@@ -274,7 +275,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                 continue;
             }
             if DEPTHS {
-                setup.put_depth_plane(i, &of.depth_plane(pick));
+                setup.put_depth_plane(i, &of.depth_plane(pick).raised_by(layout.depth_base));
             }
             shades.set_up_large(i, &setup);
             let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);

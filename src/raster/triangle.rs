@@ -1,5 +1,7 @@
 //! One triangle, from three vertices to bytes.
 
+#[cfg(feature = "alloc")]
+use super::depth::DepthMemory;
 use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::{Frame, Rect};
@@ -42,22 +44,22 @@ impl<'a> Raster<'a> {
         Raster { frame, clip, depth, kernel }
     }
 
-    /// Draws with its own depth buffer in `values`, which grows as needed and is cleared only in
-    /// `within`. Nothing may be drawn outside `within`, where `values` are not touched.
+    /// Draws with the next depth buffer of `memory`, as if cleared. Depths must be from 1 to 2³⁰, as those of a
+    /// camera's vertices are: a depth of 0 or above 2³⁰ can be hidden by what earlier frames drew, or show through it.
+    /// So can [`Interpolation::GouraudVintage`], which draws beyond the edges of a triangle.
     #[cfg(feature = "alloc")]
     #[must_use]
-    pub(crate) fn with_depth_cleared_within(self, values: &'a mut alloc::vec::Vec<u32>, within: Rect) -> Raster<'a> {
-        let (width, rows) = (self.frame.width() as usize, self.frame.rows());
-        values.resize(width * (rows.end - rows.start) as usize, 0);
-        let within = within.intersection(self.frame.bounds());
+    pub fn with_depth_memory(self, memory: &'a mut DepthMemory) -> Raster<'a> {
+        let bounds = self.frame.bounds();
+        self.with_depth_memory_within(memory, bounds)
+    }
+
+    /// Draws with the next depth buffer of `memory`, and nothing outside `within`. With [`Rect::EVERYWHERE`] depths may
+    /// be anything.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn with_depth_memory_within(self, memory: &'a mut DepthMemory, within: Rect) -> Raster<'a> {
         let Self { frame, clip, depth: _, kernel } = self;
-        // Long enough, by the line above.
-        let mut depth = DepthBuffer::new(values, &frame).ok();
-        if let Some(depth) = &mut depth
-            && !within.is_empty()
-        {
-            depth.clear_within(within);
-        }
+        let depth = memory.next(&frame, within);
         Raster { frame, clip, depth, kernel }
     }
 
@@ -139,8 +141,9 @@ impl<'a, D: Cell> Raster<'a, D> {
             let Some(depth) = depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
             };
+            let base = depth.base;
             let Some(depths) = depth.row_mut(y) else { return };
-            let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle));
+            let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle).raised_by(base));
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         };
         triangle.rows(width, clip, draw);
@@ -165,8 +168,9 @@ impl<'a, D: Cell> Raster<'a, D> {
             let Some(depth) = &mut self.depth else {
                 return paint.row(&row, pixels, self.kernel, &mut drawn);
             };
+            let base = depth.base;
             let Some(depths) = depth.row_mut(y) else { return };
-            let plane = plane.get_or_insert_with(|| DepthPlane::new(triangle));
+            let plane = plane.get_or_insert_with(|| DepthPlane::new(triangle).raised_by(base));
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         });
         drawn

@@ -14,13 +14,13 @@ use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::scan_line::Lists;
 use crate::raster::spans::SpanScratch;
-use crate::raster::{DrawStats, Frame, Interpolation, Raster, Vertex};
+use crate::raster::{DepthMemory, DrawStats, Frame, Interpolation, Raster, Vertex};
 use crate::scene::Scene;
 
 /// Memory for drawing, whose contents between two frames do not matter.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    depths: Vec<u32>,
+    depths: DepthMemory,
     spans: SpanScratch,
     effects: EffectScratch,
     pick: PickScratch,
@@ -41,7 +41,7 @@ pub(super) struct Scratch {
 impl Scratch {
     /// Its size in bytes.
     pub(super) fn bytes(&self) -> usize {
-        self.depths.capacity() * 4
+        self.depths.capacity()
             + self.effects.bytes()
             + self.pick.bytes()
             + self.integer.bytes()
@@ -173,7 +173,7 @@ impl Renderer {
         let mut raster = Raster::new(frame).with_kernel(*kernel);
         let method = cache.plan.hidden_surfaces();
         if method == HiddenSurfaces::DepthBuffer {
-            raster = raster.with_depth_cleared_within(depths, cache.plan.seen);
+            raster = raster.with_depth_memory_within(depths, cache.plan.seen);
         }
         let deferred = match method {
             HiddenSurfaces::BackFaces | HiddenSurfaces::DepthBuffer => false,

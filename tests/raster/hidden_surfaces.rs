@@ -6,7 +6,8 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::U8F8;
 use mode13h::internals::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
-use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::raster::{DepthBuffer, DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
@@ -177,6 +178,44 @@ fn too_little_memory_is_refused_before_anything_is_drawn() {
             DrawStats::default()
         });
         assert!(bytes.iter().all(|byte| *byte == Sheet::EMPTY));
+    }
+}
+
+/// Frames that share a depth memory are those drawn with cleared depths, whatever was drawn before them, one by one and
+/// as lists, from the nearest depth to the farthest, also where sizes change.
+#[test]
+fn a_depth_memory_is_as_good_as_cleared() {
+    let mut random = Random::named("depth memory");
+    for kernel in Kernel::available() {
+        let mut memory = DepthMemory::new();
+        let mut cleared: Vec<u32> = Vec::new();
+        let mut size = (97, 60);
+        for number in 0..300 {
+            if random.within(0, 9) == 0 {
+                size = random.one_of(&[(97, 60), (60, 97), (33, 20), (640, 480)]);
+            }
+            // A frame may be far behind the one before it.
+            let depths = random.one_of(&[(1, 1), (1, 40), (1, 1 << 30), ((1 << 30) - 40, 1 << 30), (1 << 30, 1 << 30)]);
+            let faces: Vec<[Vertex; 3]> = (0..random.within(0, 12))
+                .map(|_| {
+                    let vertices = triangle(&mut random, size.0.into(), size.1.into());
+                    vertices.map(|vertex| vertex.with_depth(random.within(depths.0, depths.1) as u32))
+                })
+                .collect();
+            let exact = |shading: &Interpolation| shading.has_exact_cover();
+            let interpolation = Some(random.one_of(Interpolation::INTERPOLATED)).filter(exact).unwrap_or_default();
+            let as_list = random.within(0, 1) == 0;
+            let draw = |mut raster: Raster<'_>| {
+                if as_list {
+                    return raster.triangles(faces.iter().map(|face| (face, interpolation)));
+                }
+                in_turn(raster, &faces.iter().map(|face| (*face, interpolation)).collect::<Vec<_>>())
+            };
+            let sheet = Sheet::new(size.0, size.1);
+            let shared = sheet.draw(|raster| draw(raster.with_kernel(kernel).with_depth_memory(&mut memory)));
+            let alone = sheet.draw(|raster| draw(raster.with_kernel(kernel).with_cleared_depth(&mut cleared)));
+            assert!(shared == alone, "frame {number}, {kernel}, {size:?}, {depths:?}, {interpolation:?}");
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
-use mode13h::settings::HiddenSurfaces;
+use mode13h::settings::{HiddenSurfaces, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -281,5 +281,39 @@ fn a_model_of_your_own() {
             assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");
             tried.add(1);
         }
+    }
+}
+
+/// A renderer clears depths in one frame of three: bars that jump about, and shadings and frames that change, give the
+/// bytes of a new renderer.
+#[test]
+fn depths_of_earlier_frames_hide_nothing() {
+    let mut random = Random::named("depths of earlier frames");
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    let mut scene = bars();
+    for number in 0..120 {
+        let place = [(); 3].map(|()| random.within(-14, 14) as f32);
+        let degrees = random.within(0, 359) as f64;
+        for object in scene.objects_mut() {
+            // Far away it has lower depths than nearer ones of frames before it.
+            object.position = Vec3::new(place[0], place[1], place[2] * random.one_of(&[1.0, 1.0, 20.0]));
+            object.angles = [0.0, degrees.to_radians(), 0.0].map(Angle::from_radians);
+        }
+        let shading = match random.within(0, 5) {
+            0 => Some(Shading::GouraudVintage),
+            1 => Some(Shading::Phong),
+            _ => None,
+        };
+        let path = (random.within(0, 7) == 0).then_some(VertexPath::Integer);
+        let mut fresh = Renderer::new();
+        for renderer in [&mut renderer, &mut fresh] {
+            renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+            renderer.settings.accuracy = shading.map(Into::into);
+            renderer.settings.vertex_path = path;
+        }
+        let mut alone = Vga::new();
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        fresh.draw(&scene, &mut alone).expect("a legal scene");
+        assert!(vga.pixels() == alone.pixels(), "frame {number}, {shading:?}, {path:?}");
     }
 }

@@ -4,7 +4,7 @@ use mode13h::internals::raster::effects::{
     Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource, TextureStage,
 };
 use mode13h::internals::span::texture::Texels;
-use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
+use mode13h::raster::{DepthMemory, Frame, Interpolation, Raster, Vertex};
 use mode13h::settings::Mapping;
 use mode13h::span::Kernel;
 
@@ -22,27 +22,22 @@ fn interpolation(vertices: &[Vertex; 3], drawing: Drawing) -> Interpolation {
 /// A frame and, if the drawing has one, its depth buffer.
 struct Target {
     bytes: Vec<u8>,
-    depths: Option<Vec<u32>>,
+    depths: Option<DepthMemory>,
     kernel: Kernel,
 }
 
 impl Target {
     fn new(drawing: Drawing, kernel: Kernel) -> Self {
-        let depths = drawing.has_depth().then(|| vec![0; WIDTH * HEIGHT]);
+        let depths = drawing.has_depth().then(DepthMemory::new);
         Self { bytes: vec![0; WIDTH * HEIGHT], depths, kernel }
     }
 
-    /// The raster, with its depths cleared.
+    /// The raster, with its depths as if cleared.
     fn raster(&mut self) -> Raster<'_> {
         let frame = Frame::new(&mut self.bytes, WIDTH as u32, HEIGHT as u32, WIDTH).expect("a legal frame");
-        let depth = self.depths.as_mut().map(|depths| {
-            let mut depth = DepthBuffer::new(depths, &frame).expect("as long as the frame");
-            depth.clear();
-            depth
-        });
         let raster = Raster::new(frame).with_kernel(self.kernel);
-        match depth {
-            Some(depth) => raster.with_depth(depth),
+        match &mut self.depths {
+            Some(depths) => raster.with_depth_memory(depths),
             None => raster,
         }
     }

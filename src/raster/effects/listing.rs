@@ -5,9 +5,9 @@
 //! first covered pixel inside the frame, so every value is exact at its first pixel. A clip rectangle may hide its
 //! first pixels, but changes no byte of the others.
 //!
-//! The start and step of a linear value are in a column beside the list. Starts of texture coordinates, depths and
-//! light are computed by the stage that needs them, from the planes that set-up leaves for eight faces and the span's
-//! [`Mark`].
+//! Texture coordinates are in the list, and the start and step of a linear value in a column beside it. Shades that are
+//! linear on the face, and light at every pixel, are computed by the stage that needs them, from the planes that set-up
+//! leaves for eight faces and the span's [`Mark`].
 
 use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
@@ -409,7 +409,7 @@ impl<'a> EffectSpans<'a> {
     }
 
     /// Begins face `k`, whose rows are added one by one.
-    pub(super) fn walk(&mut self, k: usize) -> SortedTriangle {
+    pub(super) fn walk(&mut self, k: usize, depth_base: u32) -> SortedTriangle {
         let corners = self.listed.faces.corners(k);
         let triangle = corners.triangle;
         let Wanted { texture, last_level, .. } = self.listed.wanted;
@@ -431,7 +431,7 @@ impl<'a> EffectSpans<'a> {
         self.listed.walked = Some(WalkedFace {
             face: corners.face,
             shade: ShadePlane::of_values(&triangle, triangle.shades()),
-            depth: DepthPlane::new(&triangle),
+            depth: DepthPlane::new(&triangle).raised_by(depth_base),
             values: self.listed.wanted.values.map(|value| {
                 let value = value?;
                 Some(ShadePlane::of_values(&triangle, corners.value(value)))

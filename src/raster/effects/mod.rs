@@ -133,7 +133,7 @@ impl EffectScratch {
         list.begin((pixels.len(), 0), (pixels.len(), 0));
         let mut target = Target { pixels, cells: None, kernel };
         let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers);
-        spans.walk(k);
+        spans.walk(k, 0);
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
         let (spans, covered, _) = list.counts();
@@ -354,7 +354,8 @@ impl<D: Cell> Raster<'_, D> {
         let Some((list, columns)) = lists.first_mut() else { return DrawStats::default() };
         let (width, rows, clip, kernel) = (self.frame.width(), self.frame.rows(), self.clip, self.kernel);
         let (_, pitch) = self.frame.pixels_mut();
-        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width };
+        let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
+        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width, depth_base };
         let fits = self.fits_lists();
         let mut drawn = DrawStats::default();
         let mut first = 0;
@@ -391,9 +392,9 @@ impl<D: Cell> Raster<'_, D> {
     fn walk(&mut self, (spans, list): (&mut EffectSpans<'_>, &mut SpanList), k: usize) -> DrawStats {
         let (width, clip, kernel) = (self.frame.width(), self.clip, self.kernel);
         let mut depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-        let has_depth = depth.is_some();
+        let (has_depth, depth_base) = (depth.is_some(), depth.as_ref().map_or(0, |depth| depth.base));
         let (mut count, mut covered, mut nearer) = (0, 0, 0);
-        spans.walk(k).rows(width, clip, |row: Row| {
+        spans.walk(k, depth_base).rows(width, clip, |row: Row| {
             // A row of the frame, so not negative.
             let y = row.y as u32;
             covered += (row.x1 - row.x0) as u32;

@@ -117,7 +117,7 @@ compiled_for_each_level! {
 #[inline(always)]
 fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
     // All rows share the same pixels.
-    let layout = FrameLayout { first_row: 0, pitch: 0, width: 0 };
+    let layout = FrameLayout { first_row: 0, pitch: 0, width: 0, depth_base: 0 };
     let mut pixels = [0; 4_096];
     let target = &mut Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
     draw_triangles::<S, _, true, true>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans

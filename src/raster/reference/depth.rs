@@ -76,6 +76,13 @@ impl DepthPlane {
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 
+    /// The plane with `base` added to its depths, modulo 2³².
+    #[must_use]
+    #[inline]
+    pub(in crate::raster) fn raised_by(self, base: u32) -> Self {
+        Self { origin: self.origin.wrapping_add(i64::from(base) << 24), ..self }
+    }
+
     /// The depth at pixel (`x`, `y`), whose centre lies in the triangle.
     #[must_use]
     #[inline]
