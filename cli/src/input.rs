@@ -119,13 +119,14 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
         (Box::new(standard_input().map_err(failed)?), PathBuf::from("standard input"))
     } else if has_extension(path, "gz") {
-        (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.with_extension(""))
+        (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.to_owned())
     } else {
         return Ok(None);
     };
     let mut bytes = model_file::unpacked(bytes).map_err(failed)?;
-    let is_scene = match has_extension(&name, "toml") || Format::of_path(&name).is_some() {
-        true => has_extension(&name, "toml"),
+    let is_toml = has_extension(unpacked_name(&name), "toml");
+    let is_scene = match is_toml || Format::of_path(&name).is_some() {
+        true => is_toml,
         false => {
             let mut all = Vec::new();
             bytes.read_to_end(&mut all).map_err(failed)?;
@@ -175,9 +176,13 @@ pub(crate) fn name_of(words: &OsStr) -> String {
     if words == "-" || words == "/dev/stdin" {
         return "stdin".into();
     }
-    let unpacked = Path::new(words).file_stem().filter(|_| has_extension(Path::new(words), "gz"));
-    let words = unpacked.unwrap_or(words);
-    Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned()
+    let words = unpacked_name(Path::new(words));
+    words.file_stem().unwrap_or(words.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The name of what a file contains: without `.gz`, if it ends so.
+fn unpacked_name(path: &Path) -> &Path {
+    path.file_stem().filter(|_| has_extension(path, "gz")).map_or(path, Path::new)
 }
 
 /// The scene or the model in a file or with a name; if both have that name, the scene. Warnings go to standard error, a
@@ -369,6 +374,9 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
     }
     let path = Path::new(words);
     let shown = path.display();
+    if words == AUTO && !path.exists() {
+        return Err(Failure::words("auto is a palette made for a model; mode13h palette --from MODEL shows it"));
+    }
     let palette = palette_file::load(path).map_err(|error| match &error.kind {
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::NotFound => {
             let names = palette_names();

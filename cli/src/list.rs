@@ -9,6 +9,7 @@ use mode13h_assets::shipped;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::options::default_kernel;
 use crate::{output, palette};
 
 #[derive(Args)]
@@ -36,14 +37,17 @@ enum What {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { what, json } = *options;
     if json {
-        let mut list = as_json(what);
+        let mut list = as_json(what)?;
         list["schema"] = output::SCHEMA.into();
         return output::print_json(&list);
     }
     output::print(&match what {
         What::Shadings => table(Shading::ALL.map(|shading| (shading.name(), shading_line(shading)))),
         What::Palettes => table(builtin::ALL.iter().map(|builtin| (builtin.name, palette::summary(builtin)))),
-        What::Kernels => table(Kernel::available().map(|kernel| (kernel.name(), kernel_line(kernel).to_string()))),
+        What::Kernels => {
+            let default = default_kernel()?;
+            table(Kernel::available().map(|kernel| (kernel.name(), kernel_line(kernel, default).to_string())))
+        }
         What::Scenes => {
             let scenes = table(shipped::ALL.iter().map(|scene| (scene.name, scene.shows().to_string())));
             format!("{scenes}\nshapes: {}\n", shapes::NAMES.join(", "))
@@ -51,8 +55,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     })
 }
 
-fn as_json(what: What) -> Value {
-    match what {
+fn as_json(what: What) -> Result<Value, Failure> {
+    Ok(match what {
         What::Shadings => {
             let one = |shading: Shading| {
                 let is_default = shading == Shading::default();
@@ -65,14 +69,15 @@ fn as_json(what: What) -> Value {
             json!({ "palettes": builtin::ALL.iter().map(one).collect::<Vec<_>>() })
         }
         What::Kernels => {
-            let one = |kernel: Kernel| json!({ "name": kernel.name(), "default": is_default(kernel) });
+            let default = default_kernel()?;
+            let one = |kernel: Kernel| json!({ "name": kernel.name(), "default": kernel == default });
             json!({ "kernels": Kernel::available().map(one).collect::<Vec<_>>() })
         }
         What::Scenes => {
             let one = |scene: &shipped::Shipped| json!({ "name": scene.name, "shows": scene.shows() });
             json!({ "scenes": shipped::ALL.iter().map(one).collect::<Vec<_>>(), "shapes": shapes::NAMES })
         }
-    }
+    })
 }
 
 /// A line for each name, with its description in a column of its own.
@@ -89,12 +94,13 @@ fn shading_line(shading: Shading) -> String {
     }
 }
 
-fn is_default(kernel: Kernel) -> bool {
-    kernel.name() == Kernel::default().name()
-}
-
-fn kernel_line(kernel: Kernel) -> &'static str {
-    if is_default(kernel) { "the fastest here, and so the default" } else { "" }
+fn kernel_line(kernel: Kernel, default: Kernel) -> &'static str {
+    match (kernel == Kernel::default(), kernel == default) {
+        (true, true) => "the fastest here, and so the default",
+        (true, false) => "the fastest here",
+        (false, true) => "the default, by MODE13H_KERNEL",
+        (false, false) => "",
+    }
 }
 
 /// How a shading computes the shade of a pixel.

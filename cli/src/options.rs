@@ -28,6 +28,17 @@ pub(crate) use shading::{ShadingOptions, pace};
 /// The environment variable that stands in for `--kernel`. The library reads none.
 const KERNEL_VARIABLE: &str = "MODE13H_KERNEL";
 
+/// The kernel that draws unless `--kernel` names another.
+pub(crate) fn default_kernel() -> Result<Kernel, Failure> {
+    match std::env::var_os(KERNEL_VARIABLE) {
+        Some(name) if !name.is_empty() => {
+            let name = name.to_string_lossy();
+            name.parse::<Kernel>().map_err(|error| Failure::words(format!("{KERNEL_VARIABLE}={name}: {error}")))
+        }
+        _ => Ok(Kernel::default()),
+    }
+}
+
 /// What is drawn, and how, except for the shading. The scene decides what the options leave open, and the library what
 /// the scene does.
 #[derive(Args, Clone)]
@@ -224,13 +235,23 @@ impl Drawing {
         if let Some(kernel) = self.pipeline.kernel {
             return Ok(kernel);
         }
-        match std::env::var_os(KERNEL_VARIABLE) {
-            Some(name) if !name.is_empty() => {
-                let name = name.to_string_lossy();
-                name.parse::<Kernel>().map_err(|error| Failure::words(format!("{KERNEL_VARIABLE}={name}: {error}")))
-            }
-            _ => Ok(Kernel::default()),
-        }
+        default_kernel()
+    }
+
+    /// The options given that say nothing to a program for DOS, which draws by the integer path of its own.
+    pub(crate) fn ignored_by_dos(&self) -> Vec<&'static str> {
+        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, kernel, .. } = &self.pipeline;
+        [
+            ("--hidden-surfaces", hidden_surfaces.is_some()),
+            ("--mapping", mapping.is_some()),
+            ("--mipmaps", *mipmaps),
+            ("--no-mipmaps", *no_mipmaps),
+            ("--arithmetic", *arithmetic == Some(VertexPath::Float)),
+            ("--kernel", kernel.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(name, is_given)| is_given.then_some(name))
+        .collect()
     }
 
     /// Reads INPUT as was asked for.

@@ -54,12 +54,12 @@ pub(crate) fn noting<T>(read: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
 /// Records that a file is read.
 pub(crate) fn add(path: &Path) {
     NOTED.with_borrow_mut(|noted| noted.iter_mut().for_each(|noted| noted.push(path.to_path_buf())));
-    note(path, "read");
+    note(path, "an input");
 }
 
 /// Records that a file was written.
 pub(crate) fn add_written(path: &Path) {
-    note(path, "written just now");
+    note(path, "an output of this command");
 }
 
 fn note(path: &Path, what: &'static str) {
@@ -85,9 +85,9 @@ pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
     let Some((_, path, what)) = used.iter().find(|(other, ..)| *other == identity) else { return Ok(()) };
     let out_name = out.display();
     let reason = match path == out {
-        true => format!("{out_name}: was {what} and is not overwritten; choose another output name"),
+        true => format!("{out_name}: is {what} and will not be overwritten; choose another output name"),
         false => format!(
-            "{out_name}: is {}, which was {what} and is not overwritten; choose another output name",
+            "{out_name}: is the same file as {}, {what}, and will not be overwritten; choose another output name",
             path.display()
         ),
     };

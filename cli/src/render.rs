@@ -98,7 +98,7 @@ pub(crate) struct Options {
     /// Write true colour instead of a palette; PNG only
     #[arg(long)]
     rgb: bool,
-    /// Draw N frames at a time [default: one per processor]
+    /// Draw N frames in parallel [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
     /// Print figures for each frame to standard error
@@ -464,7 +464,8 @@ impl Run {
         }
         let late = run.timed.iter().filter(|frame| !frame.fits).count();
         if late > 0 {
-            eprintln!("mode13h: {late} of {frames} frames take longer than {max_time} ms even with the largest error");
+            let which = if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
+            eprintln!("mode13h: {which} longer than {max_time} ms even at the largest error allowed");
         }
         Ok(run)
     }

@@ -180,7 +180,9 @@ impl Turntable {
 
     /// Returns whether any of its objects has colours of its own: a texture, or a surface that is not grey.
     pub(crate) fn has_colors(&self) -> bool {
-        self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
+        let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
+        self.scene.lights().iter().any(|light| is_colored(light.color()))
+            || self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
     }
 
     /// Length of a round in seconds: for a model, a turn.

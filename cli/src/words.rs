@@ -100,7 +100,7 @@ pub(crate) fn command() -> clap::Command {
 /// Parses the command line; if it asks for help or is wrong, deals with that and returns the outcome.
 pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
-        return Err(Err(Failure::words(format!("{word}: empty argument ({} shows the options)", help()))));
+        return Err(Err(Failure::words(format!("{word}: empty value ({} shows the options)", help()))));
     }
     let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
@@ -166,6 +166,9 @@ fn sentence(error: &clap::Error) -> String {
             "--time takes a number of SECONDS; --measure measures what effects cost ({help} shows the options)"
         );
     }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return "mode13h generate completions SHELL prints completions, mode13h generate man the man page".into();
+    }
     let message = error.render().to_string();
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     let paragraph: Vec<&str> = message.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
@@ -189,7 +192,13 @@ fn mistyped_command() -> Option<String> {
 /// The command line that shows the help of the command that was typed.
 fn help() -> String {
     match first_word().as_ref().and_then(named) {
-        Some(command) => format!("mode13h {command} --help"),
+        Some(command) => {
+            let all = self::command();
+            let second = std::env::args_os().nth(2);
+            let within = all.find_subcommand(command).zip(second).and_then(|(of, word)| of.find_subcommand(word));
+            let within = within.map_or(String::new(), |within| format!(" {}", within.get_name()));
+            format!("mode13h {command}{within} --help")
+        }
         None => "mode13h --help".to_string(),
     }
 }

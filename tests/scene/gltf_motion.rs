@@ -433,9 +433,9 @@ fn a_clip_is_found_by_name_or_number() {
     for (word, clip) in [("translation", 0), ("scale", 1), ("0", 0), ("1", 1), ("2", 2)] {
         assert_eq!(found(word), Ok(clip), "{word}");
     }
-    let known = "there are 0 (translation), 1 (scale), 2 (translation)";
+    let known = "the model has 0: translation, 1: scale, 2: translation";
     for word in ["3", "-1", "Scale", "", "18446744073709551616"] {
-        assert_eq!(found(word), Err(format!("no clip {word}; {known}")));
+        assert_eq!(found(word), Err(format!("no animation {word}; {known}")));
     }
     // A name comes before a number; one without a name has the number only.
     let edited = |from: &str, to: &str| {
@@ -448,7 +448,10 @@ fn a_clip_is_found_by_name_or_number() {
     let model = edited("\"name\":\"scale\"", "\"name\":\"0\"");
     assert_eq!(rig(&model).find_clip("0"), Ok(1));
     let model = edited("\"name\":\"translation\",", "");
-    assert_eq!(rig(&model).find_clip("x").expect_err("none").to_string(), "no clip x; there are 0, 1 (scale), 2");
+    assert_eq!(
+        rig(&model).find_clip("x").expect_err("none").to_string(),
+        "no animation x; the model has 0 (unnamed), 1: scale, 2 (unnamed)"
+    );
 }
 
 /// The key `clip` of a scene's model.
@@ -481,9 +484,9 @@ fn a_scene_chooses_the_clip_of_a_model() {
         assert_eq!((moved.radius / at_rest.radius, moved.centre.x - at_rest.centre.x), (size, middle), "{keys}");
     }
     let refused = |keys: &str| read(keys).expect_err(keys).to_string();
-    let known = "there are 0 (translation), 1 (scale), 2 (translation)";
-    assert_eq!(refused("clip = 'run'"), format!("a.toml:3:8: key `objects[0].clip`: no clip run; {known}"));
-    assert_eq!(refused("clip = 3"), format!("a.toml:3:8: key `objects[0].clip`: no clip 3; {known}"));
+    let known = "the model has 0: translation, 1: scale, 2: translation";
+    assert_eq!(refused("clip = 'run'"), format!("a.toml:3:8: key `objects[0].clip`: no animation run; {known}"));
+    assert_eq!(refused("clip = 3"), format!("a.toml:3:8: key `objects[0].clip`: no animation 3; {known}"));
     for (value, found) in [("-1", "-1"), ("1.0", "floating point `1.0`")] {
         assert_eq!(
             refused(&format!("clip = {value}")),

@@ -200,6 +200,11 @@ fn faces_of_texts_have_their_lines() {
                 element face 2\nproperty list char int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\n3\n2 1 0\n";
     let mesh = loaded(text, "a.ply").mesh;
     assert_eq!((mesh.line(0), mesh.line(1)), (Some(14), Some(15)));
+    // A byte order mark is no part of the first line.
+    for name in ["a.ply", "a"] {
+        let mesh = loaded(format!("\u{FEFF}{text}"), name).mesh;
+        assert_eq!((mesh.line(0), mesh.line(1)), (Some(14), Some(15)), "{name}");
+    }
 }
 
 #[test]
@@ -251,7 +256,7 @@ fn errors_say_line_or_byte() {
         ("ply\nformat ascii 1.0\nend_header\n".into(), "a.ply: no positions: an element `vertex` needs x, y and z"),
         (format!("{header}{rows}3 0 1 3\n"), "a.ply:13: there is no vertex 3, only 3"),
         (format!("{header}{rows}3 0 1 -1\n"), "a.ply:13: there is no vertex -1, only 3"),
-        (format!("{header}{rows}3 0 1 0.5\n"), "a.ply:13: `0.5` is not the corner of a face"),
+        (format!("{header}{rows}3 0 1 0.5\n"), "a.ply:13: `0.5` is not a vertex index"),
         (format!("{header}{rows}-1\n"), "a.ply:13: expected the length of a list, found `-1`"),
         (format!("{header}{rows}3 0 1\n"), "a.ply:13: the file ends where a number is expected"),
         (format!("{header}0 0 0\n1 inf 0\n"), "a.ply:11: `inf` is not a finite number"),

@@ -49,7 +49,7 @@ fn what_a_model_lacks_is_said_beside_the_scene() {
             let (folder, scene, warnings) = with_texture("a.png", &png(color, opacity));
             let path = folder.path().join("a.png");
             assert!(is_textured(&scene));
-            assert_eq!(warnings, [format!("{}: transparency left out", path.display())], "{color:?}");
+            assert_eq!(warnings, [format!("{}: transparency ignored", path.display())], "{color:?}");
         }
     }
     let (folder, scene, warnings) = with_texture("a.jpg", b"\xFF\xD8\xFF\xE0");
@@ -57,7 +57,7 @@ fn what_a_model_lacks_is_said_beside_the_scene() {
     assert!(!is_textured(&scene));
     let [warning] = warnings.as_slice() else { panic!("{warnings:?}") };
     assert!(warning.starts_with(&format!("{}: not a picture that can be read: ", path.display())), "{warning}");
-    assert!(warning.ends_with("; drawn without it"), "{warning}");
+    assert!(warning.ends_with("; the material is drawn without this texture"), "{warning}");
     let (_folder, scene, warnings) = with_texture("a.png", b"");
     assert!(!is_textured(&scene));
     assert!(warnings.len() == 2 && warnings[0].contains("a.png: no such texture"), "{warnings:?}");
@@ -75,7 +75,7 @@ fn transparency_of_other_kinds_is_said_beside_the_scene() {
             let mut bytes = std::io::Cursor::new(Vec::new());
             picture.write_to(&mut bytes, format).expect("written");
             let (folder, _scene, warnings) = with_texture(name, &bytes.into_inner());
-            let note = format!("{}: transparency left out", folder.path().join(name).display());
+            let note = format!("{}: transparency ignored", folder.path().join(name).display());
             assert_eq!(warnings, if opacity == 0 { vec![note] } else { vec![] }, "{name}, {opacity}");
         }
     }

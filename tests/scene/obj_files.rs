@@ -114,17 +114,18 @@ fn f1_broken_lines() {
         ("f 1//1 2//1 3//-2", "there is no normal -2, only 1"),
         ("f 1/0 2/1 3/1", "index 0: indices count from 1"),
         ("f 1 2 99999999999", "there is no vertex 99999999999, only 3"),
-        ("f 1 2 99999999999999999999", "`99999999999999999999` is not the corner of a face"),
+        ("f 1 2 99999999999999999999", "`99999999999999999999` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
         ("f 1 2 -9223372036854775807", "there is no vertex -9223372036854775807, only 3"),
-        ("f 1 2 x", "`x` is not the corner of a face"),
-        ("f 1 2 3.0", "`3.0` is not the corner of a face"),
-        ("f 1/1/1/1 2 3", "`1/1/1/1` is not the corner of a face"),
-        ("f /1 2 3", "`/1` is not the corner of a face"),
+        ("f 1 2 x", "`x` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
+        ("f 1 2 3.0", "`3.0` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
+        ("f 1/1/1/1 2 3", "`1/1/1/1` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
+        ("f /1 2 3", "`/1` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
         ("f 1 4", "there is no vertex 4, only 3"),
         ("v 1 2", "too few numbers for a position (3)"),
         ("v 1 2 three", "`three` is not a number"),
         ("v 1 2 inf", "`inf` is not a finite number"),
         ("v 1e39 0 0", "`1e39` is not a finite number"),
+        ("v 1 2 3 nan 0 1", "`nan` is not a finite number"),
         ("vn 0 NaN 1", "`NaN` is not a finite number"),
         ("vn 1", "too few numbers for a normal (3)"),
         ("vt", "too few numbers for texture coordinates (2)"),
@@ -141,6 +142,11 @@ fn f1_broken_lines() {
     assert_eq!(refused(""), "model.obj: no faces");
     tried.add(1);
     assert_eq!(refused("Dear reader,\nthis is no model.\n"), "model.obj: no faces");
+    tried.add(1);
+    // A device, or a small packed file, may have no line ending at all.
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let endless = obj::parse(io::BufReader::new(io::repeat(b'#')), "model.obj", none);
+    assert_eq!(endless.map(|_| ()).unwrap_err().to_string(), "model.obj: a line of more than 64 MiB");
     tried.add(1);
     let long = format!("v {} 0 0", "9x".repeat(1000));
     assert_eq!(refused(&long), format!("model.obj:1: `{}…` is not a number", "9x".repeat(20)));

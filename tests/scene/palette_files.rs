@@ -566,7 +566,7 @@ fn p5_what_looks_like_nothing_is_said_to() {
     let utf16 = "\u{FEFF}JASC-PAL\n".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
     for bytes in [&b"hello\n"[..], &[0; 700], &[0xFF; 769], &utf16, b"\n"] {
         let error = palette_file::parse(bytes).unwrap_err();
-        assert_eq!(error.to_string(), "offset 0: neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette");
+        assert_eq!(error.to_string(), "offset 0: not a JASC, GIMP, Lospec, Adobe or raw VGA palette");
         tried.add(1);
     }
     // With a name given, the message is the format's own.

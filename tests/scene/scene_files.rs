@@ -135,7 +135,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (object("material = 'copper'"), "3:12: key `objects[0].material`: expected a table, found string \"copper\""),
         (
             object("material.color = 7"),
-            "3:18: key `objects[0].material.color`: expected a color: \"#rrggbb\", or red, green and blue f",
+            "3:18: key `objects[0].material.color`: expected a colour: \"#rrggbb\", or red, green and blue f",
         ),
         (
             object("material.blend = []"),
@@ -198,11 +198,11 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             cube("background = '#12345'"),
-            "2:14: key `background`: expected a color: \"#rrggbb\", or red, green and blue from 0 to 1 in a",
+            "2:14: key `background`: expected a colour: \"#rrggbb\", or red, green and blue from 0 to 1 in a",
         ),
         (
             cube("background = '#+12345'"),
-            "2:14: key `background`: expected a color: \"#rrggbb\", or red, green and blue from 0 to 1 in a",
+            "2:14: key `background`: expected a colour: \"#rrggbb\", or red, green and blue from 0 to 1 in a",
         ),
         (cube("background = [0, 2, 0]"), "2:18: key `background[1]`: expected a number from 0 to 1, found 2"),
         (object("scale = 0"), "3:9: key `objects[0].scale`: expected a number above 0, found 0"),
@@ -226,7 +226,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (
             object("material.ramp = { first = 200, entries = 57 }"),
-            "3:17: key `objects[0].material.ramp`: 57 entries from 200 on run beyond entry 255",
+            "3:17: key `objects[0].material.ramp`: 57 entries starting at 200 run past entry 255",
         ),
         (object("material.ramp = { first = 200 }"), "3:17: key `objects[0].material.ramp.entries`: missing"),
         (
@@ -270,7 +270,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "3:50: key `objects[0].path.rounds`: expected a number other than 0, from -1000 to 1000, found 0",
         ),
         (path("{ line = [[0, 0, 0]] }"), "3:17: key `objects[0].path.line`: expected a list of 2, found 1"),
-        (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog ends no farther than it starts"),
+        (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog must end farther away than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry is after the last"),
         (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),
         // Unknown names.
@@ -371,6 +371,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "2:36: key `camera.from`: not allowed with an `eye`, which says",
         ),
         (cube("camera = { eye = [0, 0, 0] }"), "2:10: key `camera`: the camera looks at its own position"),
+        (cube("camera = { up = [0, 0, 0] }"), "2:17: key `camera.up`: a direction must not be zero"),
         (object("position = [3e38, 0, 0]\nscale = 3e38"), "the objects reach too far to be framed; give the camera"),
         // Not TOML.
         (list("name = \n"), "1:8: not TOML: "),
@@ -409,7 +410,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     assert!(loaded(&longest).is_ok());
     tried.add(1);
     let error = loaded(&(longest.clone() + "#")).expect_err("too long");
-    assert_eq!(error.to_string(), "folder/scene.toml: longer than a scene may be, 1 MiB");
+    assert_eq!(error.to_string(), "folder/scene.toml: too long: a scene may have at most 1 MiB");
     tried.add(1);
 
     // The same for files.

@@ -1,4 +1,4 @@
-// The frames of `verify` in node: machines/wasm/run draws all 880 of them with and without vectors and compares their
+// The frames of `verify` in node: machines/wasm/run draws them all with and without vectors and compares their
 // hash with that of every other machine. Here the page's own module is asked for what the program writes.
 //
 //     frames.mjs MODULE.wasm MODE13H

@@ -101,7 +101,7 @@ pub fn textures(mesh: &Mesh, embedded: &Embedded) -> (Vec<Option<Shared<Texture>
                 Some(Shared::new(decoded.texture))
             }
             Err(error) => {
-                warnings.push(std::format!("{error}; drawn without it"));
+                warnings.push(std::format!("{error}; the material is drawn without this texture"));
                 None
             }
         });

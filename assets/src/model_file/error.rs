@@ -114,7 +114,7 @@ impl fmt::Display for ModelFileErrorKind {
             Self::Ends(what) => write!(f, "the file ends where {what} is expected"),
             Self::Expected { expected, found } => write!(f, "expected {expected}, found `{found}`"),
             Self::Fault(what) => f.write_str(what),
-            Self::NotCorner(word) => write!(f, "`{word}` is not the corner of a face"),
+            Self::NotCorner(word) => write!(f, "`{word}` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
             Self::IndexZero => write!(f, "index 0: indices count from 1"),
             Self::IndexOutOfRange { what, index, count } => write!(f, "there is no {what} {index}, only {count}"),
             Self::NoFaces => write!(f, "no faces"),

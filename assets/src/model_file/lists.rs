@@ -57,9 +57,11 @@ impl Lists {
         if self.corners.len() - 2 * self.sizes.len() > Mesh::MAX_COUNT + 2 {
             return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 triangles"));
         }
+        reserve(&mut self.sizes)?;
         // Fits, as checked above.
         self.sizes.push(size as u32);
         if let super::Place::Line(line) = place {
+            reserve(&mut self.lines)?;
             self.lines.push(u32::try_from(line).unwrap_or(u32::MAX));
         }
         Ok(())
@@ -71,8 +73,14 @@ pub(crate) fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ModelFileErrorK
     if list.len() >= Mesh::MAX_COUNT {
         return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 of a kind"));
     }
+    reserve(list)?;
     list.push(value);
     Ok(())
+}
+
+/// Makes room for one more entry: a small packed file may unpack to more than fits into memory.
+pub(crate) fn reserve<T>(list: &mut Vec<T>) -> Result<(), ModelFileErrorKind> {
+    list.try_reserve(1).map_err(|error| ModelFileErrorKind::Read(error.into()))
 }
 
 /// Positions are moved to be centred on 0 if their centre is farther from it than this many times their half extent. Up

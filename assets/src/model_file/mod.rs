@@ -190,8 +190,8 @@ pub fn load_with(
     for surface in mesh.surfaces_mut() {
         let is_missing = |texture: &mut String| !textures.contains_key(texture) && !Path::new(texture).is_file();
         if let Some(texture) = surface.texture.take_if(is_missing) {
-            let name = &surface.name;
-            warnings.push(|| format!("{texture}: no such texture; material {name} is drawn without it"));
+            let name = if surface.name.is_empty() { String::new() } else { format!(" {}", surface.name) };
+            warnings.push(|| format!("{texture}: no such texture; the material{name} is drawn without it"));
         }
     }
     let Staged { lights, camera, rig } = staged;

@@ -109,7 +109,7 @@ impl fmt::Display for PaletteErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the file is empty"),
-            Self::UnknownFormat => write!(f, "neither a JASC, GIMP, Lospec, Adobe nor raw VGA palette"),
+            Self::UnknownFormat => write!(f, "not a JASC, GIMP, Lospec, Adobe or raw VGA palette"),
             Self::Expected { expected, found } => write!(f, "expected \"{expected}\", found {found}"),
             Self::Count { found } => write!(f, "expected the number of colours, 1 to 256, found {found}"),
             Self::NotThreeNumbers { found } => write!(f, "expected three numbers 0 to 255, found {found}"),

@@ -127,7 +127,7 @@ impl<'a> Builder<'a> {
         };
         let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
         if fog.end <= fog.start {
-            return Err(Fault::value(end.span(), "the fog ends no farther than it starts"));
+            return Err(Fault::value(end.span(), "the fog must end farther away than it starts"));
         }
         self.scene.fog = Some(fog);
         Ok(())

@@ -16,7 +16,11 @@ pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept
     let degrees = own.and_then(|own| own.field_of_view.as_ref());
     let field_of_view =
         degrees.map_or(Camera::FIELD_OF_VIEW, |degrees| Angle::from_radians(f64::from(degrees.0.to_radians())));
-    let up = own.and_then(|own| own.up.as_ref()).map_or(Vec3::Y, |up| up.vec3());
+    let up = own.and_then(|own| own.up.as_ref());
+    if let Some(up) = up.filter(|up| up.get_ref().vec3() == Vec3::ZERO) {
+        return Err(Fault::value(up.span(), "a direction must not be zero"));
+    }
+    let up = up.map_or(Vec3::Y, |up| up.get_ref().vec3());
     let target = own.and_then(|own| own.target.as_ref()).map(|target| target.vec3());
     let eye = own.and_then(|own| own.eye.as_ref());
     let from = own.and_then(|own| own.from.as_ref());

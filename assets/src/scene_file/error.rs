@@ -181,7 +181,7 @@ impl fmt::Display for SceneErrorKind {
         match self {
             Self::Read(error) => write!(f, "{error}"),
             Self::Directory => write!(f, "is a directory"),
-            Self::TooLong => write!(f, "longer than a scene may be, 1 MiB"),
+            Self::TooLong => write!(f, "too long: a scene may have at most 1 MiB"),
             Self::NotText => write!(f, "not text in UTF-8"),
             Self::NotToml(what) => write!(f, "not TOML: {what}"),
             Self::UnknownKey { known } => write!(f, "unknown key; known are {known}"),

@@ -49,7 +49,7 @@ pub(super) struct CameraLayout {
     pub(super) eye: Option<Vector>,
     pub(super) target: Option<Vector>,
     pub(super) from: Option<Spanned<Vector>>,
-    pub(super) up: Option<Vector>,
+    pub(super) up: Option<Spanned<Vector>>,
     pub(super) field_of_view: Option<FieldOfView>,
     pub(super) near: Option<Positive>,
     pub(super) eye_path: Option<Spanned<PathLayout>>,

@@ -33,7 +33,7 @@ pub(super) fn apply(
             RampLayout::Entries(entries) => {
                 let (first, entries) = (entries.first.index(), entries.entries.count());
                 let ramp = Ramp::new(first, entries).ok_or_else(|| {
-                    Fault::value(ramp.span(), format_args!("{entries} entries from {first} on run beyond entry 255"))
+                    Fault::value(ramp.span(), format_args!("{entries} entries starting at {first} run past entry 255"))
                 })?;
                 RampChoice::Entries(ramp)
             }

@@ -214,7 +214,7 @@ impl<'de> Visitor<'de> for ColorVisitor {
     type Value = Color;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a color: \"#rrggbb\", or red, green and blue from 0 to 1 in a list")
+        f.write_str("a colour: \"#rrggbb\", or red, green and blue from 0 to 1 in a list")
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
@@ -258,7 +258,7 @@ impl<'de> Deserialize<'de> for Background {
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str(
-                    "a palette entry from 0 to 255, or a color: \"#rrggbb\", or red, green and blue from 0 to 1",
+                    "a palette entry from 0 to 255, or a colour: \"#rrggbb\", or red, green and blue from 0 to 1",
                 )
             }
 

@@ -91,7 +91,7 @@ impl Decoded {
     /// A line that says what was ignored in this file, if anything was.
     #[must_use]
     pub fn warning(&self, path: &Path) -> Option<String> {
-        self.was_transparent.then(|| std::format!("{}: transparency left out", path.display()))
+        self.was_transparent.then(|| std::format!("{}: transparency ignored", path.display()))
     }
 }
 

@@ -135,7 +135,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
     if !output::is_quiet() {
-        eprintln!("mode13h: comparing {compared} with the truth, then timing for {times}");
+        eprintln!("mode13h: comparing {compared} with the reference, then timing for {times}");
     }
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
@@ -217,7 +217,7 @@ impl Progress {
                 }
             }
             self.bar.set_message(match step {
-                Step::Errors => "comparing frames with the truth",
+                Step::Errors => "comparing frames with the reference",
                 Step::Times => "timing frames side by side",
                 Step::Split => "timing frames part by part",
                 Step::Goals => "drawing frames as well as a time allows",
@@ -268,7 +268,7 @@ mod tests {
         (late.budget[1].best_single_shading, late.budget[1].ratio) = (Some(Shading::Phong), Some((1.2, (1.1, 1.3))));
         for (study, says) in [
             (budget, "the budget of 16 keeps 99.00 % of the pixels within 16 shades, not 100 %"),
-            (late, "the budget of 8 takes 1.20 times as long as phong, where 1.05 is the aim"),
+            (late, "a budget of 8 takes 1.20 times as long as phong; the aim is at most 1.05"),
             (shading, "gouraud-8.8 is off by 0.25 shades more than its bound"),
         ] {
             let warnings = cost::warnings(&study);

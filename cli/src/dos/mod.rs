@@ -109,6 +109,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(losses) = losses(&mut stage, &renderer)? {
         eprintln!("mode13h: {losses}");
     }
+    let ignored = drawing.ignored_by_dos();
+    if !ignored.is_empty() {
+        eprintln!("mode13h: ignored, because the program computes in 16.16: {}", ignored.join(", "));
+    }
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
     let packed = pack(&film);
     let body = body(&packed, film.len(), vertices)?;

@@ -88,7 +88,7 @@ pub fn warnings(study: &Study) -> Vec<String> {
         if let (Promise::Broken, Some(best), Some((ratio, _))) = (row.aim_of_time(), row.best_single_shading, row.ratio)
         {
             warnings.push(format!(
-                "the budget of {error} takes {ratio:.2} times as long as {best}, where {LIMIT} is the aim"
+                "a budget of {error} takes {ratio:.2} times as long as {best}; the aim is at most {LIMIT}"
             ));
         }
     }
@@ -168,7 +168,7 @@ mod tests {
             ),
             (
                 study(Vec::new(), alloc::vec![budget(4.0, 1.0, Some((1.2, (1.1, 1.3))))]),
-                "the budget of 4 takes 1.20 times as long as phong, where 1.05 is the aim",
+                "a budget of 4 takes 1.20 times as long as phong; the aim is at most 1.05",
             ),
             (
                 study(

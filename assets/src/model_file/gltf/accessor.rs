@@ -174,7 +174,7 @@ fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
         &base64::alphabet::STANDARD,
         GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
     );
-    Some(BASE64.decode(body).map_err(|_| String::from("no base64")))
+    Some(BASE64.decode(body).map_err(|_| String::from("invalid base64")))
 }
 
 /// A URI's path with percent escapes such as `%20` decoded.

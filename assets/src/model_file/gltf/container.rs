@@ -68,7 +68,11 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     root.extensions_required.clear();
     let document = Document::from_json(root).map_err(|error| match error {
         Error::Validation(faults) => match faults.first() {
-            Some((part, what)) => fault(format!("{part}: {}", clause(&what.to_string()))),
+            Some((part, what)) => {
+                // The crate names the field of its own struct.
+                let part = part.to_string().replace("khrLightsPunctual", "KHR_lights_punctual");
+                fault(format!("{part}: {}", clause(&what.to_string())))
+            }
             None => fault(String::from("not valid")),
         },
         error => fault(clause(&error.to_string())),

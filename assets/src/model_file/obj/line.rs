@@ -6,6 +6,9 @@ use std::io::{self, BufRead};
 use crate::model_file::ModelFileErrorKind;
 use crate::model_file::word::parsed;
 
+/// The most bytes of a line, joined ones together: a device or a small packed file may have no line ending at all.
+const LONGEST: usize = 1 << 26;
+
 /// A line reader that joins lines ending in a backslash. LF, CR LF and CR end a line. A single buffer is reused.
 pub(crate) struct Lines<R> {
     reader: R,
@@ -68,6 +71,10 @@ impl<R: BufRead> Lines<R> {
             begun = true;
             let end = available.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
             let text = &available[..end.unwrap_or(available.len())];
+            if self.buffer.len() + text.len() > LONGEST {
+                return Err(io::Error::new(io::ErrorKind::InvalidData, "a line of more than 64 MiB"));
+            }
+            self.buffer.try_reserve(text.len())?;
             self.buffer.extend_from_slice(text);
             let used = text.len() + usize::from(end.is_some());
             if let Some(end) = end {

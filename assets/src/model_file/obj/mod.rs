@@ -11,7 +11,7 @@
 //! | all others, including `l` and `p` | ignored |
 //!
 //! A backslash at the end of a line joins it to the next. LF, CR LF and CR end a line, which need not be UTF-8 and may
-//! be of any length. Each distinct triple of position, texture coordinates and normal used by a face becomes a vertex.
+//! have up to 64 MiB. Each distinct triple of position, texture coordinates and normal used by a face becomes a vertex.
 //! A face of n corners becomes n − 2 triangles, including those without area.
 //!
 //! A corner without a normal, or with one of length 0, gets the mean, weighted by angle, over faces at that position:

@@ -7,7 +7,7 @@ use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 
 use super::line::{Lines, keyword, number, numbers, wide_numbers};
-use crate::model_file::lists::{Corner, Lists, Wide, push};
+use crate::model_file::lists::{Corner, Lists, Wide, push, reserve};
 use crate::model_file::word::{name, shown, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 
@@ -39,17 +39,7 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Statements, Mode
     {
         let (word, rest) = keyword(text);
         let result = match word {
-            b"v" => {
-                if let Some(color) = color(rest) {
-                    if model.colored == 0 {
-                        model.colored = line;
-                    }
-                    if model.colors.len() == model.lists.positions.len() {
-                        model.colors.push(color);
-                    }
-                }
-                position(&mut model.lists, rest)
-            }
+            b"v" => vertex(&mut model, line, rest),
             b"vt" => texcoord(&mut model.lists, rest),
             b"vn" => normal(&mut model.lists, rest),
             b"f" => face(&mut model.lists, &mut later, line, rest),
@@ -88,11 +78,27 @@ fn position(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
     push(&mut lists.positions, Wide::new(wide_numbers(&mut words(rest), "a position (3)")?))
 }
 
-/// The colour after a position, if there is one.
-fn color(rest: &[u8]) -> Option<[f32; 3]> {
-    let mut words = words(rest).skip(3);
-    let mut channel = || number(&mut words).ok().flatten();
-    Some([channel()?, channel()?, channel()?])
+fn vertex(model: &mut Statements, line: u64, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
+    let is_first = model.colors.len() == model.lists.positions.len();
+    position(&mut model.lists, rest)?;
+    if let Some(color) = color(rest)? {
+        if model.colored == 0 {
+            model.colored = line;
+        }
+        if is_first {
+            push(&mut model.colors, color)?;
+        }
+    }
+    Ok(())
+}
+
+/// The colour after a position, if there is one: three more numbers.
+fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ModelFileErrorKind> {
+    match numbers(&mut words(rest).skip(3), "a colour (3)") {
+        Ok(color) => Ok(Some(color)),
+        Err(ModelFileErrorKind::Missing(_) | ModelFileErrorKind::NotNumber(_)) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 fn texcoord(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
@@ -140,6 +146,7 @@ fn face(lists: &mut Lists, later: &mut Later, line: u64, rest: &[u8]) -> Result<
         }
         debug_assert!(parts > 0);
         let [position, texcoord, normal] = indices;
+        reserve(&mut lists.corners)?;
         lists.corners.push(Corner { position, texcoord, normal });
     }
     lists.end_face(first, Place::Line(line))

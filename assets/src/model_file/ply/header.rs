@@ -104,13 +104,17 @@ pub(super) struct Header {
     pub(super) lines: u64,
 }
 
+/// What some editors put before the first line.
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
 /// The most elements, and properties of an element, so that no property list takes for ever.
 const MAX: usize = 1_000;
 
 impl Header {
     /// Reads the header, including `end_header`.
     pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Self, ModelFileError> {
-        let mut lines = HeaderLines { bytes, at: 0, number: 0 };
+        let mark = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        let mut lines = HeaderLines { bytes, at: mark, number: 0 };
         let mut elements: Vec<Element> = Vec::new();
         let (mut encoding, mut texture) = (None, None);
         let mut is_first = true;

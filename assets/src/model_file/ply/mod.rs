@@ -31,6 +31,7 @@ use value::Values;
 
 /// Returns whether a file begins like a PLY.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(header::BYTE_ORDER_MARK).unwrap_or(bytes);
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }
 

@@ -38,7 +38,7 @@ impl Clip {
 
 /// A model has no clip of this name or number.
 ///
-/// Displays with a list of all clips: `no clip Jump; there are 0 (Idle), 1 (Run)`.
+/// Displays with a list of all clips: `no animation Jump; the model has 0: Idle, 1: Run`.
 #[derive(Clone, PartialEq, Eq)]
 pub struct UnknownClip {
     word: String,
@@ -54,12 +54,12 @@ impl UnknownClip {
 
 impl fmt::Display for UnknownClip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no clip {}; there are ", shown(self.word.as_bytes()))?;
+        write!(f, "no animation {}; the model has ", shown(self.word.as_bytes()))?;
         for (number, name) in self.names.iter().enumerate() {
             let before = if number == 0 { "" } else { ", " };
             match name.as_str() {
-                "" => write!(f, "{before}{number}")?,
-                name => write!(f, "{before}{number} ({})", shown(name.as_bytes()))?,
+                "" => write!(f, "{before}{number} (unnamed)")?,
+                name => write!(f, "{before}{number}: {}", shown(name.as_bytes()))?,
             }
         }
         Ok(())
