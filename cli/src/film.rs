@@ -200,7 +200,7 @@ impl Film {
         let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
                 nobody_reads = error.kind() == ErrorKind::BrokenPipe;
-                Failure::file(format!("standard output: {error}"))
+                output::not_printed(error)
             })
         });
         if nobody_reads { Ok(()) } else { result }

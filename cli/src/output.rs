@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
-use mode13h::export::{Picture, Png, Scale};
+use mode13h::export::{ExportError, ExportErrorKind, Picture, Png, Scale};
 use mode13h::vga::Vga;
 use serde::Serialize;
 
@@ -108,11 +108,14 @@ pub(crate) fn numbered_picture(vga: &Vga) -> Result<PathBuf, Failure> {
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::file(format!("standard output: {error}")))
-        }
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(not_printed(error)),
         _ => Ok(()),
     }
+}
+
+/// The failure of writing to standard output.
+pub(crate) fn not_printed(error: io::Error) -> Failure {
+    ExportError::new("standard output".as_ref(), ExportErrorKind::from_writing(error)).into()
 }
 
 /// Prints a value as JSON, with a line end.

@@ -464,7 +464,8 @@ impl Run {
         }
         let late = run.timed.iter().filter(|frame| !frame.fits).count();
         if late > 0 {
-            let which = if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
+            let which =
+                if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
             eprintln!("mode13h: {which} longer than {max_time} ms even at the largest error allowed");
         }
         Ok(run)

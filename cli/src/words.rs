@@ -1,5 +1,6 @@
 //! The command line: its commands, and the messages about mistakes.
 
+use std::error::Error;
 use std::ffi::OsString;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -175,7 +176,28 @@ fn sentence(error: &clap::Error) -> String {
     let suggestions = [ContextKind::SuggestedArg, ContextKind::SuggestedValue, ContextKind::SuggestedSubcommand];
     let near = suggestions.into_iter().find_map(context);
     let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-    format!("{}{near} ({help} shows the options)", paragraph.join(" "))
+    format!("{}{near} ({help} shows the options)", plain(&paragraph.join(" "), error))
+}
+
+/// Rewords what clap says of a value, or of an option that was given twice.
+fn plain(says: &str, error: &clap::Error) -> String {
+    if let Some(argument) = says.strip_suffix(" cannot be used multiple times") {
+        return format!("{argument} is given twice");
+    }
+    let cause = error.source().map(ToString::to_string).unwrap_or_default();
+    let bounds = cause.rsplit_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
+    let reworded = match (bounds, error.get(ContextKind::InvalidValue)) {
+        (Some((least, most)), _) => format!("not a whole number from {least} to {most}"),
+        (None, Some(ContextValue::String(word))) if cause == "invalid digit found in string" => {
+            // Parsers of unsigned numbers do not even read a sign.
+            match word.strip_prefix('-').is_some_and(|digits| digits.parse::<u128>().is_ok()) {
+                true => "not a whole number of at least 0".into(),
+                false => "not a whole number".into(),
+            }
+        }
+        _ => return says.to_string(),
+    };
+    says.strip_suffix(cause.as_str()).map_or(says.to_string(), |before| format!("{before}{reworded}"))
 }
 
 /// Finds the command that the first word nearly is, if it is nothing else, and asks whether it was meant.

@@ -117,9 +117,12 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (list("objects = ['cube']"), "1:12: key `objects[0]`: expected a table, found string \"cube\""),
         (cube("camera = []"), "2:10: key `camera`: "),
         (cube("fog = true"), "2:7: key `fog`: expected a table, found boolean `true`"),
-        (object("position = 'here'"), "3:12: key `objects[0].position`: expected a list of 3, found string \"here\""),
-        (object("position = [1, 2]"), "3:12: key `objects[0].position`: expected a list of 3, found 2"),
-        (object("position = [1, 2, 3, 4]"), "3:12: key `objects[0].position`: expected a list of 3, found 4"),
+        (
+            object("position = 'here'"),
+            "3:12: key `objects[0].position`: expected a list of 3 numbers, found string \"here\"",
+        ),
+        (object("position = [1, 2]"), "3:12: key `objects[0].position`: expected a list of 3 numbers, found 2"),
+        (object("position = [1, 2, 3, 4]"), "3:12: key `objects[0].position`: expected a list of 3 numbers, found 4"),
         (
             object("position = [1, '2', 3]"),
             "3:16: key `objects[0].position[1]`: expected a finite number, found string \"2\"",
@@ -140,6 +143,10 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (
             object("material.blend = []"),
             "3:18: key `objects[0].material.blend`: expected \"opaque\", \"add\", or how opaque it is, a numb",
+        ),
+        (
+            cube("duration = 99999999999999999999"),
+            "2:12: key `duration`: expected a number of seconds above 0, at most 3600, found 99999999999999999999",
         ),
         (
             cube("duration = 1979-05-27"),
@@ -269,7 +276,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             path("{ line = [[0, 0, 0], [1, 0, 0]], rounds = 0 }"),
             "3:50: key `objects[0].path.rounds`: expected a number other than 0, from -1000 to 1000, found 0",
         ),
-        (path("{ line = [[0, 0, 0]] }"), "3:17: key `objects[0].path.line`: expected a list of 2, found 1"),
+        (path("{ line = [[0, 0, 0]] }"), "3:17: key `objects[0].path.line`: expected a list of 2 points, found 1"),
         (cube("fog = { start = 2, end = 2 }"), "2:26: key `fog.end`: the fog must end farther away than it starts"),
         (cube("animation.cycle = [9, 8]"), "2:19: key `animation.cycle`: the first entry is after the last"),
         (cube("render.max-error = 0"), "2:20: key `render.max-error`: expected a number above 0, found 0"),

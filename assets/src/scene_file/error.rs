@@ -149,7 +149,11 @@ fn expected_first(message: &str) -> Option<String> {
     let kinds = ["invalid type: ", "invalid value: ", "invalid length "];
     let rest = kinds.iter().find_map(|kind| message.strip_prefix(kind))?;
     let at = rest.rfind(", expected ")?;
-    Some(format!("{}, found {}", &rest[at + 2..], &rest[..at]))
+    let found = &rest[..at];
+    // So serde calls an integer beyond 64 bits.
+    let integer = ["` as i128", "` as u128"].iter().find_map(|behind| between(found, "integer `", behind));
+    let found = integer.unwrap_or(found);
+    Some(format!("{}, found {found}", &rest[at + 2..]))
 }
 
 /// Extracts the keys from serde's "unknown field `x`, expected one of `a`, `b`", or "expected `a` or `b`". The unknown

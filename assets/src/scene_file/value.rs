@@ -122,6 +122,20 @@ impl Entries {
     }
 }
 
+/// What lists contain.
+pub(super) trait Item {
+    /// Their name in the plural.
+    const ITEMS: &'static str;
+}
+
+impl<N: Number> Item for N {
+    const ITEMS: &'static str = "numbers";
+}
+
+impl Item for Vector {
+    const ITEMS: &'static str = "points";
+}
+
 /// A list of exactly `N` items.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct List<T, const N: usize>(pub(super) [T; N]);
@@ -129,11 +143,11 @@ pub(super) struct List<T, const N: usize>(pub(super) [T; N]);
 /// The visitor of a list, which rejects anything else.
 struct ListVisitor<T, const N: usize>(PhantomData<T>);
 
-impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
+impl<'de, T: Item + Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
     type Value = List<T, N>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a list of {N}")
+        write!(f, "a list of {N} {}", T::ITEMS)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
@@ -146,7 +160,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N
     }
 }
 
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for List<T, N> {
+impl<'de, T: Item + Deserialize<'de>, const N: usize> Deserialize<'de> for List<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ListVisitor(PhantomData))
     }

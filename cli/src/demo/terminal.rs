@@ -96,7 +96,7 @@ impl Sending {
                 let picture = Picture::mode_13h(&frame.0, &frame.1);
                 match send(&screen.protocol.frame(&picture, scale).map_err(Failure::from)?) {
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
-                    sent => sent.map_err(|error| Failure::file(format!("standard output: {error}")))?,
+                    sent => sent.map_err(output::not_printed)?,
                 }
                 shown = Some(frame);
             }

@@ -83,7 +83,7 @@ fn f1_broken_models_are_refused_with_their_place() {
         ),
         (
             format!("f 1 2 {}\n", "3".repeat(1 << 20)),
-            ":4: `3333333333333333333333333333333333333333…` is not a face corner",
+            ":4: `3333333333333333333333333333333333333333…` is not a face corner (v, v/vt, v//vn or v/vt/vn)",
         ),
         (format!("f {}4\n", "1 ".repeat(1 << 19)), ":4: there is no vertex 4, only 3"),
         (format!("{}f 1 2 4\n", "\\\n".repeat(1000)), ":4: there is no vertex 4, only 3"),

@@ -142,7 +142,7 @@ impl Reading {
                 index: index as i64,
                 count: usize::try_from(self.vertices).unwrap_or(usize::MAX),
             }),
-            false => Err(ModelFileErrorKind::NotCorner(index.to_string())),
+            false => Err(ModelFileErrorKind::Fault(format!("`{index}` is not a vertex index"))),
         }
     }
 
