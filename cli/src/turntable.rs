@@ -180,7 +180,6 @@ impl Turntable {
 
     /// Returns whether any of its objects has colours of its own: a texture, or a surface that is not grey.
     pub(crate) fn has_colors(&self) -> bool {
-        let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
         self.scene.lights().iter().any(|light| is_colored(light.color()))
             || self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
     }
@@ -392,8 +391,11 @@ fn turn_by(motion: &mut Motion, per_second: f64) {
     }
 }
 
+fn is_colored([red, green, blue]: [f32; 3]) -> bool {
+    red != green || green != blue
+}
+
 fn has_colors(object: &Object, materials: &[Material]) -> bool {
-    let is_colored = |[red, green, blue]: [f32; 3]| red != green || green != blue;
     object.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))
         || materials.iter().any(|material| material.texture.is_some())
 }

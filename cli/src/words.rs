@@ -167,7 +167,9 @@ fn sentence(error: &clap::Error) -> String {
             "--time takes a number of SECONDS; --measure measures what effects cost ({help} shows the options)"
         );
     }
-    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+        && first_word().is_some_and(|word| word == "generate")
+    {
         return "mode13h generate completions SHELL prints completions, mode13h generate man the man page".into();
     }
     let message = error.render().to_string();

@@ -14,8 +14,8 @@ pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],
     width: u32,
     first_row: u32,
-    /// What is added to depths before they are compared and stored, so that all that `values` hold is farther: 0, or
-    /// chosen by [`DepthMemory`].
+    /// Added to depths before they are compared and stored, so that everything in `values` is farther: 0, or chosen by
+    /// [`DepthMemory`].
     pub(super) base: u32,
 }
 
@@ -112,7 +112,7 @@ pub struct DepthMemory {
     cells: alloc::vec::Vec<u32>,
     /// The columns and the rows of the frame whose depths they hold.
     shape: (u32, core::ops::Range<u32>),
-    /// What the current frame adds to its depths.
+    /// The base of the current frame.
     base: u32,
     /// A rectangle that holds every pixel drawn since the last clear.
     drawn: Rect,

@@ -54,7 +54,7 @@ pub(super) struct FrameLayout {
     pub(super) pitch: u32,
     /// Cells of the depth buffer from one row to the next.
     pub(super) width: u32,
-    /// What is added to depths: [`DepthBuffer::base`](super::depth::DepthBuffer).
+    /// The depth buffer's [base](super::depth::DepthBuffer), or 0.
     pub(super) depth_base: u32,
 }
 

@@ -17,6 +17,7 @@ use mode13h::scene::UpAxis;
 
 use crate::model_file::lists::{Corner, Lists, Wide, push};
 use crate::model_file::tokens::{Tokens, expected};
+use crate::model_file::word::without_mark;
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place};
 
 /// The number of bytes before the triangles of a binary file: 80 of any meaning, and the triangle count.
@@ -52,7 +53,7 @@ fn has_length_of_binary(bytes: &[u8]) -> bool {
 
 /// Reads a file.
 pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> {
-    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    let text = without_mark(bytes).trim_ascii_start();
     let begins_as_text = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     // The triangle count of a binary file contains a zero byte, unless it is 2²⁴ or more.
     let is_text = begins_as_text && !bytes[..bytes.len().min(HEADER)].contains(&0);
@@ -88,7 +89,7 @@ impl Merged {
 }
 
 fn read_text(bytes: &[u8], path: &Path, lists: &mut Lists, merged: &mut Merged) -> Result<(), ModelFileError> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let mut words = Tokens::new(bytes, 1);
     // The index of the current facet's first corner, and the facet's line.
     let mut facet: Option<(usize, u64)> = None;

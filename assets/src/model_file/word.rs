@@ -36,3 +36,8 @@ pub(super) fn shown(word: &[u8]) -> String {
     }
     shown.to_owned()
 }
+
+/// The bytes without the byte order mark that some editors put first.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}

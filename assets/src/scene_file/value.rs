@@ -122,7 +122,7 @@ impl Entries {
     }
 }
 
-/// What lists contain.
+/// A type of list items.
 pub(super) trait Item {
     /// Their name in the plural.
     const ITEMS: &'static str;

@@ -5,6 +5,7 @@ use std::path::Path;
 use ::gltf::{Document, Error, json};
 
 use crate::errors::clause;
+use crate::model_file::word::without_mark;
 use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 
 /// The extensions without which a mesh would be misread.
@@ -12,7 +13,7 @@ const NEEDED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compressio
 
 /// Returns whether a file is a binary container, or JSON with an `asset`.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    let is_json = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start().starts_with(b"{");
+    let is_json = without_mark(bytes).trim_ascii_start().starts_with(b"{");
     bytes.starts_with(b"glTF") || (is_json && bytes.windows(7).any(|word| word == b"\"asset\""))
 }
 
@@ -20,7 +21,7 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
 pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option<&'b [u8]>), ModelFileError> {
     let (text, start, binary) = match bytes.starts_with(b"glTF") {
         true => chunks(bytes, path)?,
-        false => (bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), None, None),
+        false => (without_mark(bytes), None, None),
     };
     let mut root: json::Root = json::deserialize::from_slice(text).map_err(|error| {
         let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));

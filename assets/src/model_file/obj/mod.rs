@@ -47,6 +47,7 @@ use mode13h::palette::Rgb;
 use crate::model_file::colors::{of_faces, paint};
 use crate::model_file::lists::Lists;
 use crate::model_file::warnings::Warnings;
+use crate::model_file::word::without_mark;
 use crate::model_file::{Draft, Loaded, ModelFileError, Options, finish};
 use statement::Statements;
 
@@ -154,7 +155,7 @@ fn rgb(colors: &[[f32; 3]]) -> Vec<Rgb> {
 /// Returns whether the first line that is not a comment is an OBJ statement.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     const STATEMENTS: [&[u8]; 9] = [b"v", b"vt", b"vn", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl"];
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let words = bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(|line| line::keyword(line).0);
     words.filter(|word| !word.is_empty() && word[0] != b'#').take(1).any(|word| STATEMENTS.contains(&word))
 }

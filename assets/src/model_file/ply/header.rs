@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::model_file::tokens::expected;
-use crate::model_file::word::{name, words};
+use crate::model_file::word::{name, without_mark, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
 /// How numbers are encoded.
@@ -104,17 +104,13 @@ pub(super) struct Header {
     pub(super) lines: u64,
 }
 
-/// What some editors put before the first line.
-pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
-
 /// The most elements, and properties of an element, so that no property list takes for ever.
 const MAX: usize = 1_000;
 
 impl Header {
     /// Reads the header, including `end_header`.
     pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Self, ModelFileError> {
-        let mark = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
-        let mut lines = HeaderLines { bytes, at: mark, number: 0 };
+        let mut lines = HeaderLines { bytes, at: bytes.len() - without_mark(bytes).len(), number: 0 };
         let mut elements: Vec<Element> = Vec::new();
         let (mut encoding, mut texture) = (None, None);
         let mut is_first = true;

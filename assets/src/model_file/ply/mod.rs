@@ -25,13 +25,14 @@ use mode13h::palette::Rgb;
 
 use crate::model_file::colors::of_faces;
 use crate::model_file::lists::{Corner, Lists, Wide, push};
+use crate::model_file::word::without_mark;
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, paint};
 use header::{Element, Header, Kind};
 use value::Values;
 
 /// Returns whether a file begins like a PLY.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(header::BYTE_ORDER_MARK).unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }
 
