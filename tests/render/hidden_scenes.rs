@@ -291,7 +291,7 @@ fn depths_of_earlier_frames_hide_nothing() {
     let mut random = Random::named("depths of earlier frames");
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     let mut scene = bars();
-    let usual = scene.camera.clone();
+    let usual = scene.camera;
     for number in 0..240 {
         let place = [(); 3].map(|()| random.within(-14, 14) as f32);
         let degrees = random.within(0, 359) as f64;
