@@ -10,7 +10,7 @@ const GROUPS: [(char, u32); 9] =
     [('S', 7), ('R', 14), ('C', 5), ('N', 9), ('T', 3), ('D', 4), ('P', 5), ('E', 1), ('F', 5)];
 
 /// The folders of the workspace that hold tests.
-const SOURCES: [&str; 6] = ["src", "tests", "lab/src", "lab/tests", "cli/src", "cli/tests"];
+const SOURCES: [&str; 7] = ["src", "tests", "assets/tests", "lab/src", "lab/tests", "cli/src", "cli/tests"];
 
 /// What a row says instead of tests while the feature to test does not exist yet.
 const PENDING: &str = "pending: feature";

@@ -2,7 +2,6 @@
 #![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
 
 pub mod display;
-pub mod film;
 #[cfg(feature = "png")]
 pub mod golden;
 #[cfg(feature = "alloc")]

@@ -21,7 +21,7 @@ use super::{AnimationError, Film, FrameRate, GifFrame, GifWriter};
 /// let (dark, light) = (vga.palette(), mode13h::palette::builtin::by_name("copper").unwrap().palette.clone());
 /// vga.pixels_mut().iter_mut().enumerate().for_each(|(i, pixel)| *pixel = (i % 320 / 2) as u8);
 /// let mut film = GifFile::create(&path, Scale::FiveBySix, FrameRate::try_from(25.0)?)?;
-/// for t in 0..=256 {
+/// for t in (0..=256).step_by(8) {
 ///     vga.fade(&dark, &light, t);
 ///     film.add(&Picture::mode_13h(vga.pixels(), &vga.palette()))?;
 /// }

@@ -202,7 +202,7 @@ fn documents_name_what_there_is() {
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
     let features = include_str!("../../../../Cargo.toml").split("[features]").nth(1).expect("features");
     known.extend(features.split("\n[").next().expect("features").lines().filter_map(|line| line.split(" = ").next()));
-    // That its keys are the parser's another test says (tests/scene/scene_files.rs).
+    // That its keys are the parser's another test says (assets/tests/files/scene_files.rs).
     let keys: BTreeSet<&str> =
         SCENES.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |").map(|(key, _)| key)).collect();
     known.extend(&keys);

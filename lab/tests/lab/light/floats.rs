@@ -160,7 +160,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Mesh.normals", "tests/scene/mesh_normals.rs"),
     ("Mesh.positions", "tests/scene/mesh_normals.rs"),
     ("Mesh.texcoords", "tests/scene/mesh_normals.rs"),
-    ("Scene.duration", "the length of a film, not a number of a frame: tests/scene/scene_files.rs"),
+    ("Scene.duration", "the length of a film, not a number of a frame: assets/tests/files/scene_files.rs"),
     ("Scene.picture", "a moment, which motions make nothing of if it is none"),
     ("Parts.crease", "what is no number leaves all faces flat"),
     ("Parts.normals", "those that are not finite count as missing"),

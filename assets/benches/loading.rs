@@ -10,6 +10,7 @@
 //! the rounds, and ratios are medians of the ratios within each round. `tobj` reads in two ways: with the options used
 //! for drawing (triangles, one index per vertex), and with those that are fastest.
 
+#[path = "../../benches/interleaved/mod.rs"]
 mod interleaved;
 
 use std::fmt::Write as _;

@@ -461,7 +461,9 @@ fn a_scene_chooses_the_clip_of_a_model() {
     let open = |path: &Path| -> io::Result<Box<dyn io::BufRead>> {
         match path.to_str() {
             Some("a.glb") => Ok(Box::new(io::Cursor::new(glb.clone()))),
-            Some("a.stl") => Ok(Box::new(io::Cursor::new(&include_bytes!("../corpus/stl/tetrahedron")[..]))),
+            Some("a.stl") => {
+                Ok(Box::new(io::Cursor::new(&include_bytes!("../../../tests/corpus/stl/tetrahedron")[..])))
+            }
             _ => Err(io::ErrorKind::NotFound.into()),
         }
     };

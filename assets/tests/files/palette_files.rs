@@ -1,5 +1,4 @@
 //! Palettes: the hard cases P1, P2 and P5, the ramps, the cube, the built-ins and their files.
-#![cfg(feature = "alloc")] // The writers.
 
 use std::collections::BTreeSet;
 use std::io;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use glam::{Vec2, Vec3};
 use mode13h::Angle;
+use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::Rgb;
 use mode13h::render::Renderer;

@@ -758,7 +758,7 @@ fn check(result: &Result<Loaded, SceneError>, at: usize) {
 /// The scenes' README.md from here on: its table for a part of a scene names every key that the part has.
 #[test]
 fn every_key_is_documented() {
-    let readme = include_str!("../../assets/scenes/README.md");
+    let readme = include_str!("../../scenes/README.md");
     let mut tried = 0;
     for (section, text) in [
         ("A scene", "x = 1"),
@@ -787,11 +787,11 @@ fn every_key_is_documented() {
 /// Every line of a scene shown in the documents, in a sentence or in a block, is valid.
 #[test]
 fn keys_in_documents_are_keys_of_scenes() {
-    let scenes = include_str!("../../assets/scenes/README.md");
+    let scenes = include_str!("../../scenes/README.md");
     // Its tables are those of the parser (see above).
     let known: Vec<&str> = scenes.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
     let mut tried = 0;
-    for document in [include_str!("../../README.md"), scenes] {
+    for document in [include_str!("../../../README.md"), scenes] {
         let mut language = "";
         for line in document.lines() {
             if let Some(opened) = line.trim_start().strip_prefix("```") {
@@ -819,10 +819,8 @@ fn keys_in_documents_are_keys_of_scenes() {
 /// The document lists exactly the existing shadings.
 #[test]
 fn every_shading_is_documented() {
-    let row = include_str!("../../assets/scenes/README.md")
-        .lines()
-        .find(|line| line.starts_with("| `shading` |"))
-        .expect("a row");
+    let row =
+        include_str!("../../scenes/README.md").lines().find(|line| line.starts_with("| `shading` |")).expect("a row");
     let named = row.split('|').nth(2).expect("the values");
     let all = mode13h::settings::Shading::ALL.map(|shading| format!("`\"{shading}\"`"));
     assert_eq!(named.trim(), all.join(", "));

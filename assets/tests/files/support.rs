@@ -1,0 +1,15 @@
+//! What several test files share.
+#![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
+
+#[path = "../../../tests/support/film.rs"]
+pub mod film;
+#[path = "../../../tests/support/property.rs"]
+pub mod property;
+#[path = "../../../tests/support/scenes.rs"]
+pub mod scenes;
+#[path = "../../../tests/support/shipped.rs"]
+pub mod shipped;
+#[path = "../../../tests/support/tried.rs"]
+pub mod tried;
+#[path = "../../../tests/support/workspace.rs"]
+pub mod workspace;
