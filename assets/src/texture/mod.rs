@@ -136,6 +136,15 @@ pub fn decode(file: impl BufRead + Seek) -> Result<Texture, LoadErrorKind> {
 /// # Errors
 /// Those of [`load`].
 pub fn decode_all(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+    decode_any(&mut file)
+}
+
+/// Any source. One type, so that the decoders are compiled once.
+trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
+fn decode_any(file: &mut dyn Source) -> Result<Decoded, LoadErrorKind> {
     let head = file.fill_buf().map_err(LoadErrorKind::Read)?;
     if head.starts_with(PNG) {
         return decode_png(file);
@@ -168,13 +177,11 @@ pub(crate) fn may_have_palette(head: &[u8]) -> bool {
 /// Formats read by the crate `image`.
 #[cfg(feature = "images")]
 mod others {
-    use std::io::{BufRead, Seek};
-
     use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Texture, check_size, clause};
+    use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Source, Texture, check_size, clause};
 
-    pub(super) fn decode(mut file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+    pub(super) fn decode(file: &mut dyn Source) -> Result<Decoded, LoadErrorKind> {
         let is_tga = file.fill_buf().is_ok_and(is_tga);
         let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
         if reader.format().is_none() && is_tga {
@@ -187,9 +194,19 @@ mod others {
         let (width, height) = decoder.dimensions();
         // Before memory for its pixels is allocated.
         check_size(width, height)?;
-        let picture = DynamicImage::from_decoder(decoder).map_err(reason)?.into_rgba8();
-        let was_transparent = picture.pixels().any(|pixel| pixel[3] < 255);
-        let pixels: Vec<Rgb> = picture.pixels().map(|pixel| Rgb::new(pixel[0], pixel[1], pixel[2])).collect();
+        let mut was_transparent = false;
+        let pixels: Vec<Rgb> = match DynamicImage::from_decoder(decoder).map_err(reason)? {
+            DynamicImage::ImageRgb8(picture) => {
+                picture.as_raw().as_chunks().0.iter().map(|&[r, g, b]| Rgb::new(r, g, b)).collect()
+            }
+            other => {
+                let of = |&[r, g, b, alpha]: &[u8; 4]| {
+                    was_transparent |= alpha < 255;
+                    Rgb::new(r, g, b)
+                };
+                other.into_rgba8().as_raw().as_chunks().0.iter().map(of).collect()
+            }
+        };
         let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
         Ok(Decoded { texture, was_transparent, palette: None })
     }
@@ -221,7 +238,7 @@ fn check_size(width: u32, height: u32) -> Result<(), LoadErrorKind> {
     }
 }
 
-fn decode_png(file: impl BufRead + Seek) -> Result<Decoded, LoadErrorKind> {
+fn decode_png(file: &mut dyn Source) -> Result<Decoded, LoadErrorKind> {
     // A row of the widest picture is 32 KiB; other chunks may be no larger than the pixels.
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_BYTES });
     let head = decoder.read_header_info().map_err(reason)?;

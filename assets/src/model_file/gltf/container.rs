@@ -23,7 +23,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
         true => chunks(bytes, path)?,
         false => (without_mark(bytes), None, None),
     };
-    let mut root: json::Root = json::deserialize::from_slice(text).map_err(|error| {
+    let mut root = json::Root::from_slice(text).map_err(|error| {
         let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));
         let place = match start {
             // A truncated file ends on its last line, not on one that a final line break would begin.
