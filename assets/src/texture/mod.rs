@@ -177,19 +177,22 @@ pub(crate) fn may_have_palette(head: &[u8]) -> bool {
 /// Formats read by the crate `image`.
 #[cfg(feature = "images")]
 mod others {
+    use std::io::{self, Read};
+
     use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
     use super::{Decoded, LoadErrorKind, MAX_BYTES, Rgb, Source, Texture, check_size, clause};
 
     pub(super) fn decode(file: &mut dyn Source) -> Result<Decoded, LoadErrorKind> {
         let is_tga = file.fill_buf().is_ok_and(is_tga);
-        let mut reader = ImageReader::new(file).with_guessed_format().map_err(LoadErrorKind::Read)?;
+        let mut reader = ImageReader::new(&mut *file).with_guessed_format().map_err(LoadErrorKind::Read)?;
         if reader.format().is_none() && is_tga {
             reader.set_format(ImageFormat::Tga);
         }
         let mut limits = Limits::default();
         limits.max_alloc = Some(MAX_BYTES as u64);
         reader.limits(limits);
+        let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
         let decoder = reader.into_decoder().map_err(reason)?;
         let (width, height) = decoder.dimensions();
         // Before memory for its pixels is allocated.
@@ -207,8 +210,21 @@ mod others {
                 other.into_rgba8().as_raw().as_chunks().0.iter().map(of).collect()
             }
         };
+        if is_jpeg && is_cut_off(file).map_err(LoadErrorKind::Read)? {
+            return Err(LoadErrorKind::Picture("unexpected end of file".into()));
+        }
         let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
         Ok(Decoded { texture, was_transparent, palette: None })
+    }
+
+    /// Returns whether a JPEG lacks its end, where the decoder makes the missing pixels grey. No marker occurs inside
+    /// the scan that begins with the last SOS (FF DA), so EOI (FF D9) must follow it.
+    fn is_cut_off(file: &mut dyn Source) -> io::Result<bool> {
+        let mut bytes = Vec::new();
+        file.rewind()?;
+        file.take(MAX_BYTES as u64).read_to_end(&mut bytes)?;
+        let last = |marker| bytes.windows(2).rposition(|pair| pair == [0xFF, marker]);
+        Ok(last(0xD9) < last(0xDA))
     }
 
     fn reason(error: ImageError) -> LoadErrorKind {

@@ -158,6 +158,26 @@ fn a_picture_too_large_is_refused_by_its_head() {
     }
 }
 
+/// A JPEG without its end is refused, wherever it is cut off, as a PNG is: the decoder would make the rest grey.
+#[test]
+fn a_jpeg_that_is_cut_off_is_refused() {
+    let mut random = Random::new(7);
+    let picture = image::RgbImage::from_fn(40, 24, |_, _| image::Rgb([random.next_u64() as u8; 3]));
+    let mut whole = Cursor::new(Vec::new());
+    picture.write_to(&mut whole, image::ImageFormat::Jpeg).expect("written");
+    let mut bytes = whole.into_inner();
+    for length in 4..bytes.len() {
+        decode(Cursor::new(&bytes[..length])).expect_err("cut off");
+    }
+    // A preview before it has an end of its own; what follows the picture does not matter.
+    let preview = [&[0xFF, 0xE1, 0, 8][..], &[0xFF, 0xDA, 0, 0, 0xFF, 0xD9]].concat();
+    bytes.splice(2..2, preview);
+    decode(Cursor::new(&bytes)).expect("whole");
+    decode(Cursor::new(&bytes[..bytes.len() - 2])).expect_err("cut off");
+    bytes.extend(b"the end");
+    decode(Cursor::new(&bytes)).expect("whole");
+}
+
 /// What is wrong with a picture is reported in one sentence, whatever its decoder says.
 #[test]
 fn what_is_wrong_with_a_picture_is_one_sentence() {
