@@ -1,20 +1,13 @@
-; A 2 MB ROM in place of a PC's BIOS: switches the processor to 64 bits with AVX-512, copies the program into memory,
-; and starts it. It serves two Linux calls: write prints its text to port E9h, exit ends Bochs. Exceptions are not
-; handled: the processor shuts down, and Bochs ends.
-;     nasm -D IMAGE="'FILE'" -D WORDS="'FILE'"
+; A 64 kB ROM in place of a PC's BIOS: switches the processor to 64 bits with AVX-512, reads the program from the hard disk,
+; and starts it. It serves two Linux calls: write prints its text to port E9h, exit ends Bochs. Exceptions are not handled: the
+; processor shuts down, and Bochs ends.
+;     nasm -D SECTORS=N -D WORDS="'FILE'"       the program's sectors of 512 bytes
 place   equ 1000000h                    ; the program's first instruction (image.ld)
 stack   equ 0F00000h                    ; as Linux leaves it: the number of words, their addresses
 memory  equ 8000000h                    ; bytes
 tables  equ 10000h                      ; pages
-        bits 32
-        org 0FFE00000h
-image   incbin IMAGE
-image_size equ $ - image
-words   incbin WORDS
-words_size equ $ - words
-        times 1F0000h - ($ - $$) db 0
-
-rom     equ $                           ; its last 64 kB, where the processor begins
+        org 0FFFF0000h
+rom     equ $
         bits 16
 start:  cli
         o32 lgdt [cs:gdtr - rom]
@@ -29,10 +22,31 @@ protected:
         mov ss, ax
         mov es, ax
         cld
-        mov esi, image
+        xor ebx, ebx                    ; the sector
         mov edi, place
-        mov ecx, image_size
-        rep movsb
+.read:  mov dx, 1F2h
+        mov al, 1                       ; one
+        out dx, al
+        mov eax, ebx
+        or eax, 0E0000000h              ; the first disk, by the sector's number
+        mov ecx, 4
+.number:
+        inc edx
+        out dx, al
+        shr eax, 8
+        loop .number
+        inc edx
+        mov al, 20h                     ; read
+        out dx, al
+.wait:  in al, dx
+        test al, 8
+        jz .wait
+        mov dx, 1F0h
+        mov ecx, 256
+        rep insw
+        inc ebx
+        cmp ebx, SECTORS
+        jne .read
         ; Bochs's memory is not zeroed.
         xor eax, eax
         mov ecx, place + memory
@@ -127,7 +141,10 @@ gdt     dq 0
 gdtr    dw $ - gdt - 1
         dd gdt
 
-        times 1FFFF0h - ($ - $$) db 0
+words   incbin WORDS
+words_size equ $ - words
+
+        times 0FFF0h - ($ - $$) db 0
         bits 16                         ; where the processor begins
         jmp start
-        times 200000h - ($ - $$) db 0
+        times 10000h - ($ - $$) db 0
