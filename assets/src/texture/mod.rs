@@ -177,7 +177,7 @@ pub(crate) fn may_have_palette(head: &[u8]) -> bool {
 /// Formats read by the crate `image`.
 #[cfg(feature = "images")]
 mod others {
-    use std::io::{self, Read};
+    use std::io::{Read, SeekFrom};
 
     use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
@@ -185,6 +185,7 @@ mod others {
 
     pub(super) fn decode(file: &mut dyn Source) -> Result<Decoded, LoadErrorKind> {
         let is_tga = file.fill_buf().is_ok_and(is_tga);
+        let start = file.stream_position().map_err(LoadErrorKind::Read)?;
         let mut reader = ImageReader::new(&mut *file).with_guessed_format().map_err(LoadErrorKind::Read)?;
         if reader.format().is_none() && is_tga {
             reader.set_format(ImageFormat::Tga);
@@ -210,21 +211,33 @@ mod others {
                 other.into_rgba8().as_raw().as_chunks().0.iter().map(of).collect()
             }
         };
-        if is_jpeg && is_cut_off(file).map_err(LoadErrorKind::Read)? {
-            return Err(LoadErrorKind::Picture("unexpected end of file".into()));
+        if is_jpeg {
+            let mut bytes = Vec::new();
+            file.seek(SeekFrom::Start(start)).map_err(LoadErrorKind::Read)?;
+            file.take(MAX_BYTES as u64).read_to_end(&mut bytes).map_err(LoadErrorKind::Read)?;
+            if is_cut_off(&bytes) {
+                return Err(LoadErrorKind::Picture("unexpected end of file".into()));
+            }
         }
         let texture = Texture::from_rgb(width, height, &pixels).map_err(LoadErrorKind::Texture)?;
         Ok(Decoded { texture, was_transparent, palette: None })
     }
 
-    /// Returns whether a JPEG lacks its end, where the decoder makes the missing pixels grey. No marker occurs inside
-    /// the scan that begins with the last SOS (FF DA), so EOI (FF D9) must follow it.
-    fn is_cut_off(file: &mut dyn Source) -> io::Result<bool> {
-        let mut bytes = Vec::new();
-        file.rewind()?;
-        file.take(MAX_BYTES as u64).read_to_end(&mut bytes)?;
-        let last = |marker| bytes.windows(2).rposition(|pair| pair == [0xFF, marker]);
-        Ok(last(0xD9) < last(0xDA))
+    /// Returns whether a JPEG lacks its end, where the decoder makes the missing pixels grey. Segments are skipped by their
+    /// length, so a preview inside one does not count, and neither does what follows the end.
+    fn is_cut_off(jpeg: &[u8]) -> bool {
+        let mut rest = jpeg;
+        loop {
+            // In the data of a scan a byte FF is followed by 0, by another FF or by a restart's number.
+            let is_marker = |pair: &[u8]| pair[0] == 0xFF && !matches!(pair[1], 0 | 1 | 0xD0..=0xD8 | 0xFF);
+            let Some(at) = rest.windows(2).position(is_marker) else { return true };
+            if rest[at + 1] == 0xD9 {
+                return false;
+            }
+            let Some(&[high, low]) = rest[at + 2..].first_chunk() else { return true };
+            let Some(after) = rest.get(at + 2 + usize::from(u16::from_be_bytes([high, low]))..) else { return true };
+            rest = after;
+        }
     }
 
     fn reason(error: ImageError) -> LoadErrorKind {

@@ -169,13 +169,19 @@ fn a_jpeg_that_is_cut_off_is_refused() {
     for length in 4..bytes.len() {
         decode(Cursor::new(&bytes[..length])).expect_err("cut off");
     }
-    // A preview before it has an end of its own; what follows the picture does not matter.
+    // A preview before it has an end of its own.
     let preview = [&[0xFF, 0xE1, 0, 8][..], &[0xFF, 0xDA, 0, 0, 0xFF, 0xD9]].concat();
     bytes.splice(2..2, preview);
     decode(Cursor::new(&bytes)).expect("whole");
     decode(Cursor::new(&bytes[..bytes.len() - 2])).expect_err("cut off");
-    bytes.extend(b"the end");
+    // Phones append a film; here one that looks like the begin of another scan.
+    bytes.extend([0xFF, 0xDA, 0, 4, 0xFF]);
     decode(Cursor::new(&bytes)).expect("whole");
+    // Inside a larger file.
+    bytes.splice(0..0, [0xFF, 0xC0, 0xFF, 0xFF]);
+    let mut inside = Cursor::new(&bytes);
+    inside.set_position(4);
+    decode(inside).expect("whole");
 }
 
 /// What is wrong with a picture is reported in one sentence, whatever its decoder says.
