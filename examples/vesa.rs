@@ -1,5 +1,5 @@
-//! 640 × 480 square pixels in a palette of its own: fire on a toon teapot, in a window with the feature
-//! `window`, and without or without a display in `vesa.png`.
+//! 640 × 480 square pixels in a palette of its own: fire on a toon teapot. It opens a window if it is built with the
+//! feature `window` and there is a display; otherwise it writes `vesa.png`.
 //!
 //!     cargo run --release --example vesa [--features window]
 

@@ -2,15 +2,15 @@
 //! 256 colours, fixed-point arithmetic, and one inner loop, `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` /
 //! `jnz`.
 //!
-//! These are the modules from the bottom up. Each only uses those above it in the list.
+//! The modules, lowest layer first: each uses only those listed before it.
 //!
 //! | module | holds | needs |
 //! |---|---|---|
 //! | [`fixed`] | the number types: 8.8 shades, 24.8 screen coordinates, 16.16; every rounding by name | – |
-//! | [`palette`] | 256 colours, ramps of shades, file formats | – |
+//! | [`palette`] | 256 colours, ramps of shades, nearest entries | – |
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its assembly and vector versions, which draw the same bytes | – |
-//! | [`texture`] | 8-bit texels with colours of their own: from pictures, from files, built in | `alloc` |
+//! | [`texture`] | 8-bit texels with colours of their own: from pictures, or built in | `alloc` |
 //! | [`raster`] | triangles: exact coverage, shades in range, depth, clip rectangles, bands | – |
 //! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |

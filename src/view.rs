@@ -144,6 +144,33 @@ impl Camera {
     }
 }
 
+impl Camera {
+    /// The direction from the eye through a point of the screen, as a unit vector, to find out what is there: the
+    /// opposite of [`project`](Self::project). The point is in pixels from the upper left corner, and may be off the
+    /// screen; the middle of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite or the camera is
+    /// invalid.
+    ///
+    /// ```
+    /// use mode13h::glam::Vec3;
+    /// use mode13h::render::Screen;
+    /// use mode13h::scene::Camera;
+    ///
+    /// let camera = Camera::framing(Vec3::ZERO, 2.0);
+    /// let centre = camera.ray([160.0, 100.0], Screen::MODE_13H).expect("a valid camera");
+    /// assert_eq!(centre, -Vec3::Z);
+    /// ```
+    #[must_use]
+    pub fn ray(&self, [x, y]: [f32; 2], screen: Screen) -> Option<Vec3> {
+        let view = View::new(self, screen).ok()?;
+        let [fx, fy] = screen.focal_lengths(self.field_of_view);
+        let right = (f64::from(x) - f64::from(view.centre.0)) / fx;
+        let up = (f64::from(view.centre.1) - f64::from(y)) / fy;
+        let along: Row = core::array::from_fn(|i| right * view.axes[0][i] + up * view.axes[1][i] - view.axes[2][i]);
+        let [x, y, z] = unit(along).filter(|along| along.iter().all(|c| c.is_finite()))?;
+        Some(Vec3::new(x as f32, y as f32, z as f32))
+    }
+}
+
 /// The whole transform of an object, from its mesh to the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ObjectView {

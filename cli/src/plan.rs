@@ -91,7 +91,7 @@ fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) ->
         let measured = rows.iter().zip(&prices).find(|(other, _)| of_all && other.effect == row.effect);
         prices.push(match measured {
             Some((_, price)) => *price,
-            None => meter.price(row.place, row.effect, row.on)?,
+            None => meter.price(row.index, row.effect, row.on)?,
         });
         bar.inc(1);
     }
@@ -131,7 +131,7 @@ fn as_json<'a>(
     rows: &'a [Row],
     prices: Option<&'a [Option<u64>]>,
 ) -> Json<'a> {
-    let objects = rows.chunk_by(|a, b| a.place == b.place).scan(0, |first, rows| {
+    let objects = rows.chunk_by(|a, b| a.index == b.index).scan(0, |first, rows| {
         let prices = prices.map(|prices| &prices[*first..][..rows.len()]);
         *first += rows.len();
         let effects = rows.iter().enumerate().map(|(i, row)| JsonEffect {
@@ -232,7 +232,7 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
         choice: widest(&|(row, _)| row.choice.len()),
         price: widest(&|(_, price)| price.len()),
     };
-    let objects: Vec<&[(&Row, String)]> = priced.chunk_by(|(a, _), (b, _)| a.place == b.place).collect();
+    let objects: Vec<&[(&Row, String)]> = priced.chunk_by(|(a, _), (b, _)| a.index == b.index).collect();
     let said = |row: &Row| (row.effect, row.on, row.choice, row.reason.clone());
     let common: Vec<(&Row, String)> = match objects.as_slice() {
         [first, rest @ ..] if !rest.is_empty() && prices.is_none() => {
@@ -249,7 +249,7 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
     // Several objects may have one name.
     let heading = |row: &Row| match objects.iter().filter(|object| object[0].0.object == row.object).count() {
         1 => row.object.clone(),
-        _ => format!("{} (object {})", row.object, row.place),
+        _ => format!("{} (object {})", row.object, row.index),
     };
     let is_common = |row: &Row| common.iter().any(|(other, _)| row.effect == other.effect);
     let mut groups: Vec<Group<'_>> = Vec::new();

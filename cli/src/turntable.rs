@@ -331,10 +331,7 @@ impl Turntable {
         self.scene.auto_palette = false;
         match colors {
             Colors::Palette(palette) => {
-                if let Some(color) = self.scene.background_color {
-                    self.scene.background = palette.nearest(color);
-                }
-                self.scene.palette = Some(Palette::clone(palette));
+                self.scene.set_palette(Palette::clone(palette));
             }
             Colors::Auto => self.automatic()?.clone().apply(&mut self.scene),
         }

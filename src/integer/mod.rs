@@ -7,16 +7,6 @@
 //! a chip without a floating-point unit can draw what the f32 path of `render` draws, in the same
 //! stages and with the same conventions.
 //!
-//! | file | what |
-//! |---|---|
-//! | `angle` | binary angles and their sines |
-//! | `vector` | unit vectors, the rotation of an object |
-//! | `mesh` | a mesh in 16.16; averaged normals |
-//! | `view` | camera and object to one matrix; projection; the one rounding |
-//! | `light` | suns, paints, the shade of a vertex |
-//! | `clip` | near plane and guard band |
-//! | `stage` | an object's vertices, lit and projected, then its faces |
-//!
 //! A frame may be drawn in bands of rows: the vertices are computed once, the faces drawn into each band.
 //!
 //! ```
@@ -50,6 +40,16 @@
 //! assert_eq!(bytes[100 * 320 + 160], 180); // lit under 45°: 255 · √½
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+
+// | file | what |
+// |---|---|
+// | `angle` | binary angles and their sines |
+// | `vector` | unit vectors, the rotation of an object |
+// | `mesh` | a mesh in 16.16; averaged normals |
+// | `view` | camera and object to one matrix; projection; the one rounding |
+// | `light` | suns, paints, the shade of a vertex |
+// | `clip` | near plane and guard band |
+// | `stage` | an object's vertices, lit and projected, then its faces |
 
 mod angle;
 mod clip;

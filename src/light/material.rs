@@ -85,7 +85,7 @@ pub enum Blend {
     Add,
 }
 
-/// A matt material that reflects all light, in the palette's first ramp.
+/// A matt white material in the palette's first ramp: it reflects 15 % of ambient light and 85 % of a light's.
 impl Default for Material {
     fn default() -> Self {
         Self::from_surface(&Surface::default(), 0)

@@ -13,14 +13,14 @@
 //! once, at the end: the Russian article clamps each component after summing, so several lights
 //! together may reach full intensity where one alone would not. Intensities are DAC values without
 //! gamma, as was usual then.
-//!
-//! | file | what |
-//! |---|---|
-//! | `source` | [`Light`]: suns, lamps with a position and a fall-off (the Russian textbook), and spot lights |
-//! | `material` | [`Material`]: how a surface responds to light |
-//! | `intensity` | the sum |
-//! | `lanes` | the same at eight points at a time |
-//! | `power` | how narrow a highlight is |
+
+// | file | what |
+// |---|---|
+// | `source` | `Light`: suns, lamps with a position and a fall-off (the Russian textbook), and spot lights |
+// | `material` | `Material`: how a surface responds to light |
+// | `intensity` | the sum |
+// | `lanes` | the same at eight points at a time |
+// | `power` | how narrow a highlight is |
 
 mod intensity;
 mod lanes;

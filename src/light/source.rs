@@ -75,6 +75,9 @@ impl Light {
     }
 
     /// A white spot light of intensity 1: a lamp at `position` with a range above 0, limited to `cone`.
+    ///
+    /// On large faces its edge shows only if light is computed inside them, too:
+    /// [`Settings`](crate::settings::Settings) says how.
     #[must_use]
     pub fn spot(position: impl Into<Vec3>, range: f32, cone: Cone) -> Self {
         Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: Some(cone) }
@@ -96,6 +99,28 @@ impl Light {
             Self::Sun { color, .. } | Self::Lamp { color, .. } => *color = new.into(),
         }
         self
+    }
+
+    /// Points a sun or a spot light in another direction: as for [`sun`](Self::sun) towards the sun, as in [`Cone`] away
+    /// from a spot light. A lamp that shines in all directions is left as it is.
+    ///
+    /// ```
+    /// use mode13h::Angle;
+    /// use mode13h::glam::Vec3;
+    /// use mode13h::light::{Cone, Light};
+    ///
+    /// let [inner, outer] = [10.0, 15.0].map(Angle::from_degrees);
+    /// let mut light = Light::spot([0.0, 4.0, 0.0], 9.0, Cone { direction: -Vec3::Y, inner, outer });
+    /// light.aim([0.3, -1.0, 0.0]);
+    /// assert!(matches!(light, Light::Lamp { cone: Some(Cone { direction, .. }), .. } if direction.x == 0.3));
+    /// ```
+    pub fn aim(&mut self, at: impl Into<Vec3>) {
+        match self {
+            Self::Sun { direction, .. } | Self::Lamp { cone: Some(Cone { direction, .. }), .. } => {
+                *direction = at.into()
+            }
+            Self::Lamp { cone: None, .. } => {}
+        }
     }
 
     /// Returns the light's intensity.

@@ -8,7 +8,8 @@ use super::{Mesh, MeshError};
 
 impl Mesh {
     /// Copies the mesh with new positions and normals, one of each per vertex. Triangles, surfaces
-    /// and texture coordinates are kept, and normals are normalised.
+    /// and texture coordinates are kept, and normals are normalised. To have normals computed, pass the old ones, and
+    /// call [`smooth`](Self::smooth) or [`flat`](Self::flat) on the copy.
     ///
     /// Whether the copy is closed, faces outward and is convex is determined again, because a bend may change all of it.
     /// That takes most of the time.

@@ -5,6 +5,8 @@ use alloc::string::String;
 use crate::palette::Rgb;
 
 /// A face's surface, in the terms of an MTL file. The default is white and matt.
+///
+/// [`Object::new`](crate::scene::Object::new) says what of it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// `newmtl`; empty if the mesh does not come from a file.

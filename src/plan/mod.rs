@@ -1,19 +1,19 @@
 //! Decides which effects each object of a scene calls for, and why.
 //!
-//! | file | what |
-//! |---|---|
-//! | `effect` | [`Effect`]: the list, and what each may change |
-//! | `reason` | [`Reason`]: the reasons |
-//! | `stages` | the work for an object, as values; [`Choice`] |
-//! | `face_shading` | [`FaceShading`]: how a face is shaded |
-//! | `findings` | facts found while drawing, as text |
-//! | `decide` | the rules, a function per effect |
-//! | `hidden` | which hidden-surface method to use |
-//!
 //! A plan is made once per frame: a few comparisons and products per object, nothing per vertex.
 //! The renderer follows [`ObjectPlan::is_on`]; [`Plan::rows`] reports the decisions as text. A
 //! disabled effect costs nothing per vertex, triangle, span or pixel, and no memory, except that
 //! memory allocated while it was on is retained for reuse.
+
+// | file | what |
+// |---|---|
+// | `effect` | `Effect`: the list, and what each may change |
+// | `reason` | `Reason`: the reasons |
+// | `stages` | the work for an object, as values; `Choice` |
+// | `face_shading` | `FaceShading`: how a face is shaded |
+// | `findings` | facts found while drawing, as text |
+// | `decide` | the rules, a function per effect |
+// | `hidden` | which hidden-surface method to use |
 
 mod decide;
 mod effect;
@@ -23,8 +23,10 @@ mod hidden;
 pub(crate) mod reason;
 pub(crate) mod stages;
 
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
+use core::fmt;
 use core::ops::Index;
 
 pub use crate::raster::effects::SampleSpacing;
@@ -250,14 +252,14 @@ impl Plan {
     #[must_use]
     pub(crate) fn rows_with(&self, scene: &Scene, findings: impl Fn(usize) -> Findings) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.objects.len() * Effect::COUNT);
-        for (place, plan) in self.objects.iter().enumerate() {
-            let findings = findings(place);
+        for (index, plan) in self.objects.iter().enumerate() {
+            let findings = findings(index);
             for effect in Effect::ALL {
                 let Decision { on, choice, reason } = plan[effect];
-                let reason = reason.words(scene, place) + &findings.words(effect, on);
+                let reason = reason.words(scene, index) + &findings.words(effect, on);
                 rows.push(Row {
-                    place,
-                    object: reason::name_of(scene, place),
+                    index,
+                    object: reason::name_of(scene, index),
                     effect,
                     on,
                     choice: choice.name(),
@@ -274,7 +276,7 @@ impl Plan {
 #[non_exhaustive]
 pub struct Row {
     /// The object's index in the scene.
-    pub place: usize,
+    pub index: usize,
     /// The object's name.
     pub object: String,
     /// The effect.
@@ -285,4 +287,25 @@ pub struct Row {
     pub choice: &'static str,
     /// The reason.
     pub reason: String,
+}
+
+/// One line: `torus: fog off, the scene has none`.
+///
+/// ```
+/// use mode13h::mesh::shapes;
+/// use mode13h::render::{Renderer, Screen};
+/// use mode13h::scene::Scene;
+///
+/// let scene = Scene::showing(shapes::cube());
+/// let rows = Renderer::new().make_plan(&scene, Screen::MODE_13H)?.rows(&scene);
+/// assert_eq!(rows[0].to_string(), "object 0: transform on, the first frame");
+/// # Ok::<(), mode13h::render::RenderError>(())
+/// ```
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { object, effect, on, choice, reason, .. } = self;
+        let state = if *on { "on" } else { "off" };
+        let choice = if choice.is_empty() { String::new() } else { format!(" ({choice})") };
+        write!(f, "{object}: {effect} {state}{choice}, {reason}")
+    }
 }

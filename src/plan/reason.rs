@@ -196,7 +196,7 @@ impl Reason {
             Self::Band => "only a part of the screen is drawn".to_string(),
             Self::Closed => "its mesh is closed".to_string(),
             Self::Open => "its mesh is open, so both sides may be seen".to_string(),
-            Self::InsideOut => "its mesh is inside out in part, so both sides may be seen".to_string(),
+            Self::InsideOut => "its mesh does not face outward everywhere, so both sides may be seen".to_string(),
             Self::SeenThrough => "its far side shows through".to_string(),
             Self::OneConvex => "the only object is convex".to_string(),
             Self::Empty => "there is nothing to draw".to_string(),

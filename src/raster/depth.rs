@@ -1,4 +1,4 @@
-//! Depth buffers. [`DepthPlane`](super::reference::depth::DepthPlane) defines the depth of a triangle at a pixel.
+//! Depth buffers. `reference::depth::DepthPlane` defines the depth of a triangle at a pixel.
 
 use super::error::RasterError;
 use super::frame::Frame;
@@ -7,8 +7,8 @@ use super::frame::Rect;
 pub(crate) use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
-/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines (`Cell` says what that
-/// loses); greater is nearer, 0 is farthest. The caller owns the slice.
+/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines, which cannot tell depths
+/// apart that differ by less than 2¹⁴ of 2³⁰. Greater is nearer, 0 is farthest. The caller owns the slice.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],

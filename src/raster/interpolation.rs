@@ -4,14 +4,14 @@ use crate::fixed::IS_SMALL;
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// | shading | differs from exact by less than | in |
+/// | interpolation | [`Shading`](crate::settings::Shading) | differs from exact, in shades, by less than |
 /// |---|---|---|
-/// | `GouraudVintage` | – (from other vertices) | `vintage` |
-/// | `Gouraud` | ½ + w/256 shade over a row of w pixels: 1.75 over 320 | `shade` |
-/// | `GouraudReseeded` | ½ + ¼ | `shade` |
-/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 | `fixed16` |
-/// | `GouraudHyperbolic` | ½, or exactly that | `hyperbolic` |
-/// | `Float` | ½ + 1/8,192 | `float` |
+/// | `GouraudVintage` | `GouraudVintage` | – (it starts from other vertices) |
+/// | `Gouraud` | `Gouraud88` | ½ + w/256 over a row of w pixels: 1.75 over 320 |
+/// | `GouraudReseeded`, the default | `Gouraud88Reseeded` | ½ + ¼ |
+/// | `Gouraud1616` | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 |
+/// | `GouraudHyperbolic` | `GouraudHyperbolic` | ½, or exactly that |
+/// | `Float` | `Float` | ½ + 1/8,192 |
 ///
 /// The exact shade is linear on the screen, and for the last two linear on the face.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]

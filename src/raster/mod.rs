@@ -5,25 +5,11 @@
 //! edge. Two triangles that share an edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies
 //! within `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither relies on clamping pixels:
 //! `reference::edge` walks the edges with quotient and remainder, and `reference::shade` explains why no sum can leave
-//! the range. One [`Interpolation`] guarantees neither: `vintage`, the one printed in the sources.
+//! the range. One [`Interpolation`] guarantees neither: [`GouraudVintage`](Interpolation::GouraudVintage), the one printed
+//! in the sources.
 //!
-//! The files, in the order in which a triangle passes through them:
-//!
-//! | file | what |
-//! |---|---|
-//! | `vertex` | the input: a [`Vertex`] is checked on construction |
-//! | `clip` | clipping before the projection, and the triangles that remain |
-//! | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
-//! | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
-//! | `interpolation` | the list of shadings |
-//! | `vintage` | coverage and shades as the sources print them |
-//! | `depth` | depth buffers |
-//! | `shade_trace` | start, step and sum of a single pixel, for inspection |
-//! | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
-//! | `triangle` | one triangle from vertices to bytes: [`Raster::triangle`] |
-//! | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
-//! | `triangles` | many triangles given as vertices, [`Raster::triangles`], or by index, [`Raster::indexed`] |
-//! | `scan_line` | a whole frame of triangles, each pixel written once |
+//! [`Raster`] draws shades, with or without a depth buffer. Textures, fog, glass and dither belong to scenes:
+//! [`render`](mod@crate::render) draws them.
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -37,6 +23,24 @@
 //! assert_eq!(&bytes[..8], &[50, 70, 90, 110, 130, 150, 170, 0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+
+// The files, in the order in which a triangle passes through them:
+//
+// | file | what |
+// |---|---|
+// | `vertex` | the input: a `Vertex` is checked on construction |
+// | `clip` | clipping before the projection, and the triangles that remain |
+// | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
+// | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
+// | `interpolation` | the list of shadings |
+// | `vintage` | coverage and shades as the sources print them |
+// | `depth` | depth buffers |
+// | `shade_trace` | start, step and sum of a single pixel, for inspection |
+// | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
+// | `triangle` | one triangle from vertices to bytes: `Raster::triangle` |
+// | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
+// | `triangles` | many triangles given as vertices, `Raster::triangles`, or by index, `Raster::indexed` |
+// | `scan_line` | a whole frame of triangles, each pixel written once |
 
 pub(crate) mod clip;
 pub(crate) mod columns;

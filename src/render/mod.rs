@@ -1,23 +1,23 @@
 //! Rendering: from a scene to bytes, frame by frame.
 //!
-//! | file | what |
-//! |---|---|
-//! | `object` | the cached state of an object: its vertices, and their inputs |
-//! | `vertex`, `columns` | vertex stages (projection, light, effects); their results in columns |
-//! | `tessellate`, `edge_map` | faces split along their edges; a map from edges to numbers |
-//! | `faces` | the input for an object's faces |
-//! | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
-//! | `budget` | the error budget: the shading for each triangle |
-//! | `hidden_surfaces` | hidden-surface methods: faces in scene order, far to near, or row by row |
-//! | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
-//! | `integer` | a scene in 16.16 |
-//! | `pace` | the least error that fits in a time, independent of the renderer |
-//! | `stats` | counts of a frame |
-//! | `each_triangle` | every triangle of a frame with everything the raster would get, for the laboratory |
-//!
 //! The [`plan`] says which stages an object goes through: its vertices are transformed, lit and rounded, each once, or
 //! are reused from the last frame; its faces are culled, clipped where necessary, and get their shading; the
 //! [`raster`](crate::raster) draws the rest.
+
+// | file | what |
+// |---|---|
+// | `object` | the cached state of an object: its vertices, and their inputs |
+// | `vertex`, `columns` | vertex stages (projection, light, effects); their results in columns |
+// | `tessellate`, `edge_map` | faces split along their edges; a map from edges to numbers |
+// | `faces` | the input for an object's faces |
+// | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
+// | `budget` | the error budget: the shading for each triangle |
+// | `hidden_surfaces` | hidden-surface methods: faces in scene order, far to near, or row by row |
+// | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
+// | `integer` | a scene in 16.16 |
+// | `pace` | the least error that fits in a time, independent of the renderer |
+// | `stats` | counts of a frame |
+// | `each_triangle` | every triangle of a frame with everything the raster would get, for the laboratory |
 
 mod budget;
 mod clip;
@@ -275,6 +275,8 @@ impl Renderer {
 
     /// Draws `scene` into any frame, or into a band of one, with this ratio of pixel width to height.
     ///
+    /// No palette is loaded, as the frame has none: on a machine call [`Scene::load_palette`] before.
+    ///
     /// # Errors
     /// See [`draw`](Self::draw). On error the frame is left unchanged.
     pub fn draw_frame(
@@ -287,7 +289,7 @@ impl Renderer {
     }
 
     /// Draws `scene` over the contents of the frame, such as a sky or stars: like [`draw_frame`](Self::draw_frame), but
-    /// without clearing. Glass and fog mix with the entries there, as if they were the background.
+    /// without clearing. Glass and fog mix with the entries there, as if they were the background. No palette is loaded.
     ///
     /// ```
     /// use mode13h::mesh::shapes;

@@ -3,9 +3,12 @@
 use crate::palette::Rgb;
 
 /// Fog that thickens linearly with the distance along the view.
+///
+/// It covers surfaces, not the background: set that to the same colour by
+/// [`Scene::set_background`](super::Scene::set_background).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fog {
-    /// The colour that everything fades into.
+    /// The colour that surfaces fade into.
     pub color: Rgb,
     /// The distance at which fog begins, in the scene's units.
     pub start: f32,

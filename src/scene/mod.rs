@@ -3,14 +3,13 @@
 //! A scene is plain data. Nothing in it is borrowed between frames: change it, draw it, change it again. Errors in it
 //! (a position that is not finite, a camera without a direction) are reported when it is drawn.
 //!
-//! | file | what |
+//! | item | what |
 //! |---|---|
-//! | `object` | [`Object`]: a mesh, its position and rotation, its materials |
-//! | `camera` | [`Camera`] |
-//! | `framing` | cameras that fit everything into the picture |
-//! | `fog` | [`Fog`] |
-//! | `motion` | [`Motion`]: positions and angles from absolute time |
-//! | `animation` | [`PaletteAnimation`]: colours that change while the picture stays |
+//! | [`Object`] | a mesh, its position and rotation, its materials |
+//! | [`Camera`], [`framing`] | the camera; cameras that fit everything into the picture |
+//! | [`Fog`] | what distant surfaces fade into |
+//! | [`Motion`] | positions and angles from absolute time |
+//! | [`PaletteAnimation`] | colours that change while the picture stays |
 
 mod animation;
 mod camera;
@@ -27,7 +26,7 @@ use glam::Vec3;
 
 use crate::angle::Angle;
 use crate::light::Light;
-use crate::palette::{Palette, Rgb, builtin};
+use crate::palette::{BIOS, Palette, Rgb, builtin};
 use crate::settings::Settings;
 pub use crate::shared::Shared;
 use crate::vga::Vga;
@@ -57,8 +56,8 @@ pub struct Scene {
     pub ambient: f32,
     /// The palette index that the frame is cleared to.
     pub background: u8,
-    /// The colour that [`background`](Self::background) was chosen for, if any, so that its nearest
-    /// entry can be found in another palette.
+    /// The colour that [`background`](Self::background) was chosen for, if any: for
+    /// [`set_palette`](Self::set_palette), which looks for its nearest entry. Drawing ignores it.
     pub background_color: Option<Rgb>,
     /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
     /// no ramps, materials that name one are drawn with the nearest entries, dithered.
@@ -69,7 +68,8 @@ pub struct Scene {
     pub fog: Option<Fog>,
     /// How to draw the scene, where the renderer's own settings leave it open.
     pub settings: Settings,
-    /// Asks the caller to make the palette from the scene's materials: `mode13h_assets::auto_palette`.
+    /// Asks for a palette made from the scene's materials. Drawing ignores this: whoever loads the scene calls
+    /// `mode13h_assets::auto_palette`.
     pub auto_palette: bool,
     /// The motions; [`set_time`](Self::set_time) moves objects, lights and camera accordingly.
     pub motions: Vec<Motion>,
@@ -93,7 +93,8 @@ impl Scene {
     /// The angle by which the top of a [shown](Self::showing) object is tilted towards the eye.
     pub const TILT: Angle = Angle::from_radians(0.35);
 
-    /// Makes an empty scene with ambient light only, a grey palette, the default camera, and a loop of four seconds.
+    /// Makes an empty scene: ambient light of intensity 1 and no other, a grey palette, entry 0 as background, a loop of
+    /// four seconds, and a camera that looks along −z at the unit sphere around the origin.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -155,6 +156,31 @@ impl Scene {
         scene.motions.push(Motion::Spin { object, start, turns: [0.0, 1.0 / scene.duration, 0.0] });
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
         scene
+    }
+
+    /// Sets the colour behind all objects: its nearest entry in the scene's palette, or without one in the card's own.
+    pub fn set_background(&mut self, color: Rgb) {
+        self.background = self.palette.as_ref().unwrap_or(&BIOS).nearest(color);
+        self.background_color = Some(color);
+    }
+
+    /// Sets the palette, and the background to the nearest entry of the colour that it was
+    /// [chosen](Self::set_background) for, if any.
+    ///
+    /// ```
+    /// use mode13h::palette::{Palette, Rgb};
+    /// use mode13h::scene::Scene;
+    ///
+    /// let mut scene = Scene::new();
+    /// scene.set_background(Rgb::new(0, 0, 170));
+    /// scene.set_palette(Palette::default());
+    /// assert_eq!(scene.background, 1);
+    /// ```
+    pub fn set_palette(&mut self, palette: Palette) {
+        if let Some(color) = self.background_color {
+            self.background = palette.nearest(color);
+        }
+        self.palette = Some(palette);
     }
 
     /// Appends an object.

@@ -38,7 +38,9 @@ pub enum Motion {
 pub enum Moving {
     /// An object's position.
     Object(ObjectId),
-    /// A lamp's position, or the direction of a sun.
+    /// A lamp's position, or the direction of a sun. A spot light keeps its direction; [`Light::aim`] changes it.
+    ///
+    /// [`Light::aim`]: crate::light::Light::aim
     Light(LightId),
     /// The camera's eye.
     Eye,

@@ -60,6 +60,10 @@ impl Object {
 
     /// Makes an object of the mesh at the origin, unrotated, with materials made from its surfaces: the first uses the
     /// palette's first ramp, the second its second, and so on, wrapping around.
+    ///
+    /// A material takes the brightness of its surface's `diffuse`, 15 % of it as ambient light and the rest as diffuse
+    /// light, and not its hue: colours are those of the ramp. To see the hue, set [`Material::color`], or make a palette
+    /// with `mode13h_assets::auto_palette`.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = in_parts(mesh.into());
@@ -267,13 +271,18 @@ impl Placement {
     /// The transform applied within the coordinates of `parent`.
     fn within(self, parent: &Object) -> Self {
         let above = Self::of(parent);
-        let pivot = parent.pivot.to_array().map(f64::from);
-        let from_pivot: [f64; 3] = core::array::from_fn(|i| self.position[i] - pivot[i]);
-        let position = core::array::from_fn(|i| {
-            let turned: f64 = above.turn[i].iter().zip(from_pivot).map(|(a, b)| a * b).sum();
-            above.position[i] + above.scale * turned
-        });
+        let position = above.point(parent.pivot, self.position);
         Self { turn: matrix_product(&above.turn, &self.turn), scale: above.scale * self.scale, position }
+    }
+
+    /// The position in the world of a point of the mesh.
+    fn point(&self, pivot: Vec3, point: [f64; 3]) -> [f64; 3] {
+        let pivot = pivot.to_array().map(f64::from);
+        let from_pivot: [f64; 3] = core::array::from_fn(|i| point[i] - pivot[i]);
+        core::array::from_fn(|i| {
+            let turned: f64 = self.turn[i].iter().zip(from_pivot).map(|(a, b)| a * b).sum();
+            self.position[i] + self.scale * turned
+        })
     }
 
     fn is_finite(&self) -> bool {
@@ -292,6 +301,26 @@ impl Scene {
     /// The transform of the object with this index.
     pub(crate) fn placement(&self, index: usize) -> Placement {
         self.ancestors(index).fold(Placement::of(&self.objects()[index]), Placement::within)
+    }
+
+    /// The place in the scene of a point of an object's mesh, which is scaled, turned and moved as the object and its
+    /// parents are. `None` if the object was removed.
+    ///
+    /// ```
+    /// use mode13h::mesh::shapes;
+    /// use mode13h::scene::{Object, Scene};
+    ///
+    /// let mut scene = Scene::new();
+    /// let ship = scene.add(Object::new(shapes::cube()).at([5.0, 0.0, 0.0]).scaled(2.0));
+    /// let gun = scene.add(Object::new(shapes::cube()).at([0.0, 1.0, 0.0]));
+    /// scene[gun].parent = Some(ship);
+    /// assert_eq!(scene.to_world(gun, [0.0, 0.0, 0.5]), Some([5.0, 2.0, 1.0].into()));
+    /// ```
+    #[must_use]
+    pub fn to_world(&self, id: ObjectId, point: impl Into<Vec3>) -> Option<Vec3> {
+        let index = self.index_of(id)?;
+        let point = point.into().to_array().map(f64::from);
+        Some(Vec3::from_array(self.placement(index).point(self.objects()[index].pivot, point).map(|c| c as f32)))
     }
 
     /// Returns whether the object with this index is drawn: it and all its ancestors are visible.

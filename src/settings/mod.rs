@@ -11,4 +11,4 @@ pub use self::shading::Shading;
 #[cfg(feature = "alloc")]
 pub use crate::mapping::Mapping;
 #[cfg(feature = "alloc")]
-pub use crate::span::dither::DitherPattern;
+pub use crate::span::dither::{DitherPattern, ThresholdRow, Thresholds};

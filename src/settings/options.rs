@@ -17,8 +17,8 @@ named! {
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
-        /// All faces of the frame at once, row by row, each pixel written once
-        /// (`raster::scan_line`). Draws the same bytes as the depth buffer.
+        /// All faces of the frame at once, row by row, each pixel written once. Draws the same bytes as the depth
+        /// buffer.
         ScanLine = "scan-line",
     }
 }
@@ -93,6 +93,10 @@ impl fmt::Display for Accuracy {
 
 /// Drawing options: a scene states its preferences, and a renderer may override them. Anything that is `None` in both
 /// is left to the plan, which chooses the cheapest method that is correct.
+///
+/// Shading is the exception. Without an accuracy, light is computed at the vertices and is linear in between, which
+/// misses highlights and spot lights inside large faces. Where these matter, set [`Accuracy::WithinError`] or
+/// [`Shading::Phong`].
 ///
 /// ```
 /// use mode13h::settings::Settings;

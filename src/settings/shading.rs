@@ -10,7 +10,7 @@ named! {
         /// One shade for each face.
         Flat = "flat",
         /// The method printed in the sources: vertices on whole pixels, and for every span a step
-        /// from a truncating division. Its coverage is not exact (`raster::vintage`).
+        /// from a truncating division. Its coverage is not exact.
         GouraudVintage = "gouraud-vintage",
         /// Linear between the vertices in 8.8, with each row of a triangle as one span.
         Gouraud88 = "gouraud-8.8",

@@ -25,24 +25,24 @@
 //!
 //! `simd` can be restricted to one of its levels, for tests and measurements. With `std` the processor's features are
 //! detected at run time; without it, the compiler's target features count.
-//!
-//! Other loops over short rows of bytes draw what a span alone cannot. Each has a portable specification; where a
-//! faster version is worth its code, the loop with the plain name uses it, and the specification is beside it as
-//! `…_portable`.
-//!
-//! | loop | what |
-//! |---|---|
-//! | `fixed16::fill_16_16` | the span in 16.16 |
-//! | `hyperbolic::fill_quotients` | perspective-correct shades |
-//! | `float::fill_float` | the same in f32 |
-//! | `dither::fill_dithered` | the span with ordered dither |
-//! | `texture::fill_affine`, `texture::fill_perspective` | rows of texels |
-//! | `lookup` | shades of texels, fog, transparency, Phong's table: one byte from two |
-//! | `channels::mix_cube`, `channels::mix_nearest` | red, green and blue to an index, with dither |
-//! | `depth::fill_nearer`, `depth::copy_nearer`, `depth::copy_nearer_keep_depth` | with a depth test |
-//! | `list::fill`, `list::fill_where_nearer` | a list of spans, as in batches |
-//! | `lit::interpolate` | writes no pixels: normals and positions for Phong shading |
-//! | `curve::curve` | writes no pixels: shades on a parabola |
+
+// Other loops over short rows of bytes draw what a span alone cannot. Each has a portable specification; where a
+// faster version is worth its code, the loop with the plain name uses it, and the specification is beside it as
+// `…_portable`.
+//
+// | loop | what |
+// |---|---|
+// | `fixed16::fill_16_16` | the span in 16.16 |
+// | `hyperbolic::fill_quotients` | perspective-correct shades |
+// | `float::fill_float` | the same in f32 |
+// | `dither::fill_dithered` | the span with ordered dither |
+// | `texture::fill_affine`, `texture::fill_perspective` | rows of texels |
+// | `lookup` | shades of texels, fog, transparency, Phong's table: one byte from two |
+// | `channels::mix_cube`, `channels::mix_nearest` | red, green and blue to an index, with dither |
+// | `depth::fill_nearer`, `depth::copy_nearer`, `depth::copy_nearer_keep_depth` | with a depth test |
+// | `list::fill`, `list::fill_where_nearer` | a list of spans, as in batches |
+// | `lit::interpolate` | writes no pixels: normals and positions for Phong shading |
+// | `curve::curve` | writes no pixels: shades on a parabola |
 
 use core::fmt;
 use core::hash::{Hash, Hasher};

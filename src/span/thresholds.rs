@@ -17,7 +17,15 @@ named! {
 }
 
 impl DitherPattern {
-    /// The thresholds of the pattern.
+    /// The thresholds of the pattern, for loops of your own: a shade in 8.8 gives the byte `(shade + threshold) >> 8`.
+    ///
+    /// ```
+    /// use mode13h::settings::DitherPattern;
+    ///
+    /// let threshold = DitherPattern::Ordered.thresholds().row(3).at(5);
+    /// let byte = (0x1280 + u16::from(threshold)) >> 8;
+    /// assert!(byte == 0x12 || byte == 0x13);
+    /// ```
     #[must_use]
     pub const fn thresholds(self) -> Thresholds {
         match self {
@@ -34,7 +42,7 @@ pub const PERIOD: usize = 64;
 /// The most neighbouring thresholds that [`ThresholdRow::next`] returns.
 const MAX_BLOCK: usize = 16;
 
-/// Thresholds for a row of the frame, [`PERIOD`] of them.
+/// Thresholds for a row of the frame. They repeat after 64 columns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ThresholdRow(
     /// The first ones are repeated at the end, so that any [`MAX_BLOCK`] neighbours lie side by side.
@@ -42,7 +50,7 @@ pub struct ThresholdRow(
 );
 
 impl ThresholdRow {
-    /// A row that repeats `thresholds`, whose number divides [`PERIOD`].
+    /// A row that repeats `thresholds`, whose number divides 64.
     #[must_use]
     pub const fn new<const N: usize>(thresholds: &[u8; N]) -> Self {
         const { assert!(PERIOD.is_multiple_of(N)) }

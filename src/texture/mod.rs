@@ -6,7 +6,7 @@
 //! | [`Texture::from_rgb`] | from a picture of any size: resampled, its colours reduced |
 //! | `name.parse::<Texture>()` | the built-in ones: crate, checker, bricks, sky |
 //! | [`Mipmap`] | a texture's smaller copies, for distant surfaces |
-//! | `load`, `decode` | from a PNG file (feature `png`); a JPEG, TGA, BMP, GIF or WebP (feature `images`) |
+//! | `mode13h_assets::texture` | from picture files |
 //!
 //! A texel is shaded by a table that [`Lut64K::shades`](crate::palette::Lut64K::shades) makes from a palette and the
 //! texture's colours, so a texture does not depend on any palette.

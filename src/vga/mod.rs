@@ -1,12 +1,10 @@
 //! The machine: a VGA card in mode 13h, with 320 × 200 pixels of one byte.
 //!
-//! | file | what |
+//! | item | what |
 //! |---|---|
-//! | `vga/mod.rs` | [`Vga`]: 64 KiB of memory, the ports, the plain calls |
-//! | `vga/dac.rs` | [`Dac`]: 256 colours of 3 × 6 bits |
-//! | `vga/timing.rs` | [`timing`]: the beam, and the clock that the caller advances |
-//! | `vga/scan_out.rs` | bytes to RGB |
-//! | `vga/stamp.rs` | whether the memory was accessed |
+//! | [`Vga`] | 64 KiB of memory, the ports, the plain calls; bytes to RGB |
+//! | [`Dac`] | 256 colours of 3 × 6 bits |
+//! | [`timing`] | the beam, and the clock that the caller advances |
 
 mod dac;
 mod scan_out;
@@ -113,8 +111,7 @@ impl Vga {
 
     /// A number that changes with every mutable access to the memory, whether or not a byte changed.
     ///
-    /// Two cards with equal stamps hold equal bytes (see `vga/stamp.rs` for processors without atomic instructions).
-    /// The value has no other meaning, and differs from run to run.
+    /// Two cards with equal stamps hold equal bytes. The value has no other meaning, and differs from run to run.
     #[must_use]
     #[inline]
     pub const fn stamp(&self) -> u64 {

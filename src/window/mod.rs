@@ -94,7 +94,8 @@ impl<E: From<WindowError>> FrameResult for Result<Flow, E> {
 ///
 /// `frame` receives the machine to draw on, the user's input since the last frame, and the seconds since the window
 /// opened. This time is absolute: after a pause the next frame is drawn for the current time, and missed frames are not
-/// made up for. The machine's own clock, which port 3DAh shows, advances with it.
+/// made up for. The machine's own clock, which port 3DAh shows, advances with it. To change the title or the window's
+/// size, use [`Window`] and a loop of your own.
 ///
 /// # Errors
 ///
@@ -237,8 +238,8 @@ impl Window {
         self.now.duration_since(self.opened).as_secs_f64()
     }
 
-    /// Shows the picture of `vga`, waits until the next frame is due, and collects the user's input in the meantime.
-    /// Returns [`Flow::Close`] if the user has closed the window.
+    /// Shows the picture of `vga`, waits until the next frame is due, 1/70 s after the last, and collects the user's
+    /// input in the meantime. Returns [`Flow::Close`] if the user has closed the window.
     ///
     /// # Errors
     ///

@@ -1,8 +1,10 @@
 //! What games need from a picture: where a point is in it, and what was there before.
 
+use mode13h::Angle;
+use mode13h::fixed::I24F8;
 use mode13h::glam::Vec3;
-use mode13h::mesh::shapes;
-use mode13h::raster::Frame;
+use mode13h::mesh::{Mesh, shapes};
+use mode13h::raster::{Frame, Vertex};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::settings::HiddenSurfaces;
@@ -52,6 +54,13 @@ fn a_point_is_where_it_is_drawn() {
         if !(20.0..380.0).contains(&x) || !(20.0..280.0).contains(&y) || distance < 2.0 {
             continue;
         }
+        // x and y are rounded to 2⁻¹⁶ pixel, of which there are 400 in a unit at distance 1; eye and point to 2⁻²².
+        let towards = (at - scene.camera.eye).normalize();
+        for screen in [SCREEN, Screen::MODE_13H] {
+            let [x, y, _] = scene.camera.project(at, screen).expect("in front");
+            let ray = scene.camera.ray([x, y], screen).expect("a valid camera");
+            assert!((ray - towards).length() < 2e-6, "{ray} for {towards}");
+        }
         // At most 10 pixels across, with centres within the ball's silhouette.
         let count = pixels.len() as f32;
         let mean = pixels.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
@@ -60,6 +69,42 @@ fn a_point_is_where_it_is_drawn() {
         seen += 1;
     }
     assert!(seen > 60 && hidden > 5, "{seen} seen, {hidden} hidden");
+}
+
+/// A point of a mesh is drawn where its place in the scene projects to, whatever moves the object and its parents.
+#[test]
+fn a_point_of_a_mesh_is_drawn_at_its_place_in_the_scene() {
+    let mut random = Random::named("points of meshes");
+    let mut number = |from: i64, to: i64| random.within(from, to) as f32 / 100.0;
+    let mut drawn = 0;
+    for _ in 0..300 {
+        let mut point = |size: i64| Vec3::new(number(-size, size), number(-size, size), number(-size, size));
+        let corners = [point(100), point(100), point(100)];
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).expect("legal");
+        // Each is the parent of the next.
+        let (mut scene, mut ids) = (Scene::new(), Vec::new());
+        for _ in 0..3 {
+            let mut object = Object::new(mesh.clone()).at(point(200)).scaled(0.5 + point(75).x.abs());
+            object.pivot = point(100);
+            object.angles = point(300).to_array().map(|angle| Angle::from_radians(angle.into()));
+            object.parent = ids.last().copied();
+            ids.push(scene.add(object));
+        }
+        scene.camera.eye = Vec3::new(0.0, 0.0, 40.0);
+        let place = |id, corner| scene.camera.project(scene.to_world(id, corner)?, SCREEN);
+        let places: Vec<_> =
+            ids.into_iter().map(|id| corners.map(|corner| place(id, corner).expect("in front"))).collect();
+        let mut see = |vertices: &[Vertex; 3], _| {
+            // Half of 1/256 pixel, and f32 at up to 512 pixels.
+            let is_near = |c: I24F8, place: f32| (c.to_bits() as f32 / 256.0 - place).abs() < 0.0021;
+            let is_at = |(vertex, [x, y, _]): (&Vertex, &[f32; 3])| is_near(vertex.x(), *x) && is_near(vertex.y(), *y);
+            let found = places.iter().filter(|places| vertices.iter().zip(*places).all(is_at)).count();
+            assert_eq!(found, 1, "{vertices:?} is at none of {places:?}");
+            drawn += 1;
+        };
+        Renderer::new().for_each_triangle(&scene, SCREEN, &mut see).expect("drawn");
+    }
+    assert!(drawn > 700, "{drawn} drawn");
 }
 
 /// Pixels that a scene draws do not depend on what was there; all others are unchanged.

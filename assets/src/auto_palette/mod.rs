@@ -1,9 +1,10 @@
 //! Palettes made for a scene: each of its materials is measured over a loop, and the entries follow from that.
 //!
-//! | file | what |
-//! |---|---|
-//! | `seen` | area and brightness of every material, from pictures whose shades are intensities or material numbers |
-//! | `mixed` | colours that are on no ramp, from pictures in true colour |
+
+// | file | what |
+// |---|---|
+// | `seen` | area and brightness of every material, from pictures whose shades are intensities or material numbers |
+// | `mixed` | colours that are on no ramp, from pictures in true colour |
 
 mod mixed;
 mod seen;
@@ -41,10 +42,7 @@ impl AutomaticPalette {
     /// preference for such a palette is cleared.
     pub fn apply(&self, scene: &mut Scene) {
         scene.auto_palette = false;
-        if let Some(color) = scene.background_color {
-            scene.background = self.palette.nearest(color);
-        }
-        scene.palette = Some(self.palette.clone());
+        scene.set_palette(self.palette.clone());
         for (object, materials) in scene.objects_mut().iter_mut().zip(&self.materials) {
             if object.materials.len() == materials.len() {
                 object.materials.clone_from(materials);
@@ -66,8 +64,9 @@ impl AutomaticPalette {
 /// much as the one before.
 ///
 /// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
-/// under a coloured light. They are measured in true colour, and share the block of the textures. Under coloured light
-/// there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
+/// under a coloured light. They are measured in true colour, and share the block of the textures. Only the final
+/// colours are: what is seen through glass in fog is rounded to an entry before it is mixed. Under coloured light there
+/// are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
 /// measured colours. The same holds if the scene's settings ask for three channels.
 ///
 /// ```

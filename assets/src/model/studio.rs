@@ -93,8 +93,7 @@ fn light(scene: &mut Scene, place: impl Fn([f32; 3]) -> Vec3) {
 /// The scene with a background from which it stands out.
 fn finish(mut scene: Scene, has_colors: bool) -> Result<Scene, RenderError> {
     let color = background(&auto_palette::colors_seen(&scene)?, has_colors);
-    scene.background_color = Some(color);
-    scene.background = scene.palette.as_ref().map_or(0, |palette| palette.nearest(color));
+    scene.set_background(color);
     Ok(scene)
 }
 

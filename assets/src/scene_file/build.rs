@@ -113,8 +113,7 @@ impl<'a> Builder<'a> {
         match (background, fog_color) {
             (Some(Background::Entry(entry)), _) => self.scene.background = entry,
             (Some(Background::Color(color)), _) | (None, Some(color)) => {
-                self.scene.background = palette.nearest(color.rgb());
-                self.scene.background_color = Some(color.rgb());
+                self.scene.set_background(color.rgb());
             }
             (None, None) => {}
         }

@@ -21,17 +21,17 @@
 //!
 //! Reading is bounded: a file of at most [`LONGEST`] bytes, shapes of at most [`MAX_TRIANGLES`] together. A scene
 //! names models, textures and palettes; never another scene.
-//!
-//! | file | what |
-//! |---|---|
-//! | `layout` | the tables and keys |
-//! | `value` | numbers, vectors, colours and names with their ranges |
-//! | `shape` | the shapes with their subdivisions |
-//! | `build` | from the layout to a [`Scene`] |
-//! | `object`, `material`, `motion`, `camera` | the parts of it |
-//! | `named` | the files that a scene names |
-//! | `names` | the short name of the default shading |
-//! | `error`, `place` | what is wrong, in which line and column, of which key |
+
+// | file | what |
+// |---|---|
+// | `layout` | the tables and keys |
+// | `value` | numbers, vectors, colours and names with their ranges |
+// | `shape` | the shapes with their subdivisions |
+// | `build` | from the layout to a `Scene` |
+// | `object`, `material`, `motion`, `camera` | the parts of it |
+// | `named` | the files that a scene names |
+// | `names` | the short name of the default shading |
+// | `error`, `place` | what is wrong, in which line and column, of which key |
 
 mod build;
 mod camera;

@@ -278,7 +278,7 @@ struct Inputs<'a> {
 impl Inputs<'_> {
     fn seen(&self, place: usize, face: &FaceHere, met: &Met, bytes: &Bytes) -> Seen {
         let ramp = met.ramp.or_else(|| self.ramp_of_material(face)).unwrap_or(Ramp::WHOLE);
-        let of_object = |row: &&plan::Row| row.on && row.place == met.object;
+        let of_object = |row: &&plan::Row| row.on && row.index == met.object;
         Seen {
             face: place,
             ramp,

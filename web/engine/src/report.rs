@@ -21,7 +21,7 @@ pub(crate) fn counts(stats: &Stats) -> Value {
 pub(crate) fn plan(rows: &[Row]) -> Value {
     let row = |row: &Row| {
         json!({
-            "place": row.place, "object": row.object, "effect": row.effect.name(), "on": row.on, "choice": row.choice,
+            "place": row.index, "object": row.object, "effect": row.effect.name(), "on": row.on, "choice": row.choice,
             "reason": row.reason,
         })
     };

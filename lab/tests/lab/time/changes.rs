@@ -84,6 +84,8 @@ pub(super) const CHANGES: &[Change] = &[
     // When a picture is taken of it, which only the program uses.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
     unseen("Scene.duration", |w, r| w.scene.duration = 1.0 + r.unit()),
+    seen("Scene::set_background", |w, r| w.scene.set_background(color(r))),
+    seen("Scene::set_palette", |w, r| w.scene.set_palette(palette(r))),
     seen("Scene::add", |w, r| {
         if w.scene.objects().len() < 5 {
             let object = object(r);
@@ -345,6 +347,11 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Blend::Add", |w, r| one_material(w, r).blend = Blend::Add),
     // Lights
     seen("Light::Sun.direction", |w, r| sun(w, r, |r, to, _, _| *to = place(r, 1.0))),
+    seen("Light::aim", |w, r| {
+        sun(w, r, |_, _, _, _| {});
+        let light = w.scene.lights_mut().iter_mut().find(|light| matches!(light, Light::Sun { .. }));
+        light.expect("a sun").aim(place(r, 1.0));
+    }),
     seen("Light::Sun.intensity", |w, r| sun(w, r, |r, _, intensity, _| *intensity = between(r, 0.2, 1.2))),
     seen("Light::Sun.color", |w, r| sun(w, r, |r, _, _, color| *color = channels(r))),
     seen("Light::Lamp.position", |w, r| lamp(w, r, |r, at, _, _, _| *at = place(r, 1.2))),
