@@ -11,7 +11,7 @@
 //! | [`vga`] | the machine: video memory, DAC, ports, timing, scan-out | – |
 //! | [`span`] | the loop, and its assembly and vector versions, which draw the same bytes | – |
 //! | [`texture`] | 8-bit texels with colours of their own: from pictures, or built in | `alloc` |
-//! | [`raster`] | triangles: exact coverage, shades in range, depth, clip rectangles, bands | – |
+//! | [`raster`] | triangles: exact coverage, shades in range, depth, clip rectangles, bands; textures and other effects | –, effects `alloc` |
 //! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | – |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |

@@ -29,7 +29,6 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::ops::Index;
 
-pub use crate::raster::effects::SampleSpacing;
 pub use effect::{Class, Effect};
 pub use face_shading::FaceShading;
 pub(crate) use findings::{FaceCounts, Findings};

@@ -95,8 +95,8 @@ pub(crate) struct EffectColumns<'a> {
     pub(crate) lit: LitColumn<'a>,
 }
 
-/// The values of a corner besides its position, shade and depth. Values that a pipeline does not
-/// use are ignored.
+/// The values of a corner besides its position, shade and depth. Values that a pipeline does not use are ignored, and
+/// those above 0xFF00 count as 0xFF00.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {

@@ -4,12 +4,12 @@
 //! exact**: a pixel is drawn if and only if its centre, at (x + ½, y + ½), lies inside the triangle or on a top or left
 //! edge. Two triangles that share an edge leave no hole and draw no pixel twice. Shades stay **in range**: a byte lies
 //! within `[(min + 128) >> 8, (max + 128) >> 8]` of its own triangle's vertices. Neither relies on clamping pixels:
-//! `reference::edge` walks the edges with quotient and remainder, and `reference::shade` explains why no sum can leave
-//! the range. One [`Interpolation`] guarantees neither: [`GouraudVintage`](Interpolation::GouraudVintage), the one printed
-//! in the sources.
+//! edges are walked with quotient and remainder, and shades are rounded so that no sum can leave the range. One
+//! [`Interpolation`] guarantees neither: [`GouraudVintage`](Interpolation::GouraudVintage), the one printed in the
+//! sources.
 //!
-//! [`Raster`] draws shades, with or without a depth buffer. Textures, fog, glass and dither belong to scenes:
-//! [`render`](mod@crate::render) draws them.
+//! [`Raster`] draws shades, with or without a depth buffer. With an allocator, [`effects`] add textures, fog, glass,
+//! dither and light at every pixel.
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -50,7 +50,7 @@ mod draw_stats;
 #[cfg(feature = "embedded-graphics")]
 mod draw_target;
 #[cfg(feature = "alloc")]
-pub(crate) mod effects;
+pub mod effects;
 mod error;
 pub(crate) mod frame;
 pub(crate) mod interpolation;

@@ -887,6 +887,42 @@ fn quadratic_shades_of_any_numbers_stay_within() {
     }
 }
 
+/// Corners with any numbers: those above 0xFF00 count as 0xFF00, and with whatever coordinates and points every kernel
+/// draws the same.
+#[test]
+fn corners_of_any_numbers_draw_the_same_with_every_kernel() {
+    let mut tried = Tried::new("corners_of_any_numbers_draw_the_same_with_every_kernel", 1_000);
+    let mut random = Random::named("corners of anything");
+    let stock = Stock::new(&mut random);
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let mut beyond = 0;
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let any = [(); 3].map(|()| {
+            let mut bits = || if random.within(0, 3) == 0 { u64::MAX } else { random.next_u64() };
+            let mut shade = || U8F8::from_bits(bits() as u16);
+            let (fog, channels, slope) = (shade(), [shade(), shade(), shade()], [shade(), shade()]);
+            let texture = [bits() as i32, if bits() == u64::MAX { i32::MIN } else { i32::MAX }];
+            Attributes { texture, fog, channels, slope, lit: [(); 6].map(|()| f32::from_bits(bits() as u32)) }
+        });
+        let in_range = any.map(|corner| {
+            let least = |shade: U8F8| shade.min(U8F8::from_bits(0xFF00));
+            let [fog, channels, slope] =
+                [[corner.fog; 3], corner.channels, [corner.slope[0], corner.slope[1], corner.fog]]
+                    .map(|shades| shades.map(least));
+            Attributes { fog: fog[0], channels, slope: [slope[0], slope[1]], ..corner }
+        });
+        beyond += usize::from(any.iter().zip(&in_range).any(|(any, in_range)| any.channels != in_range.channels));
+        let look = look(&mut random, &stock);
+        let expected = draw(SIZE, &vertices, &in_range, &look, None, kernels[0]);
+        for kernel in &kernels {
+            let bytes = draw(SIZE, &vertices, &any, &look, None, *kernel);
+            assert!(bytes == expected, "{kernel}: {vertices:?}, {any:?}, {look:?}");
+        }
+    }
+    assert!(beyond > 500, "{beyond} beyond the range");
+}
+
 /// Every level is chosen for many pixels with every mapping: texels are the numbers of their levels, and each agrees
 /// with the oracle, with every kernel, whole or in bands.
 #[test]

@@ -79,13 +79,18 @@ impl CornerColumns {
                 self.texture[k][i] = of.texture;
             }
             if uses.others {
-                self.fog[k][i] = of.fog;
-                self.channels[k][i][0] = of.channels;
-                self.slope[k][i] = of.slope;
+                self.fog[k][i] = in_range(of.fog);
+                self.channels[k][i][0] = of.channels.map(in_range);
+                self.slope[k][i] = of.slope.map(in_range);
                 self.lit[k][i] = of.lit;
             }
         }
     }
+}
+
+/// The value, or the greatest that the loops over pixels allow.
+fn in_range(value: U8F8) -> U8F8 {
+    value.min(U8F8::MAX_VERTEX)
 }
 
 /// The values of corners that a pipeline uses besides shade and depth.
@@ -138,10 +143,9 @@ impl EffectBatch {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    internal! {
     /// Draws a triangle with effects. To draw many triangles, [`faces_with_effects`](Self::faces_with_effects) is
     /// faster.
-    fn triangle_with_effects(
+    pub fn triangle_with_effects(
         &mut self,
         vertices: &[Vertex; 3],
         attributes: &[Attributes; 3],
@@ -149,22 +153,18 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         self.faces_with_effects(&[(*vertices, *attributes)], pipeline, &mut EffectBatch::new())
     }
-    }
 
-    internal! {
     /// Draws the faces of a batch in order through one pixel pipeline, and empties the batch.
-    fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
+    pub fn batch_with_effects(&mut self, batch: &mut EffectBatch, pipeline: &PixelPipeline<'_>) -> DrawStats {
         let faces = mem::take(&mut batch.faces);
         let drawn = self.faces_with_effects(&faces, pipeline, batch);
         batch.faces = faces;
         batch.faces.clear();
         drawn
     }
-    }
 
-    internal! {
     /// Draws faces in order through one pixel pipeline, with the memory of a batch, whose own faces stay in it.
-    fn faces_with_effects(
+    pub fn faces_with_effects(
         &mut self,
         faces: &[EffectFace],
         pipeline: &PixelPipeline<'_>,
@@ -206,18 +206,13 @@ impl<D: Cell> Raster<'_, D> {
                 slope: slope.as_flattened(),
                 lit: LitColumn::Values(lit.as_flattened()),
             };
-            let columns = Columns {
-                at: at.as_flattened(),
-                depth: depth.as_flattened(),
-                shade: shade.as_flattened(),
-                effects,
-            };
+            let columns =
+                Columns { at: at.as_flattened(), depth: depth.as_flattened(), shade: shade.as_flattened(), effects };
             let triangles = Triangles { columns, indices: &INDICES, by_corner: Some(CAPACITY) };
             let picks = Picks { picks: list.as_slice(), flat: &[] };
             drawn += self.picks_with_effects(&triangles, picks, pipeline, scratch);
         }
         drawn
-    }
     }
 }
 

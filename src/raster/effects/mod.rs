@@ -1,4 +1,39 @@
-//! Triangles with effects: spans of up to 64 bytes, which pass through each stage many at a time.
+//! Triangles with effects: textures, fog, glass, dither, three channels of light, light at every pixel.
+//!
+//! A [`PixelPipeline`] says what happens to the pixels of a triangle, by tables of 256 × 256 palette indices
+//! ([`Lut64K`](crate::palette::Lut64K)); [`Attributes`] are the values of its corners beyond a [`Vertex`](super::Vertex).
+//!
+//! ```
+//! use mode13h::fixed::{I24F8, U8F8};
+//! use mode13h::palette::{Lut64K, Palette};
+//! use mode13h::raster::effects::{Attributes, EffectBatch, PixelPipeline, TextureStage};
+//! use mode13h::raster::{Frame, Raster, Vertex};
+//! use mode13h::settings::{DitherPattern, Mapping};
+//! use mode13h::texture::Texture;
+//!
+//! let bricks: Texture = "bricks".parse()?;
+//! let shades = Lut64K::shades(&Palette::default(), bricks.colors());
+//! let texture = TextureStage::new(&bricks, &shades, Mapping::Affine);
+//! let dither = DitherPattern::Ordered.thresholds();
+//! let pipeline = PixelPipeline { texture: Some(texture), dither: Some(dither), ..PixelPipeline::PLAIN };
+//!
+//! // In full light; half of the image across, all of it down.
+//! let corner = |x, y, u, v| -> Result<_, mode13h::raster::RasterError> {
+//!     let vertex = Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::MAX_VERTEX, 0)?;
+//!     let [columns, rows] = [bricks.width(), bricks.height()].map(|texels| texels as i32);
+//!     Ok((vertex, Attributes { texture: [u * columns << 15, v * rows << 16], ..Attributes::default() }))
+//! };
+//! let corners = [corner(8, 8, 0, 0)?, corner(56, 8, 1, 0)?, corner(8, 56, 0, 1)?];
+//! let mut batch = EffectBatch::new();
+//! batch.push(&corners.map(|(vertex, _)| vertex), &corners.map(|(_, attributes)| attributes));
+//!
+//! let mut bytes = [0; 64 * 64];
+//! let drawn = Raster::new(Frame::new(&mut bytes, 64, 64, 64)?).batch_with_effects(&mut batch, &pipeline);
+//! assert_eq!((drawn.textured, drawn.dithered), (1_128, 1_128));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The stages, each of which may be left out:
 //!
 //! ```text
 //! shades     from the shading, from a table of normals, or lit at every pixel
@@ -8,20 +43,20 @@
 //! write      all pixels, or the nearer ones
 //! ```
 //!
-//! Faces of one [`PixelPipeline`] are picked, set up and listed like plain ones, eight at a time. A face too large for
-//! that, and every face on a processor without f64, is walked row by row. [`EffectBatch`] takes faces given as
-//! vertices.
-//!
-//! A stage is one loop over up to 4,096 pixels of many faces, so a stage that the pipeline lacks costs one branch for
-//! all of them. Spans are written in the order of their faces, so each face blends with what the ones before it left in
-//! the frame. Spans begin at the row's first covered pixel inside the frame and every 64 pixels from there, where every
-//! value is exact, so a pixel's byte does not depend on the clip rectangle. Without any effect [`Raster::triangle`]
-//! gives the same bytes faster.
+//! Coverage is exact, as without effects. Faces are drawn in order, so each blends with what the ones before it left in
+//! the frame. Without any effect [`Raster::triangle`] gives the same bytes faster.
 //!
 //! Shades and channels are interpolated as the [`Interpolation`](super::Interpolation) says; fog and the coordinates in
-//! the table of normals are linear, reseeded with every span whatever the shading, and keep the guarantees of
-//! [`shade`](super::reference::shade): no sum leaves the range of the three corners. With dither, whose threshold of 0
-//! to 255 replaces the half, a byte lies in [min >> 8, ⌈max⌉].
+//! the table of normals are linear, reseeded every 64 pixels whatever the shading. No sum leaves the range of the three
+//! corners. With dither, whose threshold of 0 to 255 replaces the half, a byte lies in [min >> 8, ⌈max⌉]. A pixel's byte
+//! does not depend on the clip rectangle.
+
+// Faces of one `PixelPipeline` are picked, set up and listed like plain ones, eight at a time. A face too large for
+// that, and every face on a processor without f64, is walked row by row. `EffectBatch` takes faces given as vertices.
+//
+// A stage is one loop over up to 4,096 pixels of many faces, so a stage that the pipeline lacks costs one branch for
+// all of them. Spans of up to 64 pixels begin at the row's first covered pixel inside the frame and every 64 pixels
+// from there, where every value is exact.
 
 mod batch;
 mod curve;
@@ -53,11 +88,13 @@ use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::{HAS_F64, IS_COMPACT};
+pub use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
 use crate::simd::{Lanes8, Level, at_best_level, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
 use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
+pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
 
 /// Memory of the stages: planes of faces, and the data passed from stage to stage. Reusing it

@@ -3,9 +3,11 @@
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
+use crate::palette::Lut64K;
 use crate::raster::interpolation::Interpolation;
 use crate::span::dither::Thresholds;
 use crate::span::texture::{Levels, Texels};
+use crate::texture::Texture;
 
 /// Per-pixel lighting.
 pub trait Lighting: core::fmt::Debug {
@@ -106,6 +108,16 @@ pub struct TextureStage<'a> {
     pub tables: [&'a [u8; 65_536]; 3],
 }
 
+impl<'a> TextureStage<'a> {
+    /// The texture without smaller copies, shaded by a table that [`Lut64K::shades`] made from its colours.
+    #[must_use]
+    pub fn new(texture: &'a Texture, shades: &'a Lut64K, mapping: Mapping) -> Self {
+        // Every texture has legal sides.
+        let texels = Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).unwrap_or(Texels::ONE);
+        Self { texels, levels: None, mapping, tables: [shades.as_array(); 3] }
+    }
+}
+
 /// An image, with its levels if one of them is to be chosen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Image<'a> {
@@ -160,7 +172,7 @@ pub struct PixelPipeline<'a> {
     pub keeps_depth: bool,
 }
 
-/// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
+// The stages. A stage that a build leaves out (`plan::Effect::is_left_out`) is `None`, which the compiler knows.
 impl<'a> PixelPipeline<'a> {
     /// The shade source; never per-pixel lighting in a build that leaves that out.
     #[inline]

@@ -53,7 +53,7 @@ impl<'a> Texels<'a> {
     /// [`TexelsError`] if it is wider or higher than 256, or if `bytes` has another length.
     ///
     /// ```
-    /// use mode13h::internals::span::texture::{Texels, TexelsError};
+    /// use mode13h::raster::effects::{Texels, TexelsError};
     ///
     /// assert!(Texels::new(&[0; 64], 4, 2).is_ok()); // 16 × 4
     /// assert_eq!(Texels::new(&[0; 60], 4, 2).unwrap_err(), TexelsError::Length { is: 60, should: 64 });
