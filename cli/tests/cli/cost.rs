@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::process::{Command, Output};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::folder::{Folder, failed, names_in};
 use crate::support::tried::is_here;
 use mode13h::light::Material;
 use mode13h::mesh::shapes;
@@ -14,31 +15,6 @@ use mode13h::scene::{Object, Scene};
 use mode13h::settings::Shading;
 use mode13h_lab::cost::{BUDGETS, Settings, Subject, measure};
 use serde_json::Value;
-use tempfile::TempDir;
-
-fn program(directory: &TempDir) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
-    command.current_dir(directory).env_remove("MODE13H_KERNEL");
-    command
-}
-
-fn run(directory: &TempDir, words: &[&str]) -> Output {
-    program(directory).arg("cost").args(words).output().expect("started")
-}
-
-fn directory() -> TempDir {
-    tempfile::tempdir().expect("a directory")
-}
-
-/// That it failed with this status and one line that holds `says`, and left nothing behind.
-#[track_caller]
-fn assert_fails(directory: &TempDir, output: &Output, status: i32, says: &str) {
-    let line = String::from_utf8(output.stderr.clone()).expect("text");
-    assert_eq!(output.status.code(), Some(status), "{line}");
-    assert!(line.starts_with("mode13h: ") && line.contains(says), "{line}\nhas not: {says}");
-    assert_eq!(line.lines().count(), 1, "{line}");
-    assert!(output.stdout.is_empty() && fs::read_dir(directory).expect("a directory").next().is_none());
-}
 
 #[track_caller]
 fn number(value: &Value) -> f64 {
@@ -69,9 +45,9 @@ fn assert_time(row: &Value) {
 
 #[test]
 fn everything_is_measured_and_written() {
-    let directory = directory();
-    let words = ["torus", "--frames", "3", "--seconds", "0", "--json", "-o", "out"];
-    let output = run(&directory, &words);
+    let folder = Folder::new();
+    let words = "cost torus --frames 3 --seconds 0 --json -o out";
+    let output = folder.run(words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
     // The time is the machine's matter; the status says what the warnings say of accuracy.
     let warnings: Vec<&str> = json["warnings"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
@@ -170,14 +146,9 @@ fn everything_is_measured_and_written() {
         assert!(claim["measured"].as_str().is_some_and(|text| text.contains(|c: char| c.is_ascii_digit())), "{claim}");
     }
 
-    let written = |name: &str| fs::read_to_string(directory.path().join("out").join(name)).expect("a file");
+    let written = |name: &str| fs::read_to_string(folder.path("out").join(name)).expect("a file");
     assert_eq!(written("cost.json").as_bytes(), output.stdout);
-    let mut names: Vec<_> = fs::read_dir(directory.path().join("out"))
-        .expect("a directory")
-        .map(|file| file.expect("a file").file_name())
-        .collect();
-    names.sort();
-    assert_eq!(names, ["chart.svg", "cost.json", "report.html", "samples.csv"]);
+    assert_eq!(names_in(&folder.path("out")), ["chart.svg", "cost.json", "report.html", "samples.csv"]);
     let samples = written("samples.csv");
     let mut lines = samples.lines();
     assert_eq!(lines.next(), Some("round,order,kind,name,frames,ns"));
@@ -195,14 +166,13 @@ fn everything_is_measured_and_written() {
 
 #[test]
 fn rungs_that_are_asked_for_are_the_rungs_there_are() {
-    let directory = directory();
-    let output = run(&directory, &["cube", "--frames", "1", "--seconds", "0", "--json", "--shadings", "phong,flat"]);
-    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let folder = Folder::new();
+    let json = folder.json("cost cube --frames 1 --seconds 0 --json --shadings phong,flat");
     let shadings: Vec<&Value> =
         json["shadings"].as_array().expect("a list").iter().map(|row| &row["shading"]).collect();
     assert_eq!(shadings, ["flat", "phong"]);
     assert!(number(&json["shadings"][1]["ratio"]) > 1.0, "to gouraud-8.8, which was drawn all the same");
-    assert!(fs::read_dir(&directory).expect("a directory").next().is_none(), "without -o nothing is written");
+    assert!(folder.names().is_empty(), "without -o nothing is written");
 }
 
 /// Light from everywhere: one shade, which every shading has.
@@ -240,12 +210,11 @@ fn where_the_picture_is_the_truth_nothing_is_off() {
 /// The text begins with the summary and has what the page has; 16.16 vertices have no budget, and no table of any.
 #[test]
 fn the_text_begins_with_what_a_newcomer_wants_to_know() {
-    let directory = directory();
-    for (words, has_budgets) in [(&[][..], true), (&["--arithmetic", "fixed"], false)] {
-        let words = [&["cube", "--frames", "1", "--seconds", "0", "-o", "out"], words].concat();
-        let output = run(&directory, &words);
+    let folder = Folder::new();
+    for (words, has_budgets) in [("", true), ("--arithmetic fixed", false)] {
+        let output = folder.run(&format!("cost cube --frames 1 --seconds 0 -o out {words}"));
         let text = String::from_utf8(output.stdout).expect("text");
-        let page = fs::read_to_string(directory.path().join("out/report.html")).expect("written");
+        let page = fs::read_to_string(folder.path("out/report.html")).expect("written");
         let first = text.lines().next().expect("a line");
         assert!(first.starts_with("On cube the old loop, done right, is within "), "{text}");
         assert!(page.contains(first) && text.ends_with("written to out\n"), "{text}");
@@ -261,33 +230,20 @@ fn the_text_begins_with_what_a_newcomer_wants_to_know() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_study_is_not_lost_when_it_cannot_be_written() {
-    let (directory, elsewhere) = (directory(), directory());
-    fs::create_dir(directory.path().join("out")).expect("made");
-    let mut child = program(&directory);
-    let child =
-        child.args(["cost", "cube", "--frames", "2", "--seconds", "0", "-o", "out"]).env("TMPDIR", elsewhere.path());
-    let child =
-        child.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("started");
+    let (folder, elsewhere) = (Folder::new(), Folder::new());
+    fs::create_dir(folder.path("out")).expect("made");
+    let mut command = folder.program("cost cube --frames 2 --seconds 0 -o out");
+    let child = command.env("TMPDIR", elsewhere.as_ref()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     sleep(Duration::from_millis(300));
     // A file takes the directory's place.
-    fs::remove_dir(directory.path().join("out")).expect("removed");
-    fs::write(directory.path().join("out"), "in the way").expect("written");
-    let output = child.wait_with_output().expect("it ends");
+    fs::remove_dir(folder.path("out")).expect("removed");
+    folder.put("out", "in the way");
+    let output = child.expect("started").wait_with_output().expect("it ends");
     let lines = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(3), "{lines}");
-    let kept = elsewhere.path().join(format!(
-        "mode13h-cost-cube-{}",
-        fs::read_dir(&elsewhere)
-            .expect("a directory")
-            .next()
-            .expect("kept")
-            .expect("kept")
-            .file_name()
-            .to_string_lossy()
-            .rsplit('-')
-            .next()
-            .expect("a number")
-    ));
+    let [kept] = &elsewhere.names()[..] else { panic!("{:?}", elsewhere.names()) };
+    assert!(kept.starts_with("mode13h-cost-cube-"), "{kept}");
+    let kept = elsewhere.path(kept);
     assert!(
         lines.lines().last().is_some_and(
             |line| line.contains("out: ") && line.ends_with(&format!("the study is in {}", kept.display()))
@@ -304,33 +260,32 @@ fn a_study_is_not_lost_when_it_cannot_be_written() {
 
 #[test]
 fn what_is_wrong_is_said_in_one_line() {
-    let directory = directory();
+    let folder = Folder::new();
     for (words, status, says) in [
-        (&["torus", "--shadings", "flat,best"][..], 2, "[possible values: flat, "),
-        (&["torus", "--shading", "flat"], 2, "did you mean --shadings?"),
-        (&["torus", "--max-error", "2"], 2, "unexpected argument '--max-error'"),
-        (&["torus", "--frames", "0"], 2, "--frames"),
-        (&["nothing.toml"], 3, "nothing.toml"),
-        (&["torus", "-o", "/dev/null"], 3, "/dev/null: is not a directory"),
+        ("torus --shadings flat,best", 2, "[possible values: flat, "),
+        ("torus --shading flat", 2, "did you mean --shadings?"),
+        ("torus --max-error 2", 2, "unexpected argument '--max-error'"),
+        ("torus --frames 0", 2, "--frames"),
+        ("nothing.toml", 3, "nothing.toml"),
+        ("torus -o /dev/null", 3, "/dev/null: is not a directory"),
         // Before anything is measured.
         #[cfg(target_os = "linux")]
-        (&["torus", "-o", "/proc/a/b"], 3, "/proc/a: no file can be created in the directory /proc"),
-        (&["torus", "--seconds", "-1"], 2, "--seconds"),
+        ("torus -o /proc/a/b", 3, "/proc/a: no file can be created in the directory /proc"),
+        ("torus --seconds -1", 2, "--seconds"),
     ] {
-        assert_fails(&directory, &run(&directory, words), status, says);
+        folder.fails(&format!("cost {words}"), status, says);
     }
-    let without =
-        program(&directory).args(["cost", "torus", "--instructions"]).env("PATH", "").output().expect("started");
-    assert_fails(&directory, &without, 3, "needs valgrind, which was not found");
+    let without = folder.program("cost torus --instructions").env("PATH", "").output().expect("started");
+    failed(&without, 3, "needs valgrind, which was not found");
+    assert!(folder.names().is_empty());
 }
 
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_leaves_nothing_behind() {
-    let directory = directory();
-    let mut child = program(&directory);
-    let child = child.args(["cost", "torus", "--seconds", "600"]).stdout(std::process::Stdio::piped());
-    let child = child.stderr(std::process::Stdio::piped()).spawn().expect("started");
+    let folder = Folder::new();
+    let mut command = folder.program("cost torus --seconds 600");
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
     sleep(Duration::from_secs(2));
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
     let output = child.wait_with_output().expect("it ends");
@@ -338,7 +293,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
     assert_eq!(output.status.code(), Some(130), "{lines}");
     assert!(lines.lines().next().is_some_and(|line| line.ends_with("then timing for at most 600 s")), "{lines}");
     assert_eq!(lines.lines().last(), Some("mode13h: interrupted"));
-    assert!(output.stdout.is_empty() && fs::read_dir(&directory).expect("a directory").next().is_none());
+    assert!(output.stdout.is_empty() && folder.names().is_empty());
 }
 
 /// Where valgrind is: each shading's instructions, and the times with the kernel that they were counted of.
@@ -347,17 +302,15 @@ fn instructions_are_counted_where_valgrind_is() {
     if !is_here("valgrind", Command::new("valgrind").arg("--version").output().is_ok()) {
         return;
     }
-    let directory = directory();
-    let words =
-        ["cube", "--frames", "2", "--seconds", "0", "--json", "--instructions", "--shadings", "gouraud-8.8,phong"];
-    let output = run(&directory, &words);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
+    let folder = Folder::new();
+    let words = "cost cube --frames 2 --seconds 0 --json --instructions --shadings gouraud-8.8,phong";
+    let json = folder.json(words);
     let of = |shading: usize| json["shadings"][shading]["instructions_per_frame"].as_u64().expect("a count");
     // 64,000 bytes are cleared, by 64 at a time at most; Phong has a square root and more at each of its pixels.
     assert!(of(0) > 1000 && of(1) > 4 * of(0), "{json}");
     let kernel = json["kernel"].as_str().expect("a name");
     assert!(!kernel.contains("avx512") && kernel != "simd", "{kernel}");
-    let again: Value = serde_json::from_slice(&run(&directory, &words).stdout).expect("JSON");
+    let again = folder.json(words);
     let off = again["shadings"][1]["instructions_per_frame"].as_u64().expect("a count").abs_diff(of(1));
     assert!(off * 1000 <= of(1), "without noise: {off} of {}", of(1));
 }

@@ -5,14 +5,14 @@ use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mode13h_assets::model_file::obj;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
 use mode13h_assets::palette_file::FORMATS;
-use tempfile::TempDir;
 
+use crate::folder::{Folder, failed, names_in};
 use crate::support::tried::Tried;
 
 fn no_library(_: &Path) -> io::Result<Vec<u8>> {
@@ -21,33 +21,6 @@ fn no_library(_: &Path) -> io::Result<Vec<u8>> {
 
 fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_ref(), "model.obj", no_library)
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().expect("a folder")
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
-}
-
-fn program(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
-    command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
-    command
-}
-
-/// That the program failed with this status and said one line.
-#[track_caller]
-fn assert_failed(output: &Output, status: i32) -> String {
-    let said = String::from_utf8(output.stderr.clone()).expect("text");
-    assert_eq!(output.status.code(), Some(status), "{output:?}");
-    assert!(said.starts_with("mode13h: ") && said.lines().count() == 1 && output.stdout.is_empty(), "{output:?}");
-    said
 }
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -88,8 +61,8 @@ fn f1_broken_models_are_refused_with_their_place() {
         (format!("f {}4\n", "1 ".repeat(1 << 19)), ":4: there is no vertex 4, only 3"),
         (format!("{}f 1 2 4\n", "\\\n".repeat(1000)), ":4: there is no vertex 4, only 3"),
     ];
-    let folder = folder();
-    let path = folder.path().join("model.obj");
+    let folder = Folder::new();
+    let path = folder.path("model.obj");
     let mut tried = Tried::new("f1_broken_models_are_refused_with_their_place", 3 * 23);
     for (end, message) in &cases {
         for line_end in ["\n", "\r\n", "\r"] {
@@ -141,9 +114,9 @@ fn f1_what_is_no_model_at_all_is_refused() {
 /// Files that name what is no file: folders, devices that never end, the model itself.
 #[test]
 fn f1_libraries_that_are_no_libraries_are_a_warning() {
-    let folder = folder();
-    let path = folder.path().join("model.obj");
-    fs::create_dir(folder.path().join("folder.mtl")).expect("made");
+    let folder = Folder::new();
+    let path = folder.path("model.obj");
+    fs::create_dir(folder.path("folder.mtl")).expect("made");
     let mut tried = Tried::new("f1_libraries_that_are_no_libraries_are_a_warning", 6);
     for (library, warnings) in [
         ("folder.mtl", 1),
@@ -381,8 +354,8 @@ fn load_in_a_child(test: &str, faces: usize, full: bool) {
         return load_as_a_child(Path::new(&path));
     }
     let mut tried = Tried::new(test, faces as u64);
-    let folder = folder();
-    let path = folder.path().join("grid.obj");
+    let folder = Folder::new();
+    let path = folder.path("grid.obj");
     let faces = write_grid(&path, faces, full).expect("written");
     let output = Command::new(std::env::current_exe().expect("this program"))
         .args([&format!("files::{test}"), "--exact", "--include-ignored", "--nocapture"])
@@ -447,17 +420,16 @@ fn f2_long_ten_million_faces() {
 #[ignore = "a file of 60 MB: cargo test --release --test cli f2_long -- --ignored"]
 fn f2_long_progress_is_shown_on_a_terminal() {
     let mut tried = Tried::new("f2_long_progress_is_shown_on_a_terminal", 2);
-    let folder = folder();
-    write_grid(&folder.path().join("grid.obj"), 2_000_000, false).expect("written");
-    let words = ["render", "grid.obj", "-o", "x.png"];
-    let piped = program(folder.path()).args(words).output().expect("started");
-    assert!(piped.status.success() && piped.stderr.is_empty() && piped.stdout.is_empty(), "{piped:?}");
+    let folder = Folder::new();
+    write_grid(&folder.path("grid.obj"), 2_000_000, false).expect("written");
+    let words = "render grid.obj -o x.png";
+    folder.succeed(words);
     tried.add(1);
 
-    let line = format!("{} {}", env!("CARGO_BIN_EXE_mode13h"), words.join(" "));
+    let line = format!("{} {}", env!("CARGO_BIN_EXE_mode13h"), words);
     let shown = Command::new("script")
         .args(["-qec", &line, "/dev/null"])
-        .current_dir(folder.path())
+        .current_dir(&folder)
         .env("TERM", "xterm")
         .stdin(Stdio::null())
         .output()
@@ -474,12 +446,12 @@ fn f2_long_progress_is_shown_on_a_terminal() {
 const OLD: &[u8] = b"what stood there before";
 
 /// The commands that write one file, with its name and how many bytes it has at the least.
-const WRITERS: [(&[&str], &str); 5] = [
-    (&["render", "torus", "-o", "x.png"], "x.png"),
-    (&["render", "cube", "-o", "x.png", "--rgb", "--scale", "1"], "x.png"),
-    (&["palette", "bios", "-o", "x.pal"], "x.pal"),
-    (&["palette", "bios", "-o", "x.act"], "x.act"),
-    (&["palette", "bios", "-o", "x.png"], "x.png"),
+const WRITERS: [(&str, &str); 5] = [
+    ("render torus -o x.png", "x.png"),
+    ("render cube -o x.png --rgb --scale 1", "x.png"),
+    ("palette bios -o x.pal", "x.pal"),
+    ("palette bios -o x.act", "x.act"),
+    ("palette bios -o x.png", "x.png"),
 ];
 
 /// The disk is full at any block of the file: the system limits files to a number of blocks of 512 bytes.
@@ -488,9 +460,9 @@ const WRITERS: [(&[&str], &str); 5] = [
 fn f4_no_room_at_any_block() {
     let mut tried = Tried::new("f4_no_room_at_any_block", 20);
     for (words, name) in WRITERS {
-        let folder = folder();
-        let path = folder.path().join(name);
-        assert!(program(folder.path()).args(words).status().expect("started").success());
+        let folder = Folder::new();
+        let path = folder.path(name);
+        assert!(folder.program(words).status().expect("started").success());
         let new = fs::read(&path).expect("written");
         let blocks = new.len().div_ceil(512);
         // Every block of a short file; of a long one some, and the last ones.
@@ -500,18 +472,18 @@ fn f4_no_room_at_any_block() {
             let output = Command::new("sh")
                 .args(["-c", "ulimit -f $1; shift; trap '' XFSZ; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_mode13h")])
                 .arg(limit.to_string())
-                .args(words)
-                .current_dir(folder.path())
+                .args(words.split(' '))
+                .current_dir(&folder)
                 .output()
                 .expect("started");
             let stands = fs::read(&path).expect("something stands there");
             if limit < blocks {
-                assert!(assert_failed(&output, 3).contains(name));
+                failed(&output, 3, name);
                 assert!(stands == OLD, "{words:?}, {limit} of {blocks} blocks");
             } else {
                 assert!(output.status.success() && stands == new, "{words:?}, {limit} of {blocks} blocks: {output:?}");
             }
-            assert_eq!(names_in(folder.path()), [name], "nothing is left beside it");
+            assert_eq!(folder.names(), [name], "nothing is left beside it");
             tried.add(1);
         }
     }
@@ -523,11 +495,10 @@ fn f4_no_room_at_any_block() {
 fn f4_a_full_device() {
     let mut tried = Tried::new("f4_a_full_device", 5);
     for (words, name) in WRITERS {
-        let folder = folder();
-        let path = folder.path().join(name);
+        let folder = Folder::new();
+        let path = folder.path(name);
         std::os::unix::fs::symlink("/dev/full", &path).expect("linked");
-        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
-        assert!(said.ends_with(&format!("{name}: the disk is full\n")), "{said}");
+        folder.fails(words, 3, &format!("{name}: the disk is full\n"));
         assert_eq!(fs::read_link(&path).expect("a link still"), Path::new("/dev/full"));
         tried.add(1);
     }
@@ -543,17 +514,17 @@ fn f4_no_right_to_write() {
     let mut tried = Tried::new("f4_no_right_to_write", 15);
     for (words, name) in WRITERS {
         for (folder_mode, file_mode, stands) in [(0o555, 0o666, true), (0o555, 0o444, true), (0o555, 0, false)] {
-            let folder = folder();
-            let place = folder.path().join("place");
+            let folder = Folder::new();
+            let place = folder.path("place");
             fs::create_dir(&place).expect("made");
             // Nobody must be able to reach and run it. Copied by another program: a copy that was open for writing here
             // while another test started a process could not be run as long as that process holds on to it.
-            let copy = folder.path().join("mode13h");
+            let copy = folder.path("mode13h");
             let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_mode13h")).arg(&copy).status();
             assert!(copied.expect("started").success());
             let set =
                 |path: &Path, mode: u32| fs::set_permissions(path, fs::Permissions::from_mode(mode)).expect("set");
-            set(folder.path(), 0o755);
+            set(folder.as_ref(), 0o755);
             set(&copy, 0o755);
             if stands {
                 fs::write(place.join(name), OLD).expect("written");
@@ -561,12 +532,11 @@ fn f4_no_right_to_write() {
             }
             set(&place, folder_mode);
             let mut command = Command::new(&copy);
-            command.args(words).current_dir(&place);
+            command.args(words.split(' ')).current_dir(&place);
             if fs::metadata("/proc/self").expect("Linux has it").uid() == 0 {
                 command.uid(65_534).gid(65_534);
             }
-            let said = assert_failed(&command.output().expect("started"), 3);
-            assert!(said.ends_with(&format!("{name}: no permission to write there\n")), "{said}");
+            failed(&command.output().expect("started"), 3, &format!("{name}: no permission to write there\n"));
             // So that it can be removed.
             set(&place, 0o755);
             match stands {
@@ -585,15 +555,14 @@ fn f4_no_right_to_write() {
 fn f4_a_folder_that_is_not_there() {
     let mut tried = Tried::new("f4_a_folder_that_is_not_there", 10);
     for (words, name) in WRITERS {
-        let folder = folder();
-        fs::write(folder.path().join("file"), OLD).expect("written");
+        let folder = Folder::new();
+        folder.put("file", OLD);
         for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is not a directory")] {
             let path = format!("{directory}/{name}");
-            let words: Vec<&str> = words.iter().map(|word| if word == &name { path.as_str() } else { word }).collect();
-            let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
-            assert!(said.ends_with(&format!("{path}: {says}\n")), "{said}");
-            assert_eq!(names_in(folder.path()), ["file"]);
-            assert_eq!(fs::read(folder.path().join("file")).expect("read"), OLD);
+            let words = words.replace(name, &path);
+            folder.fails(&words, 3, &format!("{path}: {says}\n"));
+            assert_eq!(folder.names(), ["file"]);
+            assert_eq!(folder.read("file"), OLD);
             tried.add(1);
         }
     }
@@ -605,23 +574,17 @@ fn f4_a_folder_that_is_not_there() {
 #[test]
 fn f4_killed_half_way() {
     let mut tried = Tried::new("f4_killed_half_way", 8);
-    let folder = folder();
-    let path = folder.path().join("x.png");
+    let folder = Folder::new();
+    let path = folder.path("x.png");
     let unfinished = || -> Vec<PathBuf> {
-        let names = names_in(folder.path()).into_iter().filter(|name| name != "x.png");
-        names
-            .inspect(|name| assert!(name.starts_with(".mode13h-"), "{name}"))
-            .map(|name| folder.path().join(name))
-            .collect()
+        let names = folder.names().into_iter().filter(|name| name != "x.png");
+        names.inspect(|name| assert!(name.starts_with(".mode13h-"), "{name}")).map(|name| folder.path(name)).collect()
     };
     for after in [0_u64, 1, 4_096, 8_192, 20_000, 40_000, 60_000, 100_000] {
         fs::write(&path, OLD).expect("written");
-        let mut child = program(folder.path())
-            // Two seconds of writing, row by row.
-            .args(["render", "torus", "-o", "x.png", "--scale", "16384x16384"])
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("started");
+        // Two seconds of writing, row by row.
+        let mut command = folder.program("render torus -o x.png --scale 16384x16384");
+        let mut child = command.stderr(Stdio::null()).spawn().expect("started");
         let length = || unfinished().iter().filter_map(|path| fs::metadata(path).ok()).map(|file| file.len()).max();
         while length().is_none_or(|length| length < after) {
             assert!(child.try_wait().expect("waited").is_none(), "ended before {after} bytes were seen");
@@ -640,14 +603,13 @@ fn f4_killed_half_way() {
 fn f4_a_row_of_pictures_that_cannot_be_written() {
     let mut tried = Tried::new("f4_a_row_of_pictures_that_cannot_be_written", 2);
     for threads in ["1", "4"] {
-        let folder = folder();
+        let folder = Folder::new();
         // The fifth name is taken by a folder.
-        fs::create_dir(folder.path().join("x4.png")).expect("made");
-        let words = ["render", "torus", "-o", "x%d.png", "--frames", "9", "--threads", threads];
-        let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 3);
-        assert!(said.contains("x4.png: is a directory; written before that: x0.png"), "{said}");
-        for name in names_in(folder.path()).into_iter().filter(|name| name != "x4.png") {
-            let bytes = fs::read(folder.path().join(&name)).expect("read");
+        fs::create_dir(folder.path("x4.png")).expect("made");
+        let words = &format!("render torus -o x%d.png --frames 9 --threads {threads}");
+        folder.fails(words, 3, "x4.png: is a directory; written before that: x0.png");
+        for name in folder.names().into_iter().filter(|name| name != "x4.png") {
+            let bytes = folder.read(&name);
             assert_eq!(&bytes[bytes.len() - 8..][..4], b"IEND", "{name} is not whole");
         }
         tried.add(1);
@@ -661,8 +623,8 @@ fn f4_a_row_of_pictures_that_cannot_be_written() {
 #[test]
 fn p5_broken_palettes_change_nothing() {
     let mut tried = Tried::new("p5_broken_palettes_change_nothing", 30);
-    let folder = folder();
-    let picture = folder.path().join("x.png");
+    let folder = Folder::new();
+    let picture = folder.path("x.png");
     fs::write(&picture, OLD).expect("written");
     let bios = mode13h::palette::BIOS;
     for format in &FORMATS {
@@ -691,18 +653,16 @@ fn p5_broken_palettes_change_nothing() {
             if read.is_ok() {
                 continue;
             }
-            fs::write(folder.path().join(&name), &bytes).expect("written");
-            for words in
-                [["render", "cube", "-o", "x.png", "--palette", &name].as_slice(), &["palette", &name, "-o", "x.png"]]
-            {
-                let said = assert_failed(&program(folder.path()).args(words).output().expect("started"), 2);
+            folder.put(&name, &bytes);
+            for words in [format!("render cube -o x.png --palette {name}"), format!("palette {name} -o x.png")] {
+                let said = folder.fails(&words, 2, "");
                 let place = said.contains(&format!("{name}: line ")) || said.contains(&format!("{name}: offset "));
                 assert!(place, "{said}");
                 assert_eq!(fs::read(&picture).expect("read"), OLD);
                 tried.add(1);
             }
-            fs::remove_file(folder.path().join(&name)).expect("removed");
+            fs::remove_file(folder.path(&name)).expect("removed");
         }
     }
-    assert_eq!(names_in(folder.path()), ["x.png"]);
+    assert_eq!(folder.names(), ["x.png"]);
 }

@@ -6,6 +6,7 @@ mod cases;
 mod commands;
 mod cost;
 mod files;
+mod folder;
 mod looks;
 mod terminal;
 mod verify;

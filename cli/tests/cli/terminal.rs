@@ -1,23 +1,22 @@
 //! Pictures for terminals: what was sent is decoded again, by decoders of the formats' own documents, and compared with the
 //! picture pixel by pixel.
 
-use std::fs::File;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use mode13h::export::{Picture, Scale, Scaled};
 use mode13h::palette::{Palette, Rgb};
 use mode13h_assets::terminal::Protocol;
 use mode13h_conformance::random::Random;
 
+use crate::folder::{Folder, Png, failed};
 use crate::support::tried::Tried;
 
-fn program(words: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
-    command.args(words).stdin(Stdio::null()).env_remove("MODE13H_KERNEL");
-    for variable in ["DISPLAY", "WAYLAND_DISPLAY", "TERM", "TERM_PROGRAM", "KITTY_WINDOW_ID"] {
+fn program(folder: &Folder, words: &str) -> Output {
+    let mut command = folder.program(words);
+    for variable in ["TERM", "TERM_PROGRAM", "KITTY_WINDOW_ID"] {
         command.env_remove(variable);
     }
-    command.output().expect("started")
+    command.stdin(Stdio::null()).output().expect("started")
 }
 
 /// A picture of palette indices, and the colours that were sent for them.
@@ -135,16 +134,6 @@ fn decode_base64(text: &str) -> Vec<u8> {
     bits.chunks(4).flat_map(group).collect()
 }
 
-/// Indices and palette of a PNG.
-fn decode_png(bytes: &[u8]) -> (u32, u32, Vec<u8>, Vec<u8>) {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("its size")];
-    let info = reader.next_frame(&mut pixels).expect("an image");
-    assert_eq!((info.color_type, info.bit_depth), (png::ColorType::Indexed, png::BitDepth::Eight));
-    let palette = reader.info().palette.as_deref().expect("a palette").to_vec();
-    (info.width, info.height, pixels, palette)
-}
-
 /// That a decoded picture has these pixels, with the colours of their entries to the nearest percent.
 #[track_caller]
 fn assert_shows(decoded: &Decoded, rows: &[Vec<u8>], palette: &[Rgb; 256]) {
@@ -198,9 +187,9 @@ fn pictures_are_the_same_once_decoded() {
             let kitty = Protocol::Kitty.picture(&picture, scale).expect("a picture");
             let (keys, bytes, rest) = decode_kitty(kitty.as_bytes());
             assert!(keys == "a=T,f=100,q=2," && rest.is_empty(), "{keys}");
-            let (w, h, shown, colors) = decode_png(&bytes);
-            assert!((w as usize, h as usize) == (rows[0].len(), rows.len()) && shown == rows.concat());
-            assert!(colors == palette.colors().iter().flat_map(|c| [c.r, c.g, c.b]).collect::<Vec<u8>>());
+            let png = Png::decode(&bytes);
+            assert!(png.size == (rows[0].len() as u32, rows.len() as u32) && png.pixels == rows.concat());
+            assert!(png.palette == palette.colors());
             tried.add(1);
         }
     }
@@ -223,26 +212,23 @@ fn the_levels_of_the_dac_stay_different_in_percent() {
 /// What `render` shows in a terminal is what it saves.
 #[test]
 fn render_shows_the_picture_that_it_saves() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("crate.png");
-    let saved = program(&["render", "crate", "-o", file.to_str().expect("a name"), "--scale", "640x480"]);
-    assert!(saved.status.success(), "{saved:?}");
-    let mut bytes = Vec::new();
-    std::io::Read::read_to_end(&mut File::open(&file).expect("a file"), &mut bytes).expect("read");
-    let (width, height, pixels, colors) = decode_png(&bytes);
-    assert_eq!((width, height), (640, 480));
+    let folder = Folder::new();
+    folder.succeed("render crate -o crate.png --scale 640x480");
+    let png = folder.png("crate.png");
+    assert_eq!(png.size, (640, 480));
 
-    let kitty = program(&["render", "crate", "--to", "kitty"]);
+    let kitty = program(&folder, "render crate --to kitty");
     assert!(kitty.status.success() && kitty.stderr.is_empty(), "{:?}", String::from_utf8_lossy(&kitty.stderr));
     let (_, shown, rest) = decode_kitty(&kitty.stdout);
-    assert!(rest == b"\n" && decode_png(&shown) == (width, height, pixels.clone(), colors.clone()));
+    let shown = Png::decode(&shown);
+    assert!(rest == b"\n" && (shown.size, &shown.pixels, &shown.palette) == (png.size, &png.pixels, &png.palette));
 
-    let sixel = program(&["render", "crate", "-o", "-", "--to", "sixel"]);
+    let sixel = program(&folder, "render crate -o - --to sixel");
     let (decoded, rest) = decode_sixel(&sixel.stdout);
-    let palette = core::array::from_fn(|i| Rgb::new(colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]));
+    let palette = png.palette.as_slice().try_into().expect("256 colours");
     assert_eq!(rest, b"\n");
-    assert_shows(&decoded, &pixels.chunks(640).map(<[u8]>::to_vec).collect::<Vec<_>>(), &palette);
-    let small = program(&["render", "crate", "--to", "sixel", "--scale", "1"]);
+    assert_shows(&decoded, &png.pixels.chunks(640).map(<[u8]>::to_vec).collect::<Vec<_>>(), palette);
+    let small = program(&folder, "render crate --to sixel --scale 1");
     assert_eq!(decode_sixel(&small.stdout).0.width, 320);
 }
 
@@ -251,7 +237,7 @@ fn render_shows_the_picture_that_it_saves() {
 fn the_demo_in_a_terminal_ends_as_it_began() {
     let (begin, end) = ("\x1b[?1049h\x1b[?25l\x1b[2J", "\x1b[?25h\x1b[?1049l");
     for (protocol, after) in [("sixel", ""), ("kitty", "\x1b_Ga=d,d=I,i=13,q=2\x1b\\")] {
-        let output = program(&["demo", "torus", "--terminal", "--to", protocol, "--frames", "3"]);
+        let output = program(&Folder::new(), &format!("demo torus --terminal --to {protocol} --frames 3"));
         assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
         let mut rest = output.stdout.strip_prefix(begin.as_bytes()).expect("the alternate screen");
         for _ in 0..3 {
@@ -266,7 +252,7 @@ fn the_demo_in_a_terminal_ends_as_it_began() {
                 _ => {
                     let (keys, bytes, rest) = decode_kitty(rest);
                     assert_eq!(keys, "a=T,f=100,q=2,i=13,p=1,C=1,");
-                    let (width, height, ..) = decode_png(&bytes);
+                    let (width, height) = Png::decode(&bytes).size;
                     ((width as usize, height as usize), rest)
                 }
             };
@@ -279,28 +265,17 @@ fn the_demo_in_a_terminal_ends_as_it_began() {
 
 #[test]
 fn a_terminal_is_asked_for_what_it_can_do() {
-    let cases: [(&[&str], &str); 6] = [
+    for (words, said) in [
         (
-            &["demo", "torus", "--terminal"],
+            "demo torus --terminal",
             "--terminal: standard input is not a terminal, so no key can quit; --frames N quits after N frames",
         ),
-        (&["demo", "a", "b", "--terminal", "--frames", "1"], "--terminal shows one INPUT, not several"),
-        (&["demo", "no-such", "--terminal", "--frames", "1"], "no-such: "),
-        (
-            &["render", "torus", "--to", "sixel", "-o", "a.png"],
-            "a.png: --to shows the picture in the terminal, so -o can only be -",
-        ),
-        (
-            &["render", "torus", "--to", "kitty", "--frames", "2"],
-            "a terminal shows one picture; `mode13h demo --terminal` shows motion",
-        ),
-        (&["render", "torus", "--to", "vt52"], "invalid value 'vt52' for '--to <PROTOCOL>'"),
-    ];
-    for (words, said) in cases {
-        let output = program(words);
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
-        assert!(output.stdout.is_empty() && error.lines().count() == 1, "{output:?}");
-        assert!(error.starts_with(&format!("mode13h: {said}")), "{error}");
+        ("demo a b --terminal --frames 1", "--terminal shows one INPUT, not several"),
+        ("demo no-such --terminal --frames 1", "no-such: "),
+        ("render torus --to sixel -o a.png", "a.png: --to shows the picture in the terminal, so -o can only be -"),
+        ("render torus --to kitty --frames 2", "a terminal shows one picture; `mode13h demo --terminal` shows motion"),
+        ("render torus --to vt52", "invalid value 'vt52' for '--to <PROTOCOL>'"),
+    ] {
+        failed(&program(&Folder::new(), words), 2, &format!("mode13h: {said}"));
     }
 }

@@ -12,8 +12,8 @@ use mode13h::settings::Shading;
 use mode13h::span::Kernel;
 use mode13h_assets::shipped;
 use serde_json::Value;
-use tempfile::TempDir;
 
+use crate::folder::{Folder, Png, failed, printed};
 use crate::support::tried::{Tried, is_here};
 use crate::verify::verified_as_json;
 
@@ -23,61 +23,19 @@ const COMMANDS: [&str; 12] =
 /// The commands that draw a scene.
 const DRAWING: [&str; 5] = ["demo", "render", "plan", "explain", "cost"];
 
-fn directory() -> TempDir {
-    tempfile::tempdir().expect("a directory")
-}
-
-fn program(directory: &TempDir) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
-    command.current_dir(directory).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
-    command
-}
-
-/// Runs the program with words that have spaces between them.
-fn run(directory: &TempDir, words: &str) -> Output {
-    program(directory).args(words.split_whitespace()).output().expect("started")
-}
-
 /// A study that takes two seconds and writes no file. Integers know no budget, so it holds no promise to the clock.
 const COST: &str = "cost cube --frames 1 --seconds 0 --shadings flat --json --arithmetic fixed";
 
 /// Output of [`COST`], from one run for all tests.
 fn cost() -> &'static Output {
     static OUTPUT: OnceLock<Output> = OnceLock::new();
-    OUTPUT.get_or_init(|| run(&directory(), COST))
-}
-
-#[track_caller]
-fn printed(output: Output) -> String {
-    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
-    String::from_utf8(output.stdout).expect("text")
-}
-
-/// That it failed with this status and one line, which is returned.
-#[track_caller]
-fn failed(output: &Output, status: i32, words: &str) -> String {
-    let line = String::from_utf8(output.stderr.clone()).expect("text");
-    assert_eq!(output.status.code(), Some(status), "{words}: {line}");
-    assert!(line.starts_with("mode13h: ") && line.ends_with('\n') && line.lines().count() == 1, "{words}: {line}");
-    line
-}
-
-fn names_in(directory: &TempDir) -> BTreeSet<String> {
-    let entries = fs::read_dir(directory).expect("a directory");
-    entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+    OUTPUT.get_or_init(|| Folder::new().run(COST))
 }
 
 /// The help of a command, or of the program where `command` is empty.
 fn help(command: &str, option: &str, columns: &str) -> String {
-    let directory = directory();
-    printed(
-        program(&directory)
-            .args(command.split_whitespace())
-            .arg(option)
-            .env("COLUMNS", columns)
-            .output()
-            .expect("started"),
-    )
+    let folder = Folder::new();
+    printed(folder.program(command).arg(option).env("COLUMNS", columns).output().expect("started"))
 }
 
 /// The options that a help text lists, such as `--shading`.
@@ -117,15 +75,14 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
 /// greatest error is that of the option.
 #[test]
 fn a_time_chooses_an_error_and_says_so() {
-    let directory = directory();
+    let folder = Folder::new();
     let picture = |words: &str| {
-        let output = run(&directory, &format!("render {words} -o x.png"));
+        let output = folder.run(&format!("render {words} -o x.png"));
         assert!(output.status.success(), "{output:?}");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        (fs::read(directory.path().join("x.png")).expect("a picture"), said)
+        (folder.read("x.png"), String::from_utf8(output.stderr).expect("text"))
     };
     let scene = "objects = [{ shape = 'torus' }]\nlights = [{ sun = [0, 0, 1] }]\n";
-    fs::write(directory.path().join("plain.toml"), scene).expect("written");
+    folder.put("plain.toml", scene);
     let of_error = |error: &str| picture(&format!("plain.toml --max-error {error}")).0;
     assert!(of_error("0.5") != of_error("16"));
     for (time, error, says) in [
@@ -137,8 +94,7 @@ fn a_time_chooses_an_error_and_says_so() {
     }
     // The greatest error is the greatest that is accepted.
     assert!(picture("plain.toml --max-time 0.0000001 --max-error 3").0 == of_error("3"));
-    let output = run(&directory, "render plain.toml -o x.png --max-time 100000 --stats --json");
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let json = folder.json("render plain.toml -o x.png --max-time 100000 --stats --json");
     let frame = &json["frames"][0];
     assert_eq!((&frame["max_error"], &frame["max_time"], &frame["fits"]), (&0.5.into(), &1e5.into(), &true.into()));
     assert!(frame["milliseconds"].as_f64().is_some_and(|time| time > 0.0), "{frame}");
@@ -149,7 +105,7 @@ fn a_time_chooses_an_error_and_says_so() {
         ),
         ("plan plain.toml --max-time 0.0000001", "mode13h: within 16 shades, which takes more than 0.0000001 ms"),
     ] {
-        let output = run(&directory, words);
+        let output = folder.run(words);
         assert!(output.status.success() && String::from_utf8_lossy(&output.stderr).contains(says), "{output:?}");
     }
     for (words, says) in [
@@ -158,9 +114,7 @@ fn a_time_chooses_an_error_and_says_so() {
         ("render cube -o x.png --max-time NaN", "not a number of milliseconds above 0"),
         ("render cube -o x.png --max-time 1e30", "not a number of milliseconds above 0"),
     ] {
-        let output = run(&directory, words);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.code() == Some(2) && said.contains(says), "{said}");
+        folder.fails(words, 2, says);
     }
 }
 
@@ -195,14 +149,11 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
 #[test]
 fn an_option_does_what_its_key_does() {
     let mut tried = Tried::new("an_option_does_what_its_key_does", 9);
-    let directory = directory();
-    let picture = |words: &str| {
-        assert!(printed(run(&directory, &format!("render {words} -o x.png"))).is_empty());
-        fs::read(directory.path().join("x.png")).expect("a picture")
-    };
+    let folder = Folder::new();
+    let picture = |words: &str| folder.picture(words);
     let lit = "objects = [{ shape = 'wall', subdivisions = [2, 2], material.texture = 'crate', angles = [60, 20, 0] }]\n\
                lights = [{ lamp = [0, 0, 1], range = 3 }]\nambient = 0.2\npalette = 'materials-8x32'\n";
-    fs::write(directory.path().join("plain.toml"), lit).expect("written");
+    folder.put("plain.toml", lit);
     for (key, value) in [
         ("shading", "phong"),
         ("shading", "gouraud-vintage"),
@@ -220,7 +171,7 @@ fn an_option_does_what_its_key_does() {
             _ if value.parse::<f64>().is_ok() => value.to_string(),
             _ => format!("'{value}'"),
         };
-        fs::write(directory.path().join("asks.toml"), format!("{lit}render.{key} = {in_file}\n")).expect("written");
+        folder.put("asks.toml", format!("{lit}render.{key} = {in_file}\n"));
         let by_option = picture(&match value {
             "on" => format!("plain.toml --{key}"),
             "off" => format!("plain.toml --no-{key}"),
@@ -236,8 +187,7 @@ fn an_option_does_what_its_key_does() {
 
 #[test]
 fn a_time_without_its_seconds_says_which_option_measures() {
-    let line = failed(&run(&directory(), "plan torus --time"), 2, "--time");
-    assert!(line.contains("--measure measures what effects cost "), "{line}");
+    Folder::new().fails("plan torus --time", 2, "--measure measures what effects cost ");
 }
 
 /// The short page of each command, in a terminal of 80 columns.
@@ -252,8 +202,8 @@ fn every_short_help_fits_its_screen() {
 /// Each list has the names that the library has, and marks what is taken where nothing is said.
 #[test]
 fn lists_have_the_names_that_options_take() {
-    let directory = directory();
-    let list = |what: &str| printed(run(&directory, &format!("list {what}")));
+    let folder = Folder::new();
+    let list = |what: &str| folder.printed(&format!("list {what}"));
     let names = |text: &str| -> Vec<String> {
         let of_line = |line: &str| line.split_whitespace().next().map(String::from);
         text.lines().take_while(|line| !line.is_empty()).filter_map(of_line).collect()
@@ -277,90 +227,63 @@ fn lists_have_the_names_that_options_take() {
 /// Wherever a shading is named, `gouraud` is the default one.
 #[test]
 fn gouraud_is_short_for_the_default_shading() {
-    let directory = directory();
-    let picture = |words: &str| {
-        assert!(printed(run(&directory, &format!("render {words} -o x.png"))).is_empty());
-        fs::read(directory.path().join("x.png")).expect("a picture")
-    };
+    let folder = Folder::new();
+    let picture = |words: &str| folder.picture(words);
     // A scene that asks for another.
     let scene = "objects = [{ shape = 'torus' }]\nlights = [{ sun = [0, 0, 1] }]\nrender.shading = ";
-    let put = |name: &str, shading: &str| {
-        fs::write(directory.path().join(name), format!("{scene}'{shading}'\n")).expect("written");
-    };
+    let put = |name: &str, shading: &str| folder.put(name, format!("{scene}'{shading}'\n"));
     put("flat.toml", "flat");
     put("short.toml", "gouraud");
     put("full.toml", Shading::default().name());
     let default = picture(&format!("flat.toml --shading {}", Shading::default()));
     assert!(picture("flat.toml --shading gouraud") == default && picture("flat.toml") != default);
     assert!(picture("short.toml") == default && picture("full.toml") == default);
-    let output = run(&directory, "render flat.toml -o x.png --shading gouraud --stats --json");
-    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let json = folder.json("render flat.toml -o x.png --shading gouraud --stats --json");
     assert_eq!(json["frames"][0]["shading"], Shading::default().name());
-    let study = run(&directory, "cost cube --frames 1 --seconds 0 --shadings flat,gouraud --json --arithmetic fixed");
-    let json: Value = serde_json::from_slice(&study.stdout).expect("JSON");
+    let json = folder.json("cost cube --frames 1 --seconds 0 --shadings flat,gouraud --json --arithmetic fixed");
     assert_eq!(json["shadings"][1]["shading"], Shading::default().name());
     let program = |shading: &str| {
-        printed(run(&directory, &format!("dos cube --frames 2 -o CUBE.EXE --shading {shading}")));
-        fs::read(directory.path().join("CUBE.EXE")).expect("a program")
+        folder.printed(&format!("dos cube --frames 2 -o CUBE.EXE --shading {shading}"));
+        folder.read("CUBE.EXE")
     };
     assert!(program("gouraud") == program(Shading::default().name()) && program("gouraud") != program("flat"));
     // It is no name of anything else, nor of what works beside it.
-    let line = failed(&run(&directory, "render cube -o x.png --mapping gouraud"), 2, "--mapping");
-    assert!(line.contains("invalid value 'gouraud'"), "{line}");
-    fs::write(directory.path().join("wrong.toml"), "objects = [{ shape = 'cube' }]\nrender.mapping = 'gouraud'\n")
-        .expect("written");
-    assert!(failed(&run(&directory, "render wrong.toml -o x.png"), 2, "wrong.toml").contains("\"gouraud\": unknown"));
+    folder.fails("render cube -o x.png --mapping gouraud", 2, "invalid value 'gouraud'");
+    folder.put("wrong.toml", "objects = [{ shape = 'cube' }]\nrender.mapping = 'gouraud'\n");
+    folder.fails("render wrong.toml -o x.png", 2, "\"gouraud\": unknown");
 }
 
 /// Frames of square pixels in any size are the library's.
 #[test]
 fn a_frame_has_the_size_that_was_asked_for() {
-    let directory = directory();
-    let decoded = |name: &str| {
-        let file = fs::File::open(directory.path().join(name)).expect("a picture");
-        let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
-        decoder.set_transformations(png::Transformations::IDENTITY);
-        let mut reader = decoder.read_info().expect("a PNG");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-        reader.next_frame(&mut pixels).expect("pixels");
-        let info = reader.info();
-        ((info.width, info.height), info.pixel_dims.map(|dims| (dims.xppu, dims.yppu)), pixels)
-    };
+    let folder = Folder::new();
+    let picture = |words: &str| Png::decode(&folder.picture(words));
     let mut scene = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("it loads").scene;
     scene.set_time(0.5);
     for (width, height) in [(640, 400), (97, 33), (1, 1), (1021, 7)] {
-        let said = printed(run(&directory, &format!("render torus --time 0.5 --size {width}x{height} -o x.png")));
-        let (size, dims, pixels) = decoded("x.png");
+        let png = picture(&format!("torus --time 0.5 --size {width}x{height}"));
         let mut expected = vec![0; (width * height) as usize];
         let frame = Frame::new(&mut expected, width, height, width as usize).expect("a frame");
         Renderer::new().draw_frame(&scene, frame, (1, 1)).expect("a legal scene");
-        assert!(said.is_empty() && size == (width, height) && pixels == expected, "{width} x {height}");
-        assert!(dims.is_none_or(|(x, y)| x == y), "{width} x {height}: {dims:?}");
+        assert!(png.size == (width, height) && png.pixels == expected, "{width} x {height}");
+        assert!(png.density.is_none_or(|(x, y)| x == y), "{width} x {height}: {:?}", png.density);
     }
     // Enlarged after that; in true colour no larger by itself.
-    printed(run(&directory, "render torus --size 64x48 --scale 2 -o x.png"));
-    assert_eq!(decoded("x.png").0, (128, 96));
-    printed(run(&directory, "render torus --size 64x48 --rgb -o x.png"));
-    assert_eq!(decoded("x.png").0, (64, 48));
+    assert_eq!(picture("torus --size 64x48 --scale 2").size, (128, 96));
+    assert_eq!(picture("torus --size 64x48 --rgb").size, (64, 48));
     for animation in ["gif", "apng"] {
-        let words = format!("render torus --size 64x48 --frames 2 -o x.{animation} --json");
-        let json: Value = serde_json::from_slice(&run(&directory, &words).stdout).expect("JSON");
+        let json = folder.json(&format!("render torus --size 64x48 --frames 2 -o x.{animation} --json"));
         assert_eq!((&json["animation"]["width"], &json["animation"]["height"]), (&64.into(), &48.into()));
     }
     // A palette that changes is that of the frame's time.
-    let colors = |words: &str| {
-        printed(run(&directory, &format!("render fade {words} -o x.png")));
-        let file = fs::File::open(directory.path().join("x.png")).expect("a picture");
-        let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
-        reader.info().palette.as_deref().map(<[u8]>::to_vec)
-    };
+    let colors = |words: &str| picture(&format!("fade {words}")).palette;
     assert!(colors("--time 1") == colors("--time 1 --size 64x48") && colors("--time 1") != colors("--time 0"));
 }
 
 /// Nothing but the files.
 #[test]
 fn quiet_commands_say_nothing() {
-    let directory = directory();
+    let folder = Folder::new();
     for words in [
         "render cube -q",
         "render cube --frames 2 --quiet",
@@ -370,28 +293,28 @@ fn quiet_commands_say_nothing() {
         "verify --frame canvas/bands/plain -q",
         "cost cube --frames 1 --seconds 0 --shadings flat --arithmetic fixed -q",
     ] {
-        assert!(printed(run(&directory, words)).is_empty(), "{words}");
+        assert!(folder.printed(words).is_empty(), "{words}");
     }
     for file in ["cube.png", "cube-0001.png", "x.gif", "R5.png", "CUBE.EXE", "cost-cube/report.html"] {
-        assert!(directory.path().join(file).is_file(), "{file}");
+        assert!(folder.path(file).is_file(), "{file}");
     }
     // Errors are still said.
-    failed(&run(&directory, "render cube -q"), 3, "render cube -q");
+    folder.fails("render cube -q", 3, "");
 }
 
 /// A scene's moment by the one option, in the window too: without a display a frame of it is saved.
 #[test]
 fn time_is_the_same_for_all_that_draw() {
-    let directory = directory();
-    let read = |name: &str| fs::read(directory.path().join(name)).expect("a picture");
-    printed(run(&directory, "render flash --time 0.25 -o at.png"));
-    printed(run(&directory, "render flash -o usual.png"));
-    assert!(run(&directory, "flash --time 0.25").status.success());
-    assert!(run(&directory, "demo flash").status.success());
+    let folder = Folder::new();
+    let read = |name: &str| folder.read(name);
+    folder.printed("render flash --time 0.25 -o at.png");
+    folder.printed("render flash -o usual.png");
+    assert!(folder.run("flash --time 0.25").status.success());
+    assert!(folder.run("demo flash").status.success());
     assert!(read("mode13h-0001.png") == read("at.png") && read("mode13h-0002.png") == read("usual.png"));
     assert!(read("at.png") != read("usual.png"));
-    assert!(printed(run(&directory, "plan flash --time 0.25")).starts_with("flash at 0.25 s, "));
-    assert!(printed(run(&directory, "explain flash --row 9 --time 0.25")).starts_with("flash at 0.25 s, "));
+    assert!(folder.printed("plan flash --time 0.25").starts_with("flash at 0.25 s, "));
+    assert!(folder.printed("explain flash --row 9 --time 0.25").starts_with("flash at 0.25 s, "));
 }
 
 /// The browser that it is opened in is a script here, which writes down what it was given.
@@ -401,16 +324,16 @@ fn a_report_is_opened_in_the_browser() {
     use std::os::unix::fs::PermissionsExt;
     use std::time::{Duration, Instant};
 
-    let directory = directory();
-    let browsers = directory.path().join("bin");
+    let folder = Folder::new();
+    let browsers = folder.path("bin");
     fs::create_dir(&browsers).expect("made");
     let browser = browsers.join("xdg-open");
     fs::write(&browser, "#!/bin/sh\necho \"$1\" > opened\n").expect("written");
     fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).expect("allowed");
     let words = "cost cube --frames 1 --seconds 0 --shadings flat --arithmetic fixed -q -o study --open";
-    let run = |path: &std::path::Path| program(&directory).args(words.split(' ')).env("PATH", path).output();
+    let run = |path: &std::path::Path| folder.program(words).env("PATH", path).output();
     assert!(printed(run(&browsers).expect("started")).is_empty());
-    let (opened, begun) = (directory.path().join("opened"), Instant::now());
+    let (opened, begun) = (folder.path("opened"), Instant::now());
     let said = loop {
         match fs::read_to_string(&opened) {
             Ok(said) if said.ends_with('\n') => break said,
@@ -421,12 +344,12 @@ fn a_report_is_opened_in_the_browser() {
     assert_eq!(said, "study/report.html\n");
     // Without any the report is there all the same.
     let output = run(std::path::Path::new("/nowhere")).expect("started");
-    assert!(failed(&output, 3, words).contains("study/report.html: cannot be opened in a browser"), "{output:?}");
+    failed(&output, 3, "study/report.html: cannot be opened in a browser");
 }
 
 #[test]
 fn typos_are_answered_with_the_nearest_word() {
-    let directory = directory();
+    let folder = Folder::new();
     for (words, says) in [
         ("rendr torus -o x.png", "rendr: no such command, file, scene or shape; did you mean render?"),
         ("rendr torus", "did you mean render?"),
@@ -443,124 +366,94 @@ fn typos_are_answered_with_the_nearest_word() {
         ("render torus --shading phongs", "did you mean phong?"),
         ("generate completion bash", "did you mean completions?"),
     ] {
-        assert!(failed(&run(&directory, words), 2, words).contains(says), "{words}: {:?}", run(&directory, words));
+        folder.fails(words, 2, says);
     }
     // What is near to nothing is compared with nothing.
-    let line = failed(&run(&directory, "xyzzyx"), 2, "xyzzyx");
+    let line = folder.fails("xyzzyx", 2, "");
     assert!(!line.contains("did you mean"), "{line}");
-    assert!(names_in(&directory).is_empty());
+    assert!(folder.names().is_empty());
     // A file of that name is an INPUT, whatever is near to it.
-    fs::write(directory.path().join("rendr"), "no model").expect("written");
-    let line = failed(&run(&directory, "rendr"), 2, "rendr");
-    assert!(line.contains("rendr: unknown kind of file"), "{line}");
+    folder.put("rendr", "no model");
+    folder.fails("rendr", 2, "rendr: unknown kind of file");
 }
 
 /// Each command's end by each status that it can have.
 #[test]
 fn every_command_ends_with_the_status_that_help_names() {
     let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 40);
-    let directory = directory();
-    let put = |name: &str, text: &str| fs::write(directory.path().join(name), text).expect("written");
-    put("broken.obj", "v 0 0 0\nf 1 2 3\n");
-    put("broken.toml", "objects = 3\n");
-    put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
-    put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
-    let cases: [(&str, &[(&str, i32)]); 12] = [
-        (
-            "demo",
-            &[
-                ("demo cube", 0),
-                ("demo --xml", 2),
-                ("demo broken.toml", 2),
-                ("demo none.toml", 3),
-                ("demo cube none.toml", 3),
-                ("demo cube broken.obj", 2),
-            ],
-        ),
-        (
-            "render",
-            &[
-                ("render cube -o x.png", 0),
-                ("render cube -o x.tif", 2),
-                ("render broken.obj -o x.png", 2),
-                ("render missing.toml -o x.png", 3),
-                ("render cube -o none/x.png", 3),
-                ("render cube -o none/x.gif", 3),
-                ("render cube -o x.png --palette broken.pal", 2),
-                ("render cube -o x.png --palette none.pal", 3),
-            ],
-        ),
-        ("list", &[("list scenes", 0), ("list", 2), ("list bogus", 2)]),
-        (
-            "scenes",
-            &[
-                ("scenes copy fog -o y.toml", 0),
-                ("scenes", 2),
-                ("scenes copy bogus", 2),
-                ("scenes copy --force", 2),
-                ("scenes copy fog -o none/y.toml", 3),
-            ],
-        ),
-        ("plan", &[("plan cube", 0), ("plan", 2), ("plan broken.toml", 2), ("plan none.obj", 3)]),
-        (
-            "explain",
-            &[
-                ("explain cube --row 9", 0),
-                ("explain cube --row 900", 2),
-                ("explain none.toml --row 9", 3),
-                ("explain cube --row 9 -o none/x.svg", 3),
-            ],
-        ),
-        (
-            "cost",
-            &[
-                // That a promise which is not kept ends with 1 has a test beside the code.
-                (COST, 0),
-                ("cost cube --frames 0", 2),
-                ("cost broken.obj", 2),
-                ("cost none.toml", 3),
-                ("cost cube -o x.png", 3),
-            ],
-        ),
-        (
-            "palette",
-            &[
-                ("palette", 2),
-                ("palette grey", 0),
-                ("palette bogus", 2),
-                ("palette broken.pal", 2),
-                ("palette none.pal", 3),
-                ("palette grey -o none/x.pal", 3),
-            ],
-        ),
-        ("cases", &[("cases", 0), ("cases R5 -o x.png", 0), ("cases BOGUS", 2), ("cases R5 -o none/x.png", 3)]),
-        (
-            "dos",
-            &[
-                ("dos cube --frames 2 -o CUBE.EXE", 0),
-                ("dos cube --frames 2 --shading flat -o FLAT.EXE", 0),
-                ("dos cube --shading phong -o PHONG.EXE", 2),
-                ("dos cube --frames 0", 2),
-                ("dos bogus", 2),
-                ("dos broken.toml", 2),
-                ("dos none.obj", 3),
-                ("dos cube --frames 2 -o none/x.exe", 3),
-            ],
-        ),
+    let folder = Folder::new();
+    folder.put("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    folder.put("broken.toml", "objects = 3\n");
+    folder.put("missing.toml", "objects = [{ model = 'none.obj' }]\n");
+    folder.put("broken.pal", "JASC-PAL\r\n0100\r\n2\r\n0 0 0\r\nred 0 0\r\n");
+    let runs = [
+        ("demo cube", 0),
+        ("demo --xml", 2),
+        ("demo broken.toml", 2),
+        ("demo none.toml", 3),
+        ("demo cube none.toml", 3),
+        ("demo cube broken.obj", 2),
+        ("render cube -o x.png", 0),
+        ("render cube -o x.tif", 2),
+        ("render broken.obj -o x.png", 2),
+        ("render missing.toml -o x.png", 3),
+        ("render cube -o none/x.png", 3),
+        ("render cube -o none/x.gif", 3),
+        ("render cube -o x.png --palette broken.pal", 2),
+        ("render cube -o x.png --palette none.pal", 3),
+        ("list scenes", 0),
+        ("list", 2),
+        ("list bogus", 2),
+        ("scenes copy fog -o y.toml", 0),
+        ("scenes", 2),
+        ("scenes copy bogus", 2),
+        ("scenes copy --force", 2),
+        ("scenes copy fog -o none/y.toml", 3),
+        ("plan cube", 0),
+        ("plan", 2),
+        ("plan broken.toml", 2),
+        ("plan none.obj", 3),
+        ("explain cube --row 9", 0),
+        ("explain cube --row 900", 2),
+        ("explain none.toml --row 9", 3),
+        ("explain cube --row 9 -o none/x.svg", 3),
+        // That a promise which is not kept ends with 1 has a test beside the code.
+        (COST, 0),
+        ("cost cube --frames 0", 2),
+        ("cost broken.obj", 2),
+        ("cost none.toml", 3),
+        ("cost cube -o x.png", 3),
+        ("palette", 2),
+        ("palette grey", 0),
+        ("palette bogus", 2),
+        ("palette broken.pal", 2),
+        ("palette none.pal", 3),
+        ("palette grey -o none/x.pal", 3),
+        ("cases", 0),
+        ("cases R5 -o x.png", 0),
+        ("cases BOGUS", 2),
+        ("cases R5 -o none/x.png", 3),
+        ("dos cube --frames 2 -o CUBE.EXE", 0),
+        ("dos cube --frames 2 --shading flat -o FLAT.EXE", 0),
+        ("dos cube --shading phong -o PHONG.EXE", 2),
+        ("dos cube --frames 0", 2),
+        ("dos bogus", 2),
+        ("dos broken.toml", 2),
+        ("dos none.obj", 3),
+        ("dos cube --frames 2 -o none/x.exe", 3),
         // That a check which fails ends with 1 has a test beside the code: here none may.
-        ("verify", &[("verify", 0), ("verify --seed x", 2), ("verify --frame canvas -o none/x.png", 3)]),
-        (
-            "generate",
-            &[
-                ("generate man", 0),
-                ("generate completions zsh", 0),
-                ("generate completions bogus", 2),
-                ("generate man -o x.png", 3),
-            ],
-        ),
+        ("verify", 0),
+        ("verify --seed x", 2),
+        ("verify --frame canvas -o none/x.png", 3),
+        ("generate man", 0),
+        ("generate completions zsh", 0),
+        ("generate completions bogus", 2),
+        ("generate man -o x.png", 3),
     ];
-    assert_eq!(cases.map(|(command, _)| command), COMMANDS);
-    for (command, runs) in cases {
+    let command_of = |words: &str| words.split(' ').next().map(String::from);
+    let runs: Vec<&[(&str, i32)]> = runs.chunk_by(|a, b| command_of(a.0) == command_of(b.0)).collect();
+    assert!(runs.iter().filter_map(|runs| command_of(runs[0].0)).eq(COMMANDS));
+    for (command, runs) in COMMANDS.into_iter().zip(runs) {
         let said = help(command, "--help", "100");
         let said = said.split("\nExit status:\n").nth(1).unwrap_or_else(|| panic!("{command}: {said}"));
         let known: Vec<i32> = said.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect();
@@ -569,7 +462,7 @@ fn every_command_ends_with_the_status_that_help_names() {
             let output = match *words {
                 "verify" => verified_as_json(),
                 COST => cost(),
-                words => &run(&directory, words),
+                words => &folder.run(words),
             };
             assert_eq!(output.status.code(), Some(*status), "{words}: {}", String::from_utf8_lossy(&output.stderr));
             tried.add(1);
@@ -580,12 +473,12 @@ fn every_command_ends_with_the_status_that_help_names() {
 /// Lists and figures for programs: each is one JSON document and nothing else.
 #[test]
 fn lists_and_figures_are_json_for_programs() {
-    let directory = directory();
+    let folder = Folder::new();
     let value = |words: &str, output: &Output| -> Value {
         assert!(output.status.success(), "{words}: {output:?}");
         serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words}: {error}: {output:?}"))
     };
-    let json = |words: &str| value(words, &run(&directory, words));
+    let json = |words: &str| value(words, &folder.run(words));
     let length = |value: &Value| value.as_array().expect("a list").len();
 
     let scenes = json("list scenes --json");
@@ -627,8 +520,7 @@ fn lists_and_figures_are_json_for_programs() {
         (&2.into(), &640.into(), &Value::Null)
     );
     assert_eq!(json("render cube -o x.apng --frames 2 --scale 1 --json")["animation"]["width"], 320);
-    let words = "render cube -o - --json";
-    assert!(failed(&run(&directory, words), 2, words).contains("standard output"));
+    folder.fails("render cube -o - --json", 2, "standard output");
 
     assert_eq!(json("plan torus --json")["schema"], 1);
     let pixel = json("explain torus --pixel 160,60 --json --shading phong");
@@ -650,8 +542,7 @@ fn lists_and_figures_are_json_for_programs() {
 #[test]
 fn only_files_that_were_named_are_overwritten() {
     let mut tried = Tried::new("only_files_that_were_named_are_overwritten", 5);
-    let directory = directory();
-    let path = |name: &str| directory.path().join(name);
+    let folder = Folder::new();
     // Integers know no budget, so the status does not hang on the clock.
     let cost = "cost cube --frames 1 --seconds 0 --shadings flat --arithmetic fixed";
     for (words, out, files) in [
@@ -665,44 +556,38 @@ fn only_files_that_were_named_are_overwritten() {
             &["cost-cube/chart.svg", "cost-cube/cost.json", "cost-cube/report.html", "cost-cube/samples.csv"],
         ),
     ] {
-        let output = run(&directory, words);
+        let output = folder.run(words);
         assert!(output.status.success(), "{words}: {output:?}");
-        let first = &files[..1];
-        for file in &files[1..] {
-            fs::remove_file(path(file)).expect("removed");
-        }
+        let remove = |file: &&str| fs::remove_file(folder.path(file)).expect("removed");
         // One that is there already is enough.
-        for file in first {
-            fs::write(path(file), "mine").expect("written");
-            let line = failed(&run(&directory, words), 3, words);
-            assert!(line.contains(&format!("{file}: already exists; --force overwrites it")), "{line}");
-            assert_eq!(fs::read(path(file)).expect("there"), b"mine", "{words}");
-            for more in ["--force", out] {
-                // Behind -o a study replaces an earlier one, and nothing else.
-                if words != cost || more != out {
-                    fs::write(path(file), "mine").expect("written");
-                }
-                let output = run(&directory, &format!("{words} {more}"));
-                assert!(output.status.success(), "{words} {more}: {output:?}");
-                assert_ne!(fs::read(path(file)).expect("there"), b"mine", "{words} {more}");
+        files[1..].iter().for_each(remove);
+        let file = files[0];
+        folder.put(file, "mine");
+        folder.fails(words, 3, &format!("{file}: already exists; --force overwrites it"));
+        assert_eq!(folder.read(file), b"mine", "{words}");
+        for more in ["--force", out] {
+            // Behind -o a study replaces an earlier one, and nothing else.
+            if words != cost || more != out {
+                folder.put(file, "mine");
             }
+            let output = folder.run(&format!("{words} {more}"));
+            assert!(output.status.success(), "{words} {more}: {output:?}");
+            assert_ne!(folder.read(file), b"mine", "{words} {more}");
         }
-        for file in files {
-            fs::remove_file(path(file)).expect("removed");
-        }
+        files.iter().for_each(remove);
         tried.add(1);
     }
     // The names are said where they were not given.
-    assert_eq!(printed(run(&directory, "render cube")), "cube.png\n");
-    assert_eq!(printed(run(&directory, "render cube --frames 2")), "cube-0000.png\ncube-0001.png\n");
-    assert_eq!(printed(run(&directory, "render cube -o cube.png")), "");
+    assert_eq!(folder.printed("render cube"), "cube.png\n");
+    assert_eq!(folder.printed("render cube --frames 2"), "cube-0000.png\ncube-0001.png\n");
+    assert_eq!(folder.printed("render cube -o cube.png"), "");
 }
 
 #[test]
 fn completions_know_the_commands_and_the_options() {
-    let directory = directory();
+    let folder = Folder::new();
     for shell in ["bash", "zsh", "fish", "powershell"] {
-        let script = printed(run(&directory, &format!("generate completions {shell}")));
+        let script = folder.printed(&format!("generate completions {shell}"));
         for command in COMMANDS {
             assert!(script.contains(command), "{shell}: {command}");
         }
@@ -720,8 +605,8 @@ fn completions_know_the_commands_and_the_options() {
         return;
     }
     // What bash offers for the last word.
-    let script = printed(run(&directory, "generate completions bash"));
-    fs::write(directory.path().join("mode13h.bash"), script).expect("written");
+    let script = folder.printed("generate completions bash");
+    folder.put("mode13h.bash", script);
     for (line, offered) in [
         ("mode13h ren", "render"),
         ("mode13h render --tess", "--tessellation"),
@@ -736,21 +621,21 @@ fn completions_know_the_commands_and_the_options() {
             words[words.len() - 1],
             words[words.len() - 2],
         );
-        let output = Command::new("bash").args(["-c", &complete]).current_dir(&directory).output().expect("started");
+        let output = Command::new("bash").args(["-c", &complete]).current_dir(&folder).output().expect("started");
         assert_eq!(printed(output).trim_end(), offered, "{line}");
     }
 }
 
 #[test]
 fn man_pages_are_written_for_each_command() {
-    let directory = directory();
-    let page = printed(run(&directory, "generate man"));
+    let folder = Folder::new();
+    let page = folder.printed("generate man");
     assert!(
         page.contains(".TH mode13h 1") && page.contains(".SH EXIT STATUS") && page.contains(r"hidden\-surfaces"),
         "{page}"
     );
-    assert!(printed(run(&directory, "generate man -o pages")).is_empty());
-    let pages = |name: &str| fs::read_to_string(directory.path().join("pages").join(name)).expect(name);
+    assert!(folder.printed("generate man -o pages").is_empty());
+    let pages = |name: &str| fs::read_to_string(folder.path("pages").join(name)).expect(name);
     assert_eq!(pages("mode13h.1"), page);
     for command in COMMANDS {
         let page = pages(&format!("mode13h-{command}.1"));

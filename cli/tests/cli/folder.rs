@@ -1,0 +1,177 @@
+//! The program, run in a folder of its own, and what it leaves there.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mode13h::palette::Rgb;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::workspace::root;
+
+/// A folder that is removed in the end.
+///
+/// Words for the program are separated by spaces. `''` is an empty one, `data:house.obj` a file of `tests/data`.
+pub(crate) struct Folder(TempDir);
+
+impl Folder {
+    pub(crate) fn new() -> Folder {
+        Folder(tempfile::tempdir().expect("a folder"))
+    }
+
+    pub(crate) fn path(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn put(&self, name: &str, contents: impl AsRef<[u8]>) {
+        fs::write(self.path(name), contents).expect("written");
+    }
+
+    #[track_caller]
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).expect(name)
+    }
+
+    /// The names in it, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        names_in(self.0.path())
+    }
+
+    /// The program with these words, without a display and without preferences from the environment.
+    pub(crate) fn program(&self, words: &str) -> Command {
+        let mut command = program();
+        command.current_dir(&self.0).args(words.split_whitespace().map(|word| match word.strip_prefix("data:") {
+            Some(name) => root().join("tests/data").join(name),
+            None => if word == "''" { "" } else { word }.into(),
+        }));
+        command
+    }
+
+    pub(crate) fn run(&self, words: &str) -> Output {
+        self.program(words).output().expect("started")
+    }
+
+    /// What the program prints, if it succeeds without a word on standard error.
+    #[track_caller]
+    pub(crate) fn printed(&self, words: &str) -> String {
+        printed(self.run(words))
+    }
+
+    /// Runs what has to succeed in silence.
+    #[track_caller]
+    pub(crate) fn succeed(&self, words: &str) {
+        assert_eq!(self.printed(words), "", "{words}");
+    }
+
+    /// The JSON that the program prints. It may warn, and find something.
+    #[track_caller]
+    pub(crate) fn json(&self, words: &str) -> Value {
+        let output = self.run(words);
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words}: {error}: {output:?}"))
+    }
+
+    /// Decodes one of its pictures.
+    #[track_caller]
+    pub(crate) fn png(&self, name: &str) -> Png {
+        Png::decode(&self.read(name))
+    }
+
+    /// The file of the picture that `render` makes in silence.
+    #[track_caller]
+    pub(crate) fn picture(&self, words: &str) -> Vec<u8> {
+        self.succeed(&format!("render {words} -o x.png"));
+        self.read("x.png")
+    }
+
+    /// Runs what has to fail with this status and one line that holds `says`, which is returned.
+    #[track_caller]
+    pub(crate) fn fails(&self, words: &str, status: i32, says: &str) -> String {
+        failed(&self.run(words), status, says)
+    }
+}
+
+impl AsRef<Path> for Folder {
+    fn as_ref(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+/// The program without a display and without preferences from the environment.
+pub(crate) fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mode13h"));
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("MODE13H_KERNEL");
+    command
+}
+
+#[track_caller]
+pub(crate) fn printed(output: Output) -> String {
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// That it failed with this status, said one line that holds `says`, and printed nothing. Returns the line.
+#[track_caller]
+pub(crate) fn failed(output: &Output, status: i32, says: &str) -> String {
+    let line = String::from_utf8(output.stderr.clone()).expect("text");
+    assert_eq!(output.status.code(), Some(status), "{line}");
+    assert!(line.starts_with("mode13h: ") && line.contains(says), "{line}\nhas not: {says}");
+    assert_eq!(line.find('\n'), Some(line.len() - 1), "more than one line: {line}");
+    assert!(output.stdout.is_empty(), "{output:?}");
+    line
+}
+
+/// The names in a folder, sorted.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Size, colour type and density of a picture: pixels per unit, across and down.
+pub(crate) type Shape = ((u32, u32), png::ColorType, Option<(u32, u32)>);
+
+/// The shape of a frame as the VGA shows it.
+pub(crate) const MODE_13H: Shape = ((320, 200), png::ColorType::Indexed, Some((6, 5)));
+
+/// A PNG of eight bits, decoded.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct Png {
+    pub(crate) size: (u32, u32),
+    kind: png::ColorType,
+    pub(crate) density: Option<(u32, u32)>,
+    /// As they are in the file.
+    pub(crate) pixels: Vec<u8>,
+    /// Empty if it has none.
+    pub(crate) palette: Vec<Rgb>,
+}
+
+impl Png {
+    #[track_caller]
+    pub(crate) fn decode(png: &[u8]) -> Png {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("its size")];
+        assert_eq!(reader.next_frame(&mut pixels).expect("an image").bit_depth, png::BitDepth::Eight);
+        let info = reader.info();
+        let palette = info.palette.as_deref().unwrap_or_default();
+        Png {
+            size: (info.width, info.height),
+            kind: info.color_type,
+            density: info.pixel_dims.map(|dims| (dims.xppu, dims.yppu)),
+            palette: palette.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect(),
+            pixels,
+        }
+    }
+
+    /// Size, colour type and density.
+    pub(crate) fn shape(&self) -> Shape {
+        (self.size, self.kind, self.density)
+    }
+
+    /// The colours of an indexed picture, pixel by pixel.
+    pub(crate) fn colors(&self) -> Vec<Rgb> {
+        self.pixels.iter().map(|&index| self.palette[usize::from(index)]).collect()
+    }
+}
