@@ -96,25 +96,30 @@ fn chosen(prefix: Option<&str>) -> Vec<Frame> {
     all
 }
 
-fn draw(kernel: Kernel, prefix: Option<&str>) -> ByKernel {
-    let mut drawn = ByKernel { kernel, count: 0, hash: START, wrong: Vec::new() };
+/// A frame whose scene is built, once for all kernels, and its hash on every machine.
+struct Built {
+    name: String,
+    expected: Option<u32>,
+    picture: frames::Picture,
+}
+
+fn draw(kernel: Kernel, frames: &[Built]) -> ByKernel {
+    let mut drawn = ByKernel { kernel, count: frames.len(), hash: START, wrong: Vec::new() };
     // One renderer for all frames: what it caches from one to the next must not show.
     let mut renderer = Renderer::new();
-    for frame in chosen(prefix) {
-        drawn.count += 1;
-        match frame.draw_by(&mut renderer, kernel) {
-            Ok(picture) => {
-                drawn.hash = frames::combined(drawn.hash, &picture);
-                if frame.expected() != Some(picture.hash) {
-                    let right = frame.draw(Kernel::PORTABLE).ok();
-                    let difference = right.and_then(|right| picture.difference(&right));
-                    drawn.wrong.push(Wrong { name: frame.name, difference, error: None });
+    for Built { name, expected, picture } in frames {
+        let (difference, error) = match picture.draw_by(&mut renderer, kernel) {
+            Ok(is) => {
+                drawn.hash = frames::combined(drawn.hash, &is);
+                if *expected == Some(is.hash) {
+                    continue;
                 }
+                let right = picture.draw_by(&mut Renderer::new(), Kernel::PORTABLE).ok();
+                (right.and_then(|right| is.difference(&right)), None)
             }
-            Err(error) => {
-                drawn.wrong.push(Wrong { name: frame.name, difference: None, error: Some(error.to_string()) });
-            }
-        }
+            Err(error) => (None, Some(error.to_string())),
+        };
+        drawn.wrong.push(Wrong { name: name.clone(), difference, error });
     }
     drawn
 }
@@ -139,7 +144,10 @@ fn check(options: &Options) -> Result<(), Failure> {
         Some(_) => Vec::new(),
     };
     let kernels: Vec<Kernel> = Kernel::available().collect();
-    let by_kernel: Vec<ByKernel> = kernels.into_par_iter().map(|kernel| draw(kernel, prefix)).collect();
+    let build =
+        |frame: &Frame| Built { name: frame.name.clone(), expected: frame.expected(), picture: frame.picture() };
+    let built: Vec<Built> = chosen.iter().map(build).collect();
+    let by_kernel: Vec<ByKernel> = kernels.into_par_iter().map(|kernel| draw(kernel, &built)).collect();
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
         + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
     let picture = picture(options, &chosen, &by_kernel)?;

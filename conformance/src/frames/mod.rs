@@ -148,20 +148,30 @@ impl Frame {
     /// # Errors
     /// See [`draw`](Self::draw).
     pub fn draw_by(&self, renderer: &mut Renderer, kernel: Kernel) -> Result<Drawn, RenderError> {
-        let Picture { scene, settings, shape } = self.picture();
-        renderer.settings = settings;
+        self.picture().draw_by(renderer, kernel)
+    }
+}
+
+impl Picture {
+    /// Draws the picture with a renderer that may have drawn others, which affects nothing but the time.
+    ///
+    /// # Errors
+    /// See [`Renderer::draw`]; the scenes of [`all`] cause none, unless the engine is broken.
+    pub fn draw_by(&self, renderer: &mut Renderer, kernel: Kernel) -> Result<Drawn, RenderError> {
+        let Self { scene, settings, shape } = self;
+        renderer.settings = *settings;
         renderer.kernel = kernel;
-        let (width, height, pitch, bytes, palette) = match shape {
+        let (width, height, pitch, bytes, palette) = match *shape {
             Shape::Vga => {
                 let mut vga = Box::<Vga>::default();
-                renderer.draw(&scene, &mut vga)?;
+                renderer.draw(scene, &mut vga)?;
                 (320, 200, 320, vga.pixels().to_vec(), vga.palette())
             }
             Shape::Canvas { width, height, pitch, band } => {
                 let mut bytes = vec![BEFORE; pitch * height as usize];
                 if let Ok(mut whole) = Canvas::new(&mut bytes, width, height, pitch) {
                     for part in whole.bands(band) {
-                        renderer.draw_frame(&scene, part, (1, 1))?;
+                        renderer.draw_frame(scene, part, (1, 1))?;
                     }
                 }
                 (width, height, pitch, bytes, scene.palette.clone().unwrap_or(BIOS))
