@@ -23,6 +23,7 @@ use mode13h::settings::{Shading, VertexPath};
 pub(super) struct Against {
     pixels: Figures,
     blocks: Figures,
+    /// Pixels that show the wrong face.
     pub(super) cover_errors: u64,
 }
 
@@ -45,7 +46,7 @@ impl Against {
     }
 
     /// Share of the covered pixels that were not compared, 0 to 1.
-    fn share_not_compared(&self) -> f64 {
+    pub(super) fn share_not_compared(&self) -> f64 {
         // Below 2⁵³: pixels.
         self.cover_errors as f64 / (self.cover_errors + self.pixels()).max(1) as f64
     }
@@ -87,13 +88,14 @@ pub(super) struct Kept {
 /// Results of one configuration over many frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Results {
-    gouraud: Against,
-    unrounded: Against,
-    lit: Against,
+    pub(super) gouraud: Against,
+    /// Against the truth with unrounded vertices.
+    pub(super) unrounded: Against,
+    pub(super) lit: Against,
     /// Pixels within each of [`BUDGETS`].
     pub(super) kept: [Kept; BUDGETS.len()],
-    entries: Entries,
-    swim: Swim,
+    pub(super) entries: Entries,
+    pub(super) swim: Swim,
     /// How far the worst pixel exceeds its shading's bound, in shades, negative if none does; `None` without a bound.
     pub(super) excess: Option<f64>,
     /// Each frame's largest error against `lit`, not counting what vertex rounding explains.
@@ -104,47 +106,12 @@ pub(super) struct Results {
 }
 
 impl Results {
-    pub(super) fn gouraud(&self) -> Errors {
-        self.gouraud.errors()
-    }
-
-    pub(super) fn lit(&self) -> Errors {
-        self.lit.errors()
-    }
-
-    pub(super) fn unrounded(&self) -> Errors {
-        self.unrounded.errors()
-    }
-
-    /// Pixels that show the wrong face, with the truth's vertices rounded as ours are.
-    pub(super) fn cover_errors(&self) -> u64 {
-        self.gouraud.cover_errors
-    }
-
-    /// Pixels that show the wrong face, with the truth's vertices unrounded.
-    pub(super) fn cover_errors_unrounded(&self) -> u64 {
-        self.unrounded.cover_errors
-    }
-
-    /// Share of the covered pixels that were not compared with `lit`, 0 to 1.
-    pub(super) fn not_compared(&self) -> f64 {
-        self.lit.share_not_compared()
-    }
-
     /// Share of pixels within a bound of [`BUDGETS`] of `lit`, or within the rounding error of a byte if that is
     /// larger, not counting what vertex rounding explains; 1 if none were compared.
     pub(super) fn within(&self, bound: usize) -> f64 {
         let all = self.lit.pixels.count;
         // Below 2⁵³: pixels.
         if all == 0 { 1.0 } else { self.kept[bound].within as f64 / all as f64 }
-    }
-
-    pub(super) fn palette(&self) -> f64 {
-        self.entries.error()
-    }
-
-    pub(super) fn swim(&self) -> f64 {
-        self.swim.rms()
     }
 
     fn add(&mut self, other: Self) {

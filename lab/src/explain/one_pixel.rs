@@ -114,50 +114,26 @@ impl OnePixel {
     }
 }
 
-/// Records the last light query: eight points, and the shades of each on three channels.
+/// A light query: eight points, and the shades of each on three channels.
+type Query = (Points, [Lanes<u16>; 3]);
+
+/// Records every light query.
 #[derive(Debug)]
 struct Noted<'a> {
     light: &'a dyn Lighting,
-    last: Cell<Option<(Points, [Lanes<u16>; 3])>>,
+    all: RefCell<Vec<Query>>,
 }
 
 impl Lighting for Noted<'_> {
     fn shades(&self, points: &Points) -> Lanes<u16> {
         let shades = self.light.shades(points);
-        self.last.set(Some((*points, [shades; 3])));
+        self.all.borrow_mut().push((*points, [shades; 3]));
         shades
     }
 
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let channels = self.light.channels(points);
-        self.last.set(Some((*points, channels)));
-        channels
-    }
-}
-
-/// Records every light query: the shades of all points, on three channels.
-#[derive(Debug)]
-struct Listed<'a> {
-    light: &'a dyn Lighting,
-    all: RefCell<Vec<[u16; 3]>>,
-}
-
-impl Listed<'_> {
-    fn list(&self, channels: &[Lanes<u16>; 3]) {
-        self.all.borrow_mut().extend((0..LANES).map(|lane| channels.map(|of| of[lane])));
-    }
-}
-
-impl Lighting for Listed<'_> {
-    fn shades(&self, points: &Points) -> Lanes<u16> {
-        let shades = self.light.shades(points);
-        self.list(&[shades; 3]);
-        shades
-    }
-
-    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let channels = self.light.channels(points);
-        self.list(&channels);
+        self.all.borrow_mut().push((*points, channels));
         channels
     }
 }
@@ -251,11 +227,11 @@ fn stages(
         ShadeSource::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
         ShadeSource::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
         ShadeSource::Lit(light) => {
-            let noted = Noted { light, last: Cell::new(None) };
+            let noted = Noted { light, all: RefCell::default() };
             pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&noted), ..bare });
             let lane =
                 usize::from(pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&Numbers), ..single }));
-            if let Some((points, shades)) = noted.last.get() {
+            if let Some((points, shades)) = noted.all.borrow().last() {
                 // Below 8.
                 let [nx, ny, nz, x, y, z] = points.map(|of| of[lane]);
                 let shades = shades.map(|of| of[lane]);
@@ -263,8 +239,8 @@ fn stages(
             }
         }
         ShadeSource::LitEvery(apart, light) => {
-            let listed = Listed { light, all: RefCell::default() };
-            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &listed), ..bare });
+            let noted = Noted { light, all: RefCell::default() };
+            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &noted), ..bare });
             // With numbers for shades, its shade rounded down is the number of the lit pixel before it.
             let numbers = Counted::default();
             let numbered = PixelPipeline {
@@ -273,7 +249,8 @@ fn stages(
                 ..single
             };
             let place = usize::from(pixel.look(met, behind, &numbered));
-            let all = listed.all.borrow();
+            let lanes = |(_, channels): Query| (0..LANES).map(move |lane| channels.map(|of| of[lane]));
+            let all: Vec<[u16; 3]> = noted.all.take().into_iter().flat_map(lanes).collect();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
             made.shaded_by = ShadedBy::BetweenLit { spacing: apart, before: of(place), after: of(place + 1) };
         }

@@ -13,57 +13,67 @@ pub type Triangle = ([Vertex; 3], Interpolation);
 /// Bytes that drawing starts from. Two of them, so that what was drawn can be distinguished from what was there before.
 const EMPTY: [u8; 2] = [0x00, 0xFF];
 
+/// Adds what `draw` draws to a panel. It is called twice, with frames of different bytes: a pixel was drawn if it comes
+/// out the same. Frames are a few dozen pixels a side, so none is rejected.
+fn add(panel: &mut Panel, mut draw: impl FnMut(Frame<'_>, u8)) {
+    let (width, height) = (panel.width(), panel.height());
+    let [a, b] = EMPTY.map(|empty| {
+        let mut bytes = vec![empty; width * height];
+        if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
+            draw(frame, empty);
+        }
+        bytes
+    });
+    panel.write_where_equal(&a, &b);
+}
+
 /// Draws these triangles with [`Raster::triangle`], one after another, each counted separately; with a depth buffer,
 /// all into one frame.
-pub(super) fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
+fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
     let mut panel = Panel::new(size);
     if depth_tested {
-        let [a, b] = EMPTY.map(|empty| bytes(size, triangles, true, empty));
-        panel.write_where_equal(&a, &b);
+        let mut depths: Vec<u32> = Vec::new();
+        add(&mut panel, |frame, _| {
+            let mut raster = Raster::new(frame).with_cleared_depth(&mut depths);
+            for (vertices, interpolation) in triangles {
+                raster.triangle(vertices, *interpolation);
+            }
+        });
     } else {
-        for triangle in triangles {
-            let [a, b] = EMPTY.map(|empty| bytes(size, std::slice::from_ref(triangle), false, empty));
-            panel.write_where_equal(&a, &b);
+        for (vertices, interpolation) in triangles {
+            add(&mut panel, |frame, _| {
+                Raster::new(frame).triangle(vertices, *interpolation);
+            });
         }
     }
     panel
 }
 
 /// Draws triangles without a depth buffer, in bands of `rows` rows, each band a frame of its own.
-pub(super) fn draw_in_bands((width, height): (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
-    let [a, b] = EMPTY.map(|empty| {
-        let mut bytes = vec![empty; width * height];
-        if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
-            for band in frame.bands(rows as u32) {
-                let mut raster = Raster::new(band);
-                triangles.iter().for_each(|(vertices, interpolation)| {
-                    raster.triangle(vertices, *interpolation);
-                });
+pub(super) fn draw_in_bands(size: (usize, usize), triangles: &[Triangle], rows: usize) -> Panel {
+    let mut panel = Panel::new(size);
+    add(&mut panel, |mut frame, _| {
+        for band in frame.bands(rows as u32) {
+            let mut raster = Raster::new(band);
+            for (vertices, interpolation) in triangles {
+                raster.triangle(vertices, *interpolation);
             }
         }
-        bytes
     });
-    let mut panel = Panel::new((width, height));
-    panel.write_where_equal(&a, &b);
     panel
 }
 
 /// Draws convex polygons with the Hungarian tutorial's table of rows, from the museum.
-pub(super) fn draw_by_table((width, height): (usize, usize), polygons: &[&[Vertex]]) -> Panel {
-    let [a, b] = EMPTY.map(|empty| {
-        let mut bytes = vec![empty; width * height];
-        if let Ok(mut frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
-            let mut table = vec![TableRow::default(); height];
-            for vertices in polygons {
-                // All polygons are convex, and the table has a row for each of the frame's.
-                let clip = frame.bounds();
-                let _ = polygon::draw(&mut frame, clip, vertices, Interpolation::default(), &mut table);
-            }
+pub(super) fn draw_by_table(size: (usize, usize), polygons: &[&[Vertex]]) -> Panel {
+    let mut panel = Panel::new(size);
+    add(&mut panel, |mut frame, _| {
+        let mut table = vec![TableRow::default(); size.1];
+        for vertices in polygons {
+            // All polygons are convex, and the table has a row for each of the frame's.
+            let clip = frame.bounds();
+            let _ = polygon::draw(&mut frame, clip, vertices, Interpolation::default(), &mut table);
         }
-        bytes
     });
-    let mut panel = Panel::new((width, height));
-    panel.write_where_equal(&a, &b);
     panel
 }
 
@@ -77,47 +87,20 @@ pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
     faces.iter().map(Face::for_raster).collect()
 }
 
-fn bytes((width, height): (usize, usize), triangles: &[Triangle], depth_tested: bool, empty: u8) -> Vec<u8> {
-    let mut bytes = vec![empty; width * height];
-    let mut depths: Vec<u32> = Vec::new();
-    // Frames are a few dozen pixels a side, so none is rejected.
-    if let Ok(frame) = Frame::new(&mut bytes, width as u32, height as u32, width) {
-        let raster = Raster::new(frame);
-        if depth_tested {
-            let mut raster = raster.with_cleared_depth(&mut depths);
-            triangles.iter().for_each(|(vertices, interpolation)| {
-                raster.triangle(vertices, *interpolation);
-            });
-        } else {
-            let mut raster = raster;
-            triangles.iter().for_each(|(vertices, interpolation)| {
-                raster.triangle(vertices, *interpolation);
-            });
-        }
-    }
-    bytes
-}
-
 /// Draws a scene with [`Renderer::draw_frame`] on square pixels; also returns the triangles that it passes to the
 /// raster. Empty if the scene is refused; no case has such a scene.
 pub(super) fn draw_scene(size: (usize, usize), scene: &Scene) -> (Panel, Vec<Triangle>) {
-    let (width, height) = (size.0 as u32, size.1 as u32);
     let mut renderer = Renderer::new();
-    let [a, b] = EMPTY.map(|empty| {
-        let mut scene = scene.clone();
-        scene.background = empty;
-        let mut bytes = vec![empty; size.0 * size.1];
-        if let Ok(frame) = Frame::new(&mut bytes, width, height, size.0) {
-            let _ = renderer.draw_frame(&scene, frame, (1, 1));
-        }
-        bytes
-    });
     let mut panel = Panel::new(size);
-    panel.write_where_equal(&a, &b);
+    let mut scene = scene.clone();
+    add(&mut panel, |frame, empty| {
+        scene.background = empty;
+        let _ = renderer.draw_frame(&scene, frame, (1, 1));
+    });
     let mut triangles = Vec::new();
-    let screen = Screen { width, height, pixel_aspect: (1, 1) };
-    let _ =
-        renderer.for_each_triangle(scene, screen, |vertices, interpolation| triangles.push((*vertices, interpolation)));
+    let screen = Screen { width: size.0 as u32, height: size.1 as u32, pixel_aspect: (1, 1) };
+    let _ = renderer
+        .for_each_triangle(&scene, screen, |vertices, interpolation| triangles.push((*vertices, interpolation)));
     (panel, triangles)
 }
 

@@ -100,8 +100,8 @@ fn draw(study: &Study, root: &Area<'_>) -> Outcome {
 
     let area = chart.plotting_area();
     let pixel = |at: &(f64, f64)| area.map_coordinate(at);
-    let (left, right) = area.get_x_axis_pixel_range().into_pair();
-    let (top, bottom) = area.get_y_axis_pixel_range().into_pair();
+    let (left, right) = ends(area.get_x_axis_pixel_range());
+    let (top, bottom) = ends(area.get_y_axis_pixel_range());
     let inner = Rectangle { left: left + 4, top: top + 2, right: right - 2, bottom: bottom - 4 };
     let marks: Vec<(i32, i32)> = points.iter().map(|point| pixel(&point.at)).collect();
     join_budgets(&mut points, |point| pixel(&point.at));
@@ -279,12 +279,6 @@ fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
 }
 
 /// Both ends of a range of pixels, the lower first.
-pub(super) trait IntoPair {
-    fn into_pair(self) -> (i32, i32);
-}
-
-impl IntoPair for std::ops::Range<i32> {
-    fn into_pair(self) -> (i32, i32) {
-        (self.start.min(self.end), self.start.max(self.end))
-    }
+fn ends(range: std::ops::Range<i32>) -> (i32, i32) {
+    (range.start.min(range.end), range.start.max(range.end))
 }

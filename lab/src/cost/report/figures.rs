@@ -19,11 +19,10 @@ pub(super) fn time(nanoseconds: f64) -> String {
 
 /// A time on an axis: 1 ms, not 1.00 ms.
 pub(super) fn time_tick(nanoseconds: f64) -> String {
-    match time(nanoseconds).split_once(' ') {
-        Some((number, unit)) if number.contains('.') => {
-            format!("{} {unit}", number.trim_end_matches('0').trim_end_matches('.'))
-        }
-        _ => time(nanoseconds),
+    let time = time(nanoseconds);
+    match time.split_once(' ') {
+        Some((number, unit)) => format!("{} {unit}", without_zeros(number)),
+        None => time,
     }
 }
 
@@ -62,8 +61,12 @@ pub(super) fn at_most(number: f64) -> String {
 
 /// A number without trailing zeros.
 fn plain(number: f64, digits: usize) -> String {
-    let text = format!("{number:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+    without_zeros(&format!("{number:.digits$}")).to_string()
+}
+
+/// A number's text without the zeros that end its decimals.
+pub(super) fn without_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
 /// "1 shade", "0.7 shades".

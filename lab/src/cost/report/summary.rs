@@ -1,6 +1,6 @@
 //! A study in two sentences.
 
-use super::figures::{at_most, counted_shades, ratio, time};
+use super::figures::{at_most, counted_shades, ratio, time, without_zeros};
 use crate::cost::{ShadingRow, Study};
 use mode13h::settings::Shading;
 
@@ -117,8 +117,7 @@ fn slowness(row: &ShadingRow, other: &ShadingRow, name: &str) -> String {
 
 /// A ratio without trailing zeros.
 pub(super) fn brief(times: f64) -> String {
-    let text = ratio(times);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+    without_zeros(&ratio(times)).to_string()
 }
 
 fn of_shades(error: f64) -> String {

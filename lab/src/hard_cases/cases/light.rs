@@ -37,7 +37,10 @@ pub(super) fn scene(mesh: Option<Mesh>, view: View) -> Scene {
     scene
 }
 
-/// The input of a light case besides the view: a mesh, its lights, and the shades that the fault gives its vertices.
+/// Distance of the eye from the middle.
+const DISTANCE: f64 = 4.0;
+
+/// The input of a light case: a mesh, its lights, and the shades that the fault gives its vertices.
 struct Lit {
     mesh: Option<Mesh>,
     /// The vertices' positions before the engine splits any vertices.
@@ -48,8 +51,16 @@ struct Lit {
     two_sided: bool,
 }
 
-fn compare(distance: f64, lit: Lit) -> Comparison {
-    let view = View { size: SIZE, eye: [0.0, 0.0, distance], field_of_view: 2.0 * libm::atan(1.08 / distance) };
+impl Lit {
+    /// Triangles under one sun.
+    fn by_a_sun(positions: Vec<Vector>, triangles: Vec<[usize; 3]>, towards: Vector, shades: Vec<f64>) -> Self {
+        let mesh = mesh(&positions, &triangles);
+        Self { mesh, positions, triangles, suns: vec![sun(towards)], shades, two_sided: false }
+    }
+}
+
+fn compare(lit: Lit) -> Comparison {
+    let view = View { size: SIZE, eye: [0.0, 0.0, DISTANCE], field_of_view: 2.0 * libm::atan(1.08 / DISTANCE) };
     let mut scene = scene(lit.mesh, view);
     for sun in lit.suns {
         scene.add_light(sun);
@@ -101,17 +112,7 @@ pub(super) fn n1() -> Comparison {
         if intensity < 0.0 { 0.0 } else { intensity * 255.0 }
     });
     let shades = shades.collect();
-    compare(
-        4.0,
-        Lit {
-            mesh: mesh(&positions, &triangles),
-            positions,
-            triangles,
-            suns: vec![sun(towards)],
-            shades,
-            two_sided: true,
-        },
-    )
+    compare(Lit { two_sided: true, ..Lit::by_a_sun(positions, triangles, towards, shades) })
 }
 
 pub(super) fn n2() -> Comparison {
@@ -128,17 +129,7 @@ pub(super) fn n2() -> Comparison {
     let triangles: Vec<[usize; 3]> = leaves.into_iter().chain(leaves.map(|[a, b, c]| [a, c, b])).collect();
     let towards = unit([-0.7, 0.3, 1.0]);
     let shades = sums(&positions, &triangles).into_iter().map(|sum| dot(sum, towards).max(0.0) * 255.0).collect();
-    compare(
-        4.0,
-        Lit {
-            mesh: mesh(&positions, &triangles),
-            positions,
-            triangles,
-            suns: vec![sun(towards)],
-            shades,
-            two_sided: false,
-        },
-    )
+    compare(Lit::by_a_sun(positions, triangles, towards, shades))
 }
 
 /// Compares a ball with the bytes that a fault gives its vertices from each vertex's normal.
@@ -148,7 +139,7 @@ fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     let shades = mesh.normals().iter().map(|normal| shade(wide(normal))).collect();
     let positions = mesh.positions().iter().map(wide).collect();
     let triangles = mesh.triangles().iter().map(|t| t.map(|i| i as usize)).collect();
-    let mut comparison = compare(4.0, Lit { mesh: Some(mesh), positions, triangles, suns, shades, two_sided: false });
+    let mut comparison = compare(Lit { mesh: Some(mesh), positions, triangles, suns, shades, two_sided: false });
     comparison.outline = engine::silhouette(&comparison.outline);
     comparison
 }
@@ -211,17 +202,7 @@ pub(super) fn n6() -> Comparison {
     let shades: Vec<f64> = shades.collect();
     // Points in the middle of an edge or a face have a 0 there, which adds nothing to the sum.
     let positions: Vec<Vector> = grid.iter().map(|p| turn(p.map(|c| c * 0.6))).collect();
-    let mut comparison = compare(
-        4.0,
-        Lit {
-            mesh: mesh(&positions, &triangles),
-            positions,
-            triangles,
-            suns: vec![sun(towards)],
-            shades,
-            two_sided: false,
-        },
-    );
+    let mut comparison = compare(Lit::by_a_sun(positions, triangles, towards, shades));
     comparison.outline = without_diagonals(&comparison.outline);
     comparison
 }

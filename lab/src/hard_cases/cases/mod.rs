@@ -7,7 +7,7 @@ mod shades;
 mod triangles;
 
 use super::engine::{self, Triangle};
-use super::face::{Face, Segment};
+use super::face::{Corner, Face, Segment};
 use super::panel::{Mark, Measure, Panel};
 use super::{Case, Comparison};
 use mode13h::palette::builtin;
@@ -238,6 +238,22 @@ fn against_engine(
         outline: edges(faces),
         palette: if measure.counts_writes { &builtin::GREY } else { &builtin::MATERIALS_4X64 },
     }
+}
+
+/// Compares the engine with a fault that draws one face after another.
+fn each_against_engine(
+    size: (usize, usize),
+    faces: &[Face],
+    measure: Measure,
+    wrong: fn(&mut Panel, &[Corner; 3]),
+) -> Comparison {
+    against_engine(size, faces, measure, |panel| faces.iter().for_each(|face| wrong(panel, &face.corners)))
+}
+
+/// Two drawings of faces without a depth buffer, in greys. Both are marked already.
+fn in_greys(fault: Panel, right: Panel, faces: &[Face]) -> Comparison {
+    let (triangles, outline) = (engine::triangles(faces), edges(faces));
+    Comparison { fault, right, triangles, depth_tested: false, outline, palette: &builtin::GREY }
 }
 
 fn edges(faces: &[Face]) -> Vec<Segment> {

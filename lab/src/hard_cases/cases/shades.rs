@@ -1,12 +1,11 @@
 //! Shades: R2, R14, C5, N8, N9.
 
-use super::{EXACT, against_engine, edges};
+use super::{EXACT, against_engine, each_against_engine, in_greys};
 use crate::hard_cases::Comparison;
 use crate::hard_cases::engine;
 use crate::hard_cases::face::{Corner, Face, at, gouraud};
 use crate::hard_cases::fault::{paint, shade};
 use crate::hard_cases::panel::{Measure, Panel};
-use mode13h::palette::builtin;
 use mode13h::raster::Interpolation;
 
 /// A byte may be one shade off through the engine's own rounding.
@@ -26,9 +25,7 @@ pub(super) fn r2() -> Comparison {
             sliver((1.0, top), (1.0 + length, top + slope * length), 0.3)
         })
         .collect();
-    against_engine((30, 26), &faces, ROUNDED, |panel| {
-        faces.iter().for_each(|face| shade::step_of_each_row(panel, &face.corners));
-    })
+    each_against_engine((30, 26), &faces, ROUNDED, shade::step_of_each_row)
 }
 
 pub(super) fn r14() -> Comparison {
@@ -36,9 +33,7 @@ pub(super) fn r14() -> Comparison {
         gouraud([at(2.4, 2.3, 255.0), at(13.8, 4.2, 0.0), at(5.3, 23.6, 255.0)].map(Corner::rounded)),
         gouraud([at(16.2, 2.4, 0.0), at(28.7, 12.1, 255.0), at(17.9, 23.7, 0.0)].map(Corner::rounded)),
     ];
-    against_engine((31, 26), &faces, ROUNDED, |panel| {
-        faces.iter().for_each(|face| shade::carried_on_beyond_the_edges(panel, &face.corners));
-    })
+    each_against_engine((31, 26), &faces, ROUNDED, shade::carried_on_beyond_the_edges)
 }
 
 pub(super) fn c5() -> Comparison {
@@ -91,8 +86,7 @@ pub(super) fn n8() -> Comparison {
     }
     let outline =
         [quad, turned].iter().flat_map(|q| (0..4).map(|i| [i, (i + 1) % 4].map(|k| (q[k].x, q[k].y)))).collect();
-    let triangles = engine::triangles(&faces);
-    Comparison { fault, right, triangles, depth_tested: false, outline, palette: &builtin::GREY }
+    Comparison { outline, ..in_greys(fault, right, &faces) }
 }
 
 pub(super) fn n9() -> Comparison {
@@ -106,9 +100,5 @@ pub(super) fn n9() -> Comparison {
         faces.extend([[a, b, c], [a, c, d]].map(|corners| gouraud(corners.map(Corner::rounded))));
     }
     let measure = Measure { shades: 16, ..EXACT };
-    let mut comparison = against_engine((25, 26), &faces, measure, |panel| {
-        faces.iter().for_each(|face| shade::start_at_the_edge(panel, &face.corners));
-    });
-    comparison.outline = edges(&faces);
-    comparison
+    each_against_engine((25, 26), &faces, measure, shade::start_at_the_edge)
 }

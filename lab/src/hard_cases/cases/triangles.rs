@@ -1,12 +1,11 @@
 //! Cover: R1, R3 to R6, R8, R11, R13.
 
-use super::{EXACT, against_engine, edges};
+use super::{EXACT, against_engine, each_against_engine, in_greys};
 use crate::hard_cases::Comparison;
 use crate::hard_cases::engine;
 use crate::hard_cases::face::{Corner, Face, at, gouraud, without_diagonals};
 use crate::hard_cases::fault::{cover, paint};
 use crate::hard_cases::panel::{Measure, Panel};
-use mode13h::palette::builtin;
 
 /// A face with one shade at all three corners.
 fn plain(points: [(f64, f64); 3], shade: f64) -> Face {
@@ -23,9 +22,7 @@ pub(super) fn r1() -> Comparison {
         plain([(20.5, 17.5); 3], 200.0),
         line((17.5, 6.5), (25.5, 6.5)),
     ];
-    against_engine((30, 21), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| cover::no_fill_rule(panel, &face.corners));
-    })
+    each_against_engine((30, 21), &faces, EXACT, cover::no_fill_rule)
 }
 
 pub(super) fn r3() -> Comparison {
@@ -44,9 +41,7 @@ pub(super) fn r3() -> Comparison {
             faces.push(gouraud([corner(0.0), corner(1.0), corner(2.0)]));
         }
     }
-    against_engine((30, 25), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| cover::every_pixel_touched(panel, &face.corners));
-    })
+    each_against_engine((30, 25), &faces, EXACT, cover::every_pixel_touched)
 }
 
 pub(super) fn r4() -> Comparison {
@@ -60,9 +55,7 @@ pub(super) fn r4() -> Comparison {
         plain([(left, bottom), (middle, bottom), (15.5, 20.5)], 160.0),
         plain([(middle, bottom), (right, bottom), (15.5, 20.5)], 100.0),
     ];
-    against_engine((31, 23), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| cover::no_fill_rule(panel, &face.corners));
-    })
+    each_against_engine((31, 23), &faces, EXACT, cover::no_fill_rule)
 }
 
 pub(super) fn r5() -> Comparison {
@@ -79,9 +72,7 @@ pub(super) fn r5() -> Comparison {
             gouraud(face.corners.map(Corner::rounded))
         })
         .collect();
-    against_engine((29, 25), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| cover::cut_slopes(panel, &face.corners));
-    })
+    each_against_engine((29, 25), &faces, EXACT, cover::cut_slopes)
 }
 
 pub(super) fn r6() -> Comparison {
@@ -101,14 +92,7 @@ pub(super) fn r6() -> Comparison {
     // Smaller errors are invisible and would be marked everywhere.
     fault.mark_against(&drawn(1), Measure { shades: 5, ..EXACT });
     right.mark_against(&engine::draw_faces(size, &faces(1), false), EXACT);
-    Comparison {
-        fault,
-        right,
-        triangles: engine::triangles(&faces(0)),
-        depth_tested: false,
-        outline: edges(&faces(0)),
-        palette: &builtin::GREY,
-    }
+    in_greys(fault, right, &faces(0))
 }
 
 pub(super) fn r8() -> Comparison {
@@ -164,14 +148,7 @@ pub(super) fn r11() -> Comparison {
     let (mut fault, mut right) = (drawn(&both), engine::draw_faces(size, &both, false));
     fault.mark_against(&twice(&drawn(&first)), EXACT);
     right.mark_against(&twice(&engine::draw_faces(size, &first, false)), EXACT);
-    Comparison {
-        fault,
-        right,
-        triangles: engine::triangles(&both),
-        depth_tested: false,
-        outline: edges(&both),
-        palette: &builtin::GREY,
-    }
+    in_greys(fault, right, &both)
 }
 
 pub(super) fn r13() -> Comparison {

@@ -29,36 +29,33 @@ fn row(corners: &[Corner], y: i32) -> Option<Row> {
     }
 }
 
+/// Draws a triangle with the shades that `shade` makes of a row and of the distance to the row's first pixel.
+fn along_rows(panel: &mut Panel, corners: &[Corner; 3], shade: impl Fn(Row, f64) -> f64) {
+    let mut last = None;
+    for sample in samples((panel.width(), panel.height()), corners) {
+        let Some(row) = row(corners, sample.y) else { continue };
+        let first = match last {
+            Some((y, first)) if y == sample.y => first,
+            _ => sample.x,
+        };
+        last = Some((sample.y, first));
+        panel.write(sample.x, sample.y, wrapped(shade(row, f64::from(sample.x - first))));
+    }
+}
+
 /// A separate step for every row, (Bs − As) / (Bx − Ax), which grows without bound as the row gets short, and the
 /// Russian textbook's start with its missing As restored: As + (1 − frac(Ax))·step. That is the shade at the next whole
 /// pixel, not at the next centre. The sums wrap in 8 bits.
 pub(in crate::hard_cases) fn step_of_each_row(panel: &mut Panel, corners: &[Corner; 3]) {
-    let mut last = None;
-    for sample in samples((panel.width(), panel.height()), corners) {
-        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
+    along_rows(panel, corners, |Row { left: (ax, a), right: (bx, b) }, along| {
         let step = (b - a) / (bx - ax);
-        let first = match last {
-            Some((y, first)) if y == sample.y => first,
-            _ => sample.x,
-        };
-        last = Some((sample.y, first));
-        let start = a + (1.0 - ax.fract()) * step;
-        panel.write(sample.x, sample.y, wrapped(start + f64::from(sample.x - first) * step));
-    }
+        a + (1.0 - ax.fract()) * step + along * step
+    });
 }
 
 /// No sub-pixel correction: a row's first pixel gets the shade at the edge, wherever in the pixel the edge is.
 pub(in crate::hard_cases) fn start_at_the_edge(panel: &mut Panel, corners: &[Corner; 3]) {
-    let mut last = None;
-    for sample in samples((panel.width(), panel.height()), corners) {
-        let Some(Row { left: (ax, a), right: (bx, b) }) = row(corners, sample.y) else { continue };
-        let first = match last {
-            Some((y, first)) if y == sample.y => first,
-            _ => sample.x,
-        };
-        last = Some((sample.y, first));
-        panel.write(sample.x, sample.y, wrapped(a + f64::from(sample.x - first) * (b - a) / (bx - ax)));
-    }
+    along_rows(panel, corners, |Row { left: (ax, a), right: (bx, b) }, along| a + along * (b - a) / (bx - ax));
 }
 
 /// Every pixel that a row touches, with the triangle's plane extrapolated beyond its edges: below 0 and above 255 the
