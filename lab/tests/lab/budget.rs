@@ -1,8 +1,8 @@
 //! The error budget: what it promises, measured against light at every pixel.
 
 use crate::budget_net::worst;
-use crate::support::scenes;
 use crate::support::tried::Tried;
+use crate::support::{scenes, shaded, within};
 use mode13h::Angle;
 use mode13h::internals::raster::effects::SampleSpacing;
 use mode13h::light::{Blend, Light};
@@ -21,12 +21,6 @@ use std::time::Duration;
 
 const SCREEN: Screen = Screen::MODE_13H;
 const BUDGETS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
-
-fn within(max_error: f32) -> Renderer {
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
-    renderer
-}
 
 fn look(renderer: Renderer, scene: &Scene) -> Shown {
     Probe::new(renderer).look(scene, SCREEN).expect("a legal scene")
@@ -183,9 +177,7 @@ fn faces_that_are_quadratic_are_within() {
     for i in 0..80 {
         let scene = large_faces(&mut random);
         let truth = Truth::new(&scene, SCREEN).expect("a legal scene").draw(Standard::Lit);
-        let mut phong = Renderer::new();
-        phong.settings.accuracy = Some(Shading::Phong.into());
-        let lit = ErrorMap::new(&truth, &look(phong, &scene)).expect("of one size");
+        let lit = ErrorMap::new(&truth, &look(shaded(Shading::Phong), &scene)).expect("of one size");
         for max_error in [6.0, 3.0, 1.5] {
             let mut renderer = within(max_error);
             renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
@@ -271,9 +263,7 @@ fn shares_are_of_all_triangles() {
             let shared: u64 = stats.shares.into_iter().map(|(_, triangles)| triangles).sum();
             assert_eq!(shared, stats.drawn, "{name}: {stats}");
         }
-        let mut flat = Renderer::new();
-        flat.settings.accuracy = Some(Shading::Flat.into());
-        let stats = flat.draw(&scene, &mut Vga::new()).expect("a legal scene");
+        let stats = shaded(Shading::Flat).draw(&scene, &mut Vga::new()).expect("a legal scene");
         assert_eq!(stats.shares[Shading::Flat], stats.drawn, "{name}");
     }
 }

@@ -6,8 +6,8 @@
 use core::f64::consts::FRAC_PI_2;
 use core::fmt;
 
-use crate::support::shipped;
 use crate::support::tried::Tried;
+use crate::support::{shipped, within};
 use mode13h::Angle;
 use mode13h::glam::{Mat3, Vec3};
 use mode13h::light::{Cone, Light, Material};
@@ -15,7 +15,6 @@ use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
 use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Object, Scene};
-use mode13h::settings::Accuracy;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
@@ -349,9 +348,7 @@ pub(crate) fn worst(scene: &Scene, screen: Screen, budgets: &[f32]) -> Worst {
     let mut worst =
         Worst { beyond: f64::NEG_INFINITY, ratio: 0.0, budget: 0.0, place: (0, 0), pixels: 0, not_compared: 0.0 };
     for &budget in budgets {
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(Accuracy::WithinError(budget));
-        let errors = ErrorMap::new(&lit, &look(renderer, scene, screen)).expect("of one size");
+        let errors = ErrorMap::new(&lit, &look(within(budget), scene, screen)).expect("of one size");
         worst.not_compared = worst.not_compared.max(errors.share_not_compared());
         for (place, (error, right)) in errors.errors().zip(&lit.pixels).enumerate() {
             let (Some(error), Some(right)) = (error, right) else { continue };
@@ -571,9 +568,8 @@ fn what_is_beyond_is_what_rounded_vertices_move() {
         let screen = Screen { width, height, ..Screen::MODE_13H };
         let truth = Truth::new(&scene, screen).expect("a legal scene");
         let at = (place.1 * width + place.0) as usize;
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(Accuracy::WithinError(1.0));
-        let errors = ErrorMap::new(&truth.draw(Standard::Lit), &look(renderer, &scene, screen)).expect("of one size");
+        let errors =
+            ErrorMap::new(&truth.draw(Standard::Lit), &look(within(1.0), &scene, screen)).expect("of one size");
         let error = errors.errors().nth(at).flatten().expect("a pixel that is compared");
         let face = truth.draw(Standard::Lit).pixels[at].expect("covered").face;
         println!("{error}, of which {:?} by rounded vertices", truth.rounding_shift(face, place.0, place.1));

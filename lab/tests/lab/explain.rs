@@ -1,7 +1,6 @@
 //! The explanation of a pixel compared with its frame, and with the definitions.
 
-use crate::support::scenes;
-use crate::support::triangles;
+use crate::support::{scenes, shaded, triangles, within};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
@@ -128,8 +127,7 @@ fn an_account_ends_with_the_byte_of_the_frame() {
     let (mut with_face, mut all) = (0, 0);
     for (name, scene) in scenes::all() {
         for shading in Shading::ALL {
-            let mut renderer = Renderer::new();
-            renderer.settings.accuracy = Some(shading.into());
+            let mut renderer = shaded(shading);
             let bytes = frame(&mut renderer, &scene);
             for (x, y) in some_pixels(&bytes, scene.background, 7, &mut random) {
                 let what = format!("{name} by {shading} at ({x}, {y})");
@@ -255,8 +253,7 @@ fn a_tie_on_a_shared_edge_is_the_left_edges() {
 fn faces_within_a_budget_are_named_by_what_shaded_them() {
     let mut named = [0; 3];
     for (name, scene) in scenes::all() {
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(Accuracy::WithinError(4.0));
+        let mut renderer = within(4.0);
         let bytes = frame(&mut renderer, &scene);
         for (x, y) in some_pixels(&bytes, scene.background, 8, &mut Random::named(&name)) {
             let pixel = explain(&mut renderer, &scene, x, y);
@@ -314,8 +311,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
     twins.add(twin);
     for shading in Shading::ALL {
         for way in HiddenSurfaces::ALL {
-            let mut renderer = Renderer::new();
-            renderer.settings.accuracy = Some(shading.into());
+            let mut renderer = shaded(shading);
             renderer.settings.hidden_surfaces = Some(way);
             let bytes = frame(&mut renderer, &twins);
             for x in (0..320).step_by(5) {
@@ -323,8 +319,7 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
                 assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{shading}, {way}:\n{pixel}");
             }
         }
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(shading.into());
+        let mut renderer = shaded(shading);
         let bytes = frame(&mut renderer, &scene);
         let mut anew = 0;
         for x in 0..320 {
@@ -499,8 +494,7 @@ fn a_walk_over_what_is_seen_has_the_frames_bytes() {
         ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|shading| (s, shading)))
     {
         let scene = scenes::showing(shape);
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(shading.into());
+        let mut renderer = shaded(shading);
         let bytes = frame(&mut renderer, &scene);
         let shown = Probe::new(renderer.with_same_settings()).look(&scene, SCREEN).expect("a legal scene");
         let mut seen = 0;

@@ -73,14 +73,20 @@ fn f5_damaged_files() {
         let files = corpus(name);
         let mut random = Random::new(500 + stream as u64);
         for _ in 0..10_000 / PROPERTIES.len() + 1 {
-            let (path, mut bytes) = files[random.within(0, files.len() as i64 - 1) as usize].clone();
-            for _ in 0..random.log_uniform(4) {
-                damage(&mut bytes, &files, &mut random);
-            }
+            let (path, bytes) = damaged(&files, &mut random);
             check(property, &path, &bytes);
             tried.add(1);
         }
     }
+}
+
+/// One of the files with some damage.
+fn damaged(files: &[(PathBuf, Vec<u8>)], random: &mut Random) -> (PathBuf, Vec<u8>) {
+    let (path, mut bytes) = files[random.within(0, files.len() as i64 - 1) as usize].clone();
+    for _ in 0..random.log_uniform(4) {
+        damage(&mut bytes, files, random);
+    }
+    (path, bytes)
 }
 
 fn damage(bytes: &mut Vec<u8>, files: &[(PathBuf, Vec<u8>)], random: &mut Random) {
@@ -154,10 +160,7 @@ fn f5_no_file_takes_memory_out_of_proportion() {
     let files = corpus("obj");
     let mut random = Random::new(510);
     for _ in 0..2_000 {
-        let (path, mut bytes) = files[random.within(0, files.len() as i64 - 1) as usize].clone();
-        for _ in 0..random.log_uniform(4) {
-            damage(&mut bytes, &files, &mut random);
-        }
+        let (path, bytes) = damaged(&files, &mut random);
         measure(&path, &bytes);
     }
     println!("at most {worst} bytes of memory for a byte of a file");

@@ -2,6 +2,7 @@
 
 mod floats;
 
+use crate::support::shaded;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
@@ -17,13 +18,17 @@ use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_lab::cost::Probe;
 
-/// A triangle that faces the eye, with this normal at all three corners, lit by `lights`; its shade.
-fn shade(normal: Vec3, material: Material, ambient: f32, lights: &[Light]) -> U8F8 {
+/// A triangle that faces the eye, with this normal at all three corners.
+fn triangle(normal: Vec3) -> Mesh {
     let corners = vec![Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
-    let mesh = Mesh::with_normals(corners, vec![normal; 3], vec![[0, 1, 2]]).expect("a mesh");
+    Mesh::with_normals(corners, vec![normal; 3], vec![[0, 1, 2]]).expect("a mesh")
+}
+
+/// The shade of such a triangle, lit by `lights`.
+fn shade(normal: Vec3, material: Material, ambient: f32, lights: &[Light]) -> U8F8 {
     let mut scene = Scene::new();
     scene.ambient = ambient;
-    let object = scene.add(Object::new(mesh));
+    let object = scene.add(Object::new(triangle(normal)));
     scene[object].materials = vec![material];
     for &light in lights {
         scene.add_light(light);
@@ -270,11 +275,9 @@ fn n5_lights_from_any_direction_on_three_channels() {
     for case in 0..40 {
         let any = |random: &mut Random| [0; 3].map(|_| random.unit() as f32 * 2.0 - 1.0);
         let normal = Vec3::from(any(&mut random)).with_z(1.0);
-        let corners = vec![Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
-        let mesh = Mesh::with_normals(corners, vec![normal; 3], vec![[0, 1, 2]]).expect("a mesh");
         let mut scene = Scene::new();
         scene.palette = Some(builtin::by_name("cube").expect("built in").palette.clone());
-        let object = scene.add(Object::new(mesh));
+        let object = scene.add(Object::new(triangle(normal)));
         let color = [0.9, 0.5, 0.7];
         scene[object].materials =
             vec![Material { ambient: 0.2, diffuse: 0.8, color, ramp: RampChoice::Nearest, ..Material::default() }];
@@ -301,10 +304,8 @@ fn n5_lights_from_any_direction_on_three_channels() {
             (255.0 * of(sum - reach), 255.0 * of(sum + reach))
         });
         for shading in [Shading::Gouraud88Reseeded, Shading::Phong] {
-            let mut renderer = Renderer::new();
-            renderer.settings.accuracy = Some(shading.into());
             let screen = Screen { width: 24, height: 16, ..Screen::MODE_13H };
-            let shown = Probe::new(renderer).look(&scene, screen).expect("a legal scene");
+            let shown = Probe::new(shaded(shading)).look(&scene, screen).expect("a legal scene");
             let middle = 24 * 8 + 12;
             assert!(shown.faces[middle].is_some());
             for (&(low, high), shade) in between.iter().zip(shown.shades[middle]) {

@@ -13,3 +13,20 @@ pub mod triangles;
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
+
+use mode13h::render::Renderer;
+use mode13h::settings::{Accuracy, Shading};
+
+/// A renderer that draws with this shading.
+pub fn shaded(shading: Shading) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.settings.accuracy = Some(shading.into());
+    renderer
+}
+
+/// A renderer that draws within this error.
+pub fn within(max_error: f32) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
+    renderer
+}

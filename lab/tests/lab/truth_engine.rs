@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use crate::support::scenes;
 use crate::support::tried::Tried;
+use crate::support::{scenes, shaded};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::internals;
@@ -29,9 +29,7 @@ fn truth(scene: &Scene) -> Truth<'_> {
 }
 
 fn probe(shading: Shading) -> Probe {
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(shading.into());
-    Probe::new(renderer)
+    Probe::new(shaded(shading))
 }
 
 fn look(scene: &Scene, shading: Shading) -> Shown {
@@ -426,9 +424,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     }
     for shading in Shading::ALL {
         let (shown, mut vga) = (look(&scene, shading), Vga::new());
-        let mut renderer = Renderer::new();
-        renderer.settings.accuracy = Some(shading.into());
-        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        shaded(shading).draw(&scene, &mut vga).expect("a legal scene");
         let mut seen = 0;
         for ((face, shades), &drawn) in shown.faces.iter().zip(&shown.shades).zip(vga.pixels()) {
             if face.is_some() {
@@ -447,9 +443,7 @@ fn the_probe_shows_the_channels_that_are_mixed() {
     probe.look(&scene, SCREEN).expect("a legal scene");
     let (mut by_probe, mut fresh) = (Vga::new(), Vga::new());
     probe.renderer().draw(&scene, &mut by_probe).expect("a legal scene");
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(Shading::Phong.into());
-    renderer.draw(&scene, &mut fresh).expect("a legal scene");
+    shaded(Shading::Phong).draw(&scene, &mut fresh).expect("a legal scene");
     assert!(by_probe.pixels() == fresh.pixels());
 }
 
@@ -724,24 +718,17 @@ fn faulty(random: &mut Random) -> Vec<(&'static str, Written, Vec<&'static str>)
             }
         }
     };
-    // An edge split on one side only, closed by a face without area.
-    let filled = |w: &mut Written| {
-        for &[a, b, c] in &cut {
-            let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
-            let middle = w.push((w.at(a) + w.at(b)) * 0.5);
-            w.faces[place] = [a, middle, c];
-            w.faces.extend([[middle, b, c], [a, b, middle]]);
-        }
-    };
-    // The same, but left open.
-    let open = |w: &mut Written| {
+    // An edge split on one side only, closed by a face without area or left open.
+    let split = |w: &mut Written, is_filled: bool| {
         for &[a, b, c] in &cut {
             let Some(place) = w.faces.iter().position(|face| *face == [a, b, c]) else { continue };
             let middle = w.push((w.at(a) + w.at(b)) * 0.5);
             w.faces[place] = [a, middle, c];
             w.faces.push([middle, b, c]);
+            w.faces.extend(is_filled.then_some([a, b, middle]));
         }
     };
+    let (filled, open) = (|w: &mut Written| split(w, true), |w: &mut Written| split(w, false));
     let without_area = |w: &mut Written| lines.iter().for_each(|&[a, b, _]| w.faces.extend([[a, a, b], [a, b, a]]));
     let with = |changes: &[&dyn Fn(&mut Written)]| {
         let mut written = body.clone();

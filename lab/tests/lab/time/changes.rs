@@ -171,8 +171,7 @@ pub(super) const CHANGES: &[Change] = &[
         w.scene.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
     }),
     seen("Scene.settings.mapping", |w, r| {
-        w.settings.mapping = None;
-        w.kept.settings.mapping = None;
+        set(w, None, |settings| &mut settings.mapping);
         let (before, after) = two_mappings(r);
         w.scene.settings.mapping = before;
         textured(w, r);
@@ -193,8 +192,7 @@ pub(super) const CHANGES: &[Change] = &[
             }
             w.scene.add_light(Light::lamp([0.2, 0.1, 0.3], 4.0));
             w.scene.settings.accuracy = None;
-            w.settings.accuracy = None;
-            w.kept.settings.accuracy = None;
+            set(w, None, |settings| &mut settings.accuracy);
             w.scene.settings.tessellation = Some(4.0);
             drawn(w);
             w.scene.settings.tessellation = Some(between(r, 0.5, 1.0));
@@ -222,33 +220,19 @@ pub(super) const CHANGES: &[Change] = &[
         let turns = angles(r);
         spin(w, r, [0.0; 3], turns);
     }),
-    seen("Motion::Path.what", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Target, path: line(r) });
-        w.scene.set_time(0.7);
-    }),
-    seen("Motion::Path.path", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Eye, path: circle(r) });
-        w.scene.set_time(0.7);
-    }),
+    seen("Motion::Path.what", |w, r| on_path(w, r, Moving::Target, line, 0.7)),
+    seen("Motion::Path.path", |w, r| on_path(w, r, Moving::Eye, circle, 0.7)),
     seen("Moving::Object", |w, r| {
         let id = w.scene.add(object(r));
-        with_motion(w, r, |r| Motion::Path { what: Moving::Object(id), path: line(r) });
-        w.scene.set_time(0.6);
+        on_path(w, r, Moving::Object(id), line, 0.6);
         fewer_objects(w);
     }),
     seen("Moving::Light", |w, r| {
         let Some(&id) = w.scene.light_ids().first() else { return };
-        with_motion(w, r, |r| Motion::Path { what: Moving::Light(id), path: circle(r) });
-        w.scene.set_time(0.6);
+        on_path(w, r, Moving::Light(id), circle, 0.6);
     }),
-    seen("Moving::Eye", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Eye, path: line(r) });
-        w.scene.set_time(0.6);
-    }),
-    seen("Moving::Target", |w, r| {
-        with_motion(w, r, |r| Motion::Path { what: Moving::Target, path: circle(r) });
-        w.scene.set_time(0.6);
-    }),
+    seen("Moving::Eye", |w, r| on_path(w, r, Moving::Eye, line, 0.6)),
+    seen("Moving::Target", |w, r| on_path(w, r, Moving::Target, circle, 0.6)),
     seen("Path::Line.from", |w, r| along(w, r, |r| straight(place(r, 0.5), Vec3::X * 0.3, 2.0, false))),
     seen("Path::Line.to", |w, r| along(w, r, |r| straight(Vec3::X * 0.3, place(r, 0.5), 2.0, false))),
     seen("Path::Line.period", |w, r| along(w, r, |r| straight(Vec3::X, Vec3::ZERO, 0.4 + r.unit(), false))),
@@ -378,41 +362,33 @@ pub(super) const CHANGES: &[Change] = &[
             1 => sometimes(r, |r| between(r, 0.5, 16.0)).map(Accuracy::WithinError),
             _ => Some(Accuracy::WithinError(between(r, 0.5, 16.0))),
         };
-        w.settings.accuracy = accuracy;
-        w.kept.settings.accuracy = accuracy;
+        set(w, accuracy, |settings| &mut settings.accuracy);
     }),
     seen("Settings.mapping", |w, r| {
         // For two of the mappings the plan's decision and the object's vertices are the same.
         let (before, after) = two_mappings(r);
         w.kept.settings.mapping = before;
         textured(w, r);
-        w.settings.mapping = after;
-        w.kept.settings.mapping = after;
+        set(w, after, |settings| &mut settings.mapping);
     }),
     seen("Settings.mipmaps", |w, r| {
         textured(w, r);
-        w.settings.mipmaps = sometimes(r, |r| r.within(0, 1) == 1);
-        w.kept.settings.mipmaps = w.settings.mipmaps;
+        set(w, sometimes(r, |r| r.within(0, 1) == 1), |settings| &mut settings.mipmaps);
     }),
     seen("Settings.tessellation", |w, r| {
-        w.settings.tessellation = sometimes(r, |r| between(r, 0.5, 4.0));
-        w.kept.settings.tessellation = w.settings.tessellation;
+        set(w, sometimes(r, |r| between(r, 0.5, 4.0)), |settings| &mut settings.tessellation);
     }),
     seen("Settings.dither", |w, r| {
-        w.settings.dither = sometimes(r, |r| r.one_of(&DitherPattern::ALL));
-        w.kept.settings.dither = w.settings.dither;
+        set(w, sometimes(r, |r| r.one_of(&DitherPattern::ALL)), |settings| &mut settings.dither);
     }),
     seen("Settings.vertex_path", |w, r| {
-        w.settings.vertex_path = sometimes(r, |r| r.one_of(&VertexPath::ALL));
-        w.kept.settings.vertex_path = w.settings.vertex_path;
+        set(w, sometimes(r, |r| r.one_of(&VertexPath::ALL)), |settings| &mut settings.vertex_path);
     }),
     seen("Settings.vertex_bits", |w, r| {
-        w.settings.vertex_bits = sometimes(r, |r| r.within(0, 8) as u8);
-        w.kept.settings.vertex_bits = w.settings.vertex_bits;
+        set(w, sometimes(r, |r| r.within(0, 8) as u8), |settings| &mut settings.vertex_bits);
     }),
     seen("Settings.channels", |w, r| {
-        w.settings.channels = sometimes(r, |r| r.within(0, 1) == 1);
-        w.kept.settings.channels = w.settings.channels;
+        set(w, sometimes(r, |r| r.within(0, 1) == 1), |settings| &mut settings.channels);
     }),
     unseen("Renderer.kernel", |w, r| {
         w.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
@@ -429,8 +405,7 @@ pub(super) const CHANGES: &[Change] = &[
             w.kept.settings.hidden_surfaces = Some(HiddenSurfaces::PainterOrder);
             drawn(w);
         }
-        w.settings.hidden_surfaces = sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL));
-        w.kept.settings.hidden_surfaces = w.settings.hidden_surfaces;
+        set(w, sometimes(r, |r| r.one_of(&HiddenSurfaces::ALL)), |settings| &mut settings.hidden_surfaces);
     }),
     seen("Renderer::force", |w, r| {
         let (effect, on) = forced(r);
@@ -824,6 +799,12 @@ fn one_fog<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Fog {
     world.scene.fog.as_mut().expect("fog")
 }
 
+/// Sets a field of the settings, of the reused renderer too.
+fn set<T: Copy>(world: &mut World, value: T, field: fn(&mut Settings) -> &mut T) {
+    *field(&mut world.settings) = value;
+    *field(&mut world.kept.settings) = value;
+}
+
 fn animate(world: &mut World, random: &mut Random, animation: impl FnOnce(&mut Random) -> PaletteAnimation) {
     world.scene.palette.get_or_insert_with(|| named_palette("grey"));
     world.scene.palette_animation = Some(animation(random));
@@ -847,10 +828,15 @@ fn spin(world: &mut World, random: &mut Random, start: [f64; 3], turns: [f64; 3]
     fewer_objects(world);
 }
 
+/// Moves something along a path, as far as it gets in some seconds.
+fn on_path(world: &mut World, random: &mut Random, what: Moving, path: impl FnOnce(&mut Random) -> Path, seconds: f64) {
+    with_motion(world, random, |random| Motion::Path { what, path: path(random) });
+    world.scene.set_time(seconds);
+}
+
 /// Moves the target along a path.
 fn along(world: &mut World, random: &mut Random, path: impl FnOnce(&mut Random) -> Path) {
-    with_motion(world, random, |random| Motion::Path { what: Moving::Target, path: path(random) });
-    world.scene.set_time(1.3);
+    on_path(world, random, Moving::Target, path, 1.3);
 }
 
 /// The object with another mesh, otherwise unchanged.
