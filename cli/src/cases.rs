@@ -42,10 +42,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Err(Failure::words(format!("no case '{id}'; there are {}", ids.join(", "))));
     };
     let path = match out {
-        Some(out) if !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => {
-            return Err(Failure::words(format!("{}: the name of a picture must end in .png", out.display())));
+        Some(out) => {
+            output::check_extension(out, "png", "a picture")?;
+            out.clone()
         }
-        Some(out) => out.clone(),
         None => {
             let path = PathBuf::from(format!("{}.png", case.id));
             output::refuse_overwriting(&path, *force)?;

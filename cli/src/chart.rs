@@ -1,5 +1,6 @@
 //! A row's intensity and its slope as a chart: in an SVG file, or in characters.
 
+use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
 
@@ -23,35 +24,31 @@ pub(crate) fn svg(title: &str, row: &Row, path: &Path) -> Result<(), ExportError
     let mut text = String::new();
     let drawn = draw(title, row, SVGBackend::with_string(&mut text, (960, 640)).into_drawing_area());
     write_atomically(path, |out| {
-        drawn.map_err(std::io::Error::other)?;
+        drawn.map_err(|error| std::io::Error::other(error.to_string()))?;
         out.write_all(text.as_bytes())
     })
 }
 
-type DrawingError = String;
-
-fn draw(title: &str, row: &Row, area: DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), DrawingError> {
-    let failed = |error: &dyn std::fmt::Display| error.to_string();
-    area.fill(&WHITE).map_err(|error| failed(&error))?;
-    let area = area.titled(title, ("sans-serif", 20)).map_err(|error| failed(&error))?;
+fn draw(title: &str, row: &Row, area: DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), Box<dyn Error>> {
+    area.fill(&WHITE)?;
+    let area = area.titled(title, ("sans-serif", 20))?;
     let (above, below) = area.split_vertically(350);
     let columns = shown(row);
     let intensity: Vec<Vec<Option<f64>>> =
         CURVES.iter().map(|(_, _, of)| row.columns.iter().map(of).collect()).collect();
     let slopes: Vec<Vec<Option<f64>>> = CURVES.iter().map(|(_, _, of)| row.slope(of)).collect();
-    panel(&above, "intensity, shades of 255", &columns, &intensity, false).map_err(|error| failed(&error))?;
-    panel(&below, "slope, shades a pixel (cut off at steps)", &columns, &slopes, true)
-        .map_err(|error| failed(&error))?;
-    area.present().map_err(|error| failed(&error))
+    panel(&above, "intensity, shades of 255", &columns, &intensity, false)?;
+    panel(&below, "slope, shades a pixel (cut off at steps)", &columns, &slopes, true)?;
+    Ok(area.present()?)
 }
 
-fn panel<'a>(
-    area: &DrawingArea<SVGBackend<'a>, Shift>,
+fn panel(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
     label: &str,
     columns: &Range<usize>,
     curves: &[Vec<Option<f64>>],
     is_lower: bool,
-) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
+) -> Result<(), Box<dyn Error>> {
     let (low, high) = span(curves, columns, is_lower);
     let (left, right) = (columns.start as f64 - 0.5, columns.end as f64 - 0.5);
     let mut chart = ChartBuilder::on(area)

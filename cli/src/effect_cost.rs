@@ -40,7 +40,7 @@ impl Artist {
     fn draw(&mut self, scene: &Scene) -> Result<f64, Failure> {
         black_box(self.vga.pixels_mut());
         let start = Instant::now();
-        self.renderer.draw(scene, &mut self.vga).map_err(Failure::from)?;
+        self.renderer.draw(scene, &mut self.vga)?;
         Ok(nanoseconds(start.elapsed()))
     }
 }
@@ -58,11 +58,11 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
         const PLANS: usize = 10;
         let mut renderer = (self.renderer)();
         // The vertices of the first frame are cached; those of the second never are.
-        renderer.draw(&self.frames[0], &mut Vga::new()).map_err(Failure::from)?;
+        renderer.draw(&self.frames[0], &mut Vga::new())?;
         let times = self.rounds(|_, _| {
             let start = Instant::now();
             for i in 0..PLANS {
-                black_box(renderer.make_plan(&self.frames[i % 2], Screen::MODE_13H)).map_err(Failure::from)?;
+                black_box(renderer.make_plan(&self.frames[i % 2], Screen::MODE_13H))?;
             }
             Ok(nanoseconds(start.elapsed()) / PLANS as f64)
         })?;

@@ -9,7 +9,7 @@ use mode13h_lab::explain::{
     self, ExplainError, FaceHere, Fate, Pixel, PixelStage, Progression, Row, Seen, ShadeTrace, ShadedBy,
 };
 use mode13h_lab::truth::Standard;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::options::{Drawing, Moment, ShadingOptions};
@@ -58,11 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if out.is_some() && row.is_none() {
         return Err(Failure::words("--out is only for the chart of a --row"));
     }
-    if let Some(out) = out
-        && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
-    {
-        return Err(Failure::words(format!("{}: the name of a chart must end in .svg", out.display())));
-    }
+    out.as_deref().map_or(Ok(()), |out| output::check_extension(out, "svg", "a chart"))?;
     let kernel = drawing.kernel()?;
     let screen = Screen::MODE_13H;
     // Before anything is loaded.
@@ -76,7 +72,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut renderer = shading.renderer(drawing, kernel);
     shading.settle(&mut renderer, &stage.scene)?;
     if let Some((x, y)) = *pixel {
-        let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y).map_err(Failure::from)?;
+        let pixel = explain::pixel(&mut renderer, &stage.scene, screen, x, y)?;
         return match json {
             true => output::print_json(&pixel_json(&name, at, &pixel)),
             false => output::print(&format!("{name} at {at} s, {pixel}")),
@@ -84,7 +80,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let Some(y) = *row else { return Ok(()) };
     let accuracy = renderer.settings.or(&stage.scene.settings).drawn_accuracy();
-    let row = explain::row(renderer, &stage.scene, screen, y).map_err(Failure::from)?;
+    let row = explain::row(renderer, &stage.scene, screen, y)?;
     let title = format!("{name} at {at} s, row {y}, {accuracy}");
     match out {
         Some(out) => output::file(out, || chart::svg(&title, &row, out)),
@@ -214,62 +210,37 @@ fn account_json(shade_trace: &ShadeTrace) -> Value {
         }
         _ => json!({ "progression": "quotient" }),
     };
-    if let Value::Object(map) = &mut json {
-        map.insert("byte".into(), shade_trace.byte.into());
-        // As text, because many JSON readers lose digits of numbers beyond 2^53.
-        let exact = shade_trace.exact.map(|exact| {
-            json!({
-                "numerator": exact.numerator.to_string(),
-                "denominator": exact.denominator.to_string(),
-                "shade": exact.to_f64() / 256.0,
-            })
-        });
-        map.insert("exact_256".into(), exact.unwrap_or_default());
-    }
+    json["byte"] = shade_trace.byte.into();
+    // As text, because many JSON readers lose digits of numbers beyond 2^53.
+    let exact = shade_trace.exact.map(|exact| {
+        json!({
+            "numerator": exact.numerator.to_string(),
+            "denominator": exact.denominator.to_string(),
+            "shade": exact.to_f64() / 256.0,
+        })
+    });
+    json["exact_256"] = exact.unwrap_or_default();
     json
 }
 
 fn stage_json(stage: &PixelStage) -> Value {
-    let mut json = Map::new();
-    let mut put = |name: &str, value: Value| json.insert(name.into(), value);
-    let name = match *stage {
-        PixelStage::Shade(_) => "shade",
-        PixelStage::Channels(channels) => {
-            put("channels", json!(channels));
-            "channels"
-        }
-        PixelStage::Dither { threshold, .. } => {
-            put("threshold", threshold.into());
-            "dither"
-        }
+    let mut json = match *stage {
+        PixelStage::Shade(_) => json!({ "stage": "shade" }),
+        PixelStage::Channels(channels) => json!({ "stage": "channels", "channels": channels }),
+        PixelStage::Dither { threshold, .. } => json!({ "stage": "dither", "threshold": threshold }),
         PixelStage::Texture { texel, level, .. } => {
-            put("texel", texel.into());
-            put("mipmap_level", json!(level));
-            "texture"
+            json!({ "stage": "texture", "texel": texel, "mipmap_level": level })
         }
         PixelStage::TextureChannels { texel, level, channels } => {
-            put("texel", texel.into());
-            put("mipmap_level", json!(level));
-            put("channels", json!(channels));
-            "texture"
+            json!({ "stage": "texture", "texel": texel, "mipmap_level": level, "channels": channels })
         }
-        PixelStage::Mix { threshold, .. } => {
-            put("threshold", json!(threshold));
-            "mix"
-        }
-        PixelStage::Fog { level, .. } => {
-            put("level", level.into());
-            "fog"
-        }
-        PixelStage::Blend { behind, .. } => {
-            put("behind", behind.into());
-            "blend"
-        }
-        _ => "other",
+        PixelStage::Mix { threshold, .. } => json!({ "stage": "mix", "threshold": threshold }),
+        PixelStage::Fog { level, .. } => json!({ "stage": "fog", "level": level }),
+        PixelStage::Blend { behind, .. } => json!({ "stage": "blend", "behind": behind }),
+        _ => json!({ "stage": "other" }),
     };
-    put("stage", name.into());
-    put("byte", json!(stage.byte()));
-    Value::Object(json)
+    json["byte"] = json!(stage.byte());
+    json
 }
 
 fn row_json(name: &str, at: f64, row: &Row) -> Value {

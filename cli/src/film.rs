@@ -120,50 +120,49 @@ impl Film {
         renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
         draw: impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<Option<Figures>, Failure> {
+        let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));
         output::long_file(self.file(), || {
             let figures = match self.kind {
-                Kind::Gif => self.write_gif(progress, renderer_pool, &draw).map(Some),
-                Kind::Apng => self.write_apng(fades, progress, renderer_pool, &draw).map(Some),
-                Kind::Stream => self.write_stream(progress, renderer_pool, &draw).map(|()| None),
+                Kind::Gif => self.write_gif(progress, draw).map(Some),
+                Kind::Apng => self.write_apng(fades, progress, draw).map(Some),
+                Kind::Stream => self.write_stream(progress, draw).map(|()| None),
             };
             progress.finish_and_clear();
             figures
         })
     }
 
-    fn write_gif<Artist: Send>(
+    fn write_gif(
         &self,
         progress: &ProgressBar,
-        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
-        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+        draw: impl Fn(u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<Figures, Failure> {
-        let mut file = GifFile::create(&self.out, self.scale, self.rate).map_err(Failure::from)?;
+        let mut file = GifFile::create(&self.out, self.scale, self.rate)?;
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| match before {
             None => GifFrame::first(&frame.picture(), self.scale),
             Some(before) => GifFrame::after(&before.picture(), &frame.picture(), self.scale, first.colors()),
         };
-        self.each(progress, renderer_pool, draw, make, |frame| file.add_frame(frame).map_err(Failure::from))?;
+        self.each(progress, draw, make, |frame| file.add_frame(frame).map_err(Failure::from))?;
         file.finish().map(|film| self.figures(&film)).map_err(Failure::from)
     }
 
     /// Writes the film as an animated PNG. [`write_gif`](Self::write_gif) writes it as a GIF.
-    fn write_apng<Artist: Send>(
+    fn write_apng(
         &self,
         fades: bool,
         progress: &ProgressBar,
-        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
-        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+        draw: impl Fn(u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<Figures, Failure> {
         let colors = |first: &Palette| match fades {
             true => FilmColors::True,
             false => FilmColors::Palette(Box::new(*first.colors())),
         };
-        let mut file = ApngFile::create(&self.out, self.rate, self.frames).map_err(Failure::from)?;
+        let mut file = ApngFile::create(&self.out, self.rate, self.frames)?;
         let make = |before: Option<&Frame>, frame: &Frame, first: &Palette| {
             ApngFrame::new(before.map(Frame::picture).as_ref(), &frame.picture(), self.scale, &colors(first))
         };
-        self.each(progress, renderer_pool, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
-        let bytes = file.finish().map_err(Failure::from)?;
+        self.each(progress, draw, make, |frame| file.add(&frame).map_err(Failure::from))?;
+        let bytes = file.finish()?;
         let (width, height) = self.scale.size(self.size.0 as usize, self.size.1 as usize);
         let (above, below) = self.rate.fraction();
         let (frames, seconds) = (self.frames, f64::from(self.frames) * f64::from(below) / f64::from(above));
@@ -180,11 +179,10 @@ impl Film {
     }
 
     /// Writes a stream. A closed pipe ends it, and does not count as a failure.
-    fn write_stream<Artist: Send>(
+    fn write_stream(
         &self,
         progress: &ProgressBar,
-        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
-        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+        draw: impl Fn(u32) -> Result<Frame, Failure> + Sync + Send,
     ) -> Result<(), Failure> {
         let mut out = std::io::stdout().lock();
         let mut nobody_reads = false;
@@ -197,7 +195,7 @@ impl Film {
             bytes.extend(animation::y4m_frame(&picture, self.scale)?);
             Ok(bytes)
         };
-        let result = self.each(progress, renderer_pool, draw, make, |bytes: Vec<u8>| {
+        let result = self.each(progress, draw, make, |bytes: Vec<u8>| {
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| {
                 nobody_reads = error.kind() == ErrorKind::BrokenPipe;
                 output::not_printed(error)
@@ -209,17 +207,15 @@ impl Film {
     /// Draws the frames, has `make` encode each from itself, the frame before it and the first frame's colours, and
     /// passes the results to `add` in order. While one batch is encoded and added, the next is drawn; no other frames
     /// are in memory.
-    fn each<Artist: Send, Made: Send>(
+    fn each<Made: Send>(
         &self,
         progress: &ProgressBar,
-        renderer_pool: &RendererPool<Artist, impl Fn() -> Artist + Sync>,
-        draw: &(impl Fn(&mut Artist, u32) -> Result<Frame, Failure> + Sync + Send),
+        draw: impl Fn(u32) -> Result<Frame, Failure> + Sync + Send,
         make: impl Fn(Option<&Frame>, &Frame, &Palette) -> Result<Made, AnimationError> + Sync,
         mut add: impl FnMut(Made) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let draw = |number| go_on().and_then(|()| renderer_pool.work(|artist| draw(artist, number)));
         let draw_all =
-            |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(draw).collect() };
+            |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(&draw).collect() };
         // Several for each thread (of which there are at most 1,024), as some frames are slower than others.
         let threads = rayon::current_num_threads() as u32;
         let batch = (16 * threads).min(256).max(threads);

@@ -118,13 +118,13 @@ fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     let failed = |error: io::Error| Failure::file(format!("{}: {error}", path.display()));
     let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
         (Box::new(standard_input().map_err(failed)?), PathBuf::from("standard input"))
-    } else if has_extension(path, "gz") {
+    } else if output::has_extension(path, "gz") {
         (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.to_owned())
     } else {
         return Ok(None);
     };
     let mut bytes = model_file::unpacked(bytes).map_err(failed)?;
-    let is_toml = has_extension(unpacked_name(&name), "toml");
+    let is_toml = output::has_extension(unpacked_name(&name), "toml");
     let is_scene = match is_toml || Format::of_path(&name).is_some() {
         true => is_toml,
         false => {
@@ -182,7 +182,7 @@ pub(crate) fn name_of(words: &OsStr) -> String {
 
 /// The name of what a file contains: without `.gz`, if it ends so.
 fn unpacked_name(path: &Path) -> &Path {
-    path.file_stem().filter(|_| has_extension(path, "gz")).map_or(path, Path::new)
+    path.file_stem().filter(|_| output::has_extension(path, "gz")).map_or(path, Path::new)
 }
 
 /// The scene or the model in a file or with a name; if both have that name, the scene. Warnings go to standard error, a
@@ -198,14 +198,14 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         return model_of(stream, options).map(|model| Input::Model(Box::new(model)));
     } else if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
         shipped.load()
-    } else if has_extension(Path::new(words), "toml") {
+    } else if output::has_extension(Path::new(words), "toml") {
         scene_file::load(words)
     } else {
         let known = || typo::no_input(&words.to_string_lossy());
         return model_or(words, options, &format!("models are {} files, scenes .toml", Format::extensions()), &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene_file::Loaded { scene, look, warnings, files, playbacks, .. } = loaded.map_err(Failure::from)?;
+    let scene_file::Loaded { scene, look, warnings, files, playbacks, .. } = loaded?;
     read_files::add_all(&files);
     for warning in warnings {
         warn(warning);
@@ -222,7 +222,7 @@ fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
         let mut bytes = Vec::new();
         ordinary(path)?.read_to_end(&mut bytes).map(|_| bytes)
     };
-    let loaded = model_file::parse(stream.bytes, &stream.path, library, options).map_err(Failure::from)?;
+    let loaded = model_file::parse(stream.bytes, &stream.path, library, options)?;
     Ok(of_file(name_of(stream.path.as_os_str()), loaded))
 }
 
@@ -333,10 +333,6 @@ pub(crate) fn percent_read() -> Option<u64> {
 fn reading() -> ProgressStyle {
     ProgressStyle::with_template("{spinner} {bar:40} {bytes} of {total_bytes} read{msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
-}
-
-fn has_extension(path: &Path, wanted: &str) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
 
 /// The names of the palettes that are compiled in.

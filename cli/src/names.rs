@@ -13,7 +13,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    pub(crate) fn new(out: &Path, frames: u32, of: &str) -> Result<Names, Failure> {
+    pub(crate) fn new(out: &Path, frames: u32) -> Result<Names, Failure> {
         let numbered = out.file_name().and_then(|name| number_in(name.to_str()?));
         if numbered.as_ref().is_some_and(|(_, _, behind)| number_in(behind).is_some()) {
             return Err(Failure::words(format!(
@@ -22,7 +22,7 @@ impl Names {
             )));
         }
         if frames > 1 && numbered.is_none() {
-            let reason = format!("a series of {of} needs a place for the number in its name, such as %04d");
+            let reason = "a series of pictures needs a place for the number in its name, such as %04d";
             return Err(Failure::words(format!("{}: {reason}", out.display())));
         }
         Ok(Names { numbered, out: out.to_path_buf() })
@@ -69,18 +69,18 @@ mod tests {
             ("100%%d.png", "100%7.png"),
             ("%x%4d%d.png", "%x%4d7.png"),
         ] {
-            let names = Names::new(Path::new(out), 8, "pictures").expect("a number");
+            let names = Names::new(Path::new(out), 8).expect("a number");
             assert_eq!(names.of(7), Path::new(name));
         }
         for out in ["%d%d.png", "100%d-%04d.png"] {
             for frames in [1, 8] {
-                assert!(Names::new(Path::new(out), frames, "pictures").is_err(), "{out}");
+                assert!(Names::new(Path::new(out), frames).is_err(), "{out}");
             }
         }
         for out in ["a.png", "%.png", "%4d.png", "%0d.png", "%0xd.png", "%04x.png", "%04d/a.png", "%0"] {
-            assert!(Names::new(Path::new(out), 8, "pictures").is_err(), "{out}");
+            assert!(Names::new(Path::new(out), 8).is_err(), "{out}");
         }
-        let one = Names::new(Path::new("a.png"), 1, "pictures").expect("one picture");
+        let one = Names::new(Path::new("a.png"), 1).expect("one picture");
         assert_eq!(one.of(0), Path::new("a.png"));
     }
 }

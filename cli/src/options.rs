@@ -5,8 +5,8 @@ mod shading;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::palette::{Rgb, builtin};
@@ -55,8 +55,8 @@ pub(crate) struct Drawing {
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
     /// Set the axis of a model that points up [default: y; z for a flat sheet facing z]
-    #[arg(long, value_name = "AXIS", value_enum, hide_short_help = true)]
-    up: Option<Up>,
+    #[arg(long, value_name = "AXIS", value_parser = axis(), hide_short_help = true)]
+    up: Option<UpAxis>,
     /// Keep a model's edges sharp at DEGREES and above
     ///
     /// For models without normals: 180 makes everything smooth, 0 everything flat.
@@ -213,22 +213,6 @@ impl Quiet {
     }
 }
 
-/// The axis of a model that points up: y in most, z in those from CAD and geography.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Up {
-    Y,
-    Z,
-}
-
-impl From<Up> for UpAxis {
-    fn from(up: Up) -> UpAxis {
-        match up {
-            Up::Y => UpAxis::Y,
-            Up::Z => UpAxis::Z,
-        }
-    }
-}
-
 impl Drawing {
     /// The kernel that was asked for by option or else by environment, or the fastest.
     pub(crate) fn kernel(&self) -> Result<Kernel, Failure> {
@@ -288,7 +272,7 @@ impl Drawing {
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let name = model.name.clone();
-                let mut stage = model.stage(self.up.map(UpAxis::from), self.camera.is_some())?;
+                let mut stage = model.stage(self.up, self.camera.is_some())?;
                 stage.scene.objects_mut().iter_mut().for_each(|object| object.name.clone_from(&name));
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
@@ -333,7 +317,7 @@ impl Drawing {
             stage.only_what_integers_draw();
         }
         if let Some(colors) = &colors {
-            stage.set_colors(colors).map_err(Failure::from)?;
+            stage.set_colors(colors)?;
         }
         Ok(stage)
     }
@@ -384,6 +368,11 @@ pub(crate) fn one_of<Choice: Copy + Send + Sync + 'static, const N: usize>(
 ) -> impl TypedValueParser<Value = Choice> {
     PossibleValuesParser::new(all.map(name))
         .try_map(move |word| all.into_iter().find(|choice| name(*choice) == word).ok_or("unknown name"))
+}
+
+/// Takes the axis of a model that points up: y in most, z in those from CAD and geography.
+pub(crate) fn axis() -> impl TypedValueParser<Value = UpAxis> {
+    one_of([UpAxis::Y, UpAxis::Z], |axis| if axis == UpAxis::Y { "y" } else { "z" })
 }
 
 /// A number on the command line.

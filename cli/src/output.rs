@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
+use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::export::{ExportError, ExportErrorKind, Picture, Png, Scale};
 use mode13h::vga::Vga;
 use serde::Serialize;
@@ -134,6 +135,28 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
         return Ok(());
     }
     Err(Failure::file(format!("{}: already exists; --force overwrites it, -o writes elsewhere", path.display())))
+}
+
+/// Returns whether a name ends in an extension, in any case of its letters.
+pub(crate) fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}
+
+/// Fails if the name of `what` does not end in its extension.
+pub(crate) fn check_extension(path: &Path, wanted: &str, what: &str) -> Result<(), Failure> {
+    match has_extension(path, wanted) {
+        true => Ok(()),
+        false => Err(Failure::words(format!("{}: the name of {what} must end in .{wanted}", path.display()))),
+    }
+}
+
+/// A progress bar on standard error, if that is a terminal.
+pub(crate) fn bar(length: u64, template: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 /// Returns whether [`print`] prints to a terminal that shows colours.

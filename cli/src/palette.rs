@@ -15,8 +15,7 @@ use mode13h_assets::palette_file::Format;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};
-use crate::options::{self, Up};
-use crate::{input, output, read_files};
+use crate::{input, options, output, read_files};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").args(["palette", "from"])))]
@@ -34,8 +33,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
     /// Set the axis of the model that points up [default: y; z for a flat sheet facing z]
-    #[arg(long, value_name = "AXIS", value_enum, requires = "from", conflicts_with = "palette")]
-    up: Option<Up>,
+    #[arg(long, value_name = "AXIS", value_parser = options::axis(), requires = "from", conflicts_with = "palette")]
+    up: Option<UpAxis>,
     /// Keep the model's edges sharp at DEGREES and above, if it has no normals
     ///
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
@@ -122,15 +121,15 @@ impl Made {
 /// for.
 fn make(
     model: &OsStr,
-    up: Option<Up>,
+    up: Option<UpAxis>,
     crease: Option<Angle>,
     out: Option<&Path>,
 ) -> Result<(String, Palette, Vec<Made>), Failure> {
     let model = input::model(model, &model_file::Options { crease })?;
     out.map_or(Ok(()), read_files::spare)?;
     let name = model.name.clone();
-    let mut stage = model.stage(up.map(UpAxis::from), false)?;
-    let automatic = stage.automatic().map_err(Failure::from)?.clone();
+    let mut stage = model.stage(up, false)?;
+    let automatic = stage.automatic()?.clone();
     let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);
     for (material, entries) in materials.zip(automatic.entries.iter().flatten()) {

@@ -4,7 +4,6 @@ use std::ffi::OsString;
 use std::time::Duration;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use mode13h::plan::{Effect, Plan, Row};
 use mode13h::render::{Renderer, Stats};
 use mode13h::scene::Scene;
@@ -79,11 +78,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
 /// The price of each row, in nanoseconds a frame.
 fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) -> Result<Vec<Option<u64>>, Failure> {
-    let bar = ProgressBar::new(rows.len() as u64);
-    let bar = match ProgressStyle::with_template("{bar:40} {pos}/{len} effects measured") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    };
+    let bar = output::bar(rows.len() as u64, "{bar:40} {pos}/{len} effects measured");
     let mut prices: Vec<Option<u64>> = Vec::with_capacity(rows.len());
     for row in rows {
         // Effects that apply to all objects are measured once.

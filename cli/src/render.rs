@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use mode13h::export::Scale;
 use mode13h::raster::Frame;
 use mode13h::render::{Renderer, Stats};
@@ -212,7 +212,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Out::Terminal(protocol) => renderer_pool.work(|artist| {
             draw(artist, 0)?;
             let scale = options.scale.unwrap_or(if options.size.is_some() { Scale::One } else { Film::SCALE });
-            let shown = protocol.picture(&artist.frame().picture(), scale).map_err(Failure::from)?;
+            let shown = protocol.picture(&artist.frame().picture(), scale)?;
             output::print(&(shown + "\n")).map(|()| None)
         }),
         Out::Film(film) => {
@@ -296,7 +296,7 @@ impl Out {
     fn new(options: &Options, out: &Path) -> Result<Out, Failure> {
         let Options { frames, turn, fps, rgb, size, scale, to, .. } = options;
         let wrong = |reason: &dyn std::fmt::Display| Failure::words(format!("{}: {reason}", out.display()));
-        let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+        let ends_in = |wanted| output::has_extension(out, wanted);
         let is_stream = film_kind(out) == Some(Kind::Stream);
         if to.is_some() && !is_stream {
             return Err(wrong(&"--to shows the picture in the terminal, so -o can only be -"));
@@ -311,7 +311,7 @@ impl Out {
                 return Err(wrong(&"both --turn and --fps say how far the model turns between pictures: give one"));
             }
             let frames = frames.unwrap_or(1);
-            Ok(Out::Pictures(Names::new(out, frames, "pictures")?, frames))
+            Ok(Out::Pictures(Names::new(out, frames)?, frames))
         } else if let Some(kind) = film_kind(out) {
             if *rgb {
                 return Err(wrong(&"--rgb is for .png; an animation gets the colours it needs"));
@@ -370,7 +370,7 @@ impl Out {
 
 /// Kind of film that a name asks for, if it asks for one.
 fn film_kind(out: &Path) -> Option<Kind> {
-    let ends_in = |wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+    let ends_in = |wanted| output::has_extension(out, wanted);
     match () {
         () if out == Path::new("-") => Some(Kind::Stream),
         () if ends_in("gif") => Some(Kind::Gif),
@@ -454,12 +454,12 @@ impl Run {
             let (seconds, pose) = motion.of(number, &stage);
             stage.show(seconds, pose);
             if number == 0 {
-                calibrate((&mut renderer, &mut pace), &stage.scene, &mut vga, clock()).map_err(Failure::from)?;
+                calibrate((&mut renderer, &mut pace), &stage.scene, &mut vga, clock())?;
             }
             run.errors.push(pace.error());
             let fits = pace.fits();
             let timed = time_frame((&mut renderer, &mut pace), &stage.scene, &mut vga, clock());
-            let (_, milliseconds) = timed.map_err(Failure::from)?;
+            let (_, milliseconds) = timed?;
             run.timed.push(Timed { max_time, milliseconds, fits });
         }
         let late = run.timed.iter().filter(|frame| !frame.fits).count();
@@ -507,7 +507,7 @@ impl Artist {
             return self.renderer.draw(scene, &mut self.vga).map_err(Failure::from);
         };
         let frame = Frame::new(pixels, *width, *height, *width as usize).map_err(Failure::words)?;
-        let stats = self.renderer.draw_frame(scene, frame, (1, 1)).map_err(Failure::from)?;
+        let stats = self.renderer.draw_frame(scene, frame, (1, 1))?;
         scene.load_palette(&mut self.vga);
         Ok(stats)
     }
@@ -523,12 +523,8 @@ impl Artist {
 
 /// A progress bar on standard error, if that is a terminal and there is more than one frame.
 fn progress(frames: u32) -> ProgressBar {
-    if frames == 1 || output::is_quiet() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(frames.into());
-    match ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
+    match frames == 1 || output::is_quiet() {
+        true => ProgressBar::hidden(),
+        false => output::bar(frames.into(), "{bar:40} {pos}/{len} frames, {eta} left"),
     }
 }

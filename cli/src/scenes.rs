@@ -48,9 +48,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Err(Failure::words(format!("{name}: no such scene{near} (mode13h list scenes shows the names)")));
     };
     let path = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-        return Err(Failure::words(format!("{}: the name of a scene file must end in .toml", path.display())));
-    }
+    output::check_extension(&path, "toml", "a scene file")?;
     if out.is_none() {
         output::refuse_overwriting(&path, *force)?;
     }

@@ -139,15 +139,18 @@ fn check(options: &Options) -> Result<(), Failure> {
     if options.list {
         return output::print(&chosen.iter().fold(String::new(), |list, frame| list + &frame.name + "\n"));
     }
-    let loops: Vec<Outcome> = match prefix {
-        None => loops::all(Cases::quick(options.seed)).collect(),
-        Some(_) => Vec::new(),
+    let check_loops = || -> Vec<Outcome> {
+        match prefix {
+            None => loops::all(Cases::quick(options.seed)).collect(),
+            Some(_) => Vec::new(),
+        }
     };
     let kernels: Vec<Kernel> = Kernel::available().collect();
     let build =
         |frame: &Frame| Built { name: frame.name.clone(), expected: frame.expected(), picture: frame.picture() };
     let built: Vec<Built> = chosen.iter().map(build).collect();
-    let by_kernel: Vec<ByKernel> = kernels.into_par_iter().map(|kernel| draw(kernel, &built)).collect();
+    let draw_all = || -> Vec<ByKernel> { kernels.into_par_iter().map(|kernel| draw(kernel, &built)).collect() };
+    let (loops, by_kernel) = rayon::join(check_loops, draw_all);
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
         + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
     let picture = picture(options, &chosen, &by_kernel)?;

@@ -51,7 +51,7 @@ pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -
         renderer.settings.accuracy = Some((*shading).into());
         renderer.force(Effect::Transform, Some(true));
         for scene in frames {
-            renderer.draw(scene, &mut vga).map_err(Failure::from)?;
+            renderer.draw(scene, &mut vga)?;
         }
         draw_counted(frames, &mut renderer, &mut vga)?;
         shading_is_done(shading);
@@ -64,7 +64,7 @@ pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -
 #[inline(never)]
 fn draw_counted(frames: &[Scene], renderer: &mut Renderer, vga: &mut Vga) -> Result<(), Failure> {
     for scene in frames {
-        black_box(renderer.draw(scene, vga).map_err(Failure::from)?);
+        black_box(renderer.draw(scene, vga)?);
     }
     Ok(())
 }
@@ -77,7 +77,7 @@ fn shading_is_done(shading: &Shading) {
 /// Counts the instructions of every shading by running this program again with its own arguments.
 pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
     let directory = Temporary::new()?;
-    let program = env::current_exe().map_err(Failure::from)?;
+    let program = env::current_exe()?;
     let out = Command::new("valgrind")
         .args(["--tool=callgrind", "--quiet", "--collect-atstart=no"])
         .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])

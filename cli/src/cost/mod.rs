@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h::span::Kernel;
@@ -140,7 +140,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
-    let (mut study, samples) = measured.map_err(Failure::from)?;
+    let (mut study, samples) = measured?;
     if let Some(counts) = &counts {
         counts.write_into(&mut study);
     }
@@ -196,10 +196,9 @@ struct Progress {
 
 impl Progress {
     fn new() -> Progress {
-        let bar = if output::is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(1000) };
-        let bar = match ProgressStyle::with_template("{bar:40} {percent}% {msg}") {
-            Ok(style) => bar.with_style(style),
-            Err(_) => bar,
+        let bar = match output::is_quiet() {
+            true => ProgressBar::hidden(),
+            false => output::bar(1000, "{bar:40} {percent}% {msg}"),
         };
         Progress { bar, step: Mutex::new(None), begun: Instant::now() }
     }

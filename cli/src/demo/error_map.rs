@@ -127,7 +127,7 @@ impl Map {
             none => {
                 let mut probe = Probe::new(Renderer::new());
                 let work = move |frame, desk: &Desk<Frame, Measured>| measure(&mut probe, frame, desk);
-                none.insert(Background::start("error map", work).map_err(Failure::from)?)
+                none.insert(Background::start("error map", work)?)
             }
         };
         if self.asked != Some(number) {

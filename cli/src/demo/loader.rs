@@ -103,7 +103,7 @@ impl Loader {
                 }
             }
         };
-        thread::Builder::new().name("loader".to_string()).spawn(work).map_err(Failure::from)?;
+        thread::Builder::new().name("loader".to_string()).spawn(work)?;
         let loader = Loader { wanted, loaded };
         loader.ask(0);
         Ok(loader)

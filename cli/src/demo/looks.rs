@@ -53,11 +53,11 @@ impl Looks {
         let (stage, renderer) = (&mut show.stage, &mut show.halves[0].renderer);
         for &(switch, wanted) in &self.switches {
             for _ in 0..Switch::MAX_STATES {
-                renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+                renderer.make_plan(&stage.scene, Screen::MODE_13H)?;
                 if switch.state(renderer) == wanted {
                     break;
                 }
-                switch.turn(stage, renderer).map_err(Failure::from)?;
+                switch.turn(stage, renderer)?;
             }
         }
         Ok(())
@@ -74,7 +74,7 @@ impl Panel for Looks {
         if input.pressed(Key::P) {
             self.palettes.go_round();
             self.chose_palette = true;
-            show.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
+            show.stage.set_colors(&self.palettes.chosen().1)?;
             show.say(format!("palette {}", self.palettes.chosen().0));
         }
         if input.pressed(Key::M) {
@@ -86,8 +86,8 @@ impl Panel for Looks {
             if input.pressed(key) {
                 let (stage, left) = (&mut show.stage, &mut show.halves[0]);
                 let was = switch.state(&left.renderer);
-                switch.turn(stage, &mut left.renderer).map_err(Failure::from)?;
-                left.renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+                switch.turn(stage, &mut left.renderer)?;
+                left.renderer.make_plan(&stage.scene, Screen::MODE_13H)?;
                 let is = switch.state(&left.renderer);
                 left.forget_times();
                 self.switches.retain(|(other, _)| *other != switch);
@@ -105,7 +105,7 @@ impl Panel for Looks {
             (self.chose_palette, self.switches) = (false, Vec::new());
             show.set_renderers(|renderer| renderer.settings.mapping = *self.mappings.chosen());
         } else if self.chose_palette && self.palettes.choose(|(name, _)| *name == before.chosen().0) {
-            show.stage.set_colors(&self.palettes.chosen().1).map_err(Failure::from)?;
+            show.stage.set_colors(&self.palettes.chosen().1)?;
         }
         self.switch_again(show)
     }

@@ -259,7 +259,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             (shown, changed) = (look, window.seconds());
             window.show_over(screen, |canvas| sheet.draw(canvas))
         };
-        if flow.map_err(Failure::from)? == Flow::Close {
+        if flow? == Flow::Close {
             return Ok(());
         }
     }
@@ -303,7 +303,7 @@ impl Demo {
         // show.
         let checked = result.and_then(|stage| {
             let mut renderer = show.halves[0].renderer.with_same_settings();
-            renderer.make_plan(&stage.scene, Screen::MODE_13H).map_err(Failure::from)?;
+            renderer.make_plan(&stage.scene, Screen::MODE_13H)?;
             Ok(*stage)
         });
         let keeps = is_again && !show.stage.scene.objects().is_empty();
@@ -390,7 +390,7 @@ impl Demo {
     fn draw(&mut self) -> Result<(), Failure> {
         let Demo { show, panels: Panels { motion, maps, .. } } = self;
         show.stage.show(motion.seconds(), motion.pose);
-        show.draw().map_err(Failure::from)?;
+        show.draw()?;
         if show.figures.is_open || maps.is_on || show.divider.is_some() {
             show.measure(maps.mouse)?;
         }

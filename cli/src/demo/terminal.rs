@@ -51,7 +51,7 @@ impl Sending {
         output::long_file(None, || {
             let protocol = self.to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)));
             let scale = self.scale.unwrap_or_else(scale_that_fits);
-            let screen = Screen::open(protocol).map_err(Failure::from)?;
+            let screen = Screen::open(protocol)?;
             let result = self.show(&screen, scale, stage, renderer, seconds);
             drop(screen);
             result
@@ -89,12 +89,12 @@ impl Sending {
                 return Ok(());
             }
             stage.show(motion.seconds(), motion.pose);
-            renderer.draw(&stage.scene, &mut vga).map_err(Failure::from)?;
+            renderer.draw(&stage.scene, &mut vga)?;
             let frame = (vga.pixels().to_vec(), vga.palette());
             // A still picture is sent once.
             if shown.as_ref() != Some(&frame) {
                 let picture = Picture::mode_13h(&frame.0, &frame.1);
-                match send(&screen.protocol.frame(&picture, scale).map_err(Failure::from)?) {
+                match send(&screen.protocol.frame(&picture, scale)?) {
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
                     sent => sent.map_err(output::not_printed)?,
                 }

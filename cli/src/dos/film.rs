@@ -8,14 +8,10 @@ use mode13h::settings::Shading;
 
 use super::player::MAGIC;
 
-/// A mesh already in the film, as bytes: objects whose meshes are equal to the byte share one.
-#[derive(PartialEq)]
-struct Written(Vec<u8>);
-
 /// A film to which frames are added one at a time.
 pub(super) struct Writer {
     shading: Option<Shading>,
-    meshes: Vec<Written>,
+    meshes: Vec<Vec<u8>>,
     frames: Vec<Vec<u8>>,
     /// The largest number of vertices in a mesh.
     pub(super) vertices: usize,
@@ -52,7 +48,7 @@ impl Writer {
     fn object(&mut self, object: &Object<'_, u32>, out: &mut Bytes) -> Result<(), String> {
         let Object { mesh, placement, paints } = object;
         let parts = mesh.parts();
-        let written = Written(mesh_bytes(&parts)?);
+        let written = mesh_bytes(&parts)?;
         let index = self.meshes.iter().position(|mesh| *mesh == written).unwrap_or_else(|| {
             self.meshes.push(written);
             self.vertices = self.vertices.max(parts.positions.len());
@@ -83,7 +79,7 @@ impl Writer {
         out.count(self.meshes.len())?;
         out.count(self.frames.len())?;
         out.0.extend(palette.colors().iter().flat_map(|color| color.to_dac()));
-        out.0.extend(self.meshes.into_iter().flat_map(|mesh| mesh.0));
+        out.0.extend(self.meshes.into_iter().flatten());
         for frame in self.frames {
             out.count(frame.len())?;
             out.0.extend(frame);

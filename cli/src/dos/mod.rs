@@ -9,7 +9,7 @@ mod player;
 mod unpack;
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use miniz_oxide::deflate::{CompressionLevel, compress_to_vec};
@@ -86,9 +86,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     quiet.obey();
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
-    let ends_in = |out: &Path, wanted| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
     let out = match out {
-        Some(out) if !(ends_in(out, "exe") || ends_in(out, "img")) => {
+        Some(out) if !(output::has_extension(out, "exe") || output::has_extension(out, "img")) => {
             return Err(Failure::words(format!(
                 "{}: the name of a DOS program must end in .exe, that of a floppy in .img",
                 out.display()
@@ -116,7 +115,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
     let packed = pack(&film);
     let body = body(&packed, film.len(), vertices)?;
-    let program = if ends_in(&out, "img") { floppy(&body) } else { program(&body) };
+    let program = if output::has_extension(&out, "img") { floppy(&body) } else { program(&body) };
     // The frames are drawn from what the program unpacks.
     let sum = unpack(&packed)
         .and_then(|film| hash_of(&film))
@@ -302,11 +301,12 @@ mod tests {
             assert!(unpack(&[&packed[..], &[0]].concat()).is_none());
             for at in (0..packed.len()).step_by(1 + packed.len() / 50) {
                 let mut other = packed.clone();
-                other[at] ^= 0x10;
+                // The largest length, which is zeroed, is 16 MB.
+                other[at] ^= if at == 3 { 0x01 } else { 0x10 };
                 assert!(unpack(&other).is_none_or(|unpacked| unpacked.len() == bytes.len()));
             }
         }
-        assert!(unpack(&[0xFF; 100]).is_none());
+        assert!(unpack(&[&[0xFF, 0xFF, 0xFF, 0][..], &[0xFF; 96]].concat()).is_none());
     }
 
     /// DOS and the boot sector load the whole program, and one that DOS cannot load is rejected.

@@ -94,7 +94,7 @@ impl ShadingOptions {
     /// Finds the error for this scene if frames have to fit in a time, prints it, and has the renderer draw within it.
     pub(crate) fn settle(&self, renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
         let (Some(max_time), Some(mut pace)) = (self.max_time, self.pace(renderer)) else { return Ok(()) };
-        calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock()).map_err(Failure::from)?;
+        calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock())?;
         let accuracy = pace.accuracy();
         match pace.fits() {
             true => eprintln!("mode13h: {accuracy}, the smallest error that fits in {max_time} ms"),
