@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+#[cfg(unix)]
+use crate::folder::signalled;
 use crate::folder::{Folder, failed, names_in};
 use crate::support::tried::is_here;
 use mode13h::light::Material;
@@ -287,8 +289,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
     let mut command = folder.program("cost torus --seconds 600");
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
     sleep(Duration::from_secs(2));
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("started");
-    let output = child.wait_with_output().expect("it ends");
+    let output = signalled(child, "-INT");
     let lines = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(130), "{lines}");
     assert!(lines.lines().next().is_some_and(|line| line.ends_with("then timing for at most 600 s")), "{lines}");

@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::process::Child;
 use std::process::{Command, Output};
 
 use mode13h::palette::Rgb;
@@ -58,6 +60,14 @@ impl Folder {
         printed(self.run(words))
     }
 
+    /// What the program says on standard error, if it succeeds.
+    #[track_caller]
+    pub(crate) fn said(&self, words: &str) -> String {
+        let output = self.run(words);
+        assert!(output.status.success(), "{words}: {output:?}");
+        String::from_utf8(output.stderr).expect("text")
+    }
+
     /// Runs what has to succeed in silence.
     #[track_caller]
     pub(crate) fn succeed(&self, words: &str) {
@@ -82,6 +92,18 @@ impl Folder {
     pub(crate) fn picture(&self, words: &str) -> Vec<u8> {
         self.succeed(&format!("render {words} -o x.png"));
         self.read("x.png")
+    }
+
+    /// Runs the program where files can only grow to this many blocks, of 512 or 1,024 bytes.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn run_with_room(&self, blocks: usize, words: &str) -> Output {
+        Command::new("sh")
+            .args(["-c", "ulimit -f $1; shift; trap '' XFSZ; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_mode13h")])
+            .arg(blocks.to_string())
+            .args(words.split_whitespace())
+            .current_dir(self)
+            .output()
+            .expect("started")
     }
 
     /// Runs what has to fail with this status and one line that holds `says`, which is returned.
@@ -119,6 +141,14 @@ pub(crate) fn failed(output: &Output, status: i32, says: &str) -> String {
     assert_eq!(line.find('\n'), Some(line.len() - 1), "more than one line: {line}");
     assert!(output.stdout.is_empty(), "{output:?}");
     line
+}
+
+/// Sends a signal such as `-INT`, and waits for the end.
+#[cfg(unix)]
+pub(crate) fn signalled(child: Child, signal: &str) -> Output {
+    let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("started");
+    assert!(killed.success());
+    child.wait_with_output().expect("waited")
 }
 
 /// The names in a folder, sorted.

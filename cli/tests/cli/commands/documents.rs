@@ -2,7 +2,6 @@
 //! shadings and effects, files.
 
 use std::collections::BTreeSet;
-use std::process::Command;
 
 use mode13h::plan::{Effect, FaceShading};
 use mode13h::settings::DitherPattern;
@@ -12,6 +11,7 @@ use mode13h_assets::look::Look;
 use mode13h_assets::shipped;
 use mode13h_assets::terminal::Protocol;
 
+use crate::folder::Folder;
 use crate::support::tried::Tried;
 
 /// The documents that a user reads.
@@ -60,10 +60,8 @@ const OTHERS: [&str; 11] = [
     "--test-threads",
 ];
 
-fn help(words: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_mode13h")).args(words).arg("--help").output().expect("started");
-    assert!(output.status.success(), "{output:?}");
-    String::from_utf8(output.stdout).expect("text")
+fn help(command: &str) -> String {
+    Folder::new().printed(&format!("{command} --help"))
 }
 
 /// The options that a text names, such as `--shading`.
@@ -80,13 +78,13 @@ fn options(text: &str) -> BTreeSet<&str> {
 
 /// The program's commands, with the options that each has.
 fn commands() -> Vec<(String, BTreeSet<String>)> {
-    let all = help(&[]);
+    let all = help("");
     let listed = all.split("\nCommands:\n").nth(1).expect("commands").split("\n\n").next().expect("a list");
     let names = listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
     let names = names.filter(|name| !name.is_empty() && *name != "help");
     names
         .map(|name| {
-            let help = help(&[name]);
+            let help = help(name);
             (name.to_string(), options(&help).into_iter().map(String::from).collect())
         })
         .collect()
@@ -172,14 +170,13 @@ fn documents_list_every_shading_and_every_way() {
     assert_eq!(values_of("hidden-surfaces"), HiddenSurfaces::ALL.map(HiddenSurfaces::name));
     assert_eq!(values_of("mapping"), Mapping::ALL.map(Mapping::name));
     assert_eq!(values_of("look"), Look::ALL.map(Look::name));
-    let rows =
-        PROGRAM.split("| look | colours |").nth(1).expect("the table of looks").split("\n\n").next().expect("rows");
-    let rows = rows.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
-    assert_eq!(rows.collect::<Vec<_>>(), Look::ALL.map(Look::name));
-    let table =
-        PROGRAM.split("| shading | what |").nth(1).expect("the table of shadings").split("\n\n").next().expect("rows");
-    let rows = table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
-    assert_eq!(rows.collect::<Vec<_>>(), Shading::ALL.map(Shading::name));
+    // The names in the first column of a table of docs/program.md.
+    let rows = |heading: &str| -> Vec<&str> {
+        let table = PROGRAM.split(heading).nth(1).expect("the table").split("\n\n").next().expect("rows");
+        table.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect()
+    };
+    assert_eq!(rows("| look | colours |"), Look::ALL.map(Look::name));
+    assert_eq!(rows("| shading | what |"), Shading::ALL.map(Shading::name));
     tried.add(6);
 }
 
@@ -235,7 +232,7 @@ fn documents_name_the_keys_of_the_window() {
     let cells = section.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
     let cells = cells.collect::<Vec<_>>().join("\n");
     let documented = keys_of(&cells);
-    let help = help(&[]);
+    let help = help("");
     let help = help.split("Keys in the window:\n").nth(1).expect("keys");
     assert_eq!(documented, keys_of(help), "docs/program.md and --help");
     // What the program asks for.
