@@ -371,6 +371,16 @@ pub(crate) fn worst(scene: &Scene, screen: Screen, budgets: &[f32]) -> Worst {
     worst
 }
 
+/// As [`worst`] with all budgets, counted.
+fn judged(tried: &mut Tried, scene: &Scene, screen: Screen) -> Worst {
+    let worst = worst(scene, screen, &BUDGETS);
+    tried.add(worst.pixels);
+    if worst.pixels > 0 {
+        tried.worst("beyond", worst.beyond);
+    }
+    worst
+}
+
 fn screen(random: &mut Random) -> Screen {
     let (width, height) = random.one_of(&[(64, 48), (96, 64), (160, 100)]);
     Screen { width, height, ..Screen::MODE_13H }
@@ -383,15 +393,10 @@ fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
     for i in 0..scenes {
         let (screen, mut genes) = (screen(random), Genes::new(random));
         let scene = scene(kind, &mut genes);
-        let worst = worst(&scene, screen, &BUDGETS);
-        tried.add(worst.pixels);
-        if worst.pixels > 0 {
-            tried.worst("beyond", worst.beyond);
-        }
+        let worst = judged(tried, &scene, screen);
         if worst.beyond > 0.0 {
             broken += 1;
-            let is_worst = first.as_ref().is_none_or(|(_, beyond, _)| *beyond < worst.beyond);
-            if is_worst {
+            if first.as_ref().is_none_or(|(_, beyond, _)| *beyond < worst.beyond) {
                 first = Some((format!("{kind:?} {i}: {worst} of {screen:?}"), worst.beyond, scene));
             }
         }
@@ -447,11 +452,7 @@ fn no_pixel_is_beyond_from_the_nearest_near_plane_on() {
         let Some(needed) = renderer.plan().near_needed() else { continue };
         let times = if random.unit() < 0.5 { 1.0 } else { 16.0_f32.powf(random.unit() as f32) };
         scene.camera.near = needed * times;
-        let worst = worst(&scene, screen, &BUDGETS);
-        tried.add(worst.pixels);
-        if worst.pixels > 0 {
-            tried.worst("beyond", worst.beyond);
-        }
+        let worst = judged(&mut tried, &scene, screen);
         if worst.beyond > 0.0 {
             broken.push(format!("{kind:?} {i}, {times} times {needed}: {worst} of {screen:?}"));
         }
@@ -511,10 +512,8 @@ fn no_pixel_of_a_turn_is_beyond() {
                 scene.set_time((f64::from(pose) + 0.37) / 12.0 * scene.duration);
             }
             for (width, height) in [(131, 97), (211, 133)] {
-                let worst = worst(&scene, Screen { width, height, ..Screen::MODE_13H }, &BUDGETS);
+                let worst = judged(&mut tried, &scene, Screen { width, height, ..Screen::MODE_13H });
                 assert!(worst.beyond <= 0.0, "{name}, pose {pose}, {width} × {height}: {worst}");
-                tried.add(worst.pixels);
-                tried.worst("beyond", worst.beyond);
             }
         }
     }
@@ -539,8 +538,7 @@ fn no_pixel_is_beyond_at_any_size() {
         all.add_light(Light::lamp(Vec3::Z * 3.0 * size, 4.0 * size));
         for (what, scene) in [("a lamp", lamp_alone), ("all", all)] {
             let screen = Screen { width: 96, height: 64, ..Screen::MODE_13H };
-            let worst = worst(&scene, screen, &BUDGETS);
-            tried.add(worst.pixels);
+            let worst = judged(&mut tried, &scene, screen);
             assert!(worst.beyond <= 0.0, "{what} of size {size}: {worst}");
         }
     }
