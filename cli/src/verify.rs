@@ -148,7 +148,9 @@ fn check(options: &Options) -> Result<(), Failure> {
     let kernels: Vec<Kernel> = Kernel::available().collect();
     let build =
         |frame: &Frame| Built { name: frame.name.clone(), expected: frame.expected(), picture: frame.picture() };
-    let built: Vec<Built> = chosen.iter().map(build).collect();
+    // A list for each thread, as frames are not shared between them; the list alone takes no time.
+    let each = (0..chosen.len()).into_par_iter();
+    let built: Vec<Built> = each.map_init(|| self::chosen(prefix), |frames, i| build(&frames[i])).collect();
     let draw_all = || -> Vec<ByKernel> { kernels.into_par_iter().map(|kernel| draw(kernel, &built)).collect() };
     let (loops, by_kernel) = rayon::join(check_loops, draw_all);
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
