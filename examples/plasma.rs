@@ -1,8 +1,8 @@
 //! A plasma of palette and bytes alone: no scene, no raster. The bytes are drawn once; what moves is
 //! the DAC, turned by one entry at each vertical retrace.
 //!
-//! `cargo run --release --example plasma -- [OUT.png] [RETRACES]`: how it looks after so many
-//! retraces (of 70 a second; 100 unless told).
+//! `cargo run --release --example plasma -- [OUT.png] [RETRACES]` writes how it looks after that many
+//! retraces (70 a second), by default 100.
 
 use mode13h::export;
 use mode13h::palette::gradient::{Stop, fill};

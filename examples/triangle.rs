@@ -12,7 +12,7 @@ const HEIGHT: u32 = 24;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut bytes = [0; (WIDTH * HEIGHT) as usize];
-    // Whole pixels here; a coordinate has 8 bits of fraction. Depth is of no matter for one triangle.
+    // Whole pixels here; a coordinate has 8 bits of fraction. Depth does not matter for one triangle.
     let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
     let triangle = [at(4, 2, 255)?, at(60, 8, 32)?, at(20, 22, 96)?];
     let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize)?;

@@ -61,7 +61,7 @@ static uint32_t bits_of(float number)
     return real.bits;
 }
 
-/* A number of so many 256ths, exact by either door. */
+/* A number of 256ths, exact through either interface. */
 static void put(uint32_t *to, int32_t number, int is_fixed)
 {
     *to = is_fixed ? (uint32_t)number << 8 : bits_of((float)number / 256.0f);

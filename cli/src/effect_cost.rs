@@ -157,7 +157,7 @@ mod tests {
         disturbed[0] = 1e9;
         disturbed[99] = -1e9;
         assert_eq!(above_noise(disturbed), 1_000);
-        // Of 15, the fewest that are ever measured, 14 must be above.
+        // At least 15 are measured; of these 14 must be above.
         let few = |above: usize| (0..15).map(|i| if i < above { 7.0 } else { -7.0 }).collect::<Vec<f64>>();
         assert_eq!([13, 14].map(|above| above_noise(few(above))), [0, 7]);
         assert_eq!(above_noise(Vec::new()), 0);

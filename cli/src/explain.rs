@@ -211,7 +211,7 @@ fn account_json(shade_trace: &ShadeTrace) -> Value {
         _ => json!({ "progression": "quotient" }),
     };
     json["byte"] = shade_trace.byte.into();
-    // As text, because many JSON readers lose digits of numbers beyond 2^53.
+    // Written as text, because many JSON readers lose digits of numbers beyond 2^53.
     let exact = shade_trace.exact.map(|exact| {
         json!({
             "numerator": exact.numerator.to_string(),

@@ -303,7 +303,7 @@ fn find(
             return Ok(());
         }
         if said.elapsed() >= REPORT {
-            // Of some hundreds of tiles.
+            // The share of some hundreds of tiles.
             say(judged.found(done as f64 / order.len() as f64)?);
             said = Instant::now();
         }

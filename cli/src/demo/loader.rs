@@ -223,12 +223,12 @@ mod tests {
         fs::write(&model, format!("{TRIANGLE}f 1 2 9\n")).expect("written");
         let wrong = next(&loader);
         assert!(wrong.is_again && reason(&wrong).contains("model.obj:5"), "{}", reason(&wrong));
-        // As many editors do: a new file beside the old, which takes its name.
+        // Many editors write a new file beside the old one, and then give it the old name.
         let beside = folder.path().join("model.obj~");
         fs::write(&beside, format!("{TRIANGLE}v 1 1 1\nf 1 2 4\nf 2 3 4\n")).expect("written");
         fs::rename(&beside, &model).expect("renamed");
         assert_eq!(triangles(&next(&loader)), 3);
-        // As others do: for a moment there is none.
+        // Others leave no file for a moment.
         fs::remove_file(&model).expect("removed");
         thread::sleep(PERIOD * 2);
         fs::write(&model, TRIANGLE.replace("1 2 3", "3 2 1 2")).expect("written");

@@ -461,8 +461,8 @@ fn peak_of_a_film(frames: u32) -> u64 {
     let status = format!("/proc/{}/status", child.id());
     let mut peak = 0;
     while child.try_wait().expect("a child").is_none() {
-        // Of one that has just ended there is none. It never falls, so the last one read is that of the whole film, but for
-        // the last moments.
+        // A program that has just ended has no status. The peak never falls, so the last one read is that of the whole
+        // film, except for the last moments.
         let status = fs::read_to_string(&status).unwrap_or_default();
         let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().split(' ').next()?.parse().ok());
         peak = most.unwrap_or(0).max(peak);
@@ -1376,7 +1376,7 @@ fn the_view_is_as_asked_for() {
     let own = picture("sphere");
     let covered = |png: &Png| png.pixels.iter().filter(|pixel| **pixel != png.pixels[0]).count();
     assert!(picture("sphere --zoom 1") == own);
-    // A view twice as narrow, or from twice as far away: four times the area, and a quarter but for perspective.
+    // A view twice as narrow, or from twice as far away: four times the area, and a quarter, except for perspective.
     let (larger, smaller) = (picture("sphere --zoom 1.05"), picture("sphere --zoom 0.5"));
     let part = |of| covered(of) as f64 / covered(&own) as f64;
     assert!((part(&larger) - 1.05 * 1.05).abs() < 0.01, "{}", part(&larger));

@@ -86,8 +86,8 @@ fn everything_is_measured_and_written() {
     // What the shadings promise, and what they do not.
     assert!(number(&of(Shading::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
     assert!(number(&of(Shading::Phong)["error_lit"]["rms"]) < number(&of(Shading::Flat)["error_lit"]["rms"]));
-    // Where cover is exact, only depths that are equal but for rounding show another face than the truth has: in the same
-    // pixels, however they are shaded.
+    // Where cover is exact, another face than in the truth shows only where two depths differ by no more than rounding:
+    // in the same pixels, however they are shaded.
     let cover_errors = |shading| of(shading)["cover_errors"].as_u64().expect("a count");
     for shading in
         [Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudHyperbolic, Shading::Phong, Shading::Float]

@@ -456,7 +456,7 @@ pub(super) mod tests {
             // Nearer, and slower only within the noise: the two cannot be ranked.
             row(Gouraud1616, 21.0, 4.5, &[Gouraud88]),
             row(Phong, 90.0, 0.3, &[]),
-            // As near as another, and slower.
+            // As close to the truth as another one, and slower.
             row(Float, 95.0, 4.5, &[]),
         ];
         mark_efficient(&mut rows);

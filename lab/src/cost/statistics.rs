@@ -132,7 +132,7 @@ mod tests {
         for seed in 0..40 {
             let ratio = Ratio::new(&times, &[1000.0; 401], &mut Random::again(seed));
             assert!(close(ratio.median, 1.2));
-            // As indices.
+            // The ends of the interval as indices.
             low += (ratio.interval.0 - 1.0) * 1000.0 / 40.0;
             high += (ratio.interval.1 - 1.0) * 1000.0 / 40.0;
         }

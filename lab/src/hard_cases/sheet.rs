@@ -87,7 +87,7 @@ impl Inks {
                 used[usize::from(*byte)] |= *writes > 0;
             }
         }
-        // As the DAC shows them, which has only 64 greys for 256. Bytes with the same colour share an index.
+        // The colours that the DAC shows; it has only 64 greys for 256. Bytes with the same colour share an index.
         let palette = comparison.palette.on_dac();
         let mut inks = Self { of_byte: [0; 256], light: [false; 256], colors: [Rgb::BLACK; 256] };
         let mut known: Vec<Rgb> = Vec::new();

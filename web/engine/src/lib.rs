@@ -74,7 +74,7 @@ extern "C" fn start() {
     panic::set_hook(Box::new(|info| say(info.to_string().into_bytes())));
 }
 
-/// The address of so many bytes, for what the next call takes.
+/// The address of room for this many bytes, which the next call reads.
 #[unsafe(no_mangle)]
 extern "C" fn room(bytes: usize) -> *mut u8 {
     with(|state| {
@@ -114,7 +114,7 @@ extern "C" fn about() {
     say(as_text(&about));
 }
 
-/// Keeps the room as a file that scenes may name: first its name, so many bytes, then what it holds.
+/// Keeps the room as a file that scenes may name. It holds the file's name, of this many bytes, then its contents.
 #[unsafe(no_mangle)]
 extern "C" fn file(name: usize) {
     with(|state| {
@@ -162,7 +162,7 @@ extern "C" fn set(stage: usize) -> bool {
     on(stage, |stage| stage.set(&lines).map(|()| Vec::new()))
 }
 
-/// Moves a scene to a time in seconds, turned and tilted by so many radians and enlarged.
+/// Moves a scene to a time in seconds, turned and tilted by these angles in radians, and enlarged.
 #[unsafe(no_mangle)]
 extern "C" fn show(stage: usize, seconds: f64, turn: f64, tilt: f64, zoom: f64) -> bool {
     on(stage, |stage| stage.show(seconds, Pose { turn, tilt, zoom }).map(|()| Vec::new()))

@@ -25,7 +25,7 @@ pub(super) fn section(study: &Study) -> Markup {
                 "In every round each shading and each budget draws the same frames, in an order that is shuffled again for each round, so that none is always first or always after the "
                 "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, even one that shows nothing new. A time is the median over the rounds; "
                 "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
-                "95 % of what resampling the rounds gives (bootstrap). Where it contains 1 the two cannot be told apart."
+                "95 % of what resampling the rounds gives (bootstrap). Where it contains 1, the two may well be equal."
             }
             p {
                 "All shadings share one path, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ by what they do at pixels "
