@@ -153,22 +153,28 @@ impl<'a> Image<'a> {
 pub(super) const LEVELS: usize = 16;
 const _: () = assert!((Texels::MAX_BITS as usize) < LEVELS);
 
-/// Stages that the pixels of a triangle pass through.
+/// Stages that the pixels of a triangle pass through: shade, texture, fog, blend.
+///
+/// Tables have 256 rows of 256 palette indices, row by row. [`Lut64K`] makes each kind, and
+/// [`as_array`](Lut64K::as_array) lends it.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPipeline<'a> {
     /// Source of the shades.
     pub source: ShadeSource<'a>,
     /// Red, green and blue instead of one shade, and what they are mixed to.
     pub channels: Option<Mix<'a>>,
-    /// Thresholds that replace the half that is otherwise added to a shade.
+    /// Dither: thresholds of a [`DitherPattern`](crate::settings::DitherPattern) in place of the half that is added to
+    /// each shade.
     pub dither: Option<Thresholds>,
     /// An image.
     pub texture: Option<TextureStage<'a>>,
-    /// The index for a fog level (row) and an index (column).
+    /// Fog: the index for a level of fog (row) and the index without fog (column), by [`Lut64K::fog`].
     pub fog: Option<&'a [u8; 65_536]>,
-    /// The index for the triangle's own (row) and the frame's (column).
+    /// Glass: the index for the triangle's own (row) and the one in the frame (column), by [`Lut64K::blend`] or
+    /// [`Lut64K::add`].
     pub blend: Option<&'a [u8; 65_536]>,
-    /// True if the depth buffer stores its depth, so that it hides what is drawn behind it later.
+    /// True if the depth buffer keeps the triangle's depth, so that it hides what is drawn behind it later. Glass does
+    /// not.
     pub keeps_depth: bool,
 }
 
