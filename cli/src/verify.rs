@@ -133,9 +133,7 @@ fn check(options: &Options) -> Result<(), Failure> {
         let near = near.map_or_else(|| "; --list shows them".into(), |near| format!("; did you mean {near}?"));
         return Err(Failure::words(format!("{name}: there is no such frame{near}")));
     }
-    if let Some(path) = options.out.as_ref().filter(|path| path.extension().is_none_or(|kind| kind != "png")) {
-        return Err(Failure::words(format!("{}: the name of a picture must end in .png", path.display())));
-    }
+    options.out.as_deref().map_or(Ok(()), |out| output::check_extension(out, "png", "a picture"))?;
     if options.list {
         return output::print(&chosen.iter().fold(String::new(), |list, frame| list + &frame.name + "\n"));
     }

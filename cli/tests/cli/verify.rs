@@ -55,9 +55,9 @@ fn the_same_for_programs() {
 #[test]
 fn one_frame_is_drawn() {
     let folder = Folder::new();
-    let text = folder.printed("verify --frame canvas/bands/plain -o bands.png");
-    assert!(text.contains("frames: 1 by each kernel") && text.contains("picture: bands.png\n"), "{text}");
-    assert_eq!(folder.png("bands.png").size, (320, 200));
+    let text = folder.printed("verify --frame canvas/bands/plain -o bands.PNG");
+    assert!(text.contains("frames: 1 by each kernel") && text.contains("picture: bands.PNG\n"), "{text}");
+    assert_eq!(folder.png("bands.PNG").size, (320, 200));
     assert_eq!(folder.printed("verify --list").lines().count(), frames::all().len());
     for (words, says) in [
         ("verify --frame canvas/bands/plian", "did you mean canvas/bands/plain?"),
