@@ -172,7 +172,7 @@ pub(crate) struct Png {
     pub(crate) size: (u32, u32),
     kind: png::ColorType,
     pub(crate) density: Option<(u32, u32)>,
-    /// As they are in the file.
+    /// The bytes as the file has them.
     pub(crate) pixels: Vec<u8>,
     /// Empty if it has none.
     pub(crate) palette: Vec<Rgb>,

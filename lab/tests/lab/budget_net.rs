@@ -371,7 +371,7 @@ pub(crate) fn worst(scene: &Scene, screen: Screen, budgets: &[f32]) -> Worst {
     worst
 }
 
-/// As [`worst`] with all budgets, counted.
+/// The worst pixel within all budgets, with its pixels added to the count.
 fn judged(tried: &mut Tried, scene: &Scene, screen: Screen) -> Worst {
     let worst = worst(scene, screen, &BUDGETS);
     tried.add(worst.pixels);
