@@ -101,8 +101,8 @@ impl Light {
         self
     }
 
-    /// Points a sun or a spot light in another direction: as for [`sun`](Self::sun) towards the sun, as in [`Cone`] away
-    /// from a spot light. A lamp that shines in all directions is left as it is.
+    /// Turns a sun or a spot light. The direction points towards a sun, but away from a spot light. A lamp that shines in
+    /// all directions is left as it is.
     ///
     /// ```
     /// use mode13h::Angle;

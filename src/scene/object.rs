@@ -303,8 +303,8 @@ impl Scene {
         self.ancestors(index).fold(Placement::of(&self.objects()[index]), Placement::within)
     }
 
-    /// The place in the scene of a point of an object's mesh, which is scaled, turned and moved as the object and its
-    /// parents are. `None` if the object was removed.
+    /// The position in the scene of a point of an object's mesh, which is scaled, turned and moved with the object and
+    /// its parents. `None` if the object was removed.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
