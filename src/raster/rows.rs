@@ -432,23 +432,30 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Calls code of the baseline that would otherwise be inlined several times. Spans with many columns in narrow vectors take
-/// long to compile; large triangles, whose rows are inlined once, are faster without the call.
+/// Calls code of the baseline that would otherwise be inlined several times, or into a long loop.
 #[inline(never)]
 fn apart<R>(part: impl FnOnce() -> R) -> R {
     part()
 }
 
-/// Returns whether vectors have more than 128 bits: they are aligned to their size.
+/// Returns whether lanes are plain arrays. A call costs them nothing, since they are in memory anyway, and without one they
+/// take long to compile. Vectors are aligned to their size.
 #[inline(always)]
-const fn has_wide_vectors<S: Lanes8>() -> bool {
-    align_of::<S::F64>() > 16
+const fn are_arrays<S: Lanes8>() -> bool {
+    align_of::<S::F64>() < 16
 }
 
-/// Returns whether [`apart`] earns anything: linear shades have few columns.
+/// Returns whether each row is computed and listed by a call: in plain arrays, and for spans with many columns in narrow
+/// vectors, which take long to compile, too.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
-    !has_wide_vectors::<S>() && !P::IS_LINEAR
+    are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
+}
+
+/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays.
+#[inline(always)]
+pub(super) fn part<S: Lanes8, R>(part: impl FnOnce() -> R) -> R {
+    if are_arrays::<S>() { apart(part) } else { part() }
 }
 
 /// [`Shades8::append`].

@@ -156,6 +156,7 @@ fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_
 compiled_for_each_level! {
     /// Draws triangles: with `FLAT`, of a single shade each; with `DEPTHS`, only where they are
     /// nearer than the cells.
+    #[inline(never)]
     fn draw_at_level[const FLAT: bool, const DEPTHS: bool][FLAT, DEPTHS](
         of: Drawn<'_>,
         place: Place,
@@ -238,12 +239,17 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             shades.draw::<S, LISTED>(s, list, target);
         }
         shades.begin(number * LANES);
-        let basis = if P::IS_FLAT {
-            setup.set_up::<S, DEPTHS, true>(s, &corners, layout)
-        } else {
-            setup.set_up::<S, DEPTHS, false>(s, &corners, layout)
-        };
-        shades.set_up(s, &basis, &corners, &setup);
+        rows::part::<S, _>(
+            #[inline(always)]
+            || {
+                let basis = if P::IS_FLAT {
+                    setup.set_up::<S, DEPTHS, true>(s, &corners, layout)
+                } else {
+                    setup.set_up::<S, DEPTHS, false>(s, &corners, layout)
+                };
+                shades.set_up(s, &basis, &corners, &setup);
+            },
+        );
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
         gather::<P, DEPTHS>(&mut corners, triangles, &picks.range(count.min((number + 1) * LANES), count));
@@ -307,7 +313,10 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                     shades.draw::<S, LISTED>(s, list, target);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
-                rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list);
+                rows::part::<S, _>(
+                    #[inline(always)]
+                    || rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list),
+                );
                 first += LANES as i32;
             }
         }
