@@ -26,16 +26,11 @@ pub(super) enum DirectTint<'a> {
     Lit,
 }
 
-/// A table row that leaves every texel unchanged.
-static IDENTITY: [u8; 256] = {
-    let mut row = [0; 256];
-    let mut texel = 0_u8;
-    while texel < 255 {
-        texel += 1;
-        row[texel as usize] = texel;
-    }
-    row
-};
+/// Returns whether a table row leaves every texel unchanged.
+fn is_identity(row: &[u8; 256]) -> bool {
+    // Comparing arrays would call `bcmp`, which the C library's archive does not ask its host for.
+    row.iter().zip(0_u8..=255).fold(0, |differ, (&shown, texel)| differ | shown ^ texel) == 0
+}
 
 impl<'a> Direct<'a> {
     /// The direct form of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
@@ -54,7 +49,7 @@ impl<'a> Direct<'a> {
         let (tint, flat) = match pipeline.source {
             ShadeSource::Shaded(Interpolation::Flat(shade)) => {
                 let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
-                (if *row == IDENTITY { DirectTint::None } else { DirectTint::Row(row) }, Some(shade))
+                (if is_identity(row) { DirectTint::None } else { DirectTint::Row(row) }, Some(shade))
             }
             _ if is_linear => (DirectTint::Lit, None),
             _ => return None,
