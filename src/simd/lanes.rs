@@ -45,6 +45,11 @@ pub(crate) trait Lanes8: Copy {
 
     fn load_i32(self, from: &[i32; 8]) -> Self::I32;
     fn splat_i32(self, value: i32) -> Self::I32;
+    /// One value in the lower four lanes, the other in the upper four.
+    #[inline(always)]
+    fn halves_i32(self, [low, high]: [i32; 2]) -> Self::I32 {
+        self.load_i32(&[low, low, low, low, high, high, high, high])
+    }
     fn store_i32(self, from: Self::I32, to: &mut [i32; 8]);
     /// The lowest byte of each lane.
     #[inline(always)]

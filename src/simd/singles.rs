@@ -12,6 +12,11 @@ pub(crate) trait F32Lanes8: Lanes8 {
     type F32: Copy;
 
     fn splat_f32(self, value: f32) -> Self::F32;
+    /// One value in the lower four lanes, the other in the upper four.
+    #[inline(always)]
+    fn halves_f32(self, [low, high]: [f32; 2]) -> Self::F32 {
+        self.load_f32(&[low, low, low, low, high, high, high, high])
+    }
     /// x, y and z of eight vectors.
     fn vectors(self, from: &[Vec3; 8]) -> [Self::F32; 3];
     fn add_f32(self, a: Self::F32, b: Self::F32) -> Self::F32;

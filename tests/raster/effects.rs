@@ -19,6 +19,7 @@ use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};
 use num_bigint::BigInt;
 use num_traits::Signed;
+use std::iter;
 use std::ops::Range;
 
 const WIDTH: i32 = 150;
@@ -729,7 +730,7 @@ fn r6_order_and_winding_make_no_difference_with_effects() {
 /// pieces share (stages, light for pixels of several faces, the list's end in the middle of a face) changes nothing.
 #[test]
 fn effects_in_batches_are_those_row_by_row() {
-    let mut tried = Tried::new("effects_in_batches_are_those_row_by_row", 1000);
+    let mut tried = Tried::new("effects_in_batches_are_those_row_by_row", 1_500);
     let mut random = Random::named("effects, batches");
     let stock = Stock::new(&mut random);
     let kernels: Vec<Kernel> = Kernel::available().collect();
@@ -740,28 +741,40 @@ fn effects_in_batches_are_those_row_by_row() {
         // Up to 9 pixels across, some of them over the frame's edges and some with many rows; or of any size.
         let count = random.one_of(&[1, 3, 20, EffectBatch::CAPACITY]);
         let (size, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
+        // All over the frame, or tiny, on the same few pixels, and of similar depths.
+        let is_crowd = size > 0 && random.within(0, 1) == 0;
+        let (right, bottom, wide, high) =
+            if is_crowd { (8, 2, 4, 2) } else { (i64::from(WIDTH), i64::from(HEIGHT), 9, high) };
+        // In the first corner of the frame or in the last.
+        let (x0, y0) = if is_crowd && random.within(0, 1) == 0 { (WIDTH - 8, HEIGHT - 2) } else { (0, 0) };
+        let (x0, y0) = (i64::from(x0), i64::from(y0));
         let faces: Vec<_> = (0..count)
             .map(|_| {
-                let (left, top) = (random.within(-4, i64::from(WIDTH)), random.within(-4, i64::from(HEIGHT)));
+                let (left, top) = (x0 + random.within(-4, right), y0 + random.within(-4, bottom));
                 let small = [0; 3].map(|_| {
-                    let (x, y) = (left * 256 + random.within(0, 9 * 256), top * 256 + random.within(0, high * 256));
+                    let (x, y) = (left * 256 + random.within(0, wide * 256), top * 256 + random.within(0, high * 256));
                     let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
                     let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
-                    Vertex::new(x, y, shade, random.log_uniform(30) as u32).expect("in range")
+                    let depth = if is_crowd { 50_000 + random.within(0, 9_999) } else { random.log_uniform(30) as i64 };
+                    Vertex::new(x, y, shade, depth as u32).expect("in range")
                 });
                 let vertices =
                     if size == 0 { triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into()) } else { small };
                 (vertices, attributes(&mut random))
             })
             .collect();
-        let look = if random.within(0, 1) == 0 {
+        let look = if is_crowd {
+            let of = |random: &mut Random| fused(look(random, &stock));
+            iter::repeat_with(|| of(&mut random)).find(|look| look.texture.is_some()).expect("every second has one")
+        } else if random.within(0, 1) == 0 {
             look(&mut random, &stock)
         } else {
             PixelPipeline { source: ShadeSource::Lit(&Sum), ..PixelPipeline::PLAIN }
         };
-        let (x, y) = (random.within(0, WIDTH.into()) as u32, random.within(0, HEIGHT.into()) as u32);
+        let (x, y) = (random.within(0, right) as u32, random.within(0, bottom) as u32);
         let whole = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
-        let clip = random.one_of(&[whole, Rect { x0: x / 2, y0: y / 2, x1: x, y1: y }]);
+        let (left, top) = (x0 as u32, y0 as u32);
+        let clip = random.one_of(&[whole, Rect { x0: left + x / 2, y0: top + y / 2, x1: left + x, y1: top + y }]);
         let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
         let draw = |draw: &mut dyn FnMut(&mut Raster<'_>) -> DrawStats| {
             let (mut depths, mut bytes) = (before.clone(), SIZE.pixels());

@@ -4,9 +4,9 @@
 use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
-use crate::simd::Lanes8;
+use crate::simd::{F32Lanes8, Lanes8};
 use crate::span::depth_test::{Masks, test_block, test_span};
-use crate::span::texture::{PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
+use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.
 pub(super) trait Destination {
@@ -16,6 +16,18 @@ pub(super) trait Destination {
 
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
+
+    /// Returns whether four pixels can be written at each of spans `i` and `i + 1`, the later of which begins at `at`.
+    #[inline(always)]
+    fn has_four(&mut self, _: (&Spans<'_>, usize), at: usize) -> bool {
+        at + FOUR <= self.all().len()
+    }
+
+    /// The mask of the pixels of spans `i` and `i + 1` that stay as they are, four of each.
+    #[inline(always)]
+    fn pair_stays<S: Lanes8>(&mut self, _: S, _: (&Spans<'_>, usize), pair: &Pair) -> u64 {
+        stays_behind(pair.lengths)
+    }
 
     /// Writes texels to the pixels of span `i` from `at` on, after this many of its drawn ones.
     #[inline(always)]
@@ -30,6 +42,49 @@ pub(super) trait Destination {
         if let Some(row) = self.all().get_mut(at..) {
             show_along(s, (row, length), texels, (tint, along), places);
         }
+    }
+}
+
+/// Two spans of at most four pixels each, shown together.
+pub(super) struct Pair {
+    /// Where the pixels of each begin.
+    pub(super) at: [usize; 2],
+    /// How many leading pixels of each are left out.
+    pub(super) skipped: [u32; 2],
+    /// How many pixels of each there are.
+    lengths: [usize; 2],
+}
+
+impl Pair {
+    /// Spans `i` and `i + 1`, if they are short and `T` can show both at once.
+    #[inline(always)]
+    pub(super) fn of<T: Tint>(to: &mut impl Destination, spans: &Spans<'_>, i: usize) -> Option<Self> {
+        let (a, length_a, skipped_a) = to.span(spans, i);
+        if IS_COMPACT || length_a > FOUR || i + 1 >= spans.count() {
+            return None;
+        }
+        let (b, length_b, skipped_b) = to.span(spans, i + 1);
+        // Blending reads the pixels of both before it writes any.
+        let is_apart = !T::READS_PIXELS || a.abs_diff(b) >= FOUR;
+        if length_b > FOUR || !is_apart || !to.has_four((spans, i), a.max(b)) {
+            return None;
+        }
+        Some(Self { at: [a, b], skipped: [skipped_a, skipped_b], lengths: [length_a, length_b] })
+    }
+
+    /// The numbers of the pixels in their spans.
+    #[inline(always)]
+    pub(super) fn numbers<S: Lanes8>(&self, s: S) -> S::I32 {
+        let [a, b] = self.skipped;
+        // At most 63.
+        s.add_i32(s.load_i32(&[0, 1, 2, 3, 0, 1, 2, 3]), s.halves_i32([a.cast_signed(), b.cast_signed()]))
+    }
+
+    /// [`numbers`](Self::numbers) in f32.
+    #[inline(always)]
+    pub(super) fn numbers_f32<S: F32Lanes8>(&self, s: S) -> S::F32 {
+        let [a, b] = self.skipped;
+        s.add_f32(s.load_f32(&[0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), s.halves_f32([a as f32, b as f32]))
     }
 }
 
@@ -83,6 +138,27 @@ impl Destination for Masked<'_> {
     #[inline(always)]
     fn all(&mut self) -> &mut [u8] {
         self.pixels
+    }
+
+    #[inline(always)]
+    fn has_four(&mut self, (spans, i): (&Spans<'_>, usize), at: usize) -> bool {
+        let Some(cells) = &self.cells else { return at + FOUR <= self.pixels.len() };
+        let cell = spans.depth(i).0.max(spans.depth(i + 1).0);
+        at + FOUR <= self.pixels.len() && cell + FOUR <= cells.len()
+    }
+
+    #[inline(always)]
+    fn pair_stays<S: Lanes8>(&mut self, s: S, (spans, i): (&Spans<'_>, usize), pair: &Pair) -> u64 {
+        let Some(all) = &mut self.cells else { return stays_behind(pair.lengths) };
+        let mut stays = u64::MAX;
+        for half in 0..2 {
+            let (cell, depths) = spans.depth(i + half);
+            let Some(four) = all.get_mut(cell..).and_then(|all| all.first_chunk_mut()) else { continue };
+            let of_half = s.test_four(four, depths, pair.lengths[half], self.keeps);
+            stays ^= u64::from(!of_half) << (32 * half);
+        }
+        self.nearer += stays.count_zeros() / 8;
+        stays
     }
 
     #[inline(always)]
@@ -142,4 +218,10 @@ impl Destination for Masked<'_> {
 #[inline(always)]
 fn behind(length: usize) -> u64 {
     if length < LANES { u64::MAX << (8 * length) } else { 0 }
+}
+
+/// The mask of two spans in which only the first pixels are drawn, at most four of each.
+#[inline(always)]
+fn stays_behind([low, high]: [usize; 2]) -> u64 {
+    behind(low) & u64::from(u32::MAX) | behind(high) << 32
 }

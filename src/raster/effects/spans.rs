@@ -219,9 +219,16 @@ impl<'a> Spans<'a> {
         self.listed.mark(self.first + i).last()
     }
 
-    /// [`sums`](Self::sums) in f32, if quotients may be taken in f32.
+    /// Returns whether the quotients along span `i` may be taken in f32.
     #[inline(always)]
-    pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
+    pub(super) fn fits_singles(&self, i: usize) -> bool {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.perspective.fits_singles(lane)
+    }
+
+    /// [`sums`](Self::sums) in f32, if quotients [may](Self::fits_singles) be taken in f32.
+    #[inline(always)]
+    pub(super) fn singles(&self, i: usize) -> PerspectiveSums<f32> {
         let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
         planes.perspective.singles(lane, self.listed.sums(self.first + i))
     }

@@ -4,7 +4,7 @@
 //! into the stages' buffer. Mispredicting the length of a row costs as much as several pixels, so the last few pixels
 //! of a span are written with a mask.
 
-use super::destination::{Destination, InBuffer};
+use super::destination::{Destination, InBuffer, Pair};
 use super::listing::FaceCorners;
 use super::pipeline::{Image, LEVELS, TextureStage};
 use super::spans::Spans;
@@ -16,7 +16,8 @@ use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture, depth};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
-    AffineAlong, LevelTexels, PlacesAlong, Texels, Tint, fill_affine, perspective_along, singles_along,
+    AffineAlong, LevelTexels, PairValues, PlacesAlong, Texels, Tint, affine_pair, fill_affine, perspective_along,
+    show_pair, singles_along, singles_pair,
 };
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
@@ -131,8 +132,39 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
-    for i in 0..spans.count() {
-        show_line(s, (spans, i), spans.affine_start(i), (image, tint), to);
+    let mut i = 0;
+    while i < spans.count() {
+        if let Some(pair) = Pair::of::<T>(to, spans, i) {
+            show_two(
+                s,
+                (spans, i, &pair),
+                (image, tint),
+                to,
+                #[inline(always)]
+                || affine_pair(s, image, [spans.affine_start(i), spans.affine_start(i + 1)], pair.numbers(s)),
+            );
+            i += 2;
+        } else {
+            show_line(s, (spans, i), spans.affine_start(i), (image, tint), to);
+            i += 1;
+        }
+    }
+}
+
+/// Draws the texels of spans `i` and `i + 1`, whose indices `places` gives, four for each.
+#[inline(always)]
+fn show_two<S: Lanes8, T: Tint, D: Destination>(
+    s: S,
+    (spans, i, pair): (&Spans<'_>, usize, &Pair),
+    (image, tint): (Texels<'_>, T),
+    to: &mut D,
+    places: impl FnOnce() -> S::I32,
+) {
+    let stays = to.pair_stays(s, (spans, i), pair);
+    if stays != u64::MAX {
+        // The numbers begin after the pixels that are left out.
+        let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
+        show_pair(s, (to.all(), pair.at, stays), image, (tint, values), places());
     }
 }
 
@@ -181,11 +213,44 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     to: &mut D,
 ) {
-    for i in 0..spans.count() {
+    let mut i = 0;
+    while i < spans.count() {
+        if let Some(pair) = Pair::of::<T>(to, spans, i)
+            && spans.fits_singles(i)
+            && spans.fits_singles(i + 1)
+        {
+            show_two(
+                s,
+                (spans, i, &pair),
+                (image, tint),
+                to,
+                #[inline(always)]
+                || {
+                    let (places, is_unsure) =
+                        singles_pair(s, image, [spans.singles(i), spans.singles(i + 1)], pair.numbers_f32(s));
+                    if is_unsure { s.load_i32(&exact_pair((spans, i), image, pair.skipped)) } else { places }
+                },
+            );
+            i += 2;
+            continue;
+        }
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
         show_part(s, (spans, i, 0), (at, length), skipped as usize, (image, 0), tint, to);
+        i += 1;
     }
+}
+
+/// The indices of the first four texels of spans `i` and `i + 1`, where quotients cannot decide.
+#[cold]
+#[inline(never)]
+fn exact_pair((spans, i): (&Spans<'_>, usize), image: Texels<'_>, skipped: [u32; 2]) -> [i32; LANES] {
+    let (mut low, mut high) = ([0; LANES], [0; LANES]);
+    // At most 63.
+    exact_eight((spans, i), &mut None, (image, 0), skipped[0] as usize, &mut low);
+    exact_eight((spans, i + 1), &mut None, (image, 0), skipped[1] as usize, &mut high);
+    low[4..].copy_from_slice(&high[..4]);
+    low
 }
 
 #[inline(always)]
@@ -244,8 +309,8 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
     // At most 64.
     let along = &mut tint.begin(s, spans.values::<T>(i, first as u32));
-    if !IS_COMPACT && let Some(sums) = spans.singles(i) {
-        let places = singles_along(s, image, sums, first, exact);
+    if !IS_COMPACT && spans.fits_singles(i) {
+        let places = singles_along(s, image, spans.singles(i), first, exact);
         to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
         return;
     }

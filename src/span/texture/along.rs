@@ -1,7 +1,7 @@
 //! Loops over the texels of a span: where they lie in their image, and how they are shown.
 
 use super::Texels;
-use super::tint::Tint;
+use super::tint::{PairValues, Tint};
 use crate::fixed::IS_COMPACT;
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
@@ -146,6 +146,43 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
     }
 }
 
+/// Shows texels in two spans of up to four pixels, at these indices of the frame or buffer, except for those that the
+/// mask lets stay. `places` are the indices of the texels, four for each span.
+#[inline(always)]
+pub(crate) fn show_pair<S: Lanes8, T: Tint>(
+    s: S,
+    (all, [a, b], stays): (&mut [u8], [usize; 2], u64),
+    texels: Texels<'_>,
+    (tint, values): (T, PairValues<S>),
+    places: S::I32,
+) {
+    let (a, b) = (a..a + FOUR, b..b + FOUR);
+    let (Some(&[a0, a1, a2, a3]), Some(&[b0, b1, b2, b3])) = (all.get(a.clone()), all.get(b.clone())) else { return };
+    // Never true: see `show_along`.
+    if texels.bytes.is_empty() {
+        return;
+    }
+    let (image, places) = ((texels, texels.bytes.len() - 1), s.low_words(places));
+    let rows = tint.rows(s, &mut tint.begin(s, values), &[a0, a1, a2, a3, b0, b1, b2, b3]);
+    let low = u32::from_le_bytes([
+        texel(tint, rows, places, image, 0),
+        texel(tint, rows, places, image, 1),
+        texel(tint, rows, places, image, 2),
+        texel(tint, rows, places, image, 3),
+    ]);
+    let high = u32::from_le_bytes([
+        texel(tint, rows, places, image, 4),
+        texel(tint, rows, places, image, 5),
+        texel(tint, rows, places, image, 6),
+        texel(tint, rows, places, image, 7),
+    ]);
+    for (at, bytes, stay) in [(a, low, stays as u32), (b, high, (stays >> 32) as u32)] {
+        let Some(four) = all.get_mut(at) else { return };
+        let Some(four) = four.first_chunk_mut() else { return };
+        *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+    }
+}
+
 /// Texel `k` of eight as it is shown. `last` is the index of the last texel.
 #[inline(always)]
 fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
@@ -153,7 +190,7 @@ fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): 
 }
 
 /// Pixels written at once if no more are left.
-const FOUR: usize = LANES / 2;
+pub(crate) const FOUR: usize = LANES / 2;
 
 /// Indices of texels, eight at a time.
 pub(crate) trait PlacesAlong<S: Lanes8> {
@@ -230,6 +267,20 @@ impl<S: Lanes8> AffineAlong<S> {
         let (v, dv) = along(v << texels.ubits, dv << texels.ubits);
         Self { places: PlaceLanes::of_level(s, (texels, 0)), at: [u, v], step: [du, dv] }
     }
+}
+
+/// The indices of the texels with these numbers along two lines, as in [`AffineAlong`].
+#[inline(always)]
+pub(crate) fn affine_pair<S: Lanes8>(
+    s: S,
+    texels: Texels<'_>,
+    [[[u, v], [du, dv]], [[u2, v2], [du2, dv2]]]: [[[u32; 2]; 2]; 2],
+    numbers: S::I32,
+) -> S::I32 {
+    let pair = |a: u32, b: u32| [a.cast_signed(), b.cast_signed()];
+    let u = s.add_i32(s.halves_i32(pair(u, u2)), s.mul_i32(s.halves_i32(pair(du, du2)), numbers));
+    let v = s.add_i32(s.halves_i32(pair(v, v2)), s.mul_i32(s.halves_i32(pair(dv, dv2)), numbers));
+    PlaceLanes::of_level(s, (texels, 0)).at_coordinates(u, v)
 }
 
 impl<S: Lanes8> PlacesAlong<S> for AffineAlong<S> {

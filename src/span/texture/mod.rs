@@ -22,13 +22,16 @@ mod tint;
 use core::fmt;
 
 #[cfg(feature = "alloc")]
-pub(crate) use self::along::{AffineAlong, FirstPlace, LevelTexels, PlacesAlong, show_along, show_block, show_masked};
+pub(crate) use self::along::{
+    AffineAlong, FOUR, FirstPlace, LevelTexels, PlacesAlong, affine_pair, show_along, show_block, show_masked,
+    show_pair,
+};
 #[cfg(feature = "alloc")]
-pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along};
+pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along, singles_pair};
 #[cfg(feature = "alloc")]
 pub use self::perspective::{fill_perspective, fill_perspective_portable};
 #[cfg(feature = "alloc")]
-pub(crate) use self::tint::{Blended, Fogged, Painted, SpanValues, Tint, Untextured};
+pub(crate) use self::tint::{Blended, Fogged, Painted, PairValues, SpanValues, Tint, Untextured};
 
 /// A texture's bytes, row by row, with its size.
 #[derive(Clone, Copy, Debug)]

@@ -148,6 +148,31 @@ pub(crate) fn singles_along<S: F32Lanes8>(
     PerspectiveAlong { places: quotients.places, quotients, numbers, first, exact }
 }
 
+/// The indices of the texels with these numbers along two spans, by quotients in f32 as in [`singles_along`]; and
+/// whether any of them is undecided.
+#[inline(always)]
+pub(crate) fn singles_pair<S: F32Lanes8>(
+    s: S,
+    texels: Texels<'_>,
+    [a, b]: [PerspectiveSums<f32>; 2],
+    numbers: S::F32,
+) -> (S::I32, bool) {
+    let (([au, av], ad), ([bu, bv], bd)) = ((a.numerators, a.divisors), (b.numerators, b.divisors));
+    let line = |a: [f32; 2], b: [f32; 2]| [s.halves_f32([a[0], b[0]]), s.halves_f32([a[1], b[1]])];
+    let margin = s.splat_i32(SINGLES_MARGIN);
+    let quotients = Singles {
+        places: PlaceLanes::of_level(s, (texels, 0)),
+        numerators: [line(au, bu), line(av, bv)],
+        divisors: line(ad, bd),
+        more: [
+            s.add_i32(s.halves_i32([a.base[0], b.base[0]]), margin),
+            s.add_i32(s.halves_i32([a.base[1], b.base[1]]), margin),
+        ],
+    };
+    let ([u, v], is_unsure) = quotients.at(s, numbers);
+    (quotients.places.at_coordinates(u, v), is_unsure)
+}
+
 /// Position along a span of [`perspective_along`].
 struct PerspectiveAlong<S: Lanes8, Q: QuotientsAlong<S>, E> {
     places: PlaceLanes<S>,

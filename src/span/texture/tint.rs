@@ -18,11 +18,13 @@ pub(crate) struct SpanValues {
 pub(crate) trait Tint: Copy {
     /// True if the density of fog is read.
     const HAS_FOG: bool = false;
+    /// True if the current bytes of pixels are read.
+    const READS_PIXELS: bool = false;
     /// State that changes along a span.
     type Along<S: Lanes8>: Copy;
     /// Table rows of eight pixels.
     type Rows: Copy;
-    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S>;
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Self::Along<S>;
     /// The table rows of the next eight pixels, whose current bytes are `pixels`; advances the
     /// state.
     fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
@@ -31,15 +33,37 @@ pub(crate) trait Tint: Copy {
 }
 
 /// A linear value of eight pixels in 8.8, and the step to the next eight.
-type Ramp8<S> = [<S as Lanes8>::I32; 2];
+pub(crate) type Ramp8<S> = [<S as Lanes8>::I32; 2];
 
-#[inline(always)]
-fn ramp_from<S: Lanes8>(s: S, value: u32, skipped: u32) -> Ramp8<S> {
-    // The sums are modulo 2¹⁶; the bits above are not read.
-    let step = (value >> 16).cast_signed();
-    let first = value.cast_signed().wrapping_add(step.wrapping_mul(skipped.cast_signed()));
-    let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
-    [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
+/// The pixels of one span or two whose values are computed eight at a time.
+pub(crate) trait Ramps<S: Lanes8>: Copy {
+    /// One of their values, which `of` gives with the step in the upper half.
+    fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S>;
+}
+
+/// Pixels of a span, after those that are skipped.
+impl<S: Lanes8> Ramps<S> for SpanValues {
+    #[inline(always)]
+    fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S> {
+        // The sums are modulo 2¹⁶; the bits above are not read.
+        let (value, step) = (of(self).cast_signed(), (of(self) >> 16).cast_signed());
+        let first = value.wrapping_add(step.wrapping_mul(self.skipped.cast_signed()));
+        let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
+        [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
+    }
+}
+
+/// Four pixels of each of two spans, with their numbers in these. None follow them.
+#[derive(Clone, Copy)]
+pub(crate) struct PairValues<S: Lanes8>(pub(crate) [SpanValues; 2], pub(crate) S::I32);
+
+impl<S: Lanes8> Ramps<S> for PairValues<S> {
+    #[inline(always)]
+    fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S> {
+        let Self([a, b], numbers) = self;
+        let values = s.halves_i32([of(a).cast_signed(), of(b).cast_signed()]);
+        [s.add_i32(values, s.mul_i32(s.shr_i32(values, 16), numbers)), s.splat_i32(0)]
+    }
 }
 
 /// The integer parts of eight values, in the upper bytes: rows of a table. Advances to the next eight.
@@ -55,7 +79,7 @@ impl Tint for () {
     type Along<S: Lanes8> = ();
     type Rows = ();
     #[inline(always)]
-    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    fn begin<S: Lanes8>(self, _: S, _: impl Ramps<S>) {}
     #[inline(always)]
     fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
     #[inline(always)]
@@ -69,7 +93,7 @@ impl Tint for &[u8; 256] {
     type Along<S: Lanes8> = ();
     type Rows = ();
     #[inline(always)]
-    fn begin<S: Lanes8>(self, _: S, _: SpanValues) {}
+    fn begin<S: Lanes8>(self, _: S, _: impl Ramps<S>) {}
     #[inline(always)]
     fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
     #[inline(always)]
@@ -90,9 +114,13 @@ impl Tint for Painted<'_> {
     type Along<S: Lanes8> = Ramp8<S>;
     type Rows = [u16; LANES];
     #[inline(always)]
-    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
-        let paint = self.flat.map_or(values.paint, |shade| u32::from(shade) << 8);
-        ramp_from(s, paint, values.skipped)
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Ramp8<S> {
+        let flat = self.flat;
+        of.ramp(
+            s,
+            #[inline(always)]
+            |values| if let Some(shade) = flat { u32::from(shade) << 8 } else { values.paint },
+        )
     }
     #[inline(always)]
     fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
@@ -112,8 +140,12 @@ impl Tint for Untextured {
     type Along<S: Lanes8> = Ramp8<S>;
     type Rows = [u8; LANES];
     #[inline(always)]
-    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Ramp8<S> {
-        ramp_from(s, values.paint, values.skipped)
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Ramp8<S> {
+        of.ramp(
+            s,
+            #[inline(always)]
+            |values| values.paint,
+        )
     }
     #[inline(always)]
     fn rows<S: Lanes8>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
@@ -133,11 +165,12 @@ pub(crate) struct Blended<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
 
 impl<T: Tint> Tint for Blended<'_, T> {
     const HAS_FOG: bool = T::HAS_FOG;
+    const READS_PIXELS: bool = true;
     type Along<S: Lanes8> = T::Along<S>;
     type Rows = (T::Rows, [u8; LANES]);
     #[inline(always)]
-    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> T::Along<S> {
-        self.0.begin(s, values)
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> T::Along<S> {
+        self.0.begin(s, of)
     }
     #[inline(always)]
     fn rows<S: Lanes8>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
@@ -158,8 +191,13 @@ impl<T: Tint> Tint for Fogged<'_, T> {
     type Along<S: Lanes8> = (T::Along<S>, Ramp8<S>);
     type Rows = (T::Rows, [u16; LANES]);
     #[inline(always)]
-    fn begin<S: Lanes8>(self, s: S, values: SpanValues) -> Self::Along<S> {
-        (self.0.begin(s, values), ramp_from(s, values.fog, values.skipped))
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Self::Along<S> {
+        let fog = of.ramp(
+            s,
+            #[inline(always)]
+            |values| values.fog,
+        );
+        (self.0.begin(s, of), fog)
     }
     #[inline(always)]
     fn rows<S: Lanes8>(self, s: S, (along, fog): &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
