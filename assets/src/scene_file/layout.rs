@@ -1,7 +1,6 @@
 //! The layout of a scene file: its tables and keys, as serde reads them. `assets/scenes/README.md` gives the meaning,
 //! unit and default of each; a test ensures that both list the same keys.
 
-use core::fmt;
 use std::collections::BTreeMap;
 
 use mode13h::light::Blend;
@@ -9,7 +8,7 @@ use mode13h::scene::UpAxis;
 use mode13h::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::de::{Error, MapAccess, SeqAccess, Unexpected};
 use toml::Spanned;
 
 use crate::look::Look;
@@ -18,7 +17,7 @@ use super::shape::Shape;
 use super::value::{
     Background, Color, Crease, Entries, Entry, FieldOfView, FileName, Finite, HalfAngle, List, Name, NotNegative,
     Number, OffOr, OneOrThree, Plain, Positive, Rounds, Seconds, Share, Shininess, Times, Vector, VertexBits,
-    not_in_range,
+    not_in_range, visitor,
 };
 
 /// The whole file.
@@ -166,31 +165,17 @@ pub(super) struct RenderLayout {
 /// `subdivisions`: an integer, or a list of several.
 pub(super) struct Subdivisions(pub(super) Vec<i64>);
 
-impl<'de> Deserialize<'de> for Subdivisions {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
+visitor! { SubdivisionsVisitor of Subdivisions: "a whole number, or two in a list"
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Subdivisions, E> {
+        Ok(Subdivisions([number].into()))
+    }
 
-        impl<'de> Visitor<'de> for Either {
-            type Value = Subdivisions;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a whole number, or two in a list")
-            }
-
-            fn visit_i64<E: Error>(self, number: i64) -> Result<Subdivisions, E> {
-                Ok(Subdivisions([number].into()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Subdivisions, A::Error> {
-                let mut numbers = Vec::new();
-                while let Some(number) = list.next_element()? {
-                    numbers.push(number);
-                }
-                Ok(Subdivisions(numbers))
-            }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Subdivisions, A::Error> {
+        let mut numbers = Vec::new();
+        while let Some(number) = list.next_element()? {
+            numbers.push(number);
         }
-
-        deserializer.deserialize_any(Either)
+        Ok(Subdivisions(numbers))
     }
 }
 
@@ -207,27 +192,13 @@ pub(super) struct EntriesLayout {
     pub(super) entries: Entries,
 }
 
-impl<'de> Deserialize<'de> for RampLayout {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
+visitor! { RampLayoutVisitor of RampLayout: "the number of a ramp, 0 to 255, or { first = 0, entries = 256 }"
+    fn visit_i64<E: Error>(self, number: i64) -> Result<RampLayout, E> {
+        u8::try_from(number).map(RampLayout::Number).map_err(|_| not_in_range(number, &self))
+    }
 
-        impl<'de> Visitor<'de> for Either {
-            type Value = RampLayout;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("the number of a ramp, 0 to 255, or { first = 0, entries = 256 }")
-            }
-
-            fn visit_i64<E: Error>(self, number: i64) -> Result<RampLayout, E> {
-                u8::try_from(number).map(RampLayout::Number).map_err(|_| not_in_range(number, &self))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RampLayout, A::Error> {
-                EntriesLayout::deserialize(MapAccessDeserializer::new(map)).map(RampLayout::Entries)
-            }
-        }
-
-        deserializer.deserialize_any(Either)
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RampLayout, A::Error> {
+        EntriesLayout::deserialize(MapAccessDeserializer::new(map)).map(RampLayout::Entries)
     }
 }
 
@@ -237,69 +208,41 @@ pub(super) enum ClipLayout {
     Index(usize),
 }
 
-impl<'de> Deserialize<'de> for ClipLayout {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
+visitor! { ClipLayoutVisitor of ClipLayout: "the name of an animation, or its number, from 0"
+    fn visit_str<E: Error>(self, name: &str) -> Result<ClipLayout, E> {
+        Ok(ClipLayout::Name(name.into()))
+    }
 
-        impl Visitor<'_> for Either {
-            type Value = ClipLayout;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("the name of an animation, or its number, from 0")
-            }
-
-            fn visit_str<E: Error>(self, name: &str) -> Result<ClipLayout, E> {
-                Ok(ClipLayout::Name(name.into()))
-            }
-
-            fn visit_i64<E: Error>(self, number: i64) -> Result<ClipLayout, E> {
-                usize::try_from(number).map(ClipLayout::Index).map_err(|_| not_in_range(number, &self))
-            }
-        }
-
-        deserializer.deserialize_any(Either)
+    fn visit_i64<E: Error>(self, number: i64) -> Result<ClipLayout, E> {
+        usize::try_from(number).map(ClipLayout::Index).map_err(|_| not_in_range(number, &self))
     }
 }
 
 /// `blend`: the name of a mode, or the opacity.
 pub(super) struct BlendLayout(pub(super) Blend);
 
-impl<'de> Deserialize<'de> for BlendLayout {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
-
-        impl Visitor<'_> for Either {
-            type Value = BlendLayout;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"opaque\", \"add\", or how opaque it is, a number from 0 to 1")
-            }
-
-            fn visit_str<E: Error>(self, name: &str) -> Result<BlendLayout, E> {
-                match name {
-                    "opaque" => Ok(BlendLayout(Blend::Opaque)),
-                    "add" => Ok(BlendLayout(Blend::Add)),
-                    _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
-                }
-            }
-
-            fn visit_i64<E: Error>(self, number: i64) -> Result<BlendLayout, E> {
-                match number {
-                    0 | 1 => self.visit_f64(number as f64),
-                    _ => Err(not_in_range(number, &self)),
-                }
-            }
-
-            fn visit_f64<E: Error>(self, number: f64) -> Result<BlendLayout, E> {
-                match Share::of(number) {
-                    // 0 to 255.5; the cast truncates after 0.5 is added.
-                    Some(Share(share)) => Ok(BlendLayout(Blend::Mix((share * 255.0 + 0.5) as u8))),
-                    None => Err(not_in_range(number, &self)),
-                }
-            }
+visitor! { BlendLayoutVisitor of BlendLayout: "\"opaque\", \"add\", or how opaque it is, a number from 0 to 1"
+    fn visit_str<E: Error>(self, name: &str) -> Result<BlendLayout, E> {
+        match name {
+            "opaque" => Ok(BlendLayout(Blend::Opaque)),
+            "add" => Ok(BlendLayout(Blend::Add)),
+            _ => Err(E::invalid_value(Unexpected::Str(name), &self)),
         }
+    }
 
-        deserializer.deserialize_any(Either)
+    fn visit_i64<E: Error>(self, number: i64) -> Result<BlendLayout, E> {
+        match number {
+            0 | 1 => self.visit_f64(number as f64),
+            _ => Err(not_in_range(number, &self)),
+        }
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<BlendLayout, E> {
+        match Share::of(number) {
+            // 0 to 255.5; the cast truncates after 0.5 is added.
+            Some(Share(share)) => Ok(BlendLayout(Blend::Mix((share * 255.0 + 0.5) as u8))),
+            None => Err(not_in_range(number, &self)),
+        }
     }
 }
 

@@ -10,6 +10,31 @@ use serde::de::{Deserialize, Deserializer, Error, Expected, SeqAccess, Unexpecte
 
 use super::names::in_full;
 
+/// Defines a visitor from what it expects and its methods, and lets serde read the type with it.
+macro_rules! visitor {
+    ($Visitor:ident of $Value:ident: $what:literal $($methods:tt)*) => {
+        struct $Visitor;
+
+        impl<'de> serde::de::Visitor<'de> for $Visitor {
+            type Value = $Value;
+
+            fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str($what)
+            }
+
+            $($methods)*
+        }
+
+        impl<'de> serde::Deserialize<'de> for $Value {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_any($Visitor)
+            }
+        }
+    };
+}
+
+pub(super) use visitor;
+
 /// A kind of number.
 pub(super) trait Number: Sized {
     /// The expected values, as text to follow "expected".
@@ -222,15 +247,7 @@ impl Color {
     }
 }
 
-struct ColorVisitor;
-
-impl<'de> Visitor<'de> for ColorVisitor {
-    type Value = Color;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a colour: \"#rrggbb\", or red, green and blue from 0 to 1 in a list")
-    }
-
+visitor! { ColorVisitor of Color: "a colour: \"#rrggbb\", or red, green and blue from 0 to 1 in a list"
     fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
         let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
         // `from_str_radix` would accept a sign.
@@ -250,12 +267,6 @@ impl<'de> Visitor<'de> for ColorVisitor {
     }
 }
 
-impl<'de> Deserialize<'de> for Color {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ColorVisitor)
-    }
-}
-
 /// The background that the frame is cleared to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Background {
@@ -263,33 +274,18 @@ pub(super) enum Background {
     Color(Color),
 }
 
-impl<'de> Deserialize<'de> for Background {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
+visitor! { BackgroundVisitor of Background:
+    "a palette entry from 0 to 255, or a colour: \"#rrggbb\", or red, green and blue from 0 to 1"
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Background, E> {
+        NumberVisitor(PhantomData).visit_i64(number).map(|entry: Entry| Background::Entry(entry.index()))
+    }
 
-        impl<'de> Visitor<'de> for Either {
-            type Value = Background;
+    fn visit_str<E: Error>(self, text: &str) -> Result<Background, E> {
+        ColorVisitor.visit_str(text).map(Background::Color)
+    }
 
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(
-                    "a palette entry from 0 to 255, or a colour: \"#rrggbb\", or red, green and blue from 0 to 1",
-                )
-            }
-
-            fn visit_i64<E: Error>(self, number: i64) -> Result<Background, E> {
-                NumberVisitor(PhantomData).visit_i64(number).map(|entry: Entry| Background::Entry(entry.index()))
-            }
-
-            fn visit_str<E: Error>(self, text: &str) -> Result<Background, E> {
-                ColorVisitor.visit_str(text).map(Background::Color)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Background, A::Error> {
-                ColorVisitor.visit_seq(list).map(Background::Color)
-            }
-        }
-
-        deserializer.deserialize_any(Either)
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Background, A::Error> {
+        ColorVisitor.visit_seq(list).map(Background::Color)
     }
 }
 
@@ -346,23 +342,9 @@ impl<'de, T: FromStr<Err: fmt::Display> + Default> Deserialize<'de> for OffOr<T>
 /// The name of a file, or of something built in.
 pub(super) struct FileName(pub(super) String);
 
-impl<'de> Deserialize<'de> for FileName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Text;
-
-        impl Visitor<'_> for Text {
-            type Value = FileName;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a name of 1 to 1000 characters")
-            }
-
-            fn visit_str<E: Error>(self, name: &str) -> Result<FileName, E> {
-                let legal = (1..=1000).contains(&name.chars().count()) && !name.contains(char::is_control);
-                if legal { Ok(FileName(name.into())) } else { Err(E::invalid_value(Unexpected::Str(name), &self)) }
-            }
-        }
-
-        deserializer.deserialize_any(Text)
+visitor! { FileNameVisitor of FileName: "a name of 1 to 1000 characters"
+    fn visit_str<E: Error>(self, name: &str) -> Result<FileName, E> {
+        let legal = (1..=1000).contains(&name.chars().count()) && !name.contains(char::is_control);
+        if legal { Ok(FileName(name.into())) } else { Err(E::invalid_value(Unexpected::Str(name), &self)) }
     }
 }
