@@ -183,19 +183,16 @@ pub fn load_with(
         return Err(ModelFileError::of_file(path, ModelFileErrorKind::Directory));
     }
     let file = BufReader::with_capacity(1 << 16, Counted::new(file, metadata.len(), progress));
-    let Parsed { mut mesh, textures, up, mut warnings, named, origin, staged } =
-        read(file, path, ordinary_file, options)?;
-    let outside = outside(&mesh, &textures);
-    let files = [path.to_owned()].into_iter().chain(named).chain(outside).collect();
-    for surface in mesh.surfaces_mut() {
-        let is_missing = |texture: &mut String| !textures.contains_key(texture) && !Path::new(texture).is_file();
+    let (mut loaded, mut warnings) = read(file, path, ordinary_file, options)?;
+    loaded.files.insert(0, path.to_owned());
+    for surface in loaded.mesh.surfaces_mut() {
+        let is_missing = |texture: &mut String| !loaded.textures.contains_key(texture) && !Path::new(texture).is_file();
         if let Some(texture) = surface.texture.take_if(is_missing) {
             let name = if surface.name.is_empty() { String::new() } else { format!(" {}", surface.name) };
             warnings.push(|| format!("{texture}: no such texture; the material{name} is drawn without it"));
         }
     }
-    let Staged { lights, camera, rig } = staged;
-    Ok(Loaded { mesh, textures, up, warnings: warnings.into_lines(), files, origin, lights, camera, rig })
+    Ok(warned((loaded, warnings)))
 }
 
 /// Reads a model from `reader`. `path` is used in errors, its extension determines the format, and the files that the
@@ -219,15 +216,12 @@ pub fn parse(
     file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
 ) -> Result<Loaded, ModelFileError> {
-    read(reader, path.as_ref(), file, options).map(Loaded::from)
+    read(reader, path.as_ref(), file, options).map(warned)
 }
 
-impl From<Parsed> for Loaded {
-    fn from(Parsed { mesh, textures, up, warnings, named, origin, staged }: Parsed) -> Self {
-        let files = named.into_iter().chain(outside(&mesh, &textures)).collect();
-        let Staged { lights, camera, rig } = staged;
-        Self { mesh, textures, up, warnings: warnings.into_lines(), files, origin, lights, camera, rig }
-    }
+/// The model with its warnings.
+pub(crate) fn warned((loaded, warnings): (Loaded, Warnings)) -> Loaded {
+    Loaded { warnings: warnings.into_lines(), ..loaded }
 }
 
 /// The textures that a model's materials name and its file does not contain.
@@ -253,18 +247,6 @@ pub fn unpacked<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead
     Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(reader))) } else { Box::new(reader) })
 }
 
-/// A model whose outside textures have not been looked for.
-pub(crate) struct Parsed {
-    mesh: Mesh,
-    textures: Embedded,
-    up: Option<UpAxis>,
-    warnings: Warnings,
-    /// The paths that the caller was asked for.
-    named: Vec<PathBuf>,
-    origin: [f64; 3],
-    staged: Staged,
-}
-
 /// A model as its format's reader produces it, before faces are split and repaired.
 #[derive(Default)]
 pub(crate) struct Draft {
@@ -282,7 +264,7 @@ fn read(
     path: &Path,
     mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     options: &Options,
-) -> Result<Parsed, ModelFileError> {
+) -> Result<(Loaded, Warnings), ModelFileError> {
     let failed = |error: io::Error| ModelFileError::of_file(path, ModelFileErrorKind::Read(error));
     let mut named = Vec::new();
     let file = |path: &Path| {
@@ -307,13 +289,14 @@ fn read(
     finish(draft, path, named, options)
 }
 
-/// Makes the mesh from what a format's reader produced.
+/// Makes the mesh from what a format's reader produced. The warnings are apart, as there may be more of them. `named`
+/// are the files that the caller was asked for.
 pub(crate) fn finish(
     draft: Draft,
     path: &Path,
     named: Vec<PathBuf>,
     options: &Options,
-) -> Result<Parsed, ModelFileError> {
+) -> Result<(Loaded, Warnings), ModelFileError> {
     let Draft { mut lists, mut surfaces, textures, up, mut warnings, nodes } = draft;
     let shown = path.display();
     let place = |place: Place| match place {
@@ -357,6 +340,7 @@ pub(crate) fn finish(
         turned => warnings.push(|| format!("{shown}: flipped {turned} solids that were inside out")),
     }
     let origin = middle.unwrap_or_default();
-    let staged = nodes.stage(&mesh, &corners, origin);
-    Ok(Parsed { mesh, textures, up, warnings, named, origin, staged })
+    let Staged { lights, camera, rig } = nodes.stage(&mesh, &corners, origin);
+    let files = named.into_iter().chain(outside(&mesh, &textures)).collect();
+    Ok((Loaded { mesh, textures, up, warnings: Vec::new(), files, origin, lights, camera, rig }, warnings))
 }

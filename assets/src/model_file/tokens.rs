@@ -51,7 +51,7 @@ impl<'b> Tokens<'b> {
     /// The next word as a number within the range of f32.
     pub(crate) fn number(&mut self, what: &'static str) -> Result<f64, ModelFileErrorKind> {
         let word = self.next().ok_or(ModelFileErrorKind::Ends(what))?;
-        parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ModelFileErrorKind::Ends(what))
+        parsed(word, |value: f64| (value as f32).is_finite())
     }
 
     /// Makes an error at the last word read.

@@ -15,14 +15,11 @@ pub(super) fn name(rest: &[u8]) -> String {
 }
 
 /// Parses a word as a number, which must be finite.
-pub(super) fn parsed<T: FromStr + Copy>(
-    word: &[u8],
-    is_finite: fn(T) -> bool,
-) -> Result<Option<T>, ModelFileErrorKind> {
+pub(super) fn parsed<T: FromStr + Copy>(word: &[u8], is_finite: fn(T) -> bool) -> Result<T, ModelFileErrorKind> {
     match str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
         None => Err(ModelFileErrorKind::NotNumber(shown(word))),
         Some(value) if !is_finite(value) => Err(ModelFileErrorKind::NotFinite(shown(word))),
-        value => Ok(value),
+        Some(value) => Ok(value),
     }
 }
 

@@ -36,10 +36,8 @@ fn count_of(count: u16) -> Result<usize, PaletteError> {
     if (1..=256).contains(&count) {
         return Ok(usize::from(count));
     }
-    // In decimal, as it would be in a text file: five digits at most.
-    let digits = [10_000, 1_000, 100, 10, 1].map(|unit| b'0' + (count / unit % 10) as u8);
-    let first = digits.iter().position(|&digit| digit != b'0').unwrap_or(digits.len() - 1);
-    let found = Excerpt::of(&digits[first..]);
+    // As it would be in a text file.
+    let found = Excerpt::of(format!("{count}").as_bytes());
     Err(PaletteError::at_offset(LENGTH, PaletteErrorKind::Count { found }))
 }
 

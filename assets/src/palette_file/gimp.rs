@@ -32,12 +32,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
         let Some((color, _words_of_the_name)) = three_numbers(line) else {
             return Err(PaletteError::at_line(number, PaletteErrorKind::NotThreeNumbers { found: Excerpt::of(line) }));
         };
-        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+        colors.push(number, color)?;
     }
-    if colors.count() == 0 {
-        return Err(PaletteError::at_line(end, PaletteErrorKind::TooFewColors { found: 0, expected: 1 }));
-    }
-    Ok(colors.into_palette())
+    colors.into_palette(end, 1)
 }
 
 pub(super) fn write(palette: &Palette, name: &str, out: &mut Vec<u8>) {

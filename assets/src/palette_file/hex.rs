@@ -25,12 +25,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
         let Some(color) = six_digits(line) else {
             return Err(PaletteError::at_line(number, PaletteErrorKind::NotSixHexDigits { found: Excerpt::of(line) }));
         };
-        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+        colors.push(number, color)?;
     }
-    if colors.count() == 0 {
-        return Err(PaletteError::at_line(end, PaletteErrorKind::TooFewColors { found: 0, expected: 1 }));
-    }
-    Ok(colors.into_palette())
+    colors.into_palette(end, 1)
 }
 
 fn six_digits(line: &[u8]) -> Option<Rgb> {

@@ -38,13 +38,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
         let Some((color, 0)) = three_numbers(line) else {
             return Err(PaletteError::at_line(number, PaletteErrorKind::NotThreeNumbers { found: Excerpt::of(line) }));
         };
-        colors.push(color).map_err(|_| PaletteError::at_line(number, PaletteErrorKind::TooManyColors))?;
+        colors.push(number, color)?;
     }
-    if colors.count() < announced {
-        let kind = PaletteErrorKind::TooFewColors { found: colors.count(), expected: announced };
-        return Err(PaletteError::at_line(end, kind));
-    }
-    Ok(colors.into_palette())
+    colors.into_palette(end, announced)
 }
 
 pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {

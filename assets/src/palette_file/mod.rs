@@ -55,63 +55,37 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Returns whether bytes look like a file of this format.
     recognizes: fn(&[u8]) -> bool,
-    read: fn(&[u8]) -> Result<Palette, PaletteError>,
-    write: fn(&Palette, &str, &mut Vec<u8>),
+    read: Read,
+    write: Write,
 }
 
 /// All formats, the most reliably recognised first. Bytes belong to the first that recognises them, an extension to the
 /// first that lists it.
 pub static FORMATS: [Format; 6] = [
-    Format {
-        name: "jasc",
-        description: "JASC (Paint Shop Pro)",
-        extensions: &["pal"],
-        recognizes: jasc::recognizes,
-        read: jasc::read,
-        write: jasc::write,
-    },
-    Format {
-        name: "gimp",
-        description: "GIMP",
-        extensions: &["gpl"],
-        recognizes: gimp::recognizes,
-        read: gimp::read,
-        write: gimp::write,
-    },
-    Format {
-        name: "hex",
-        description: "Lospec",
-        extensions: &["hex"],
-        recognizes: hex::recognizes,
-        read: hex::read,
-        write: hex::write,
-    },
-    Format {
-        name: "vga",
-        description: "raw VGA",
-        extensions: &["vga", "raw", "col", "lmp"],
-        recognizes: vga::recognizes,
-        read: vga::read,
-        write: vga::write,
-    },
-    Format {
-        name: "act",
-        description: "Adobe color table",
-        extensions: &["act"],
-        // Its bytes look like those of a raw VGA file: only the name can distinguish them.
-        recognizes: |_| false,
-        read: adobe::read,
-        write: adobe::write,
-    },
-    Format {
-        name: "act-772",
-        description: "Adobe color table with its number of colours",
-        extensions: &["act"],
-        recognizes: adobe::recognizes_772,
-        read: adobe::read,
-        write: adobe::write_772,
-    },
+    format("jasc", "JASC (Paint Shop Pro)", &["pal"], jasc::recognizes, jasc::read, jasc::write),
+    format("gimp", "GIMP", &["gpl"], gimp::recognizes, gimp::read, gimp::write),
+    format("hex", "Lospec", &["hex"], hex::recognizes, hex::read, hex::write),
+    format("vga", "raw VGA", &["vga", "raw", "col", "lmp"], vga::recognizes, vga::read, vga::write),
+    // Its bytes look like those of a raw VGA file: only the name can distinguish them.
+    format("act", "Adobe color table", &["act"], |_| false, adobe::read, adobe::write),
+    format("act-772", ACT_772, &["act"], adobe::recognizes_772, adobe::read, adobe::write_772),
 ];
+
+const ACT_772: &str = "Adobe color table with its number of colours";
+
+type Read = fn(&[u8]) -> Result<Palette, PaletteError>;
+type Write = fn(&Palette, &str, &mut Vec<u8>);
+
+const fn format(
+    name: &'static str,
+    description: &'static str,
+    extensions: &'static [&'static str],
+    recognizes: fn(&[u8]) -> bool,
+    read: Read,
+    write: Write,
+) -> Format {
+    Format { name, description, extensions, recognizes, read, write }
+}
 
 impl Format {
     /// The format with this name in [`FORMATS`].

@@ -62,16 +62,9 @@ pub(super) fn first_line_is(text: &[u8], expected: &str) -> bool {
 
 /// Parses decimal digits without sign or blank. `None` if the number is more than `most`.
 pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
-    if digits.is_empty() {
-        return None;
-    }
-    digits.iter().try_fold(0_u32, |value, &digit| {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        let value = value.checked_mul(10)?.checked_add(u32::from(digit - b'0'))?;
-        (value <= most).then_some(value)
-    })
+    // `parse` would accept a sign.
+    let digits = str::from_utf8(digits).ok().filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()))?;
+    digits.parse().ok().filter(|value| *value <= most)
 }
 
 /// The three numbers, 0 to 255, at the beginning of a line, and the number of words after them.

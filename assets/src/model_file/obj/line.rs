@@ -2,6 +2,7 @@
 
 use core::mem;
 use std::io::{self, BufRead};
+use std::str::FromStr;
 
 use crate::model_file::ModelFileErrorKind;
 use crate::model_file::word::parsed;
@@ -97,31 +98,18 @@ pub(crate) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
 
 /// The next word as a finite number, or `None` at the end of the line.
 pub(crate) fn number<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Result<Option<f32>, ModelFileErrorKind> {
-    let Some(word) = words.next() else { return Ok(None) };
-    parsed(word, f32::is_finite)
+    words.next().map(|word| parsed(word, f32::is_finite)).transpose()
 }
 
-/// Reads the `N` numbers that the statement needs in f64; all must be within the range of f32.
-pub(crate) fn wide_numbers<'a, const N: usize>(
+/// Reads the `N` numbers that the statement needs, all finite.
+pub(crate) fn numbers<'a, T: FromStr + Copy + Default, const N: usize>(
     words: &mut impl Iterator<Item = &'a [u8]>,
+    is_finite: fn(T) -> bool,
     what: &'static str,
-) -> Result<[f64; N], ModelFileErrorKind> {
-    let mut values = [0.0; N];
+) -> Result<[T; N], ModelFileErrorKind> {
+    let mut values = [T::default(); N];
     for value in &mut values {
-        let word = words.next().ok_or(ModelFileErrorKind::Missing(what))?;
-        *value = parsed(word, |value: f64| (value as f32).is_finite())?.ok_or(ModelFileErrorKind::Missing(what))?;
-    }
-    Ok(values)
-}
-
-/// Reads the `N` numbers that the statement needs.
-pub(crate) fn numbers<'a, const N: usize>(
-    words: &mut impl Iterator<Item = &'a [u8]>,
-    what: &'static str,
-) -> Result<[f32; N], ModelFileErrorKind> {
-    let mut values = [0.0; N];
-    for value in &mut values {
-        *value = number(words)?.ok_or(ModelFileErrorKind::Missing(what))?;
+        *value = parsed(words.next().ok_or(ModelFileErrorKind::Missing(what))?, is_finite)?;
     }
     Ok(values)
 }

@@ -48,7 +48,7 @@ use crate::model_file::colors::{of_faces, paint};
 use crate::model_file::lists::Lists;
 use crate::model_file::warnings::Warnings;
 use crate::model_file::word::without_mark;
-use crate::model_file::{Draft, Loaded, ModelFileError, Options, finish};
+use crate::model_file::{Draft, Loaded, ModelFileError, Options, finish, warned};
 use statement::Statements;
 
 /// Reads a model from `reader`, like [`model_file::parse`](crate::model_file::parse), but with any extension. `path` is
@@ -94,7 +94,7 @@ pub fn parse_with(
         library(path)
     };
     let draft = draft(reader, path, library)?;
-    finish(draft, path, libraries, options).map(Loaded::from)
+    finish(draft, path, libraries, options).map(warned)
 }
 
 /// Reads a file and its MTL files.

@@ -6,7 +6,7 @@ use std::path::Path;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::Mesh;
 
-use super::line::{Lines, keyword, number, numbers, wide_numbers};
+use super::line::{Lines, keyword, number, numbers};
 use crate::model_file::lists::{Corner, Lists, Wide, push, reserve};
 use crate::model_file::word::{name, shown, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
@@ -75,7 +75,9 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Statements, Mode
 }
 
 fn position(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
-    push(&mut lists.positions, Wide::new(wide_numbers(&mut words(rest), "a position (3)")?))
+    // In f64, but within the range of f32.
+    let position = numbers(&mut words(rest), |value: f64| (value as f32).is_finite(), "a position (3)")?;
+    push(&mut lists.positions, Wide::new(position))
 }
 
 fn vertex(model: &mut Statements, line: u64, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
@@ -94,7 +96,7 @@ fn vertex(model: &mut Statements, line: u64, rest: &[u8]) -> Result<(), ModelFil
 
 /// The colour after a position, if there is one: three more numbers.
 fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ModelFileErrorKind> {
-    match numbers(&mut words(rest).skip(3), "a colour (3)") {
+    match numbers(&mut words(rest).skip(3), f32::is_finite, "a colour (3)") {
         Ok(color) => Ok(Some(color)),
         Err(ModelFileErrorKind::Missing(_) | ModelFileErrorKind::NotNumber(_)) => Ok(None),
         Err(error) => Err(error),
@@ -103,13 +105,13 @@ fn color(rest: &[u8]) -> Result<Option<[f32; 3]>, ModelFileErrorKind> {
 
 fn texcoord(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
     let mut words = words(rest);
-    let [u] = numbers(&mut words, "texture coordinates (2)")?;
+    let [u] = numbers(&mut words, f32::is_finite, "texture coordinates (2)")?;
     let v = number(&mut words)?.unwrap_or(0.0);
     push(&mut lists.texcoords, Vec2::new(u, v))
 }
 
 fn normal(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
-    push(&mut lists.normals, Vec3::from_array(numbers(&mut words(rest), "a normal (3)")?))
+    push(&mut lists.normals, Vec3::from_array(numbers(&mut words(rest), f32::is_finite, "a normal (3)")?))
 }
 
 /// The number of a smoothing group: 0 for `off`, 1 for `on`. Anything else is ignored.

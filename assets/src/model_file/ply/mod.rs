@@ -59,7 +59,11 @@ pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> 
     Ok(draft)
 }
 
+/// The outcome of reading an element.
+type Done = Result<(), ModelFileErrorKind>;
+
 /// Data of the elements in addition to positions, normals and faces.
+#[derive(Default)]
 struct Reading {
     /// The number of vertices that the header announces.
     vertices: u64,
@@ -84,20 +88,12 @@ impl Reading {
         }
         Ok(Self {
             vertices: vertex.map_or(0, |vertex| vertex.count),
-            of_vertices: Vec::new(),
-            of_faces: Vec::new(),
-            has_texcoords: false,
-            has_pairs: false,
             has_texture: header.texture.is_some(),
+            ..Self::default()
         })
     }
 
-    fn vertices(
-        &mut self,
-        element: &Element,
-        values: &mut Values<'_>,
-        lists: &mut Lists,
-    ) -> Result<(), ModelFileErrorKind> {
+    fn vertices(&mut self, element: &Element, values: &mut Values<'_>, lists: &mut Lists) -> Done {
         let place = ["x", "y", "z"].map(|name| element.scalar(&[name]));
         let normal = ["nx", "ny", "nz"].map(|name| element.scalar(&[name]));
         let colors = element.colors();
@@ -106,13 +102,11 @@ impl Reading {
         let mut row = Vec::new();
         for _ in 0..element.count {
             values.row(element, &mut row, |_, _| Ok(()))?;
-            let number = |property: Option<usize>| -> Result<f64, ModelFileErrorKind> {
+            let number = |property: Option<usize>| {
                 let value = property.map_or(0.0, |property| row[property]);
-                if (value as f32).is_finite() {
-                    Ok(value)
-                } else {
-                    Err(ModelFileErrorKind::NotFinite(value.to_string()))
-                }
+                Some(value)
+                    .filter(|value| (*value as f32).is_finite())
+                    .ok_or_else(|| ModelFileErrorKind::NotFinite(value.to_string()))
             };
             let [x, y, z] = place;
             push(&mut lists.positions, Wide::new([number(x)?, number(y)?, number(z)?]))?;
@@ -153,12 +147,7 @@ impl Reading {
         Corner { position: vertex, texcoord: or_none(self.has_texcoords), normal: or_none(has_normals) }
     }
 
-    fn faces(
-        &mut self,
-        element: &Element,
-        values: &mut Values<'_>,
-        lists: &mut Lists,
-    ) -> Result<(), ModelFileErrorKind> {
+    fn faces(&mut self, element: &Element, values: &mut Values<'_>, lists: &mut Lists) -> Done {
         let Some(indices) = element.list(&["vertex_indices", "vertex_index"]) else {
             let what = "an element `face` needs a list vertex_indices";
             return Err(ModelFileErrorKind::Fault(what.into()));
@@ -198,12 +187,7 @@ impl Reading {
         Ok(())
     }
 
-    fn strips(
-        &mut self,
-        element: &Element,
-        values: &mut Values<'_>,
-        lists: &mut Lists,
-    ) -> Result<(), ModelFileErrorKind> {
+    fn strips(&mut self, element: &Element, values: &mut Values<'_>, lists: &mut Lists) -> Done {
         let Some(indices) = element.list(&["vertex_indices", "vertex_index"]) else {
             return (0..element.count).try_for_each(|_| values.skip(element));
         };

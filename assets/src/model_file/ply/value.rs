@@ -53,7 +53,7 @@ impl<'b> Values<'b> {
                 let word = words.next().ok_or(ModelFileErrorKind::Ends("a number"))?;
                 // Any type is accepted, since some programs write 255.0 for a colour declared as `uchar`. Infinities
                 // and NaN are left to the code that uses the number.
-                parsed(word, |_: f64| true)?.ok_or(ModelFileErrorKind::Ends("a number"))
+                parsed(word, |_: f64| true)
             }
             Source::Binary { bytes, at, last, is_big_endian } => {
                 *last = *at;
