@@ -334,12 +334,9 @@ fn a_film_has_these_bytes() {
 #[test]
 fn frames_of_few_colors() {
     for colors in [1, 2, 3, 4, 5, 16, 17, 128, 129, 255] {
-        let frame = |offset: usize| Given {
-            pixels: (0..60 * 50).map(|i| ((i * i / 7 + offset) % colors) as u8).collect(),
-            width: 60,
-            height: 50,
-            pitch: 60,
-            palette: grey(),
+        let frame = |offset: usize| {
+            let pixels = (0..60 * 50).map(|i| ((i * i / 7 + offset) % colors) as u8).collect();
+            Given { pixels, width: 60, height: 50, pitch: 60, palette: grey() }
         };
         check(&[frame(0), frame(1), frame(2)], Scale::Double, FrameRate::default());
     }

@@ -8,7 +8,9 @@ use mode13h::glam::Vec2;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Rgb;
 use mode13h::scene::UpAxis;
-use mode13h_assets::model_file::{self, Loaded, ModelFileError, Options};
+use mode13h_assets::model_file::{self, Loaded, Options};
+
+use crate::model_files::{Faces, contents, loaded, refused};
 
 /// A glTF file under construction: the entries of its lists, and its buffer.
 #[derive(Default)]
@@ -67,6 +69,17 @@ impl Gltf {
         self.add("meshes", format!("{{\"primitives\":[{{\"attributes\":{{{attributes}}}{more}}}]}}"))
     }
 
+    /// A mesh of one primitive in a node of its own.
+    pub(crate) fn shown(&mut self, attributes: &str, more: &str) {
+        let mesh = self.mesh(attributes, more);
+        self.add("nodes", format!("{{\"mesh\":{mesh}}}"));
+    }
+
+    /// Replaces a text in all entries of a list.
+    pub(crate) fn replace(&mut self, list: &str, from: &str, to: &str) {
+        self.lists.get_mut(list).expect("a list").iter_mut().for_each(|entry| *entry = entry.replace(from, to));
+    }
+
     pub(crate) fn json(&self, buffer: &str) -> String {
         let lists: String = self.lists.iter().map(|(name, list)| format!(",\"{name}\":[{}]", list.join(","))).collect();
         let length = self.bytes.len();
@@ -88,44 +101,23 @@ impl Gltf {
 
 /// Positions and triangles of a shape, each point once, in the order in which the triangles use them.
 pub(crate) fn points_of(mesh: &Mesh) -> (Vec<[f32; 3]>, Vec<u32>) {
-    let mut positions: Vec<[f32; 3]> = Vec::new();
-    let indices = mesh.triangles().as_flattened().iter().map(|&vertex| {
-        let place = mesh.positions()[vertex as usize].to_array();
-        let known = positions.iter().position(|known| *known == place);
-        known.unwrap_or_else(|| {
-            positions.push(place);
-            positions.len() - 1
-        }) as u32
-    });
-    let indices = indices.collect();
-    (positions, indices)
+    let Faces { positions, faces } = Faces::of_shape(mesh);
+    (positions, faces.concat())
 }
 
 fn obj(positions: &[[f32; 3]], indices: &[u32]) -> Mesh {
-    let mut text: String = positions.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
-    for [a, b, c] in indices.as_chunks::<3>().0 {
-        text += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
-    }
-    loaded(text.as_bytes(), "a.obj").mesh
+    let faces = indices.chunks(3).map(<[u32]>::to_vec).collect();
+    loaded(Faces { positions: positions.to_vec(), faces }.obj(), "a.obj").mesh
 }
 
-pub(crate) fn with_files(bytes: &[u8], name: &str, files: &[(&str, &[u8])]) -> Result<Loaded, ModelFileError> {
-    let file = |path: &Path| {
-        let found = files.iter().find(|(name, _)| Path::new(name) == path);
-        found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(|| io::ErrorKind::NotFound.into())
-    };
-    model_file::parse(bytes, name, file, &Options::default())
-}
+const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
-pub(crate) fn loaded(bytes: &[u8], name: &str) -> Loaded {
-    with_files(bytes, name, &[]).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn contents(mesh: &Mesh) -> impl PartialEq + core::fmt::Debug + '_ {
-    (
-        (mesh.positions(), mesh.normals(), mesh.texcoords(), mesh.triangles()),
-        (mesh.surfaces(), mesh.triangle_surfaces(), mesh.is_closed(), mesh.is_convex()),
-    )
+/// A file with a triangle in nodes[0]; `more` follows the mesh's attributes.
+fn with_triangle(more: &str) -> Gltf {
+    let mut file = Gltf::default();
+    let positions = file.floats(&TRIANGLE);
+    file.shown(&format!("\"POSITION\":{positions}"), more);
+    file
 }
 
 #[test]
@@ -136,19 +128,21 @@ fn every_container_gives_the_mesh_that_obj_gives() {
         for component in [5121, 5123, 5125] {
             let mut file = Gltf::default();
             let (position, index) = (file.floats(&positions), file.indices(&indices, component));
-            let mesh = file.mesh(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
-            file.add("nodes", format!("{{\"mesh\":{mesh}}}"));
+            file.shown(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
             let beside = file.json(",\"uri\":\"the%20bytes.bin\"");
-            let named =
-                with_files(beside.as_bytes(), "folder/a.gltf", &[("folder/the bytes.bin", &file.bytes)]).unwrap();
+            let bytes = |path: &Path| match path == Path::new("folder/the bytes.bin") {
+                true => Ok(file.bytes.clone()),
+                false => Err(io::ErrorKind::NotFound.into()),
+            };
+            let named = model_file::parse(beside.as_bytes(), "folder/a.gltf", bytes, &Options::default()).unwrap();
             assert_eq!(named.files, [PathBuf::from("folder/the bytes.bin")]);
             let percent: String = file.bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
             let inside = file.json(&format!(",\"uri\":\"data:application/octet-stream,{percent}\""));
             for model in [
-                loaded(&file.glb(), "a.glb"),
-                loaded(&file.glb(), "standard input"),
-                loaded(inside.as_bytes(), "a.gltf"),
-                loaded(inside.as_bytes(), "standard input"),
+                loaded(file.glb(), "a.glb"),
+                loaded(file.glb(), "standard input"),
+                loaded(&inside, "a.gltf"),
+                loaded(&inside, "standard input"),
                 named,
             ] {
                 assert_eq!(contents(&model.mesh), contents(&expected));
@@ -169,9 +163,8 @@ fn strips_fans_and_lists_without_indices() {
     ] {
         let mut file = Gltf::default();
         let position = file.floats(&positions);
-        file.mesh(&format!("\"POSITION\":{position}"), &format!(",\"mode\":{mode}"));
-        file.add("nodes", "{\"mesh\":0}");
-        let (found, expected) = (loaded(&file.glb(), "a.glb").mesh, obj(&positions, &triangles));
+        file.shown(&format!("\"POSITION\":{position}"), &format!(",\"mode\":{mode}"));
+        let (found, expected) = (loaded(file.glb(), "a.glb").mesh, obj(&positions, &triangles));
         assert_eq!(contents(&found), contents(&expected), "mode {mode}");
     }
 }
@@ -196,7 +189,7 @@ fn nodes_place_their_meshes() {
     let mut triangles = indices.clone();
     let count = positions.len() as u32;
     triangles.extend(indices.as_chunks::<3>().0.iter().flat_map(|&[a, b, c]| [a, c, b].map(|i| i + count)));
-    let model = loaded(&file.glb(), "a.glb");
+    let model = loaded(file.glb(), "a.glb");
     let expected = obj(&placed, &triangles);
     assert_eq!(contents(&model.mesh), contents(&expected));
     assert_eq!(model.warnings, [""; 0], "nothing is inside out");
@@ -211,7 +204,7 @@ fn normals_go_with_their_faces() {
         let (position, normal) = (file.floats(&positions), file.floats(&[[2.0, 2.0, 2.0]; 3]));
         file.mesh(&format!("\"POSITION\":{position},\"NORMAL\":{normal}"), "");
         file.add("nodes", format!("{{\"mesh\":0,\"scale\":{scale}}}"));
-        let mesh = loaded(&file.glb(), "a.glb").mesh;
+        let mesh = loaded(file.glb(), "a.glb").mesh;
         let [a, b, c] = mesh.triangles()[0].map(|vertex| mesh.positions()[vertex as usize]);
         let expected = (b - a).cross(c - a).normalize();
         // Both are unit vectors, each with a few roundings of 2⁻²⁴.
@@ -237,9 +230,8 @@ fn numbers_of_all_types() {
         ),
     );
     let pair = file.accessor(&[0, 255, 51, 0, 255, 102], 5121, 3, "VEC2", ",\"normalized\":true");
-    file.mesh(&format!("\"POSITION\":{position},\"TEXCOORD_0\":{pair}"), "");
-    file.add("nodes", "{\"mesh\":0}");
-    let mesh = loaded(&file.glb(), "a.glb").mesh;
+    file.shown(&format!("\"POSITION\":{position},\"TEXCOORD_0\":{pair}"), "");
+    let mesh = loaded(file.glb(), "a.glb").mesh;
     let places: Vec<[f32; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     assert_eq!(places, [[-32767.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 16384.0, 0.0]]);
     // v runs up.
@@ -255,6 +247,20 @@ fn picture() -> Vec<u8> {
     bytes
 }
 
+/// A triangle with a texture. `image` describes the image, given the view of the picture's bytes; `base` follows the
+/// texture's index, and `more` the texture, in the material.
+fn textured(image: impl FnOnce(usize) -> String, base: &str, more: &str) -> Gltf {
+    let mut file = Gltf::default();
+    let (positions, pairs) = (file.floats(&TRIANGLE), file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]));
+    let view = file.view(&picture(), None);
+    file.add("images", image(view));
+    file.add("textures", "{\"source\":0}");
+    let texture = format!("\"baseColorTexture\":{{\"index\":0{base}}}");
+    file.add("materials", format!("{{\"pbrMetallicRoughness\":{{{texture}{more}}}}}"));
+    file.shown(&format!("\"POSITION\":{positions},\"TEXCOORD_0\":{pairs}"), ",\"material\":0");
+    file
+}
+
 #[test]
 fn textures_lie_as_the_file_says() {
     for (transform, expected) in [
@@ -263,23 +269,11 @@ fn textures_lie_as_the_file_says() {
         // Counter-clockwise as seen with v pointing down: u increases, so v decreases.
         ("\"rotation\":1.5707963267948966", [[0.0, 0.0], [0.5, -0.25], [1.0, -1.0]]),
     ] {
-        let mut file = Gltf::default();
-        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-        let pairs = file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]);
-        let view = file.view(&picture(), None);
-        file.add("images", format!("{{\"bufferView\":{view},\"mimeType\":\"image/png\"}}"));
-        file.add("textures", "{\"source\":0}");
         let extension = format!(",\"extensions\":{{\"KHR_texture_transform\":{{{transform}}}}}");
-        file.add(
-            "materials",
-            format!(
-                "{{\"name\":\"a\",\"pbrMetallicRoughness\":{{\"metallicFactor\":0,\"baseColorTexture\":{{\"index\":0{}}}}}}}",
-                if transform.is_empty() { "" } else { &extension }
-            ),
-        );
-        file.mesh(&format!("\"POSITION\":{positions},\"TEXCOORD_0\":{pairs}"), ",\"material\":0");
-        file.add("nodes", "{\"mesh\":0}");
-        let Loaded { mesh, textures, files, .. } = loaded(&file.glb(), "a.glb");
+        let image = |view| format!("{{\"bufferView\":{view},\"mimeType\":\"image/png\"}}");
+        let base = if transform.is_empty() { "" } else { &extension };
+        let file = textured(image, base, ",\"metallicFactor\":0");
+        let Loaded { mesh, textures, files, .. } = loaded(file.glb(), "a.glb");
         for (pair, [u, v]) in mesh.texcoords().unwrap().iter().zip(expected) {
             // The angle is a quarter turn up to the rounding of f32.
             assert!((*pair - Vec2::new(u, 1.0 - v)).length() < 1e-6, "{transform}: {pair} {u} {v}");
@@ -294,25 +288,12 @@ fn textures_lie_as_the_file_says() {
 /// An image whose type is not said is seen by its bytes; one without any is refused, by its place.
 #[test]
 fn images_need_bytes_and_no_type() {
-    let file = |of_image: &dyn Fn(usize) -> String| {
-        let mut file = Gltf::default();
-        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-        let pairs = file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]);
-        let view = file.view(&picture(), None);
-        file.add("images", of_image(view));
-        file.add("textures", "{\"source\":0}");
-        file.add("materials", "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}");
-        file.mesh(&format!("\"POSITION\":{positions},\"TEXCOORD_0\":{pairs}"), ",\"material\":0");
-        file.add("nodes", "{\"mesh\":0}");
-        file.glb()
-    };
-    let Loaded { mesh, textures, .. } = loaded(&file(&|view| format!("{{\"bufferView\":{view}}}")), "a.glb");
+    let file = textured(|view| format!("{{\"bufferView\":{view}}}"), "", "");
+    let Loaded { mesh, textures, .. } = loaded(file.glb(), "a.glb");
     let name = mesh.surfaces()[0].texture.as_ref().unwrap();
     assert_eq!(textures[name][(0, 0)], Rgb::new(0, 0, 255));
-    let none = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
-    let bytes = file(&|_| "{\"name\":\"nothing\"}".into());
-    let error = model_file::parse(&bytes[..], "a.glb", none, &model_file::Options::default()).unwrap_err();
-    assert!(error.to_string().ends_with("images[0]: has neither a uri nor a bufferView"), "{error}");
+    let error = refused(textured(|_| "{\"name\":\"nothing\"}".into(), "", "").glb(), "a.glb");
+    assert!(error.ends_with("images[0]: has neither a uri nor a bufferView"), "{error}");
 }
 
 /// The rule, implemented once more.
@@ -320,8 +301,7 @@ fn images_need_bytes_and_no_type() {
 fn materials_follow_the_rule() {
     let srgb = |linear: f64| if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     for (base, metal, rough) in [(0.5, 0.0, 0.5), (0.25, 1.0, 0.25), (1.0, 0.5, 1.0), (0.001, 0.75, 0.0)] {
-        let mut file = Gltf::default();
-        let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        let mut file = with_triangle(",\"material\":0");
         file.add(
             "materials",
             format!(
@@ -329,9 +309,7 @@ fn materials_follow_the_rule() {
                  {{\"baseColorFactor\":[{base},{base},0,0.25],\"metallicFactor\":{metal},\"roughnessFactor\":{rough}}}}}"
             ),
         );
-        file.mesh(&format!("\"POSITION\":{positions}"), ",\"material\":0");
-        file.add("nodes", "{\"mesh\":0}");
-        let mesh = loaded(&file.glb(), "a.glb").mesh;
+        let mesh = loaded(file.glb(), "a.glb").mesh;
         let [surface] = mesh.surfaces() else { panic!("{:?}", mesh.surfaces()) };
         let b = srgb(base);
         let diffuse = [b * (1.0 - metal * (1.0 - rough) / 2.0), 1.0, 0.0];
@@ -362,7 +340,7 @@ fn colors_of_vertices_are_texels() {
     file.mesh(&format!("\"POSITION\":{positions},\"COLOR_0\":{colors}"), ",\"mode\":5");
     file.add("nodes", "{\"mesh\":0,\"translation\":[0,0,1]}");
     file.add("nodes", "{\"mesh\":1}");
-    let Loaded { mesh, textures, .. } = loaded(&file.glb(), "a.glb");
+    let Loaded { mesh, textures, .. } = loaded(file.glb(), "a.glb");
     assert_eq!(mesh.surfaces().iter().map(|surface| surface.texture.is_some()).collect::<Vec<_>>(), [false, true]);
     let texture = &textures[mesh.surfaces()[1].texture.as_ref().unwrap()];
     let color = |triangle: usize| {
@@ -375,54 +353,37 @@ fn colors_of_vertices_are_texels() {
 
 #[test]
 fn errors_say_part_or_place() {
-    let refused = |bytes: &[u8]| match with_files(bytes, "a.glb", &[]) {
-        Ok(_) => "read".to_owned(),
-        Err(error) => error.to_string(),
-    };
-    let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let with = |edit: &dyn Fn(&mut Gltf)| {
-        let mut file = Gltf::default();
-        let positions = file.floats(&triangle);
-        file.mesh(&format!("\"POSITION\":{positions}"), "");
-        file.add("nodes", "{\"mesh\":0}");
-        edit(&mut file);
-        refused(&file.glb())
-    };
-    assert_eq!(with(&|_| {}), "read");
-    assert_eq!(
-        with(&|file| {
+    type Edit = fn(&mut Gltf);
+    let edits: [(&str, Edit); 6] = [
+        ("read", |_| {}),
+        ("a.glb: meshes[0].primitives[0]: there is no vertex 3, only 3", |file| {
             let indices = file.indices(&[0, 1, 3], 5123);
             file.lists.remove("meshes");
             file.mesh("\"POSITION\":0", &format!(",\"indices\":{indices}"));
         }),
-        "a.glb: meshes[0].primitives[0]: there is no vertex 3, only 3"
-    );
-    assert_eq!(
-        with(&|file| file.lists.get_mut("accessors").unwrap()[0] =
-            file.lists["accessors"][0].replace("\"count\":3", "\"count\":4")),
-        "a.glb: meshes[0].primitives[0]: accessors[0] ends beyond bufferViews[0]"
-    );
-    assert_eq!(
-        with(&|file| file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":0,\"children\":[0]}".into()),
-        "a.glb: no faces"
-    );
-    assert_eq!(
-        with(&|file| {
-            file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":0,\"children\":[0]}".into();
+        ("a.glb: meshes[0].primitives[0]: accessors[0] ends beyond bufferViews[0]", |file| {
+            file.replace("accessors", "\"count\":3", "\"count\":4");
+        }),
+        ("a.glb: no faces", |file| file.replace("nodes", "}", ",\"children\":[0]}")),
+        ("a.glb: nodes[0] is in the scene twice", |file| {
+            file.replace("nodes", "}", ",\"children\":[0]}");
             file.add("scenes", "{\"nodes\":[0]}");
         }),
-        "a.glb: nodes[0] is in the scene twice"
-    );
-    assert_eq!(
-        with(&|file| file.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]".into()),
-        "a.glb: needs KHR_draco_mesh_compression, which is not supported"
-    );
-    assert!(
-        with(&|file| file.lists.get_mut("nodes").unwrap()[0] = "{\"mesh\":7}".into())
-            .starts_with("a.glb: nodes[0].mesh: ")
-    );
+        ("a.glb: needs KHR_draco_mesh_compression, which is not supported", |file| {
+            file.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]".into();
+        }),
+    ];
+    for (said, edit) in edits {
+        let mut file = with_triangle("");
+        edit(&mut file);
+        assert_eq!(refused(file.glb(), "a.glb"), said);
+    }
+    let mut nowhere = with_triangle("");
+    nowhere.replace("nodes", "0", "7");
+    assert!(refused(nowhere.glb(), "a.glb").starts_with("a.glb: nodes[0].mesh: "));
+    let refused = |bytes: &[u8]| refused(bytes, "a.glb");
     let mut whole = Gltf::default();
-    whole.floats(&triangle);
+    whole.floats(&TRIANGLE);
     let whole = whole.glb();
     let cut = whole.len() - 1;
     assert_eq!(refused(&whole[..cut]), format!("a.glb: byte {cut}: the file ends where a binary chunk is expected"));
@@ -436,19 +397,17 @@ fn errors_say_part_or_place() {
 #[test]
 fn what_is_left_out_is_one_warning() {
     let mut file = Gltf::default();
-    let positions = file.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    let positions = file.floats(&TRIANGLE);
     file.add("materials", "{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}");
     file.add("textures", "{}");
     let targets = format!(",\"material\":0,\"targets\":[{{\"POSITION\":{positions}}}]");
-    file.mesh(&format!("\"POSITION\":{positions}"), &targets);
-    file.mesh(&format!("\"POSITION\":{positions}"), ",\"mode\":1");
-    file.add("nodes", "{\"mesh\":0}");
-    file.add("nodes", "{\"mesh\":1}");
+    file.shown(&format!("\"POSITION\":{positions}"), &targets);
+    file.shown(&format!("\"POSITION\":{positions}"), ",\"mode\":1");
     file.more = ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],\
                  \"extensionsUsed\":[\"KHR_materials_unlit\"]"
         .into();
     assert_eq!(
-        loaded(&file.glb(), "a.glb").warnings,
+        loaded(file.glb(), "a.glb").warnings,
         ["a.glb: left out: morph targets, normal maps, points and lines, unlit shading"]
     );
 }

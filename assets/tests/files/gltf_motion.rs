@@ -15,7 +15,8 @@ use mode13h_assets::SceneExt;
 use mode13h_assets::model::{Playback, composed};
 use mode13h_assets::model_file::{Loaded, Rig};
 
-use crate::gltf_files::{Gltf, loaded, points_of, with_files};
+use crate::gltf_files::{Gltf, points_of};
+use crate::model_files::{loaded, refused};
 use crate::support::tried::Tried;
 
 /// A turn by an angle about an axis, as a file has it: x, y, z, w.
@@ -78,7 +79,7 @@ fn lights_have_the_files_ratios_where_the_model_is() {
             ("\"type\":\"point\",\"intensity\":0", ""),
         ],
     );
-    let Loaded { lights, warnings, camera, rig, .. } = loaded(&file.glb(), "a.glb");
+    let Loaded { lights, warnings, camera, rig, .. } = loaded(file.glb(), "a.glb");
     assert_eq!(warnings, ["a.glb: left out: lights that emit no light"]);
     assert!(camera.is_none() && rig.is_none());
     let [lamp, spot, sun] = *lights.as_slice() else { panic!("{lights:?}") };
@@ -114,7 +115,7 @@ fn lamps_reach_the_whole_model() {
     ] {
         let light = format!("\"type\":\"point\"{limit}");
         let file = with_lights(with_shape(&shapes::cube()), &[(&light, &format!("\"translation\":[{place}],"))]);
-        let lights = loaded(&file.glb(), "a.glb").lights;
+        let lights = loaded(file.glb(), "a.glb").lights;
         let [Light::Lamp { range, .. }] = *lights.as_slice() else { panic!("{lights:?}") };
         assert!((f64::from(range) - expected).abs() < 1e-5, "{place} {limit}: {range}, not {expected}");
     }
@@ -130,7 +131,7 @@ fn the_first_camera_in_perspective_is_the_camera() {
     // Behind the cube and looking along z, rolled by a half turn.
     file.add("nodes", "{\"camera\":1,\"matrix\":[2,0,0,0,0,-2,0,0,0,0,-2,0,3,0,-8,1]}");
     file.add("nodes", "{\"camera\":2}");
-    let Loaded { camera, warnings, .. } = loaded(&file.glb(), "a.glb");
+    let Loaded { camera, warnings, .. } = loaded(file.glb(), "a.glb");
     let camera = camera.expect("a camera");
     assert_eq!(warnings, ["a.glb: left out: orthographic cameras"]);
     assert_eq!((camera.eye, camera.up, camera.near), (Vec3::new(3.0, 0.0, -8.0), Vec3::NEG_Y, 0.25));
@@ -144,9 +145,8 @@ fn the_first_camera_in_perspective_is_the_camera() {
 }
 
 /// Adds an animation of one property of a node.
-fn animate(file: &mut Gltf, node: usize, path: &str, interpolation: &str, times: &[f32], values: &str) {
-    let rows: Vec<[f32; 1]> = times.iter().map(|&time| [time]).collect();
-    let bytes: Vec<u8> = rows.as_flattened().iter().flat_map(|time| time.to_le_bytes()).collect();
+fn animate(file: &mut Gltf, node: usize, path: &str, interpolation: &str, times: &[f32], values: usize) {
+    let bytes: Vec<u8> = times.iter().flat_map(|time| time.to_le_bytes()).collect();
     let input = file.accessor(&bytes, 5126, times.len(), "SCALAR", "");
     file.add(
         "animations",
@@ -174,8 +174,8 @@ fn a_node_turns_evenly_and_takes_its_children_along() {
     file.add("nodes", "{\"children\":[0]}");
     let values = [turn([0.0, 1.0, 0.0], 0.0), turn([0.0, 1.0, 0.0], FRAC_PI_2).map(|c| -c)];
     let values = file.floats(&values);
-    animate(&mut file, 1, "rotation", "LINEAR", &[0.5, 2.5], &values.to_string());
-    let model = loaded(&file.glb(), "a.glb");
+    animate(&mut file, 1, "rotation", "LINEAR", &[0.5, 2.5], values);
+    let model = loaded(file.glb(), "a.glb");
     let [clip] = rig(&model).clips() else { panic!("{:?}", rig(&model).clips()) };
     assert_eq!((clip.name(), clip.duration()), ("rotation", 2.5));
     assert_eq!(placed(&model, 0, 0.0), model.mesh.positions());
@@ -203,10 +203,10 @@ fn each_interpolation_follows_its_formula() {
     let spline: [[f32; 3]; 6] =
         [[9.0, 9.0, 9.0], [0.0, 0.0, 0.0], [1.0, 0.0, 4.0], [0.5, -2.0, 0.0], [2.0, 1.0, 0.0], [9.0, 9.0, 9.0]];
     let six = file.floats(&spline);
-    animate(&mut file, 0, "translation", "STEP", &[0.0, 2.0], &two.to_string());
-    animate(&mut file, 0, "scale", "LINEAR", &[0.0, 2.0], &two.to_string());
-    animate(&mut file, 0, "translation", "CUBICSPLINE", &[1.0, 3.0], &six.to_string());
-    let model = loaded(&file.glb(), "a.glb");
+    animate(&mut file, 0, "translation", "STEP", &[0.0, 2.0], two);
+    animate(&mut file, 0, "scale", "LINEAR", &[0.0, 2.0], two);
+    animate(&mut file, 0, "translation", "CUBICSPLINE", &[1.0, 3.0], six);
+    let model = loaded(file.glb(), "a.glb");
     assert_eq!(
         rig(&model).clips().iter().map(|clip| clip.name()).collect::<Vec<_>>(),
         ["translation", "scale", "translation"]
@@ -260,14 +260,10 @@ fn bar(joints: &str, weights: &[u8], component: u32, more: &str) -> Gltf {
     file
 }
 
-const HALVES: [[f32; 4]; 6] = [
-    [1.0, 0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0, 0.0],
-    [0.5, 0.5, 0.0, 0.0],
-    [0.5, 0.5, 0.0, 0.0],
-    [0.0, 1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0, 0.0],
-];
+const HALVES: [[f32; 4]; 6] = {
+    let (lower, middle, upper) = ([1.0, 0.0, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]);
+    [lower, lower, middle, middle, upper, upper]
+};
 
 fn half_weights() -> Vec<u8> {
     HALVES.as_flattened().iter().flat_map(|weight| weight.to_le_bytes()).collect()
@@ -291,10 +287,10 @@ fn a_bar_on_two_joints_bends() {
         let aside = file.floats(&[turn([0.0, 0.0, 1.0], 0.0), turn([0.0, 0.0, 1.0], FRAC_PI_2)]);
         let ahead = file.floats(&[turn([1.0, 0.0, 0.0], 0.0), turn([1.0, 0.0, 0.0], FRAC_PI_2)]);
         for values in [aside, ahead] {
-            animate(&mut file, 2, "rotation", "LINEAR", &[0.0, 1.0], &values.to_string());
+            animate(&mut file, 2, "rotation", "LINEAR", &[0.0, 1.0], values);
         }
         // Two clips of four seconds, bent from the first on.
-        let model = loaded(&file.glb(), "a.glb");
+        let model = loaded(file.glb(), "a.glb");
         assert_eq!(model.warnings, [""; 0]);
         let order: Vec<usize> = model.mesh.positions().iter().map(|p| (2.0 * p.y + p.x + 0.5) as usize).collect();
         let at_rest = |vertex: usize| model.mesh.positions()[vertex].to_array().map(f64::from);
@@ -313,20 +309,13 @@ fn a_bar_on_two_joints_bends() {
                         _ => ([x, 1.0 + cosine * above, sine * above], [0.0, -sine, cosine]),
                     };
                     let expected = [0, 1, 2].map(|i| (1.0 - weight) * [x, y, z][i] + weight * moved[i]);
-                    assert!(
-                        are_near(pose.positions()[vertex], expected, 1e-6),
-                        "{clip} {seconds} {vertex}: {}",
-                        pose.positions()[vertex]
-                    );
+                    let (found, found_normal) = (pose.positions()[vertex], pose.normals()[vertex]);
+                    assert!(are_near(found, expected, 1e-6), "{clip} {seconds} {vertex}: {found}");
                     // A blend of two rotations about x by w shrinks by one factor along y and z, so its normals go with it.
                     let normal = [0, 1, 2].map(|i| (1.0 - weight) * [0.0, 0.0, 1.0][i] + weight * normal[i]);
                     let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
                     let normal = normal.map(|c| c / length);
-                    assert!(
-                        are_near(pose.normals()[vertex], normal, 1e-6),
-                        "{clip} {seconds} {vertex}: {}",
-                        pose.normals()[vertex]
-                    );
+                    assert!(are_near(found_normal, normal, 1e-6), "{clip} {seconds} {vertex}: {found_normal}");
                 }
                 assert_eq!((pose.triangles(), pose.surfaces()), (model.mesh.triangles(), model.mesh.surfaces()));
             }
@@ -340,7 +329,7 @@ fn a_skinned_mesh_at_rest_is_where_its_joints_are() {
     let mut file = bar("u8", &half_weights(), 5126, "");
     let quarter = list(&turn([0.0, 0.0, 1.0], FRAC_PI_2));
     file.lists.get_mut("nodes").unwrap()[2] = format!("{{\"translation\":[0,1,0],\"rotation\":{quarter}}}");
-    let model = loaded(&file.glb(), "a.glb");
+    let model = loaded(file.glb(), "a.glb");
     assert!(model.rig.is_none() && model.warnings.is_empty());
     let last = model.mesh.positions().iter().fold(Vec3::ZERO, |last, p| if p.x < last.x { *p } else { last });
     assert!(are_near(last, [-1.0, 1.5, 0.0], 1e-6) || are_near(last, [-1.0, 0.5, 0.0], 1e-6), "{last}");
@@ -351,8 +340,8 @@ fn a_skinned_mesh_at_rest_is_where_its_joints_are() {
 fn normals_that_were_found_move_too() {
     let mut file = with_shape(&shapes::torus(12, 6));
     let values = file.floats(&[[1.0, 1.0, 1.0], [1.0, 3.0, 0.5]]);
-    animate(&mut file, 0, "scale", "LINEAR", &[0.0, 1.0], &values.to_string());
-    let model = loaded(&file.glb(), "a.glb");
+    animate(&mut file, 0, "scale", "LINEAR", &[0.0, 1.0], values);
+    let model = loaded(file.glb(), "a.glb");
     let pose = rig(&model).pose(&model.mesh, 0, 0.5).mesh;
     for (at_rest, now) in model.mesh.normals().iter().zip(pose.normals()) {
         // By the inverse of the scale, (1, 2, 0.75).
@@ -368,8 +357,8 @@ fn a_mirrored_pose_is_not_drawn_from_its_inside() {
         let mut file = with_shape(&shapes::cube());
         file.lists.get_mut("nodes").unwrap()[0] = format!("{{\"mesh\":0{at_rest}}}");
         let values = file.floats(&[[sign, 1.0, 1.0], [-sign, 1.0, 1.0], [sign, 1.0, 1.0]]);
-        animate(&mut file, 0, "scale", "STEP", &[0.0, 1.0, 2.0], &values.to_string());
-        let model = loaded(&file.glb(), "a.glb");
+        animate(&mut file, 0, "scale", "STEP", &[0.0, 1.0, 2.0], values);
+        let model = loaded(file.glb(), "a.glb");
         assert!(model.mesh.is_convex() && model.mesh.is_outward());
         let [before, mirrored] = [0.5, 1.5].map(|seconds| rig(&model).pose(&model.mesh, 0, seconds).mesh);
         assert_eq!(before, model.mesh);
@@ -388,8 +377,8 @@ fn a_mirrored_pose_is_not_drawn_from_its_inside() {
 fn a_body_that_bends_is_drawn_as_a_new_one() {
     let mut file = with_shape(&shapes::torus(12, 8));
     let values = file.floats(&[turn([0.0, 1.0, 0.0], 0.0), turn([0.0, 1.0, 0.0], FRAC_PI_4)]);
-    animate(&mut file, 0, "rotation", "LINEAR", &[0.0, 1.0], &values.to_string());
-    let model = loaded(&file.glb(), "a.glb");
+    animate(&mut file, 0, "rotation", "LINEAR", &[0.0, 1.0], values);
+    let model = loaded(file.glb(), "a.glb");
     let rig = rig(&model).clone();
     let mut scene = Scene::showing(model.mesh.clone());
     let object = scene.object_ids()[0];
@@ -421,14 +410,14 @@ fn with_clips() -> Gltf {
     for (path, end) in [("translation", [1.0, 0.0, 0.0]), ("scale", [2.0; 3]), ("translation", [2.0, 0.0, 0.0])] {
         let start = if path == "scale" { [1.0; 3] } else { [0.0; 3] };
         let values = file.floats(&[start, end]);
-        animate(&mut file, 0, path, "LINEAR", &[0.0, 1.0], &values.to_string());
+        animate(&mut file, 0, path, "LINEAR", &[0.0, 1.0], values);
     }
     file
 }
 
 #[test]
 fn a_clip_is_found_by_name_or_number() {
-    let model = loaded(&with_clips().glb(), "a.glb");
+    let model = loaded(with_clips().glb(), "a.glb");
     let found = |word: &str| rig(&model).find_clip(word).map_err(|unknown| unknown.to_string());
     for (word, clip) in [("translation", 0), ("scale", 1), ("0", 0), ("1", 1), ("2", 2)] {
         assert_eq!(found(word), Ok(clip), "{word}");
@@ -440,10 +429,8 @@ fn a_clip_is_found_by_name_or_number() {
     // A name comes before a number; one without a name has the number only.
     let edited = |from: &str, to: &str| {
         let mut file = with_clips();
-        for item in file.lists.get_mut("animations").expect("clips") {
-            *item = item.replace(from, to);
-        }
-        loaded(&file.glb(), "a.glb")
+        file.replace("animations", from, to);
+        loaded(file.glb(), "a.glb")
     };
     let model = edited("\"name\":\"scale\"", "\"name\":\"0\"");
     assert_eq!(rig(&model).find_clip("0"), Ok(1));
@@ -467,8 +454,8 @@ fn a_scene_chooses_the_clip_of_a_model() {
             _ => Err(io::ErrorKind::NotFound.into()),
         }
     };
-    let read = |keys: &str| {
-        let text = format!("[[objects]]\nmodel = 'a.glb'\n{keys}");
+    let read = |object: &str, keys: &str| {
+        let text = format!("[[objects]]\n{object}\n{keys}");
         Scene::from_toml_bytes(text.as_bytes(), Path::new("a.toml"), open)
     };
     for (keys, size, middle) in [
@@ -479,34 +466,25 @@ fn a_scene_chooses_the_clip_of_a_model() {
         ("clip = '1'", 1.5, 0.0),
         ("clip = 2", 1.0, 1.0),
     ] {
-        let mut loaded = read(keys).expect(keys);
+        let mut loaded = read("model = 'a.glb'", keys).expect(keys);
         let at_rest = loaded.scene.objects()[0].mesh().bounds();
         loaded.playbacks[0].show(&mut loaded.scene, 0.5);
         let moved = loaded.scene.objects()[0].mesh().bounds();
         assert_eq!((moved.radius / at_rest.radius, moved.centre.x - at_rest.centre.x), (size, middle), "{keys}");
     }
-    let refused = |keys: &str| read(keys).expect_err(keys).to_string();
     let known = "the model has 0: translation, 1: scale, 2: translation";
-    assert_eq!(refused("clip = 'run'"), format!("a.toml:3:8: key `objects[0].clip`: no animation run; {known}"));
-    assert_eq!(refused("clip = 3"), format!("a.toml:3:8: key `objects[0].clip`: no animation 3; {known}"));
-    for (value, found) in [("-1", "-1"), ("1.0", "floating point `1.0`")] {
-        assert_eq!(
-            refused(&format!("clip = {value}")),
-            format!(
-                "a.toml:3:8: key `objects[0].clip`: expected the name of an animation, or its number, from 0, found {found}"
-            )
-        );
+    let expected = "expected the name of an animation, or its number, from 0";
+    for (object, clip, says) in [
+        ("model = 'a.glb'", "'run'", format!("no animation run; {known}")),
+        ("model = 'a.glb'", "3", format!("no animation 3; {known}")),
+        ("model = 'a.glb'", "-1", format!("{expected}, found -1")),
+        ("model = 'a.glb'", "1.0", format!("{expected}, found floating point `1.0`")),
+        ("model = 'a.stl'", "0", "the model has no animation".into()),
+        ("shape = 'cube'", "0", "only a model has animations".into()),
+    ] {
+        let error = read(object, &format!("clip = {clip}")).expect_err(&says);
+        assert_eq!(error.to_string(), format!("a.toml:3:8: key `objects[0].clip`: {says}"));
     }
-    let still =
-        |text: &str| Scene::from_toml_bytes(text.as_bytes(), Path::new("a.toml"), open).expect_err(text).to_string();
-    assert_eq!(
-        still("[[objects]]\nmodel = 'a.stl'\nclip = 0"),
-        "a.toml:3:8: key `objects[0].clip`: the model has no animation"
-    );
-    assert_eq!(
-        still("[[objects]]\nshape = 'cube'\nclip = 0"),
-        "a.toml:3:8: key `objects[0].clip`: only a model has animations"
-    );
 }
 
 /// A camera and a lamp on moving nodes.
@@ -517,8 +495,8 @@ fn lights_and_the_camera_move_with_their_nodes() {
     file.add("nodes", "{\"camera\":0,\"translation\":[0,0,8]}");
     file.add("nodes", "{\"children\":[1,2]}");
     let values = file.floats(&[[0.0, 0.0, 0.0], [4.0, 0.0, 2.0]]);
-    animate(&mut file, 3, "translation", "LINEAR", &[0.0, 4.0], &values.to_string());
-    let model = loaded(&file.glb(), "a.glb");
+    animate(&mut file, 3, "translation", "LINEAR", &[0.0, 4.0], values);
+    let model = loaded(file.glb(), "a.glb");
     let at_rest: Camera = model.camera.expect("a camera");
     let pose = rig(&model).pose(&model.mesh, 0, 2.0);
     let by = Vec3::new(2.0, 0.0, 1.0);
@@ -541,43 +519,39 @@ fn lights_and_the_camera_move_with_their_nodes() {
 
 #[test]
 fn errors_of_motion_say_their_part() {
-    let refused = |file: &Gltf| match with_files(&file.glb(), "a.glb", &[]) {
-        Ok(_) => "read".to_owned(),
-        Err(error) => error.to_string(),
-    };
-    let moving = |times: &[f32], rows: &[[f32; 3]], way: &str| {
+    let refused = |file: &Gltf| refused(file.glb(), "a.glb");
+    let moving = |times: &[f32], rows: usize, way: &str| {
         let mut file = with_shape(&shapes::cube());
-        let values = file.floats(rows);
-        animate(&mut file, 0, "translation", way, times, &values.to_string());
+        let values = file.floats(&vec![[0.0; 3]; rows]);
+        animate(&mut file, 0, "translation", way, times, values);
         refused(&file)
     };
-    assert_eq!(moving(&[0.0, 1.0], &[[0.0; 3]; 2], "LINEAR"), "read");
-    assert_eq!(moving(&[0.0, 1.0], &[[0.0; 3]; 1], "LINEAR"), "a.glb: animations[0].samplers[0]: 1 values for 2 keys");
-    assert_eq!(
-        moving(&[0.0, 1.0], &[[0.0; 3]; 5], "CUBICSPLINE"),
-        "a.glb: animations[0].samplers[0]: 5 values for 2 keys"
-    );
-    assert_eq!(
-        moving(&[0.0, 2.0, 1.0], &[[0.0; 3]; 3], "STEP"),
-        "a.glb: animations[0].samplers[0]: key 2 is before key 1"
-    );
-    assert_eq!(moving(&[f32::NAN], &[[0.0; 3]], "STEP"), "a.glb: animations[0].samplers[0]: a key at time NaN");
-    assert!(moving(&[0.0], &[[0.0; 3]], "BOUNCE").starts_with("a.glb: animations[0].samplers[0].interpolation: "));
-    let edited = |list: &str, from: &str, to: &str| {
+    assert_eq!(moving(&[0.0, 1.0], 2, "LINEAR"), "read");
+    for (times, rows, way, said) in [
+        (&[0.0, 1.0][..], 1, "LINEAR", "1 values for 2 keys"),
+        (&[0.0, 1.0], 5, "CUBICSPLINE", "5 values for 2 keys"),
+        (&[0.0, 2.0, 1.0], 3, "STEP", "key 2 is before key 1"),
+        (&[f32::NAN], 1, "STEP", "a key at time NaN"),
+    ] {
+        assert_eq!(moving(times, rows, way), format!("a.glb: animations[0].samplers[0]: {said}"));
+    }
+    assert!(moving(&[0.0], 1, "BOUNCE").starts_with("a.glb: animations[0].samplers[0].interpolation: "));
+    let edited = |list: &'static str, from: &str, to: &str| {
         let mut file = bar("u8", &half_weights(), 5126, "");
         let values = file.floats(&[[0.0; 3]]);
-        animate(&mut file, 2, "translation", "STEP", &[0.0], &values.to_string());
-        file.lists.get_mut(list).expect("a list").iter_mut().for_each(|entry| *entry = entry.replace(from, to));
+        animate(&mut file, 2, "translation", "STEP", &[0.0], values);
+        file.replace(list, from, to);
         refused(&file)
     };
-    assert_eq!(edited("nodes", "", ""), "read");
-    assert_eq!(
-        edited("animations", "\"node\":2", "\"node\":9"),
-        "a.glb: animations[0].channels[0]: its node does not exist"
-    );
-    assert_eq!(edited("animations", "\"translation\"}", "\"pointer\"}"), "read");
-    assert_eq!(edited("skins", "[1,2]", "[1]"), "a.glb: meshes[0].primitives[0]: there is no joint 1, only 1");
-    assert_eq!(edited("skins", "[1,2]", "[1,2,0]"), "a.glb: skins[0]: 2 inverse bind matrices for 3 joints");
+    for (list, from, to, said) in [
+        ("nodes", "", "", "read"),
+        ("animations", "\"node\":2", "\"node\":9", "a.glb: animations[0].channels[0]: its node does not exist"),
+        ("animations", "\"translation\"}", "\"pointer\"}", "read"),
+        ("skins", "[1,2]", "[1]", "a.glb: meshes[0].primitives[0]: there is no joint 1, only 1"),
+        ("skins", "[1,2]", "[1,2,0]", "a.glb: skins[0]: 2 inverse bind matrices for 3 joints"),
+    ] {
+        assert_eq!(edited(list, from, to), said);
+    }
     assert!(edited("skins", "[1,2]", "[1,9]").starts_with("a.glb: skins[0].joints[1]: "));
     assert!(edited("skins", "\"joints\"", "\"skeleton\":9,\"joints\"").starts_with("a.glb: skins[0].skeleton: "));
     let mut file = bar("u8", &half_weights(), 5126, "");

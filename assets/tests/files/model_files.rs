@@ -15,11 +15,11 @@ fn parse(bytes: impl AsRef<[u8]>, name: &str) -> Result<Loaded, ModelFileError> 
     model_file::parse(bytes.as_ref(), name, none, &Options::default())
 }
 
-fn loaded(bytes: impl AsRef<[u8]>, name: &str) -> Loaded {
+pub(crate) fn loaded(bytes: impl AsRef<[u8]>, name: &str) -> Loaded {
     parse(bytes, name).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refused(bytes: impl AsRef<[u8]>, name: &str) -> String {
+pub(crate) fn refused(bytes: impl AsRef<[u8]>, name: &str) -> String {
     match parse(bytes, name) {
         Ok(_) => "read".to_owned(),
         Err(error) => error.to_string(),
@@ -27,14 +27,14 @@ fn refused(bytes: impl AsRef<[u8]>, name: &str) -> String {
 }
 
 /// A model to write: positions, and faces of any size.
-struct Faces {
-    positions: Vec<[f32; 3]>,
-    faces: Vec<Vec<u32>>,
+pub(crate) struct Faces {
+    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) faces: Vec<Vec<u32>>,
 }
 
 impl Faces {
     /// The points of a shape, each once, in the order its triangles use them.
-    fn of_shape(mesh: &Mesh) -> Self {
+    pub(crate) fn of_shape(mesh: &Mesh) -> Self {
         let mut positions: Vec<[f32; 3]> = Vec::new();
         let mut index = |vertex: u32| {
             let place = mesh.positions()[vertex as usize].to_array();
@@ -57,7 +57,7 @@ impl Faces {
         Self { positions, faces }
     }
 
-    fn obj(&self) -> String {
+    pub(crate) fn obj(&self) -> String {
         let mut text = String::new();
         for [x, y, z] in &self.positions {
             writeln!(text, "v {x} {y} {z}").unwrap();
@@ -142,7 +142,7 @@ impl Faces {
 }
 
 /// Everything in a mesh except its faces' line numbers, which depend on the file.
-fn contents(mesh: &Mesh) -> impl PartialEq + core::fmt::Debug + '_ {
+pub(crate) fn contents(mesh: &Mesh) -> impl PartialEq + core::fmt::Debug + '_ {
     (
         (mesh.positions(), mesh.normals(), mesh.texcoords(), mesh.triangles()),
         (mesh.surfaces(), mesh.triangle_surfaces(), mesh.is_closed(), mesh.is_convex()),
@@ -347,7 +347,7 @@ fn textures_go_before_colors() {
 }
 
 #[test]
-fn contents_say_the_format() {
+pub(crate) fn contents_say_the_format() {
     let cube = Faces::of_shape(&shapes::cube());
     for (bytes, format) in [
         (cube.stl_binary(b"ply\n"), Some(Format::Ply)),

@@ -16,6 +16,7 @@ use mode13h_assets::model_file::obj;
 use mode13h_assets::model_file::{self, Loaded, ModelFileError, ModelFileErrorKind, Options};
 use proptest::prelude::*;
 
+use crate::model_files::loaded;
 use crate::support::property::property;
 use crate::support::tried::Tried;
 use crate::support::workspace;
@@ -26,6 +27,10 @@ fn no_library(_: &Path) -> io::Result<Vec<u8>> {
 
 fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_ref(), "model.obj", no_library)
+}
+
+fn with_mtl(text: &str, mtl: &str) -> Result<Loaded, ModelFileError> {
+    obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into()))
 }
 
 fn mesh(text: impl AsRef<[u8]>) -> Mesh {
@@ -40,7 +45,7 @@ fn refused(text: impl AsRef<[u8]>) -> String {
 }
 
 fn data(name: &str) -> PathBuf {
-    crate::support::workspace::root().join("tests/data").join(name)
+    workspace::root().join("tests/data").join(name)
 }
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -78,18 +83,16 @@ fn a_file_with_materials() {
 fn f1_broken_files() {
     let mut tried = Tried::new("f1_broken_files", 7);
     let message = |name: &str| model_file::load(data(name)).unwrap_err().to_string();
-    let ends = |name: &str, end: &str| {
+    for (name, end) in [
+        ("broken_nan.obj", "broken_nan.obj:4: `nan` is not a finite number"),
+        ("broken_empty.obj", "broken_empty.obj: no faces"),
+        ("broken_binary.obj", "broken_binary.obj:1: not a text file"),
+        ("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)"),
+    ] {
         let message = message(name);
         assert!(message.ends_with(end) && message.lines().count() == 1, "{message}");
-    };
-    ends("broken_nan.obj", "broken_nan.obj:4: `nan` is not a finite number");
-    tried.add(1);
-    ends("broken_empty.obj", "broken_empty.obj: no faces");
-    tried.add(1);
-    ends("broken_binary.obj", "broken_binary.obj:1: not a text file");
-    tried.add(1);
-    ends("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)");
-    tried.add(1);
+        tried.add(1);
+    }
     assert!(matches!(
         model_file::load(data("nowhere.obj")).unwrap_err(),
         ModelFileError { place: None, kind: ModelFileErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
@@ -135,17 +138,12 @@ fn f1_broken_lines() {
         assert_eq!(with(line), format!("model.obj:6: {message}"), "{line}");
         tried.add(1);
     }
-    assert_eq!(refused("v 0 0 0\n"), "model.obj: no faces");
-    tried.add(1);
-    assert_eq!(refused(TRIANGLE), "model.obj: no faces");
-    tried.add(1);
-    assert_eq!(refused(""), "model.obj: no faces");
-    tried.add(1);
-    assert_eq!(refused("Dear reader,\nthis is no model.\n"), "model.obj: no faces");
-    tried.add(1);
+    for text in ["v 0 0 0\n", TRIANGLE, "", "Dear reader,\nthis is no model.\n"] {
+        assert_eq!(refused(text), "model.obj: no faces");
+        tried.add(1);
+    }
     // A device, or a small packed file, may have no line ending at all.
-    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
-    let endless = obj::parse(io::BufReader::new(io::repeat(b'#')), "model.obj", none);
+    let endless = obj::parse(io::BufReader::new(io::repeat(b'#')), "model.obj", no_library);
     assert_eq!(endless.map(|_| ()).unwrap_err().to_string(), "model.obj: a line of more than 64 MiB");
     tried.add(1);
     let long = format!("v {} 0 0", "9x".repeat(1000));
@@ -345,15 +343,13 @@ fn normals_are_averaged_by_place() {
     assert!((3..5).all(|i| twice.normals()[i].abs_diff_eq(mean, 1e-6)));
 }
 
+fn parse_with_crease(text: &str, crease: Option<f32>) -> Result<Loaded, ModelFileError> {
+    let options = Options { crease: crease.map(|degrees| Angle::from_degrees(degrees.into())) };
+    obj::parse_with(text.as_bytes(), "model.obj", no_library, &options)
+}
+
 fn with_crease(text: &str, crease: Option<f32>) -> Mesh {
-    obj::parse_with(
-        text.as_bytes(),
-        "model.obj",
-        no_library,
-        &Options { crease: crease.map(|degrees| Angle::from_degrees(degrees.into())) },
-    )
-    .expect("a model")
-    .mesh
+    parse_with_crease(text, crease).expect("a model").mesh
 }
 
 /// Strips of squares along z, each at this many degrees to the last, after the given statements.
@@ -450,11 +446,7 @@ fn creases_are_what_the_naive_oracle_says() {
         let mut text = String::new();
         corners.iter().for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").unwrap());
         faces.iter().for_each(|[a, b, c]| writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap());
-        let options = Options { crease: Some(Angle::from_degrees(crease.into())) };
-        let Ok(Loaded { mesh, warnings, .. }) = obj::parse_with(text.as_bytes(), "model.obj", no_library, &options)
-        else {
-            return Ok(());
-        };
+        let Ok(Loaded { mesh, warnings, .. }) = parse_with_crease(&text, Some(crease)) else { return Ok(()) };
         if !warnings.is_empty() {
             // Faces were repaired, so there are others.
             return Ok(());
@@ -672,10 +664,8 @@ fn missing_files_are_one_warning() {
 /// `Ns` 0, or none, means no highlight; a note says so once if there is a `Ks`.
 #[test]
 fn without_an_exponent_there_is_no_highlight() {
-    let load = |mtl: &'static str| {
-        let text = format!("mtllib a.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n");
-        obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap()
-    };
+    let text = format!("mtllib a.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n");
+    let load = |mtl: &str| with_mtl(&text, mtl).unwrap();
     let shiny =
         |loaded: Loaded| Object::new(loaded.mesh).materials.iter().map(Material::is_specular).collect::<Vec<_>>();
     let none = load("newmtl a\nKs 0.5 0.5 0.5\nnewmtl b\nKs 1 1 1\nNs 0\n");
@@ -688,10 +678,7 @@ fn without_an_exponent_there_is_no_highlight() {
 /// Glass by `d` or `Tr`; each statement that is not read gives one warning.
 #[test]
 fn what_an_mtl_file_says_of_glass_and_what_is_left_out() {
-    let load = |obj: &str, mtl: &str| {
-        let text = format!("mtllib a.mtl\n{obj}usemtl a\nf 1 2 3\n");
-        obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap()
-    };
+    let load = |obj: &str, mtl: &str| with_mtl(&format!("mtllib a.mtl\n{obj}usemtl a\nf 1 2 3\n"), mtl).unwrap();
     for (mtl, blend) in [
         ("d 0.5", Blend::Mix(128)),
         ("d 1", Blend::Opaque),
@@ -734,9 +721,8 @@ fn vertices_have_colours_as_in_ply() {
         header += &format!("property {name}\n");
     }
     header += "element face 3\nproperty list uchar int vertex_index\nend_header\n";
-    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     let read = |text: &str, path: &str| {
-        let loaded = model_file::parse(text.as_bytes(), path, none, &Options::default()).expect(path);
+        let loaded = loaded(text, path);
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
         let texture = loaded.mesh.surfaces()[0].texture.clone().expect("a texture");
         (loaded.mesh.texcoords().expect("coordinates").to_vec(), Texture::clone(&loaded.textures[&texture]))
@@ -754,7 +740,7 @@ fn vertices_have_colours_as_in_ply() {
 
     let mtl =
         "newmtl red\nKd 1 0 0\nnewmtl grey\nKd 0.6 0.6 0.6\nnewmtl shiny\nKd 0.7 0.7 0.7\nKs 0.5 0.5 0.5\nNs 30\n";
-    let parse = |text: &str| obj::parse(text.as_bytes(), "a.obj", |_| Ok(mtl.into())).expect("a model");
+    let parse = |text: &str| with_mtl(text, mtl).expect("a model");
     let first = lines(&shares, "v ");
     for text in [
         // One vertex without.
@@ -815,21 +801,18 @@ fn library_names() {
 #[test]
 fn f1_broken_libraries() {
     let mut tried = Tried::new("f1_broken_libraries", 5);
-    let refused = |mtl: &'static str| {
+    for (mtl, message) in [
+        ("Kd", "2: too few numbers for a colour (1 or 3)"),
+        ("Kd 1 1", "2: too few numbers for a colour (1 or 3)"),
+        ("\nKs red", "3: `red` is not a number"),
+        ("Ns nan", "2: `nan` is not a finite number"),
+        ("Ns", "2: too few numbers for an exponent (1)"),
+    ] {
         let text = format!("mtllib a.mtl\n{TRIANGLE}f 1 2 3\n");
-        let error = obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into())).unwrap_err();
-        error.to_string()
-    };
-    assert_eq!(refused("newmtl a\nKd\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
-    tried.add(1);
-    assert_eq!(refused("newmtl a\nKd 1 1\n"), "a.mtl:2: too few numbers for a colour (1 or 3)");
-    tried.add(1);
-    assert_eq!(refused("newmtl a\n\nKs red\n"), "a.mtl:3: `red` is not a number");
-    tried.add(1);
-    assert_eq!(refused("newmtl a\nNs nan\n"), "a.mtl:2: `nan` is not a finite number");
-    tried.add(1);
-    assert_eq!(refused("newmtl a\nNs\n"), "a.mtl:2: too few numbers for an exponent (1)");
-    tried.add(1);
+        let error = with_mtl(&text, &format!("newmtl a\n{mtl}\n")).unwrap_err();
+        assert_eq!(error.to_string(), format!("a.mtl:{message}"));
+        tried.add(1);
+    }
 }
 
 /// A mesh of one face in the plane z = 0, compared with that face: n − 2 triangles, none flipped, whose areas add up,
@@ -1076,55 +1059,16 @@ fn f1_no_bytes_break_the_parser() {
 
 /// Pieces of OBJ and MTL text; faces mostly with valid indices.
 fn token() -> impl Strategy<Value = String> {
-    let fixed = prop::sample::select(vec![
-        "\n",
-        "\n",
-        "\r\n",
-        " ",
-        "\t",
-        "\\\n",
-        "#",
-        "/",
-        "//",
-        "\nv ",
-        "\nv 0 0 0\n",
-        "\nv 1 0 0\n",
-        "\nv 1 1 0\n",
-        "\nv 0 1 0\n",
-        "\nv 3e38 -3e38 0\n",
-        "\nv 1e-45 0 0\n",
-        "\nvt 0 1\n",
-        "\nvn 0 0 1\n",
-        "\nvn 0 0 0\n",
-        "\nf ",
-        "\nf 1 2 3\n",
-        "\nf 1 2 3 4\n",
-        "\nf -1 -2 -3\n",
-        "\nf 1/1/1 2/1/1 3/1/1\n",
-        "\nf 4 3 2 1 2 3 4\n",
-        "\nusemtl a\n",
-        "\nmtllib a\n",
-        "\nmtllib b\n",
-        "\nnewmtl a\n",
-        "\nKd 1 0 0\n",
-        "\nKd ",
-        "\nNs 5\n",
-        "\nmap_Kd ",
-        "-s ",
-        "-o 1 1 1 ",
-        "\ng x\n",
-        "\nl 1 2 3\n",
-        "nan",
-        "inf",
-        "1e99",
-        "0",
-        "-0",
-        "é",
-        "\u{FEFF}",
-        "\0",
-    ]);
+    let lines = "v 0 0 0|v 1 0 0|v 1 1 0|v 0 1 0|v 3e38 -3e38 0|v 1e-45 0 0|vt 0 1|vn 0 0 1|vn 0 0 0|f 1 2 3|f 1 2 3 4|\
+                 f -1 -2 -3|f 1/1/1 2/1/1 3/1/1|f 4 3 2 1 2 3 4|usemtl a|mtllib a|mtllib b|newmtl a|Kd 1 0 0|Ns 5|g x|\
+                 l 1 2 3";
+    let begun = ["\nv ", "\nf ", "\nKd ", "\nmap_Kd ", "-s ", "-o 1 1 1 "];
+    let words = ["\n", "\n", "\r\n", " ", "\t", "\\\n", "#", "/", "//"];
+    let values = ["nan", "inf", "1e99", "0", "-0", "é", "\u{FEFF}", "\0"];
+    let pieces = [&begun[..], &words, &values].concat().into_iter().map(str::to_owned);
+    let fixed: Vec<String> = lines.split('|').map(|line| format!("\n{line}\n")).chain(pieces).collect();
     prop_oneof![
-        6 => fixed.prop_map(str::to_owned),
+        6 => prop::sample::select(fixed),
         3 => (-6i64..8).prop_map(|i| format!(" {i}")),
         1 => any::<i64>().prop_map(|i| format!(" {i}")),
         1 => any::<f32>().prop_map(|x| format!(" {x}")),
@@ -1142,8 +1086,7 @@ fn every_triangle_knows_its_line() {
         "{cube}f 1 2 3 4\n# the top\nf 8 7 6 5\nv 9 0 0\nv 9 1 0\nv 9 0 1\nf 9 10 11\nf 9 11 10\nf 5 6 2 1\n\
          f 6 7 \\\n3 2\nf 7 8 4 3\nf 8 5 1 4\n"
     );
-    let data = workspace::root().join("tests/data");
-    let [house, chest] = ["house.obj", "chest.obj"].map(|name| fs::read_to_string(data.join(name)).expect("text"));
+    let [house, chest] = ["house.obj", "chest.obj"].map(|name| fs::read_to_string(data(name)).expect("text"));
     for text in [&inside_out, &house, &chest] {
         let loaded = obj::parse(text.as_bytes(), "model.obj", no_library).unwrap();
         let lines: Vec<&str> = text.lines().collect();

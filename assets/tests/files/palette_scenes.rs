@@ -102,23 +102,23 @@ fn made(scene: &mut Scene) -> AutomaticPalette {
     made
 }
 
-/// Checks that every pixel of object i is within `allowed(i)` of `expected(i)`. Returns the number of pixels, and the
+/// Checks that every pixel of object i is within `allowed(i)` of `expected(i)`. Counts the pixels, and records the
 /// largest difference.
 #[track_caller]
 fn assert_shown(
     scene: &Scene,
     expected: impl Fn(usize) -> Option<Color>,
     allowed: impl Fn(usize) -> f64,
-) -> (u64, f64) {
+    tried: &mut Tried,
+) {
     let (colors, objects) = shown(scene);
-    let (mut count, mut worst) = (0, 0.0_f64);
     for (place, (&color, object)) in colors.iter().zip(objects).enumerate() {
         let Some((object, expected)) = object.and_then(|object| Some((object, expected(object)?))) else { continue };
         let (off, allowed) = (off(expected, color), allowed(object));
         assert!(off <= allowed, "object {object} at {place}: {color:?}, expected {expected:?}, off {off}, {allowed}");
-        (count, worst) = (count + 1, worst.max(off));
+        tried.add(1);
+        tried.worst("off, in 255ths of a channel", off);
     }
-    (count, worst)
 }
 
 /// Half a step of the ramp, on the channel where steps are widest, plus rounding.
@@ -137,9 +137,7 @@ fn materials_are_shown_in_their_colours() {
         let expected: Vec<Color> = scene.objects().iter().map(|wall| lit(wall, [1.0; 3])).collect();
         let made = made(&mut scene);
         let allowed = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
-        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
-        tried.add(count);
-        tried.worst("off, in 255ths of a channel", worst);
+        assert_shown(&scene, |i| Some(expected[i]), allowed, &mut tried);
         assert!(scene.objects().iter().all(|wall| !wall.materials[0].takes_channels()));
     }
 }
@@ -165,14 +163,14 @@ fn surfaces_are_shown_in_their_colours() {
         let mut own = scene.clone();
         let made = made(&mut scene);
         let allowed = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
-        tried.add(assert_shown(&scene, |i| Some(expected[i]), allowed).0);
+        assert_shown(&scene, |i| Some(expected[i]), allowed, &mut tried);
 
         // In a palette without ramps, the nearest entry: the cube's channels are 51 apart.
         own.palette = Some(CUBE.clone());
         for wall in own.objects_mut() {
             wall.materials = vec![wall.materials[0].in_own_colors(&wall.mesh().surfaces()[0])];
         }
-        tried.add(assert_shown(&own, |i| Some(expected[i]), |_| 25.5 + 1.0).0);
+        assert_shown(&own, |i| Some(expected[i]), |_| 25.5 + 1.0, &mut tried);
     }
 }
 
@@ -195,9 +193,7 @@ fn textures_are_shown_in_their_colours() {
         // A wall with a single brightness gets entries over a quarter of full light. The tint is rounded to 8 bits.
         let half_a_step = 0.25 * 255.0 / 15.0 / 2.0;
         let allowed = |_| 3.0_f64.sqrt() * (half_a_step + ROUNDING + 0.5);
-        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
-        tried.add(count);
-        tried.worst("off, in 255ths of a channel", worst);
+        assert_shown(&scene, |i| Some(expected[i]), allowed, &mut tried);
     }
 }
 
@@ -244,9 +240,7 @@ fn fog_is_shown_in_its_colours() {
         assert_has(&made.palette, &expected, rounded(1));
         assert_eq!(made.palette[scene.background], haze.nearest_on_dac());
         let allowed = |i: usize| nearest_to_mixture(half_a_step(&made.palette, made.entries[i][0]), rounded(1));
-        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), allowed);
-        tried.add(count);
-        tried.worst("off, in 255ths of a channel", worst);
+        assert_shown(&scene, |i| Some(expected[i]), allowed, &mut tried);
     }
 }
 
@@ -280,9 +274,7 @@ fn what_shines_through_is_shown_in_its_colours() {
         // Of the panes alone; of a sum both parts count in full.
         let allowed = |i: usize| nearest_to_mixture(half_a_step(i) + half_a_step(i - 12), rounded(2));
         let of = |i: usize| i.checked_sub(12).map(|pane| expected[pane]);
-        let (count, worst) = assert_shown(&scene, of, allowed);
-        tried.add(count);
-        tried.worst("off, in 255ths of a channel", worst);
+        assert_shown(&scene, of, allowed, &mut tried);
     }
 }
 
@@ -302,9 +294,7 @@ fn colored_light_is_shown_in_its_colours() {
             assert_eq!(wall.materials[0].ramp, RampChoice::Nearest);
         }
         // The nearest of a box of 8 in each channel: within half of that.
-        let (count, worst) = assert_shown(&scene, |i| Some(expected[i]), |_| nearest_to_mixture(4.0 + 1.0, rounded(0)));
-        tried.add(count);
-        tried.worst("off, in 255ths of a channel", worst);
+        assert_shown(&scene, |i| Some(expected[i]), |_| nearest_to_mixture(4.0 + 1.0, rounded(0)), &mut tried);
     }
 }
 
