@@ -12,6 +12,7 @@ use toml::Spanned;
 use super::error::Fault;
 use super::layout::{ClipLayout, ObjectLayout};
 use super::named::{Named, NamedModel};
+use super::shape::Shape;
 use super::value::{List, OneOrThree};
 use super::{MAX_TRIANGLES, material};
 use crate::model_file::Rig;
@@ -98,7 +99,7 @@ impl Objects {
             return Err(Fault::value(clip.span(), "only a model has animations"));
         }
         let (mesh, origin, up, rig) = match (&layout.shape, &layout.model) {
-            (Some(_), None) => (self.shape(layout, &span, change, positions.len())?, [0.0; 3], None, None),
+            (Some(shape), None) => (self.shape(shape.0, layout, &span, change, positions.len())?, [0.0; 3], None, None),
             (None, Some(model)) => {
                 if let Some(subdivisions) = &layout.subdivisions {
                     return Err(Fault::value(subdivisions.span(), "only a shape has subdivisions"));
@@ -147,14 +148,12 @@ impl Objects {
 
     fn shape(
         &mut self,
+        shape: Shape,
         layout: &ObjectLayout,
         span: &Range<usize>,
         change: Change,
         count: usize,
     ) -> Result<Shared<Mesh>, Fault> {
-        let Some(shape) = layout.shape.as_ref().map(|name| name.0) else {
-            return Err(Fault::value(span.clone(), "an object needs a `shape` or a `model`"));
-        };
         let subdivisions = match &layout.subdivisions {
             Some(given) => shape.subdivided(&given.get_ref().0).map_err(|what| Fault::value(given.span(), what))?,
             None => shape.usual(),

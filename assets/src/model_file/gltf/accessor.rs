@@ -93,8 +93,7 @@ impl Buffers {
         let mut rows: Vec<[f64; N]> = match accessor.view() {
             Some(view) => {
                 let bytes = self.view(&view)?;
-                let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(size);
-                let rows = slices(bytes, accessor.offset(), stride, size, accessor.count());
+                let rows = slices(bytes, accessor.offset(), view.stride(), size, accessor.count());
                 rows.ok_or_else(|| format!("{part} ends beyond bufferViews[{}]", view.index()))?.map(row).collect()
             }
             None if accessor.count() > MAX_ZEROS => return Err(format!("{part} has no bufferView")),
@@ -109,11 +108,11 @@ impl Buffers {
                 sparse::IndexType::U32 => (DataType::U32, 4),
             };
             let view = indices.view();
-            let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(width);
-            let at = slices(self.view(&view)?, indices.offset(), stride, width, sparse.count()).ok_or_else(beyond)?;
+            let bytes = self.view(&view)?;
+            let at = slices(bytes, indices.offset(), view.stride(), width, sparse.count()).ok_or_else(beyond)?;
             let view = values.view();
-            let stride = view.stride().filter(|stride| *stride > 0).unwrap_or(size);
-            let new = slices(self.view(&view)?, values.offset(), stride, size, sparse.count()).ok_or_else(beyond)?;
+            let bytes = self.view(&view)?;
+            let new = slices(bytes, values.offset(), view.stride(), size, sparse.count()).ok_or_else(beyond)?;
             for (at, new) in at.zip(new) {
                 let [at] = self::row::<1>(at, kind, false);
                 *rows.get_mut(at as usize).ok_or_else(|| format!("{part}.sparse: there is no element {at}"))? =
@@ -132,14 +131,15 @@ impl Buffers {
     }
 }
 
-/// `count` slices of `size` bytes, `stride` apart; `None` if they end beyond `bytes`.
+/// `count` slices of `size` bytes, `stride` apart, or one after another; `None` if they end beyond `bytes`.
 fn slices(
     bytes: &[u8],
     offset: usize,
-    stride: usize,
+    stride: Option<usize>,
     size: usize,
     count: usize,
 ) -> Option<impl Iterator<Item = &[u8]>> {
+    let stride = stride.filter(|stride| *stride > 0).unwrap_or(size);
     let last = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
     let end = last?.checked_add(offset)?;
     let bytes = bytes.get(offset.min(bytes.len())..).filter(|_| end <= bytes.len())?;

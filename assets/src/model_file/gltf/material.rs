@@ -1,6 +1,6 @@
 //! Surfaces and textures of materials, by the rules given in the parent module.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -11,6 +11,7 @@ use mode13h::mesh::Surface;
 use mode13h::scene::Shared;
 use mode13h::texture::Texture;
 
+use super::LeftOut;
 use super::accessor::{Buffers, Image};
 use crate::model_file::Embedded;
 use crate::texture::{Decoded, decode_all};
@@ -53,7 +54,7 @@ pub(super) struct Materials<'a> {
     buffers: &'a Buffers,
     pub(super) surfaces: Vec<Surface>,
     pub(super) textures: Embedded,
-    pub(super) left_out: BTreeMap<&'static str, u64>,
+    pub(super) left_out: LeftOut,
     known: HashMap<Option<usize>, (usize, Mapping)>,
     /// The images read so far: the texture, and whether some of it was not opaque.
     images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
@@ -69,14 +70,14 @@ impl<'a> Materials<'a> {
             buffers,
             surfaces: Vec::new(),
             textures: Embedded::new(),
-            left_out: BTreeMap::new(),
+            left_out: LeftOut::new(),
             known: HashMap::new(),
             images: HashMap::new(),
         }
     }
 
     fn leave_out(&mut self, what: &'static str) {
-        *self.left_out.entry(what).or_default() += 1;
+        self.left_out.insert(what);
     }
 
     /// The index of a material's surface, and how its texture is placed.

@@ -35,7 +35,7 @@ mod motion;
 mod nodes;
 mod skin;
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
@@ -48,7 +48,6 @@ use mode13h::scene::UpAxis;
 use crate::model_file::lists::{Corner, Wide, push};
 use crate::model_file::rig::place::Placement;
 use crate::model_file::rig::{self, Matrix, Vertices};
-use crate::model_file::warnings::Warnings;
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place, paint};
 use crate::wide::dot;
 use accessor::Buffers;
@@ -104,14 +103,18 @@ pub(crate) fn draft(
             })?;
         }
     }
-    let Reading { mut materials, left_out, colors, color_surface, moving, .. } = reading;
+    let Reading { mut materials, mut left_out, colors, color_surface, moving, .. } = reading;
     draft.nodes = rig::Nodes { skeleton, clips, vertices: moving.unwrap_or_default(), lights, camera };
     draft.surfaces = core::mem::take(&mut materials.surfaces);
     draft.textures = core::mem::take(&mut materials.textures);
     if let Some(surface) = color_surface {
         draft.surfaces[surface] = paint(&mut draft, &colors, format!("{}#colours", path.display()));
     }
-    left_out.warn(path, &materials.left_out, &mut draft.warnings);
+    left_out.append(&mut materials.left_out);
+    if !left_out.is_empty() {
+        let all: Vec<&str> = left_out.into_iter().collect();
+        draft.warnings.push(|| format!("{}: left out: {}", path.display(), all.join(", ")));
+    }
     Ok(draft)
 }
 
@@ -146,13 +149,13 @@ impl Reading<'_> {
         draft: &mut Draft,
     ) -> Result<(), ModelFileErrorKind> {
         if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-            self.left_out.add("points and lines", 1);
+            self.left_out.insert("points and lines");
             return Ok(());
         }
-        self.left_out.add("morph targets", u64::from(primitive.morph_targets().len() > 0));
+        self.left_out.extend(primitive.morph_targets().next().map(|_| "morph targets"));
         let fault = ModelFileErrorKind::Fault;
         let Some(positions) = primitive.get(&Semantic::Positions) else {
-            self.left_out.add("meshes without positions", 1);
+            self.left_out.insert("meshes without positions");
             return Ok(());
         };
         let material = primitive.material();
@@ -270,24 +273,4 @@ impl Reading<'_> {
 }
 
 /// The features of a file that a mesh cannot represent, for the warning.
-#[derive(Default)]
-struct LeftOut {
-    counts: BTreeMap<&'static str, u64>,
-}
-
-impl LeftOut {
-    fn add(&mut self, what: &'static str, count: u64) {
-        if count > 0 {
-            *self.counts.entry(what).or_default() += count;
-        }
-    }
-
-    /// Makes a single warning of all.
-    fn warn(mut self, path: &Path, of_materials: &BTreeMap<&'static str, u64>, warnings: &mut Warnings) {
-        of_materials.iter().for_each(|(what, count)| self.add(what, *count));
-        if !self.counts.is_empty() {
-            let all: Vec<&str> = self.counts.into_keys().collect();
-            warnings.push(|| format!("{}: left out: {}", path.display(), all.join(", ")));
-        }
-    }
-}
+type LeftOut = BTreeSet<&'static str>;

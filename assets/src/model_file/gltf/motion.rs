@@ -40,7 +40,7 @@ fn clip(
             Path::Rotation => Property::Rotation,
             Path::Scale => Property::Scale,
             Path::MorphTargetWeights => {
-                left_out.add("morph targets", 1);
+                left_out.insert("morph targets");
                 continue;
             }
         };

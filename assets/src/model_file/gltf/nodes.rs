@@ -91,7 +91,7 @@ pub(super) fn lights(scene: &[Node<'_>], left_out: &mut LeftOut) -> Vec<Source> 
         if has_angle && shines {
             lights.push(source);
         } else {
-            left_out.add("lights that emit no light", 1);
+            left_out.insert("lights that emit no light");
         }
     }
     lights
@@ -108,7 +108,7 @@ pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut Lef
         // `gltf` looks for the numbers of the other kind if the file says one and has the other.
         let perspective = document.as_json().cameras.get(camera.index()).and_then(|camera| camera.perspective.as_ref());
         let Some(perspective) = perspective else {
-            left_out.add("orthographic cameras", 1);
+            left_out.insert("orthographic cameras");
             continue;
         };
         let (field_of_view, near) = (f64::from(perspective.yfov), f64::from(perspective.znear));
@@ -119,7 +119,7 @@ pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut Lef
                 near: if near > 0.0 { near } else { f64::MIN_POSITIVE },
             });
         }
-        left_out.add("cameras without a valid field of view", 1);
+        left_out.insert("cameras without a valid field of view");
     }
     None
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use mode13h::mesh::Surface;
 
-use super::line::{Lines, keyword, number};
+use super::line::{Lines, keyword, number, numbers};
 use super::statement::Statements;
 use crate::model_file::warnings::{LeftOut, Warnings};
 use crate::model_file::word::{name, words};
@@ -127,14 +127,8 @@ fn read(
         let result = match word {
             b"Kd" => color(rest).map(|color| set(&mut surface.diffuse, color, path, line, warnings)),
             b"Ks" => color(rest).map(|color| set(&mut surface.specular, color, path, line, warnings)),
-            b"Ns" => match number(&mut words(rest)) {
-                Ok(Some(exponent)) => {
-                    surface.shininess = exponent.max(0.0);
-                    Ok(())
-                }
-                Ok(None) => Err(ModelFileErrorKind::Missing("an exponent (1)")),
-                Err(kind) => Err(kind),
-            },
+            b"Ns" => numbers(&mut words(rest), f32::is_finite, "an exponent (1)")
+                .map(|[exponent]| surface.shininess = exponent.max(0.0)),
             b"map_Kd" => {
                 surface.texture = texture(rest).map(|file| sibling_path(path, &file));
                 if places_otherwise(rest) {
@@ -168,7 +162,7 @@ fn read(
 /// Parses the value of `d` or `Tr`, which may follow `-halo`.
 fn opacity(rest: &[u8]) -> Result<f32, ModelFileErrorKind> {
     let mut words = words(rest).filter(|word| *word != b"-halo");
-    Ok(number(&mut words)?.ok_or(ModelFileErrorKind::Missing("an opacity (1)"))?.clamp(0.0, 1.0))
+    numbers(&mut words, f32::is_finite, "an opacity (1)").map(|[share]| share.clamp(0.0, 1.0))
 }
 
 /// Red, green and blue, or one number for all three. `None` for a spectral file or CIE XYZ, which no program writes.

@@ -74,15 +74,11 @@ pub(super) fn read(reader: impl BufRead, path: &Path) -> Result<Statements, Mode
     Ok(model)
 }
 
-fn position(lists: &mut Lists, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
-    // In f64, but within the range of f32.
-    let position = numbers(&mut words(rest), |value: f64| (value as f32).is_finite(), "a position (3)")?;
-    push(&mut lists.positions, Wide::new(position))
-}
-
 fn vertex(model: &mut Statements, line: u64, rest: &[u8]) -> Result<(), ModelFileErrorKind> {
     let is_first = model.colors.len() == model.lists.positions.len();
-    position(&mut model.lists, rest)?;
+    // In f64, but within the range of f32.
+    let position = numbers(&mut words(rest), |value: f64| (value as f32).is_finite(), "a position (3)")?;
+    push(&mut model.lists.positions, Wide::new(position))?;
     if let Some(color) = color(rest)? {
         if model.colored == 0 {
             model.colored = line;
