@@ -238,10 +238,10 @@ fn numbers_of_all_types() {
     assert_eq!(mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::new(0.2, 1.0), Vec2::new(1.0, 0.6)]);
 }
 
-/// A picture with a red row above a blue one.
-fn picture() -> Vec<u8> {
+/// A picture with a red pixel, and a blue one below or beside it.
+pub(crate) fn picture(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.write_header().unwrap().write_image_data(&[255, 0, 0, 0, 0, 255]).unwrap();
     bytes
@@ -252,7 +252,7 @@ fn picture() -> Vec<u8> {
 fn textured(image: impl FnOnce(usize) -> String, base: &str, more: &str) -> Gltf {
     let mut file = Gltf::default();
     let (positions, pairs) = (file.floats(&TRIANGLE), file.floats(&[[0.0, 0.0], [0.25, 0.5], [1.0, 1.0]]));
-    let view = file.view(&picture(), None);
+    let view = file.view(&picture(1, 2), None);
     file.add("images", image(view));
     file.add("textures", "{\"source\":0}");
     let texture = format!("\"baseColorTexture\":{{\"index\":0{base}}}");

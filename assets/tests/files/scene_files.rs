@@ -15,6 +15,7 @@ use mode13h::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
 use mode13h_assets::SceneExt;
 use mode13h_assets::scene_file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 
+use crate::gltf_files::picture;
 use crate::support::tried::Tried;
 
 const TRIANGLE: &str = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\nusemtl oak\nf 3 2 1\n";
@@ -745,13 +746,7 @@ fn every_shading_is_documented() {
 #[test]
 fn a_texture_is_a_png_beside_the_scene() {
     let directory = tempfile::tempdir().expect("a directory");
-    let mut png_file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut png_file, 2, 1);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&[255, 0, 0, 0, 0, 255]).expect("a picture");
-    writer.finish().expect("an end");
-    fs::write(directory.path().join("flag.png"), png_file).expect("written");
+    fs::write(directory.path().join("flag.png"), picture(2, 1)).expect("written");
     // The model names it in its material; the wall's scene does so itself.
     fs::write(directory.path().join("it.mtl"), "newmtl tin\nmap_Kd flag.png\n").expect("written");
     let model = "mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl tin\nf 1/1 2/1 3/1\n";

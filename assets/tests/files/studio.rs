@@ -250,6 +250,9 @@ fn flipped(mesh: Mesh) -> Mesh {
 fn a_model_fills_the_picture_and_is_in_its_middle() {
     let mut tried = Tried::new("a_model_fills_the_picture_and_is_in_its_middle", 6 * 72);
     let within_one = |a: usize, b: usize| a.abs_diff(b) <= 1;
+    // Whether it is in the middle, and whether it fills the width and the height.
+    let is_centred = |at: [usize; 4]| within_one(at[0], WIDTH - 1 - at[1]) && within_one(at[2], HEIGHT - 1 - at[3]);
+    let fills = |at: [usize; 4]| [0, 2].map(|i| within_one(at[i], FRAME[i]) && within_one(at[i + 1], FRAME[i + 1]));
     for (size, is_low) in [
         ([4.0, 0.3, 4.0], true),
         ([6.0, 0.5, 1.0], true),
@@ -268,15 +271,12 @@ fn a_model_fills_the_picture_and_is_in_its_middle() {
             let mut still = scene.clone();
             still.camera = Camera::framing_still(&scene.objects()[0]);
             let at = reach(&pixels(&still));
-            assert!(within_one(at[0], WIDTH - 1 - at[1]) && within_one(at[2], HEIGHT - 1 - at[3]), "{size:?}: {at:?}");
-            let [wide, high] = [0, 2].map(|i| within_one(at[i], FRAME[i]) && within_one(at[i + 1], FRAME[i + 1]));
-            assert!(wide || high, "{size:?} at {step}: {at:?}");
+            assert!(is_centred(at) && fills(at).contains(&true), "{size:?} at {step}: {at:?}");
             tried.add(1);
         }
         let at = over_turn;
-        assert!(within_one(at[0], WIDTH - 1 - at[1]) && within_one(at[2], HEIGHT - 1 - at[3]), "{size:?}: {at:?}");
-        let [wide, high] = [0, 2].map(|i| within_one(at[i], FRAME[i]) && within_one(at[i + 1], FRAME[i + 1]));
-        assert!(if is_low { wide } else { wide || high }, "{size:?}: {at:?}");
+        let [wide, high] = fills(at);
+        assert!(is_centred(at) && if is_low { wide } else { wide || high }, "{size:?}: {at:?}");
         assert!(at[0] + 1 >= FRAME[0] && at[2] + 1 >= FRAME[2], "{size:?}: {at:?}");
     }
 }

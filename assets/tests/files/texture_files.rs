@@ -105,6 +105,12 @@ fn a_file_that_is_no_texture_is_one_line_with_its_name() {
     }
 }
 
+fn encoded(picture: &image::RgbImage, format: image::ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).expect("written");
+    bytes.into_inner()
+}
+
 /// One picture in every file format gives the same texture; JPEG is close to it. No format is detected by name.
 #[test]
 fn every_kind_of_picture_is_read() {
@@ -114,11 +120,7 @@ fn every_kind_of_picture_is_read() {
     let picture = image::RgbImage::from_fn(64, 32, |x, y| {
         image::Rgb([if x < 32 { 200 } else { 40 }, if y < 16 { 180 } else { 60 }, if x < 16 { 220 } else { 30 }])
     });
-    let decoded = |format| {
-        let mut bytes = Cursor::new(Vec::new());
-        picture.write_to(&mut bytes, format).expect("written");
-        decode(Cursor::new(bytes.into_inner())).expect("read")
-    };
+    let decoded = |format| decode(Cursor::new(encoded(&picture, format))).expect("read");
     let right = decoded(Png);
     for format in [Tga, Bmp, WebP] {
         assert_eq!(decoded(format), right, "{format:?}");
@@ -163,9 +165,7 @@ fn a_picture_too_large_is_refused_by_its_head() {
 fn a_jpeg_that_is_cut_off_is_refused() {
     let mut random = Random::new(7);
     let picture = image::RgbImage::from_fn(40, 24, |_, _| image::Rgb([random.next_u64() as u8; 3]));
-    let mut whole = Cursor::new(Vec::new());
-    picture.write_to(&mut whole, image::ImageFormat::Jpeg).expect("written");
-    let mut bytes = whole.into_inner();
+    let mut bytes = encoded(&picture, image::ImageFormat::Jpeg);
     for length in 4..bytes.len() {
         decode(Cursor::new(&bytes[..length])).expect_err("cut off");
     }
@@ -193,9 +193,7 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
     let mut random = Random::new(1);
     let picture = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([x as u8 * 16, y as u8 * 16, (x * y) as u8]));
     for format in [Tga, Bmp, Gif, WebP, Jpeg, Png] {
-        let mut whole = Cursor::new(Vec::new());
-        picture.write_to(&mut whole, format).expect("written");
-        let whole = whole.into_inner();
+        let whole = encoded(&picture, format);
         for i in 0..600 {
             let mut bytes = whole.clone();
             if i % 3 == 0 {
