@@ -90,7 +90,7 @@ fn split(
     let mut surfaces: Vec<Option<Surface>> = surfaces.into_iter().map(Some).collect();
     let mut numbers: Vec<Option<u16>> = surfaces.iter().map(|_| None).collect();
     let mut used = Vec::new();
-    let mut splitter = Splitter::new();
+    let mut splitter = Splitter::default();
     let mut places = Vec::new();
     let mut first = 0;
     let runs = iter::once((0, 0)).chain(lists.runs.iter().copied());

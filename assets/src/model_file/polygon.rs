@@ -15,6 +15,7 @@ use crate::wide::{Wide, add, cross, sub, widen};
 const MAX_CONCAVE: usize = 20_000;
 
 /// Buffers reused for every face.
+#[derive(Default)]
 pub(super) struct Splitter {
     earcut: Earcut<f64>,
     flat: Vec<[f64; 2]>,
@@ -25,17 +26,6 @@ pub(super) struct Splitter {
 }
 
 impl Splitter {
-    pub(super) fn new() -> Self {
-        Self {
-            earcut: Earcut::new(),
-            flat: Vec::new(),
-            cut: Vec::new(),
-            triangles: Vec::new(),
-            edges: Vec::new(),
-            stack: Vec::new(),
-        }
-    }
-
     /// Splits a face of n corners into n − 2 triangles, as indices of its corners, in the face's winding. Each edge of
     /// the face is an edge of one of them, so no gap opens to its neighbours. A corner in the middle of a straight edge
     /// is therefore preserved, if need be by a triangle without area.

@@ -40,15 +40,9 @@ impl<'a> Builder<'a> {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
         }
         self.scene.name = layout.name.clone().unwrap_or_default();
-        if let Some(duration) = layout.duration {
-            self.scene.duration = duration.0;
-        }
-        if let Some(picture) = layout.picture {
-            self.scene.picture = picture.0;
-        }
-        if let Some(ambient) = layout.ambient {
-            self.scene.ambient = ambient.0;
-        }
+        self.scene.duration = layout.duration.map_or(self.scene.duration, |seconds| seconds.0);
+        self.scene.picture = layout.picture.map_or(self.scene.picture, |seconds| seconds.0);
+        self.scene.ambient = layout.ambient.map_or(self.scene.ambient, |intensity| intensity.0);
         if let Some(render) = &layout.render {
             self.scene.settings = settings(render);
         }
@@ -194,9 +188,7 @@ impl<'a> Builder<'a> {
                 }
                 Light::sun(towards)
             }
-            (Some(_), None, Some(range)) => {
-                return Err(Fault::value(range.span(), "only a lamp has a range"));
-            }
+            (Some(_), None, Some(range)) => return Err(Fault::value(range.span(), "only a lamp has a range")),
             (None, Some(position), Some(range)) => {
                 let (position, range) = (position.get_ref().vec3(), range.get_ref().0);
                 match cone(direction.as_ref(), outer.as_ref(), inner.as_ref())? {

@@ -72,9 +72,7 @@ impl Objects {
             Some(OneOrThree::Three(factors)) => (1.0, Vec3::from_array(factors.map(|factor| factor.0))),
         };
         let positions: Vec<Vec3> = match (&layout.position, &layout.positions) {
-            (Some(_), Some(positions)) => {
-                return Err(Fault::value(positions.span(), "not allowed with a `position`"));
-            }
+            (Some(_), Some(positions)) => return Err(Fault::value(positions.span(), "not allowed with a `position`")),
             (None, Some(positions)) if layout.path.is_some() => {
                 return Err(Fault::value(
                     positions.span(),
@@ -230,9 +228,7 @@ fn changed(mesh: &Mesh, change: Change, layout: &ObjectLayout, span: &Range<usiz
 
 /// The index of the clip that a model plays.
 fn clip(clip: &Spanned<ClipLayout>, rig: Option<&Rig>) -> Result<usize, Fault> {
-    let Some(rig) = rig else {
-        return Err(Fault::value(clip.span(), "the model has no animation"));
-    };
+    let Some(rig) = rig else { return Err(Fault::value(clip.span(), "the model has no animation")) };
     let found = match clip.get_ref() {
         ClipLayout::Name(name) => rig.find_clip(name),
         ClipLayout::Index(index) => rig.numbered(Some(*index), &index.to_string()),

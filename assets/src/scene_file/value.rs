@@ -241,9 +241,7 @@ pub(super) struct Color(pub(super) [f32; 3]);
 impl Color {
     /// The colour, rounded to the nearest 1/255.
     pub(super) fn rgb(self) -> Rgb {
-        // 0 to 255.5; the cast truncates after 0.5 is added.
-        let [r, g, b] = self.0.map(|share| (share * 255.0 + 0.5) as u8);
-        Rgb::new(r, g, b)
+        Rgb::from_intensities(self.0)
     }
 }
 

@@ -141,15 +141,7 @@ fn only_surface(lists: &Lists) -> Option<usize> {
 /// The colours of vertices, which are in 0 to 1, or in 0 to 255 if one of them is above 1.
 fn rgb(colors: &[[f32; 3]]) -> Vec<Rgb> {
     let full = if colors.as_flattened().iter().any(|channel| *channel > 1.0) { 255.0 } else { 1.0 };
-    // 0 to 255.5: the cast truncates after 0.5 is added.
-    let byte = |channel: f32| ((channel / full).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    colors
-        .iter()
-        .map(|color| {
-            let [r, g, b] = color.map(byte);
-            Rgb::new(r, g, b)
-        })
-        .collect()
+    colors.iter().map(|color| Rgb::from_intensities(color.map(|channel| channel / full))).collect()
 }
 
 /// Returns whether the first line that is not a comment is an OBJ statement.
