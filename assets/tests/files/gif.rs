@@ -17,6 +17,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 
 use crate::support::film::{Image, decode};
+use crate::support::names_in;
 use crate::support::tried::Tried;
 
 // The oracle
@@ -532,15 +533,6 @@ fn export_error(error: AnimationError) -> ExportError {
         AnimationErrorKind::Export(error) => error,
         _ => panic!("{error}"),
     }
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").file_name().into_string().expect("a name"))
-        .collect();
-    names.sort();
-    names
 }
 
 /// A disk that takes this many bytes and is then full.

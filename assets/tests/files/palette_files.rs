@@ -9,6 +9,7 @@ use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_da
 use mode13h_assets::palette_file::{self, FORMATS, Format, LoadErrorKind, PaletteError, PaletteErrorKind, Place};
 use proptest::prelude::*;
 
+use crate::support::names_in;
 use crate::support::property::property;
 use crate::support::tried::Tried;
 
@@ -302,11 +303,7 @@ fn palettes_folder() -> std::path::PathBuf {
 #[test]
 fn the_files_in_palettes_are_the_builtins() {
     let write = std::env::var_os("MODE13H_WRITE_PALETTES").is_some();
-    let mut files: BTreeSet<_> = std::fs::read_dir(palettes_folder())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name != "README.md")
-        .collect();
+    let mut files: BTreeSet<_> = names_in(&palettes_folder()).into_iter().filter(|name| name != "README.md").collect();
     for builtin in &builtin::ALL {
         let file_name = format!("{}.gpl", builtin.name);
         let path = palettes_folder().join(&file_name);

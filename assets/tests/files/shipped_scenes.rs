@@ -15,6 +15,7 @@ use mode13h_assets::auto_palette;
 use mode13h_assets::scene_file::Loaded;
 use mode13h_assets::shipped::{self, Shipped};
 
+use crate::support::names_in;
 use crate::support::tried::Tried;
 
 fn scene(name: &str) -> Scene {
@@ -67,11 +68,8 @@ fn draw_at(scene: &mut Scene, seconds: f64) -> Shown {
 #[test]
 fn every_scene_loads_and_says_what_it_shows() {
     let folder = crate::support::workspace::root().join("assets/scenes");
-    let mut files: Vec<String> = fs::read_dir(&folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").file_name().into_string().expect("text"))
-        .filter_map(|name| name.strip_suffix(".toml").map(String::from))
-        .collect();
+    let mut files: Vec<String> =
+        names_in(&folder).iter().filter_map(|name| name.strip_suffix(".toml").map(String::from)).collect();
     files.sort();
     let mut names: Vec<&str> = shipped::ALL.iter().map(|shipped| shipped.name).collect();
     names.sort_unstable();
