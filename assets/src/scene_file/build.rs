@@ -16,7 +16,7 @@ use super::error::Fault;
 use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, SceneLayout};
 use super::named::{Named, Open};
 use super::object::Objects;
-use super::value::{Background, FileName, HalfAngle, List, OffOr, OneOrThree, Vector, VertexBits};
+use super::value::{Background, FileName, List, OffOr, OneOrThree, VertexBits};
 use super::{SceneErrorKind, motion};
 use crate::model::Playback;
 
@@ -148,10 +148,8 @@ impl<'a> Builder<'a> {
                 let id = self.scene.add(object);
                 let object = &self.scene[id];
                 let playback = moving.as_ref().and_then(|moving| {
-                    Some(
-                        Playback::new(Shared::clone(&moving.rig), moving.clip, &self.scene, id)?
-                            .stretched(moving.stretch),
-                    )
+                    let playback = Playback::new(Shared::clone(&moving.rig), moving.clip, &self.scene, id);
+                    playback.map(|playback| playback.stretched(moving.stretch))
                 });
                 if is_framed {
                     let swept = |object: &Object| Swept::new(object, turning, path.as_ref());
@@ -175,7 +173,7 @@ impl<'a> Builder<'a> {
     }
 
     fn light(&mut self, layout: &Spanned<LightLayout>) -> Result<(), Fault> {
-        let LightLayout { sun, lamp, range, direction, outer, inner, intensity, color, path } = layout.get_ref();
+        let LightLayout { sun, lamp, range, direction, intensity, color, path, .. } = layout.get_ref();
         let path = path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
         if let (Some(_), Some(span)) = (sun, direction.as_ref().map(Spanned::span)) {
             return Err(Fault::value(span, "only a lamp has a cone"));
@@ -191,7 +189,7 @@ impl<'a> Builder<'a> {
             (Some(_), None, Some(range)) => return Err(Fault::value(range.span(), "only a lamp has a range")),
             (None, Some(position), Some(range)) => {
                 let (position, range) = (position.get_ref().vec3(), range.get_ref().0);
-                match cone(direction.as_ref(), outer.as_ref(), inner.as_ref())? {
+                match cone(layout.get_ref())? {
                     Some(cone) => Light::spot(position, range, cone),
                     None => Light::lamp(position, range),
                 }
@@ -228,15 +226,12 @@ impl<'a> Builder<'a> {
 }
 
 /// The cone of a spot light: a direction with an outer angle.
-fn cone(
-    direction: Option<&Spanned<Vector>>,
-    outer: Option<&Spanned<HalfAngle>>,
-    inner: Option<&Spanned<HalfAngle>>,
-) -> Result<Option<Cone>, Fault> {
-    let (direction, outer) = match (direction, outer) {
+fn cone(layout: &LightLayout) -> Result<Option<Cone>, Fault> {
+    let inner = layout.inner.as_ref();
+    let (direction, outer) = match (&layout.direction, &layout.outer) {
         (Some(direction), Some(outer)) => (direction, outer),
         (Some(direction), None) => return Err(Fault::value(direction.span(), "a cone needs an `outer` angle")),
-        (None, _) => match outer.or(inner) {
+        (None, outer) => match outer.as_ref().or(inner) {
             Some(angle) => return Err(Fault::value(angle.span(), "a cone needs a `direction`")),
             None => return Ok(None),
         },

@@ -217,18 +217,12 @@ fn f1_what_is_large_but_well_formed_loads() {
     assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
     tried.add(1);
     // A concave one: a saw with 5,000 teeth.
-    let mut text = String::from("v 9999 -1 0\nv 0 -1 0\n");
-    for i in 0..corners {
-        writeln!(text, "v {i} {} 0", i % 2).unwrap();
-    }
-    text.push('f');
-    for i in (1..=corners + 2).rev() {
-        write!(text, " {i}").unwrap();
-    }
-    let saw = mesh(&text);
+    let teeth = (0..corners).map(|i| (i as f32, (i % 2) as f32));
+    let outline = [(9999.0, -1.0), (0.0, -1.0)].into_iter().chain(teeth);
+    let face: Vec<Vec3> = outline.rev().map(|(x, y)| Vec3::new(x, y, 0.0)).collect();
+    let saw = mesh(face_text(&face));
     assert_eq!(saw.triangles().len(), 10_000);
     tried.add(1);
-    let face: Vec<Vec3> = (1..=corners + 2).rev().map(saw_corner).collect();
     check_split(&saw, &face);
 }
 
@@ -286,14 +280,6 @@ fn large_faces_that_are_monotone_are_split() {
         refused(face_text(&face)),
         format!("model.obj:{}: a concave face of more than 20,000 corners", 2 * corners + 1)
     );
-}
-
-fn saw_corner(i: u32) -> Vec3 {
-    match i {
-        1 => Vec3::new(9999.0, -1.0, 0.0),
-        2 => Vec3::new(0.0, -1.0, 0.0),
-        _ => Vec3::new((i - 3) as f32, ((i - 3) % 2) as f32, 0.0),
-    }
 }
 
 #[test]
