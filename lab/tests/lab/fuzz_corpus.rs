@@ -3,7 +3,6 @@
 //!
 //! `.ci/fuzz` runs the fuzzers themselves.
 
-mod counted;
 #[expect(unreachable_pub, reason = "the fuzz package shares it")]
 mod properties;
 
@@ -134,7 +133,8 @@ fn f5_no_file_takes_memory_out_of_proportion() {
     let mut tried = Tried::new("f5_no_file_takes_memory_out_of_proportion", 2_000);
     let mut worst = 0;
     let mut measure = |what: &Path, bytes: &[u8]| {
-        let peak = counted::peak(|| drop(mode13h_assets::model_file::obj::parse(bytes, "model.obj", none)));
+        let parse = || drop(mode13h_assets::model_file::obj::parse(bytes, "model.obj", none));
+        let peak = allocation_counter::measure(parse).bytes_max as usize;
         let most = BYTES_FOR_NOTHING + BYTES_PER_BYTE * bytes.len();
         assert!(peak <= most, "{}: {peak} bytes for a file of {}", what.display(), bytes.len());
         worst = worst.max(peak.saturating_sub(BYTES_FOR_NOTHING) / bytes.len().max(1));
