@@ -349,7 +349,6 @@ fn mark_efficient(rows: &mut [ShadingRow]) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use alloc::string::String;
 
     use crate::cost::{Errors, Nanoseconds, ties};
 
@@ -357,23 +356,9 @@ pub(super) mod tests {
         ShadingRow {
             shading,
             per_frame: Nanoseconds { median: time, ..Nanoseconds::default() },
-            per_pixel: 0.0,
-            per_triangle: 0.0,
-            ratio: 1.0,
-            ratio_interval: (1.0, 1.0),
-            split: Split::default(),
-            instructions: None,
-            error_gouraud: Errors::default(),
             error_lit: Errors { rms, ..Errors::default() },
-            error_palette: 0.0,
-            cover_errors: 0,
-            not_compared: 0.0,
-            excess: None,
-            swim: 0.0,
-            efficient: true,
             as_fast_as: tied.to_vec(),
-            picture: Vec::new(),
-            error_map: Vec::new(),
+            ..ShadingRow::default()
         }
     }
 
@@ -403,18 +388,7 @@ pub(super) mod tests {
         let seed = chance.below(usize::MAX) as u64;
         let rows = Rows { ways: &ways, times, findings: alloc::vec![Results::default(); 2], outcome: &outcome, seed };
         let shadings = rows.shadings(&[Split::default(); 2], 1);
-        let study = Study {
-            input: String::new(),
-            host: Host::default(),
-            kernel: String::new(),
-            frames: 1,
-            rounds: ROUNDS,
-            shadings,
-            budget: Vec::new(),
-            times: Vec::new(),
-            options: Vec::new(),
-            claims: Vec::new(),
-        };
+        let study = Study { shadings, ..Study::default() };
         (study.shadings[1].ratio, study.shadings[1].ratio_interval, ties(&study).is_empty())
     }
 

@@ -124,39 +124,22 @@ pub fn ties(study: &Study) -> Vec<(Shading, Vec<Shading>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cost::Nanoseconds;
     use crate::cost::measure::tests::row;
-    use crate::cost::{Host, Nanoseconds};
 
     fn budget(max_error: f64, within: f64, best: Option<(f64, (f64, f64))>) -> BudgetRow {
         BudgetRow {
             max_error,
             within,
-            not_compared: 0.0,
-            largest: 0.0,
-            rms: 0.0,
-            patch: 0,
-            swim: 0.0,
-            per_frame: Nanoseconds::default(),
             best_single_shading: best.map(|_| Shading::Phong),
             best_single: best.map(|_| Nanoseconds::default()),
             ratio: best,
-            triangles: Vec::new(),
+            ..BudgetRow::default()
         }
     }
 
     fn study(shadings: Vec<ShadingRow>, budget: Vec<BudgetRow>) -> Study {
-        Study {
-            input: String::new(),
-            host: Host::default(),
-            kernel: String::new(),
-            frames: 1,
-            rounds: 25,
-            shadings,
-            budget,
-            times: Vec::new(),
-            options: Vec::new(),
-            claims: Vec::new(),
-        }
+        Study { shadings, budget, ..Study::default() }
     }
 
     #[test]

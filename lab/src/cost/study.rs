@@ -10,7 +10,7 @@ use mode13h::plan::FaceShading;
 use mode13h::settings::Shading;
 
 /// The cost of accuracy on one scene or model.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Study {
@@ -99,7 +99,7 @@ pub struct Errors {
 }
 
 /// One shading.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ShadingRow {
     /// The shading.
@@ -154,7 +154,7 @@ pub struct ShadingRow {
 }
 
 /// One budget.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BudgetRow {
     /// Error that is accepted, in shades.

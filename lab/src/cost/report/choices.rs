@@ -2,7 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::figures::{count, percent, ratio, shades, time};
+use super::figures::{count, ratio, time};
+use super::shadings::figures;
 use super::table::{Cell, Column, Table, interval, quartiles};
 use crate::cost::{Claim, Study};
 
@@ -36,20 +37,16 @@ pub(super) fn table(study: &Study) -> Table {
     let mut rows = Vec::new();
     for (i, row) in study.options.iter().enumerate() {
         let is_first = i == 0 || study.options[i - 1].aspect != row.aspect;
-        let cells: Vec<Cell> = vec![
+        let mut cells: Vec<Cell> = vec![
             (if is_first { row.aspect.name() } else { "" }).into(),
             row.name.as_str().into(),
             time(row.per_frame.median).into(),
             quartiles(&row.per_frame),
             ratio(row.ratio.0).into(),
             interval(row.ratio.1),
-            shades(row.error.max).into(),
-            shades(row.error.mean).into(),
-            shades(row.error.rms).into(),
-            shades(row.error.rms_of_blocks).into(),
-            percent(row.error.off_by_one).into(),
-            count(row.cover_errors).into(),
         ];
+        cells.extend(figures(&row.error));
+        cells.push(count(row.cover_errors).into());
         rows.push(cells);
     }
     Table::new(&columns, rows)

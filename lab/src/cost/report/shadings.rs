@@ -158,7 +158,8 @@ pub(super) fn errors(study: &Study) -> Table {
         .note("Not compared: the share of covered pixels that show another face than lit does; no error is taken there.")
 }
 
-fn figures(errors: &Errors) -> [Cell; 5] {
+/// The figures of a set of errors, each in a cell.
+pub(super) fn figures(errors: &Errors) -> [Cell; 5] {
     let Errors { max, mean, rms, off_by_one, rms_of_blocks } = *errors;
     [shades(max), shades(mean), shades(rms), shades(rms_of_blocks), percent(off_by_one)].map(Cell::from)
 }

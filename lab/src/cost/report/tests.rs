@@ -26,18 +26,15 @@ fn shading(shading: Shading, ratio: f64, gouraud: f64, lit: f64) -> ShadingRow {
         ratio,
         ratio_interval: (0.97 * ratio, 1.04 * ratio),
         split: Split { plan: 1e3, vertices: 2e4, setup: 3e4, spans: 4e4, scan_out: 1.6e4 },
-        instructions: None,
         error_gouraud: errors(gouraud),
         error_lit: errors(lit),
         error_palette: 1.5,
-        cover_errors: 0,
         not_compared: 0.001_25,
-        excess: None,
         swim: 0.4,
         efficient: true,
-        as_fast_as: Vec::new(),
         picture: (0..64_000).map(|i| (i % 320 * 4 / 5) as u8).collect(),
         error_map: (0..64_000).map(|i| if i % 320 < 20 { f32::NAN } else { (i % 320) as f32 / 16.0 }).collect(),
+        ..ShadingRow::default()
     }
 }
 
@@ -66,10 +63,7 @@ fn study(shadings: Vec<ShadingRow>) -> Study {
         frames: 8,
         rounds: 101,
         shadings,
-        budget: Vec::new(),
-        times: Vec::new(),
-        options: Vec::new(),
-        claims: Vec::new(),
+        ..Study::default()
     }
 }
 
