@@ -6,6 +6,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
+use core::fmt;
 
 use mode13h::internals::DrawnTriangle;
 use mode13h::internals::lanes::{LANES, Lanes, Points};
@@ -20,9 +21,10 @@ use mode13h::render::Screen;
 use mode13h::span::Kernel;
 
 /// The source of a face's shades.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum ShadedBy {
     /// The vertices' shades.
+    #[default]
     Corners,
     /// A table of 256 × 256 normals.
     NormalTable,
@@ -50,7 +52,7 @@ pub enum ShadedBy {
 }
 
 /// Output of a face's stages at a pixel.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Bytes {
     pub(super) shaded_by: ShadedBy,
     pub(super) exact_cover: bool,
@@ -117,77 +119,44 @@ impl OnePixel {
 /// A light query: eight points, and the shades of each on three channels.
 type Query = (Points, [Lanes<u16>; 3]);
 
-/// Records every light query.
-#[derive(Debug)]
-struct Noted<'a> {
-    light: &'a dyn Lighting,
-    all: RefCell<Vec<Query>>,
+/// Light by a function of eight points and of whether three channels are asked for.
+struct LightBy<F>(F);
+
+impl<F> fmt::Debug for LightBy<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("LightBy")
+    }
 }
 
-impl Lighting for Noted<'_> {
+impl<F: Fn(&Points, bool) -> [Lanes<u16>; 3]> Lighting for LightBy<F> {
     fn shades(&self, points: &Points) -> Lanes<u16> {
-        let shades = self.light.shades(points);
-        self.all.borrow_mut().push((*points, [shades; 3]));
+        (self.0)(points, false)[0]
+    }
+
+    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
+        (self.0)(points, true)
+    }
+}
+
+/// Records every light query.
+fn noted<'a>(light: &'a dyn Lighting, all: &'a RefCell<Vec<Query>>) -> impl Lighting + 'a {
+    LightBy(move |points: &Points, in_color| {
+        let shades = if in_color { light.channels(points) } else { [light.shades(points); 3] };
+        all.borrow_mut().push((*points, shades));
         shades
-    }
-
-    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let channels = self.light.channels(points);
-        self.all.borrow_mut().push((*points, channels));
-        channels
-    }
+    })
 }
 
-/// Numbers the lit points: each gets its number as its shade, in whole shades.
-#[derive(Debug, Default)]
-struct Counted {
-    count: Cell<u16>,
-}
-
-impl Lighting for Counted {
-    fn shades(&self, _: &Points) -> Lanes<u16> {
-        let first = self.count.get();
-        // At most 24.
-        self.count.set(first + LANES as u16);
-        core::array::from_fn(|lane| (first + lane as u16) << 8)
-    }
-
-    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        [self.shades(points); 3]
-    }
-}
-
-/// Shows which of eight points is the pixel's.
-#[derive(Debug)]
-struct Numbers;
-
-impl Lighting for Numbers {
-    fn shades(&self, _: &Points) -> Lanes<u16> {
-        core::array::from_fn(|lane| (lane as u16) << 8)
-    }
-
-    fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        [self.shades(points); 3]
-    }
+/// Eight points numbered from `first`: each gets its number as its shade, in whole shades.
+fn numbers(first: u16) -> [Lanes<u16>; 3] {
+    [core::array::from_fn(|lane| (first + lane as u16) << 8); 3]
 }
 
 impl OnePixel {
     /// Applies a face's stages to the pixel, over the byte `behind`.
     pub(super) fn bytes(&mut self, triangle: &DrawnTriangle<'_>, behind: u8, scan_line: bool) -> Bytes {
-        let plain = |shade: u8, exact_cover: bool| Bytes {
-            shaded_by: ShadedBy::Corners,
-            exact_cover,
-            shades: [shade; 3],
-            channels: false,
-            texel: None,
-            level: None,
-            dithered: None,
-            textured: None,
-            mixed: None,
-            fogged: None,
-            blended: None,
-            byte: shade,
-        };
+        let plain =
+            |shade: u8, exact_cover: bool| Bytes { exact_cover, shades: [shade; 3], byte: shade, ..Bytes::default() };
         let DrawnTriangle { vertices, interpolation, effects, .. } = *triangle;
         if let Some(effects) = effects {
             return stages(effects.pipeline, (vertices, effects.attributes), self, behind, plain(behind, true));
@@ -227,11 +196,13 @@ fn stages(
         ShadeSource::Curved(_) => made.shaded_by = ShadedBy::BetweenSix(met.1.map(|corner| corner.lit)),
         ShadeSource::NormalTable(_) => made.shaded_by = ShadedBy::NormalTable,
         ShadeSource::Lit(light) => {
-            let noted = Noted { light, all: RefCell::default() };
-            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&noted), ..bare });
+            let all = RefCell::default();
+            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&noted(light, &all)), ..bare });
+            // Shows which of eight points is the pixel's.
+            let numbered = LightBy(|_: &Points, _| numbers(0));
             let lane =
-                usize::from(pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&Numbers), ..single }));
-            if let Some((points, shades)) = noted.all.borrow().last() {
+                usize::from(pixel.look(met, behind, &PixelPipeline { source: ShadeSource::Lit(&numbered), ..single }));
+            if let Some((points, shades)) = all.borrow().last() {
                 // Below 8.
                 let [nx, ny, nz, x, y, z] = points.map(|of| of[lane]);
                 let shades = shades.map(|of| of[lane]);
@@ -239,18 +210,18 @@ fn stages(
             }
         }
         ShadeSource::LitEvery(apart, light) => {
-            let noted = Noted { light, all: RefCell::default() };
-            pixel.look(met, behind, &PixelPipeline { source: ShadeSource::LitEvery(apart, &noted), ..bare });
+            let all = RefCell::default();
+            let source = ShadeSource::LitEvery(apart, &noted(light, &all));
+            pixel.look(met, behind, &PixelPipeline { source, ..bare });
             // With numbers for shades, its shade rounded down is the number of the lit pixel before it.
-            let numbers = Counted::default();
-            let numbered = PixelPipeline {
-                source: ShadeSource::LitEvery(apart, &numbers),
-                dither: Some(Thresholds::ZEROS),
-                ..single
-            };
+            let count = Cell::new(0);
+            // At most 24.
+            let counted = LightBy(|_: &Points, _| numbers(count.replace(count.get() + LANES as u16)));
+            let source = ShadeSource::LitEvery(apart, &counted);
+            let numbered = PixelPipeline { source, dither: Some(Thresholds::ZEROS), ..single };
             let place = usize::from(pixel.look(met, behind, &numbered));
             let lanes = |(_, channels): Query| (0..LANES).map(move |lane| channels.map(|of| of[lane]));
-            let all: Vec<[u16; 3]> = noted.all.take().into_iter().flat_map(lanes).collect();
+            let all: Vec<[u16; 3]> = all.take().into_iter().flat_map(lanes).collect();
             let of = |place: usize| all.get(place).or(all.last()).copied().unwrap_or_default();
             made.shaded_by = ShadedBy::BetweenLit { spacing: apart, before: of(place), after: of(place + 1) };
         }

@@ -44,7 +44,7 @@ mod eye;
 mod light;
 mod ray;
 mod tiles;
-mod vector;
+pub(crate) mod vector;
 
 use alloc::vec;
 use alloc::vec::Vec;

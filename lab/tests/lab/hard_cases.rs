@@ -16,16 +16,9 @@ fn by_the_raster(comparison: &Comparison) -> Vec<u8> {
     let mut depths: Vec<u32> = Vec::new();
     let frame = Frame::new(&mut bytes, width as u32, height as u32, width).expect("a legal frame");
     let raster = Raster::new(frame);
-    if comparison.depth_tested {
-        let mut raster = raster.with_cleared_depth(&mut depths);
-        for (vertices, interpolation) in &comparison.triangles {
-            raster.triangle(vertices, *interpolation);
-        }
-    } else {
-        let mut raster = raster;
-        for (vertices, interpolation) in &comparison.triangles {
-            raster.triangle(vertices, *interpolation);
-        }
+    let mut raster = if comparison.depth_tested { raster.with_cleared_depth(&mut depths) } else { raster };
+    for (vertices, interpolation) in &comparison.triangles {
+        raster.triangle(vertices, *interpolation);
     }
     bytes
 }

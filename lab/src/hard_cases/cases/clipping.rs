@@ -7,9 +7,10 @@ use super::{EXACT, light};
 use crate::hard_cases::Comparison;
 use crate::hard_cases::engine;
 use crate::hard_cases::face::gouraud;
-use crate::hard_cases::fault::light::{Vector, View};
+use crate::hard_cases::fault::light::View;
 use crate::hard_cases::fault::{cover, paint};
 use crate::hard_cases::panel::{Measure, Panel};
+use crate::truth::vector::Vector;
 use mode13h::mesh::Mesh;
 use mode13h::scene::Scene;
 

@@ -7,8 +7,9 @@ use super::{EXACT, of_scene};
 use crate::hard_cases::Comparison;
 use crate::hard_cases::engine;
 use crate::hard_cases::face::without_diagonals;
-use crate::hard_cases::fault::light::{Vector, View, cross, dot, lit_mesh, subtract, unit};
+use crate::hard_cases::fault::light::{View, lit_mesh, unit};
 use crate::hard_cases::panel::Measure;
+use crate::truth::vector::{Vector, add, cross, dot, sub, wide};
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::scene::{Camera, Object, Scene};
@@ -86,10 +87,9 @@ fn sums(positions: &[Vector], triangles: &[[usize; 3]]) -> Vec<Vector> {
     let mut sums = vec![[0.0; 3]; positions.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|i| positions[i]);
-        let normal = unit(cross(subtract(a, b), subtract(a, c)));
+        let normal = unit(cross(sub(a, b), sub(a, c)));
         for i in triangle {
-            let sum = &mut sums[*i];
-            *sum = [sum[0] + normal[0], sum[1] + normal[1], sum[2] + normal[2]];
+            sums[*i] = add(sums[*i], normal);
         }
     }
     sums
@@ -135,9 +135,8 @@ pub(super) fn n2() -> Comparison {
 /// Compares a ball with the bytes that a fault gives its vertices from each vertex's normal.
 fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     let mesh = shapes::sphere(24, 16);
-    let wide = |v: &Vec3| [v.x, v.y, v.z].map(f64::from);
-    let shades = mesh.normals().iter().map(|normal| shade(wide(normal))).collect();
-    let positions = mesh.positions().iter().map(wide).collect();
+    let shades = mesh.normals().iter().map(|normal| shade(wide(*normal))).collect();
+    let positions = mesh.positions().iter().copied().map(wide).collect();
     let triangles = mesh.triangles().iter().map(|t| t.map(|i| i as usize)).collect();
     let mut comparison = compare(Lit { mesh: Some(mesh), positions, triangles, suns, shades, two_sided: false });
     comparison.outline = engine::silhouette(&comparison.outline);

@@ -3,20 +3,7 @@
 use super::paint;
 use crate::hard_cases::face::{Corner, gouraud};
 use crate::hard_cases::panel::Panel;
-
-pub(in crate::hard_cases) type Vector = [f64; 3];
-
-pub(in crate::hard_cases) fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(in crate::hard_cases) fn subtract(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(in crate::hard_cases) fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
+use crate::truth::vector::{Vector, dot, sub};
 
 pub(in crate::hard_cases) fn unit(v: Vector) -> Vector {
     // NaN for the zero vector, which is where the faults begin.
@@ -35,7 +22,7 @@ pub(in crate::hard_cases) struct View {
 impl View {
     /// Projects a point to the screen **whatever the sign of w**: behind the eye both coordinates change sign.
     pub(in crate::hard_cases) fn project(&self, point: Vector, shade: f64) -> Corner {
-        let [x, y, z] = subtract(point, self.eye);
+        let [x, y, z] = sub(point, self.eye);
         let (width, height) = (self.size.0 as f64, self.size.1 as f64);
         let scale = height / 2.0 / libm::tan(self.field_of_view / 2.0);
         let w = -z;

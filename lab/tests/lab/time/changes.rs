@@ -373,23 +373,13 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Settings.mipmaps", |w, r| {
         textured(w, r);
-        set(w, sometimes(r, |r| r.within(0, 1) == 1), |settings| &mut settings.mipmaps);
+        set(w, sometimes(r, |r| r.within(0, 1) == 1), |s| &mut s.mipmaps);
     }),
-    seen("Settings.tessellation", |w, r| {
-        set(w, sometimes(r, |r| between(r, 0.5, 4.0)), |settings| &mut settings.tessellation);
-    }),
-    seen("Settings.dither", |w, r| {
-        set(w, sometimes(r, |r| r.one_of(&DitherPattern::ALL)), |settings| &mut settings.dither);
-    }),
-    seen("Settings.vertex_path", |w, r| {
-        set(w, sometimes(r, |r| r.one_of(&VertexPath::ALL)), |settings| &mut settings.vertex_path);
-    }),
-    seen("Settings.vertex_bits", |w, r| {
-        set(w, sometimes(r, |r| r.within(0, 8) as u8), |settings| &mut settings.vertex_bits);
-    }),
-    seen("Settings.channels", |w, r| {
-        set(w, sometimes(r, |r| r.within(0, 1) == 1), |settings| &mut settings.channels);
-    }),
+    seen("Settings.tessellation", |w, r| set(w, sometimes(r, |r| between(r, 0.5, 4.0)), |s| &mut s.tessellation)),
+    seen("Settings.dither", |w, r| set(w, sometimes(r, |r| r.one_of(&DitherPattern::ALL)), |s| &mut s.dither)),
+    seen("Settings.vertex_path", |w, r| set(w, sometimes(r, |r| r.one_of(&VertexPath::ALL)), |s| &mut s.vertex_path)),
+    seen("Settings.vertex_bits", |w, r| set(w, sometimes(r, |r| r.within(0, 8) as u8), |s| &mut s.vertex_bits)),
+    seen("Settings.channels", |w, r| set(w, sometimes(r, |r| r.within(0, 1) == 1), |s| &mut s.channels)),
     unseen("Renderer.kernel", |w, r| {
         w.kernel = r.one_of(&Kernel::available().collect::<Vec<_>>());
         w.kept.kernel = w.kernel;
