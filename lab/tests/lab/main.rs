@@ -10,6 +10,7 @@ mod hard_cases;
 mod light;
 mod polygons;
 mod report;
+mod sources;
 mod time;
 mod truth;
 mod truth_engine;

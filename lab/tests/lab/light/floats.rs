@@ -1,8 +1,5 @@
 //! R9: every float in a public structure of a scene, from one list, which is compared with the sources.
 
-use std::fs;
-use std::path::PathBuf;
-
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light, Material};
@@ -13,6 +10,7 @@ use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Scene};
 use mode13h::settings::Accuracy;
 use mode13h::vga::Vga;
 
+use crate::sources::{self, Item};
 use crate::support::scenes::framed;
 use crate::support::tried::Tried;
 
@@ -173,46 +171,16 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("Scene.time", "in what it has moved"),
 ];
 
-/// The sources whose fields are listed. Scene files and models, in subfolders, have numbers of their own, which are
-/// checked where they are read.
-fn sources() -> Vec<PathBuf> {
-    let root = crate::support::workspace::root().join("src");
-    let mut files = vec![root.join("settings/options.rs")];
-    for folder in ["scene", "light", "mesh"] {
-        let entries = fs::read_dir(root.join(folder)).expect("a folder");
-        files.extend(entries.map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file()));
-    }
-    files
-}
-
 /// Fields of public structures and enums whose types contain floats.
+///
+/// Scene files and models, in subfolders, have numbers of their own, which are checked where they are read.
 fn floats() -> Vec<String> {
-    let mut fields = Vec::new();
-    for path in sources() {
-        let text = fs::read_to_string(&path).expect("a source");
-        let (mut of, mut variant) = (None, None);
-        for line in text.lines() {
-            let words = line.trim();
-            if let Some(rest) = line.strip_prefix("pub struct ").or_else(|| line.strip_prefix("pub enum ")) {
-                of = rest.split(|c: char| !c.is_alphanumeric()).next().filter(|_| line.ends_with('{'));
-                variant = None;
-            } else if line == "}" {
-                of = None;
-            } else if let (Some(_), Some(name)) = (of, words.strip_suffix(" {")) {
-                variant = Some(name.to_owned());
-            }
-            let (Some(of), Some((name, kind))) = (of, words.split_once(": ")) else { continue };
-            let is_float = kind
-                .split(|c: char| !c.is_alphanumeric())
-                .any(|word| ["Accuracy", "Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word));
-            if is_float && !words.starts_with("//") {
-                let name = name.trim_start_matches("pub ");
-                let variant = variant.as_ref().map_or(String::new(), |variant| format!("::{variant}"));
-                fields.push(format!("{of}{variant}.{name}"));
-            }
-        }
-    }
-    fields
+    let items = sources::items_of(&sources::paths(&["settings/options.rs"], &["scene", "light", "mesh"]));
+    let is_float = |item: &Item| {
+        let mut words = item.of_type.split(|c: char| !c.is_alphanumeric());
+        words.any(|word| ["Accuracy", "Angle", "f32", "f64", "Vec2", "Vec3", "Mat3"].contains(&word))
+    };
+    items.into_iter().filter(is_float).map(|item| item.name).collect()
 }
 
 pub(crate) fn every_float_is_refused(mut tried: Tried) {

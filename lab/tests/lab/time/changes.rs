@@ -1,6 +1,5 @@
 //! What a caller may change between two frames: one list, compared with the sources.
 
-use std::fs;
 use std::ops::Range;
 use std::sync::LazyLock;
 
@@ -20,6 +19,7 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_lab::explain;
 
+use crate::sources::{self, Item};
 use mode13h_conformance::Random;
 
 /// A scene, the renderer that is reused, and the machines that it draws on, of which the first is next.
@@ -307,8 +307,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("RampChoice::Nearest", |w, r| one_material(w, r).ramp = RampChoice::Nearest),
     seen("Material.color", |w, r| {
         let (before, after) = (channels(r), channels(r));
-        let last = w.scene.objects().len() as i64 - 1;
-        let which = r.within(0, last) as usize;
+        let which = any_object(w, r);
         // Its colour is mixed from channels before the change, too.
         let material = &mut w.scene.objects_mut()[which].materials[0];
         (material.ramp, material.color) = (RampChoice::Nearest, before);
@@ -718,10 +717,13 @@ fn a_frame(w: &mut World, r: &mut Random, draw: DrawFrame) {
     assert!(kept == fresh, "a frame of {screen:?}, rows {rows:?}");
 }
 
+fn any_object(world: &World, random: &mut Random) -> usize {
+    random.within(0, world.scene.objects().len() as i64 - 1) as usize
+}
+
 fn one_object<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Object {
-    let objects = world.scene.objects_mut();
-    let last = objects.len() as i64 - 1;
-    &mut objects[random.within(0, last) as usize]
+    let which = any_object(world, random);
+    &mut world.scene.objects_mut()[which]
 }
 
 fn one_material<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Material {
@@ -730,8 +732,7 @@ fn one_material<'a>(world: &'a mut World, random: &mut Random) -> &'a mut Materi
 
 /// Changes a material that has a highlight.
 fn shiny(world: &mut World, random: &mut Random, change: impl Fn(&mut Material)) {
-    let last = world.scene.objects().len() as i64 - 1;
-    let which = random.within(0, last) as usize;
+    let which = any_object(world, random);
     let specular = &mut world.scene.objects_mut()[which].materials[0].specular;
     *specular = specular.max(0.4);
     drawn(world);
@@ -745,8 +746,7 @@ fn drawn(world: &mut World) {
 
 /// Gives a material an image, draws, and gives it another one, or none.
 fn two_images(world: &mut World, random: &mut Random, change: impl Fn(&mut Material, Option<Shared<Texture>>)) {
-    let last = world.scene.objects().len() as i64 - 1;
-    let which = random.within(0, last) as usize;
+    let which = any_object(world, random);
     let object = &mut world.scene.objects_mut()[which];
     if object.mesh().texcoords().is_none() {
         replace_mesh(object, shapes::wall(1, 1));
@@ -904,74 +904,20 @@ fn cone(world: &mut World, random: &mut Random, change: impl Fn(&mut Random, &mu
 /// `Light::Sun.color`) and every public method that takes `&mut self` (`Scene::add`), of the modules that hold what a
 /// frame is drawn from.
 pub(super) fn in_the_sources() -> Vec<String> {
-    let root = crate::support::workspace::root().join("src");
-    let mut paths = vec![root.join("render/mod.rs"), root.join("vga/mod.rs")];
-    for folder in ["scene", "light"] {
-        let entries = fs::read_dir(root.join(folder)).expect("a folder").map(|entry| entry.expect("an entry").path());
-        // Framing creates cameras, which are listed.
-        paths.extend(
-            entries.filter(|path| path.extension().is_some_and(|is| is == "rs") && !path.ends_with("framing.rs")),
-        );
-    }
-    let mut names: Vec<String> =
-        paths.iter().flat_map(|path| names_in(&fs::read_to_string(path).expect("a file"))).collect();
+    let mut paths = sources::paths(&["render/mod.rs", "vga/mod.rs"], &["scene", "light"]);
+    // Framing creates cameras, which are listed.
+    paths.retain(|path| !path.ends_with("framing.rs"));
+    let mut names = public(sources::items_of(&paths));
     // The settings of a renderer and of a scene.
-    let settings = names_in(&fs::read_to_string(root.join("settings/options.rs")).expect("a file"));
-    let fields: Vec<String> = settings.into_iter().filter(|name| name.starts_with("Settings.")).collect();
+    let mut fields = public(sources::items_of(&sources::paths(&["settings/options.rs"], &[])));
+    fields.retain(|name| name.starts_with("Settings."));
     names.extend(fields.iter().map(|name| format!("Scene.{}", name.replacen('S', "s", 1))));
     names.extend(fields);
     names.sort();
     names
 }
 
-/// The names in one file, formatted by rustfmt.
-pub(super) fn names_in(source: &str) -> Vec<String> {
-    let word = |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
-    let mut names = Vec::new();
-    let mut lines = source.lines();
-    while let Some(line) = lines.next() {
-        let (kind, rest) = match ["pub struct ", "pub enum ", "impl "].iter().find(|start| line.starts_with(**start)) {
-            Some(start) if line.ends_with(" {") => (*start, &line[start.len()..]),
-            _ => continue,
-        };
-        let of = word(rest);
-        // An impl of a trait, or for a type with parameters.
-        if rest != format!("{of} {{") {
-            continue;
-        }
-        let body: Vec<&str> = lines.by_ref().take_while(|line| *line != "}").collect();
-        let mut variant = String::new();
-        for (i, line) in body.iter().enumerate() {
-            let (depth, text) = (line.len() - line.trim_start().len(), line.trim_start());
-            if !text.starts_with(|c: char| c.is_alphabetic()) {
-                continue;
-            }
-            match (kind, depth) {
-                ("pub struct ", 4) => {
-                    if let Some(field) = text.strip_prefix("pub ") {
-                        names.push(format!("{of}.{}", word(field)));
-                    }
-                }
-                ("pub enum ", 4) => {
-                    variant = word(text);
-                    if !text.ends_with('{') {
-                        names.push(format!("{of}::{variant}"));
-                    }
-                }
-                ("pub enum ", 8) => names.push(format!("{of}::{variant}.{}", word(text))),
-                ("impl ", 4) => {
-                    let Some((_, method)) = text.split_once("fn ").filter(|_| text.starts_with("pub ")) else {
-                        continue;
-                    };
-                    let signature =
-                        if text.ends_with('(') { body.get(i + 1).map_or("", |next| next.trim()) } else { text };
-                    if signature.contains("&mut self") {
-                        names.push(format!("{of}::{}", word(method)));
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
-    names
+/// The names of what is public.
+pub(super) fn public(items: Vec<Item>) -> Vec<String> {
+    items.into_iter().filter(|item| item.is_public).map(|item| item.name).collect()
 }

@@ -11,7 +11,7 @@ use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 
-use super::changes::{CHANGES, EXEMPT, World, in_the_sources, names_in, start};
+use super::changes::{CHANGES, EXEMPT, World, in_the_sources, public, start};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
 
@@ -245,5 +245,5 @@ impl<T> Other for Camera {
 }
 ";
     let names = "Camera.eye Camera.near Light::Sun.direction Light::Sun.color Light::None Light::Lamp Camera::set_eye Camera::look";
-    assert_eq!(names_in(source), names.split(' ').collect::<Vec<_>>());
+    assert_eq!(public(crate::sources::items(source)), names.split(' ').collect::<Vec<_>>());
 }
