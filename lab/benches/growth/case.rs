@@ -13,6 +13,7 @@ use mode13h::render::Renderer;
 use mode13h::scene::{Camera, Object, Scene, Shared};
 use mode13h::settings::HiddenSurfaces;
 use mode13h::vga::Vga;
+use mode13h_conformance::Random;
 
 /// One frame, drawn again and again.
 pub(crate) struct Case {
@@ -161,12 +162,8 @@ pub(crate) fn pixels() -> Vec<Case> {
         let part = if pixels < 0.5 * width * height { (pixels / (2.0 * width * height)).sqrt() } else { 1.0 };
         let (w, h) = (2.0 * width * part, 2.0 * height * part);
         let count = (2e5 / pixels).clamp(20.0, 4_000.0) as usize;
-        let mut random = 1_u64;
-        let mut scattered = |room: f64| {
-            // Knuth's generator for MMIX, and of it the upper bits.
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            room.max(0.0) * (random >> 40) as f64 / 16_777_216.0
-        };
+        let mut random = Random::again(1);
+        let mut scattered = |room: f64| room.max(0.0) * random.unit();
         let at = |x: f64, y: f64, shade: u8| {
             let pixels = |p: f64| I24F8::round_from_f32(p as f32).expect("a place on the screen");
             Vertex::new(pixels(x), pixels(y), U8F8::from_intensity(f32::from(shade) / 255.0, 0, 256), 1).expect("legal")

@@ -141,7 +141,8 @@ pub fn measure(
     let claims =
         if *with_claims { claims(renderer, &spent(0.25), &|share| progress(Step::Claims, share))? } else { Vec::new() };
 
-    let rows = Rows { ways: &ways, times: times(&ways, &outcome.samples), findings, outcome: &outcome, seed: *seed };
+    let times = (0..ways.len()).map(|way| outcome.samples.of(way)).collect();
+    let rows = Rows { ways: &ways, times, findings, outcome: &outcome, seed: *seed };
     let mut of_shadings = rows.shadings(&splits, frames.len());
     let budget = rows.budgets();
     let by_time: Vec<(f64, &Results)> = budget
@@ -198,10 +199,6 @@ fn with_dither(frames: &[Scene], dither: Option<DitherPattern>) -> Vec<Scene> {
     let mut frames = frames.to_vec();
     frames.iter_mut().for_each(|scene| scene.settings.dither = dither);
     frames
-}
-
-fn times(ways: &[Configuration<'_>], samples: &Samples) -> Vec<Vec<f64>> {
-    (0..ways.len()).map(|way| samples.of(way)).collect()
 }
 
 /// Results, configuration by configuration.

@@ -122,9 +122,7 @@ fn light_that_is_taken_away_is_within_the_budget() {
                 (material.ambient, material.diffuse) = (ambient, 0.7);
                 (material.specular, material.shininess) = (specular, 20.0);
                 scene.add(object);
-                lights.iter().for_each(|light| {
-                    scene.add_light(*light);
-                });
+                lights.iter().for_each(|light| _ = scene.add_light(*light));
                 check(&mut tried, &format!("{name}, {ambient}, {specular}, lights {number}"), &scene, &BUDGETS);
             }
         }
@@ -305,11 +303,8 @@ fn a_wider_budget_lights_fewer_pixels() {
     for (name, scene) in scenes::all() {
         let lit = BUDGETS.map(|max_error| {
             let shares = within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares;
-            shares
-                .into_iter()
-                .filter(|(shading, _)| shading.lights_pixels())
-                .map(|(_, triangles)| triangles)
-                .sum::<u64>()
+            let lit = shares.into_iter().filter(|(shading, _)| shading.lights_pixels());
+            lit.map(|(_, triangles)| triangles).sum::<u64>()
         });
         assert!(lit.is_sorted(), "{name}: {lit:?}");
     }

@@ -386,6 +386,10 @@ fn screen(random: &mut Random) -> Screen {
     Screen { width, height, ..Screen::MODE_13H }
 }
 
+fn in_full(scene: &Scene) -> String {
+    format!("{:?} {:?} {:?}", scene.lights(), scene.camera, scene.objects()[0].materials)
+}
+
 /// Checks a number of scenes of one kind: no pixel exceeds its budget.
 fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
     let mut broken = 0;
@@ -402,12 +406,7 @@ fn check(tried: &mut Tried, random: &mut Random, kind: Kind, scenes: usize) {
         }
     }
     if let Some((what, _, scene)) = first {
-        panic!(
-            "{broken} of {scenes} scenes are broken; {what}: {:?} {:?} {:?}",
-            scene.lights(),
-            scene.camera,
-            scene.objects()[0].materials
-        );
+        panic!("{broken} of {scenes} scenes are broken; {what}: {}", in_full(&scene));
     }
 }
 
@@ -485,13 +484,7 @@ fn climbing_towards_the_worst_finds_no_pixel_beyond() {
             if found.beyond > most {
                 (most, best) = (found.beyond, genes);
             }
-            assert!(
-                found.beyond <= 0.0,
-                "{kind:?}: {found}: {:?} {:?} {:?}",
-                at.lights(),
-                at.camera,
-                at.objects()[0].materials
-            );
+            assert!(found.beyond <= 0.0, "{kind:?}: {found}: {}", in_full(&at));
         }
         tried.worst("beyond", most.max(-99.0));
     }

@@ -99,28 +99,24 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
 
 #[test]
 fn t1_many_steps_are_one_angle() {
-    let mut tried = Tried::new("t1_many_steps_are_one_angle", 2000);
-    rotation(&mut tried, VertexPath::Float);
+    rotation(&mut Tried::new("t1_many_steps_are_one_angle", 2000), VertexPath::Float);
 }
 
 #[test]
 fn t1_many_steps_on_the_integer_path() {
-    let mut tried = Tried::new("t1_many_steps_on_the_integer_path", 2000);
-    rotation(&mut tried, VertexPath::Integer);
+    rotation(&mut Tried::new("t1_many_steps_on_the_integer_path", 2000), VertexPath::Integer);
 }
 
 #[test]
 #[ignore = "the long run: a million frames"]
 fn t1_long_a_million_frames() {
-    let mut tried = Tried::new("t1_long_a_million_frames", 1_000_000);
-    rotation(&mut tried, VertexPath::Float);
+    rotation(&mut Tried::new("t1_long_a_million_frames", 1_000_000), VertexPath::Float);
 }
 
 #[test]
 #[ignore = "the long run: a million frames"]
 fn t1_long_a_million_frames_on_the_integer_path() {
-    let mut tried = Tried::new("t1_long_a_million_frames_on_the_integer_path", 1_000_000);
-    rotation(&mut tried, VertexPath::Integer);
+    rotation(&mut Tried::new("t1_long_a_million_frames_on_the_integer_path", 1_000_000), VertexPath::Integer);
 }
 
 /// A step of any size rotates by what remains after whole turns, and the same step backwards rotates back.
