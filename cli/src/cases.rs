@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use mode13h::export;
 use mode13h_lab::hard_cases::{self, CASES, Case};
 use serde_json::{Value, json};
 
@@ -41,19 +40,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let ids: Vec<&str> = CASES.iter().map(|case| case.id).collect();
         return Err(Failure::words(format!("no case '{id}'; there are {}", ids.join(", "))));
     };
-    let path = match out {
-        Some(out) => {
-            output::check_extension(out, "png", "a picture")?;
-            out.clone()
-        }
-        None => {
-            let path = PathBuf::from(format!("{}.png", case.id));
-            output::refuse_overwriting(&path, *force)?;
-            path
-        }
-    };
-    let bytes = case.png()?;
-    output::file(&path, || export::write_atomically(&path, |file| file.write_all(&bytes)))?;
+    let path = output::path_or(out.as_ref(), format!("{}.png", case.id), *force)?;
+    output::check_extension(&path, "png", "a picture")?;
+    output::bytes(&path, &case.png()?)?;
     if *json {
         let mut case = case_json(case);
         case["schema"] = output::SCHEMA.into();

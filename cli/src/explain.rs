@@ -156,20 +156,16 @@ fn face_json(pixel: &Pixel, face: &FaceHere) -> Value {
 }
 
 fn seen_json(seen: &Seen) -> Value {
-    let light = match seen.shaded_by {
+    let (shaded_by, light) = match seen.shaded_by {
+        ShadedBy::Corners => ("corners", Value::Null),
+        ShadedBy::NormalTable => ("normal-table", Value::Null),
         ShadedBy::Light { normal, position, shades } => {
-            json!({ "normal": normal, "position": position, "shades_256": shades })
+            ("light", json!({ "normal": normal, "position": position, "shades_256": shades }))
         }
-        ShadedBy::BetweenLit { before, after, .. } => json!({ "before_256": before, "after_256": after }),
-        ShadedBy::BetweenSix(corners) => json!({ "corners_and_middles_256": corners }),
-        _ => Value::Null,
-    };
-    let shaded_by = match seen.shaded_by {
-        ShadedBy::Corners => "corners",
-        ShadedBy::NormalTable => "normal-table",
-        ShadedBy::Light { .. } => "light",
-        ShadedBy::BetweenLit { .. } => "between-lit",
-        ShadedBy::BetweenSix(_) => "between-six",
+        ShadedBy::BetweenLit { before, after, .. } => {
+            ("between-lit", json!({ "before_256": before, "after_256": after }))
+        }
+        ShadedBy::BetweenSix(corners) => ("between-six", json!({ "corners_and_middles_256": corners })),
     };
     let against = seen.against.iter().map(
         |against| json!({ "standard": against.standard.name(), "shades": against.shades, "error": against.error }),

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use mode13h::export;
 
 use crate::failure::Failure;
 use crate::output;
@@ -67,8 +66,7 @@ fn write_pages(all: clap::Command, directory: &Path) -> Result<(), Failure> {
         let name = command.get_display_name().unwrap_or(command.get_name());
         let path = directory.join(format!("{name}.1"));
         commands.extend(command.get_subcommands().cloned());
-        let bytes = page(command)?;
-        output::file(&path, || export::write_atomically(&path, |file| file.write_all(&bytes)))?;
+        output::bytes(&path, &page(command)?)?;
     }
     Ok(())
 }

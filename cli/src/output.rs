@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use mode13h::export::{ExportError, ExportErrorKind, Picture, Png, Scale};
+use mode13h::export::{ExportError, ExportErrorKind, Picture, Png, Scale, write_atomically};
 use mode13h::vga::Vga;
 use serde::Serialize;
 
@@ -70,6 +70,11 @@ pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Res
     Ok(written)
 }
 
+/// Writes bytes to a file, under the rule of [`file`].
+pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    file(path, || write_atomically(path, |file| file.write_all(bytes)))
+}
+
 /// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` checks
 /// [`is_interrupted`] all the time, and then gives the file up: in that case this never returns, and the program ends
 /// as interrupted.
@@ -129,6 +134,15 @@ pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
+/// The name that was given, or a default one, under the rule of [`refuse_overwriting`].
+pub(crate) fn path_or(given: Option<&PathBuf>, default: String, force: bool) -> Result<PathBuf, Failure> {
+    if let Some(given) = given {
+        return Ok(given.clone());
+    }
+    let path = PathBuf::from(default);
+    refuse_overwriting(&path, force).map(|()| path)
+}
+
 /// Fails if a file of this name exists, unless `force` is set. For names that the user did not give.
 pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure> {
     if force || path.symlink_metadata().is_err() {
@@ -150,8 +164,11 @@ pub(crate) fn check_extension(path: &Path, wanted: &str, what: &str) -> Result<(
     }
 }
 
-/// A progress bar on standard error, if that is a terminal.
+/// A progress bar on standard error, if that is a terminal and the program is not to be quiet.
 pub(crate) fn bar(length: u64, template: &str) -> ProgressBar {
+    if is_quiet() {
+        return ProgressBar::hidden();
+    }
     let bar = ProgressBar::new(length);
     match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),

@@ -154,8 +154,7 @@ fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
         let reason = format!("{}: not a palette format that can be written: {known}, or .png", out.display());
         return Err(Failure::words(reason));
     };
-    let bytes = format.write(palette, name);
-    output::file(out, || export::write_atomically(out, |file| file.write_all(&bytes)))
+    output::bytes(out, &format.write(palette, name))
 }
 
 /// The 256 colours in 16 rows of 16, each a square of 16 pixels.

@@ -523,7 +523,7 @@ impl Artist {
 
 /// A progress bar on standard error, if that is a terminal and there is more than one frame.
 fn progress(frames: u32) -> ProgressBar {
-    match frames == 1 || output::is_quiet() {
+    match frames == 1 {
         true => ProgressBar::hidden(),
         false => output::bar(frames.into(), "{bar:40} {pos}/{len} frames, {eta} left"),
     }

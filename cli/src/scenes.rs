@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use mode13h::export;
 use mode13h_assets::shipped::{self, Shipped};
 
 use crate::failure::Failure;
@@ -47,10 +46,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
         return Err(Failure::words(format!("{name}: no such scene{near} (mode13h list scenes shows the names)")));
     };
-    let path = out.clone().unwrap_or_else(|| format!("{name}.toml").into());
+    let path = output::path_or(out.as_ref(), format!("{name}.toml"), *force)?;
     output::check_extension(&path, "toml", "a scene file")?;
-    if out.is_none() {
-        output::refuse_overwriting(&path, *force)?;
-    }
-    output::file(&path, || export::write_atomically(&path, |file| file.write_all(scene.text.as_bytes())))
+    output::bytes(&path, scene.text.as_bytes())
 }

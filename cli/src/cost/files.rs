@@ -70,6 +70,6 @@ fn write_into(directory: &Path, contents: &[String; NAMES.len()]) -> Result<(), 
     fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
     NAMES.iter().zip(contents).try_for_each(|(name, text)| {
         let path = directory.join(name);
-        output::file(&path, || export::write_atomically(&path, |out| out.write_all(text.as_bytes())))
+        output::bytes(&path, text.as_bytes())
     })
 }

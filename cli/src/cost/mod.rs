@@ -196,10 +196,7 @@ struct Progress {
 
 impl Progress {
     fn new() -> Progress {
-        let bar = match output::is_quiet() {
-            true => ProgressBar::hidden(),
-            false => output::bar(1000, "{bar:40} {percent}% {msg}"),
-        };
+        let bar = output::bar(1000, "{bar:40} {percent}% {msg}");
         Progress { bar, step: Mutex::new(None), begun: Instant::now() }
     }
 

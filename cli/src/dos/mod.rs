@@ -13,7 +13,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use miniz_oxide::deflate::{CompressionLevel, compress_to_vec};
-use mode13h::export;
 use mode13h::internals;
 use mode13h::palette::{BIOS, Palette};
 use mode13h::plan::Effect;
@@ -86,20 +85,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     quiet.obey();
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
-    let out = match out {
-        Some(out) if !(output::has_extension(out, "exe") || output::has_extension(out, "img")) => {
-            return Err(Failure::words(format!(
-                "{}: the name of a DOS program must end in .exe, that of a floppy in .img",
-                out.display()
-            )));
-        }
-        Some(out) => out.clone(),
-        None => {
-            let out = PathBuf::from(format!("{}.EXE", short_name(&name)));
-            output::refuse_overwriting(&out, *force)?;
-            out
-        }
-    };
+    let out = output::path_or(out.as_ref(), format!("{}.EXE", short_name(&name)), *force)?;
+    if !["exe", "img"].iter().any(|extension| output::has_extension(&out, extension)) {
+        let reason = "the name of a DOS program must end in .exe, that of a floppy in .img";
+        return Err(Failure::words(format!("{}: {reason}", out.display())));
+    }
     let mut stage = drawing.stage(drawing.input(input)?)?;
     read_files::spare(&out)?;
     let mut renderer = Renderer::new();
@@ -120,7 +110,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let sum = unpack(&packed)
         .and_then(|film| hash_of(&film))
         .ok_or_else(|| Failure::words("a mesh of the scene cannot be drawn in 16.16"))?;
-    output::file(&out, || export::write_atomically(&out, |file| file.write_all(&program)))?;
+    output::bytes(&out, &program)?;
     output::say(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
 }
 
