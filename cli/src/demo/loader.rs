@@ -167,7 +167,7 @@ impl Watch {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use clap::Parser;
     use std::process::Command;
@@ -180,7 +180,8 @@ mod tests {
         shading: ShadingOptions,
     }
 
-    fn inputs(words: &[&Path]) -> Arc<Inputs> {
+    /// These inputs, without any option.
+    pub(in super::super) fn inputs(words: &[&Path]) -> Arc<Inputs> {
         let Words { drawing, shading } = Words::parse_from(["mode13h"]);
         let words = words.iter().map(|path| path.as_os_str().to_os_string()).collect();
         Arc::new(Inputs { moment: Moment::default(), drawing, shading, words })

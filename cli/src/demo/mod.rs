@@ -475,25 +475,16 @@ impl Pages {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
     use mode13h_assets::shipped;
 
+    use super::loader::tests::inputs;
     use super::scenes::counted;
     use super::*;
     use crate::overlay::tests::WINDOWS;
 
-    #[derive(Parser)]
-    struct Words {
-        #[command(flatten)]
-        drawing: Drawing,
-        #[command(flatten)]
-        shading: ShadingOptions,
-    }
-
     /// The demo of a scene after its first frame.
     fn demo(name: &str) -> Demo {
-        let Words { drawing, shading } = Words::parse_from(["mode13h"]);
-        let inputs = Arc::new(Inputs { moment: Moment::default(), drawing, shading, words: vec![name.into()] });
+        let inputs = inputs(&[name.as_ref()]);
         let first = loader::load(&inputs, 0, &[]);
         let mut demo = Demo::new(inputs, Kernel::default());
         demo.put_on(first).expect("a shipped scene");
@@ -547,12 +538,8 @@ mod tests {
                                 assert_eq!(sheet.faults(), [""; 0], "{what}");
                                 let open = [(help, demo.show.help.pages), (figures, demo.show.figures.pages)];
                                 assert!(open.iter().all(|(is_open, pages)| !is_open || *pages > 0), "{what}");
-                                pages = open
-                                    .iter()
-                                    .filter(|(is_open, _)| *is_open)
-                                    .map(|(_, pages)| *pages)
-                                    .max()
-                                    .unwrap_or(1);
+                                let of_open = open.iter().filter(|(is_open, _)| *is_open).map(|(_, pages)| *pages);
+                                pages = of_open.max().unwrap_or(1);
                                 words.extend(sheet.words());
                             }
                             assert!(!help || words.iter().any(|word| word == "Shift-N"), "{} in {size:?}", scene.name);

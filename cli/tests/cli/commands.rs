@@ -286,8 +286,7 @@ fn pictures_are_enlarged_and_in_true_color_when_asked_for() {
 #[test]
 fn every_kernel_gives_the_same_bytes_and_is_named() {
     let folder = Folder::new();
-    folder.succeed("render torus -o default.png");
-    let expected = folder.read("default.png");
+    let expected = folder.picture("torus");
     let mut tried = 0;
     for kernel in Kernel::available() {
         for by_environment in [false, true] {
@@ -332,13 +331,11 @@ fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
     let mut tried = Tried::new("t1_a_frame_of_a_row_is_the_frame_drawn_alone", 3);
     let folder = Folder::new();
     folder.succeed("render teapot -o turn%d.png --frames 4 --turn 360");
-    folder.succeed("render teapot -o alone.png --turn 90");
-    assert_eq!(folder.read("turn1.png"), folder.read("alone.png"));
+    assert_eq!(folder.read("turn1.png"), folder.picture("teapot --turn 90"));
 
     folder.succeed("render teapot -o time%d.png --frames 3 --fps 2 --time 7");
-    folder.succeed("render teapot -o alone.png --time 8");
-    assert_eq!(folder.read("time2.png"), folder.read("alone.png"));
-    assert_ne!(folder.read("time0.png"), folder.read("alone.png"));
+    let alone = folder.picture("teapot --time 8");
+    assert!(folder.read("time2.png") == alone && folder.read("time0.png") != alone);
     tried.add(3);
 }
 
@@ -706,13 +703,12 @@ fn input_comes_by_a_pipe_or_packed() {
         folder.put(name, text.as_bytes());
         let packed = pack(text.as_bytes());
         folder.put(&format!("{name}.gz"), &packed);
-        folder.succeed(&format!("render {name} -o plain.png"));
-        folder.succeed(&format!("render {name}.gz -o packed.png"));
-        assert!(folder.read("packed.png") == folder.read("plain.png"), "{name}.gz");
+        let plain = folder.picture(name);
+        assert!(folder.picture(&format!("{name}.gz")) == plain, "{name}.gz");
         for (words, bytes) in [("-", text.as_bytes()), ("/dev/stdin", text.as_bytes()), ("-", &packed)] {
             let mut command = folder.program(&format!("render {words} -o piped.png"));
             assert!(fed(&mut command, bytes).success(), "{name} by {words}");
-            assert!(folder.read("piped.png") == folder.read("plain.png"), "{name} by {words}");
+            assert!(folder.read("piped.png") == plain, "{name} by {words}");
         }
     }
     folder.put("broken.obj.gz", b"\x1f\x8b\x08 no");
@@ -1033,12 +1029,10 @@ fn a_picture_lends_its_palette() {
     folder.put("plain.toml", b"[[objects]]\nshape = \"cube\"\n");
     for picture in ["a.png", "a.gif", "a.pcx", "a.aseprite"] {
         folder.put("asking.toml", format!("palette = \"{picture}\"\n[[objects]]\nshape = \"cube\"\n").as_bytes());
-        folder.succeed("render asking.toml -o due.png");
-        folder.succeed(&format!("render plain.toml -o x.png --palette {picture}"));
-        assert!(folder.read("x.png") == folder.read("due.png"), "{picture}");
+        let due = folder.picture("asking.toml");
+        assert!(folder.picture(&format!("plain.toml --palette {picture}")) == due, "{picture}");
         folder.succeed(&format!("palette {picture} -o x.gpl"));
-        folder.succeed("render plain.toml -o x.png --palette x.gpl");
-        assert!(folder.read("x.png") == folder.read("due.png"), "{picture}");
+        assert!(folder.picture("plain.toml --palette x.gpl") == due, "{picture}");
     }
     folder.succeed("palette a.png -o x.gpl");
     let copper = &builtin::by_name("copper").expect("built in").palette;
@@ -1118,33 +1112,28 @@ fn green(png: &Png) -> f64 {
 fn a_model_with_colours_is_shown_in_them() {
     let folder = Folder::new();
     let house = "data:house.obj";
-    folder.succeed(&format!("render {house} -o default.png"));
-    folder.succeed(&format!("render {house} -o auto.png --palette auto"));
-    assert_eq!(folder.read("default.png"), folder.read("auto.png"));
-    assert!(green(&folder.png("auto.png")) > 0.05, "grass");
+    let picture = |words: &str| Png::decode(&folder.picture(&format!("{house} {words}")));
+    let auto = picture("--palette auto");
+    assert!(picture("") == auto);
+    assert!(green(&auto) > 0.05, "grass");
     // It is the palette that `palette --from` writes, whatever moment is drawn.
     folder.succeed(&format!("palette --from {house} -o house.gpl"));
-    folder.succeed(&format!("render {house} -o later.png --time 1.5"));
+    let later = picture("--time 1.5");
     let written = palette_file::parse_named("house.gpl", &folder.read("house.gpl")).expect("a palette");
-    for name in ["auto.png", "later.png"] {
-        assert_eq!(folder.png(name).palette, written.colors(), "{name}");
-    }
-    assert_ne!(folder.read("later.png"), folder.read("auto.png"));
+    assert!(auto.palette == written.colors() && later.palette == written.colors());
+    assert!(later != auto);
     // In palettes without ramps the nearest that they have: of that one most of the same.
     for palette in ["cube", "bios", "house.gpl"] {
-        folder.succeed(&format!("render {house} -o x.png --palette {palette}"));
-        assert!(green(&folder.png("x.png")) > 0.05, "{palette}");
+        assert!(green(&picture(&format!("--palette {palette}"))) > 0.05, "{palette}");
     }
     // In ramps one each; the bricks' texture is there, too.
-    folder.succeed(&format!("render {house} -o ramps.png --palette materials-8x32"));
-    let png = folder.png("ramps.png");
+    let png = picture("--palette materials-8x32");
     assert!(png.palette == builtin::MATERIALS_8X32.on_dac().colors());
     let ramps: Vec<bool> = (0..8).map(|ramp| png.pixels.iter().any(|&pixel| pixel > 0 && pixel / 32 == ramp)).collect();
     assert!(ramps[0] && ramps[2], "grass in the first ramp, tiles in the third");
     assert_eq!(green(&png), 0.0);
     // The 16.16 path has no textures: there the walls have a ramp of their own.
-    folder.succeed(&format!("render {house} -o fixed.png --arithmetic fixed"));
-    assert!(green(&folder.png("fixed.png")) > 0.05);
+    assert!(green(&picture("--arithmetic fixed")) > 0.05);
     // In the window, too: with no display, what it shows first, framed for the whole turn as in a row.
     let output = folder.run(house);
     assert!(output.status.success(), "{output:?}");
@@ -1152,11 +1141,9 @@ fn a_model_with_colours_is_shown_in_them() {
     assert_eq!(folder.png("mode13h-0001.png"), folder.png("row0.png"));
 
     // Shapes have no colours of their own: they are grey as ever, unless asked for.
-    folder.succeed("render cylinder -o default.png");
-    folder.succeed("render cylinder -o grey.png --palette grey");
-    assert_eq!(folder.read("default.png"), folder.read("grey.png"));
-    folder.succeed("render cylinder -o auto.png --palette auto");
-    assert!(folder.png("auto.png").colors().into_iter().all(|color| color.r == color.b));
+    assert!(folder.picture("cylinder") == folder.picture("cylinder --palette grey"));
+    let auto = Png::decode(&folder.picture("cylinder --palette auto"));
+    assert!(auto.colors().into_iter().all(|color| color.r == color.b));
 
     // Of colours and a texture that cannot be read, the colours are left, and one line says so.
     let said = folder.said("render data:chest.obj -o chest.png");
@@ -1175,8 +1162,9 @@ fn a_single_picture_of_a_model_is_framed_as_it_stands() {
     let low = "v -3 0 -2\nv 3 0 -2\nv 3 0 2\nv -3 0 2\nv -3 0.4 0\nv 3 0.4 0\n\
                f 4 3 6 5\nf 2 1 5 6\nf 1 4 5\nf 3 2 6\n";
     folder.put("low.obj", low);
-    let edges = |name: &str| {
-        let pixels = folder.png(name).pixels;
+    let picture = |words: &str| Png::decode(&folder.picture(&format!("low.obj {words}")));
+    let edges = |words: &str| {
+        let pixels = picture(words).pixels;
         let covered = || (0..pixels.len()).filter(|&i| pixels[i] != pixels[0]);
         let [columns, rows]: [Vec<usize>; 2] =
             [covered().map(|i| i % 320).collect(), covered().map(|i| i / 320).collect()];
@@ -1185,26 +1173,20 @@ fn a_single_picture_of_a_model_is_framed_as_it_stands() {
     };
     for degrees in 0..12 {
         let turn = (30 * degrees).to_string();
-        folder.succeed(&format!("render low.obj -o low.png --turn {turn}"));
-        let [left, right, top, bottom] = edges("low.png");
+        let [left, right, top, bottom] = edges(&format!("--turn {turn}"));
         assert!(left.abs_diff(319 - right) <= 1 && top.abs_diff(199 - bottom) <= 1, "{turn}");
         assert!(left.abs_diff(16) <= 1 || top.abs_diff(10) <= 1, "{turn}: {left}, {top}");
         tried.add(1);
     }
     let explained = folder.printed("explain low.obj --pixel 160,100 --json");
-    folder.succeed("render low.obj -o low.png");
-    let byte = folder.png("low.png").pixels[100 * 320 + 160];
+    let byte = picture("").pixels[100 * 320 + 160];
     assert!(explained.contains(&format!("\"byte\": {byte}")), "{byte}: {explained}");
 
-    folder.succeed("render low.obj -o asked.png --background #ffffff --up z");
-    assert_eq!(folder.png("asked.png").colors()[0], Rgb::WHITE);
-    assert_ne!(edges("asked.png"), edges("low.png"));
-    for (name, zoom) in [("far.png", "0.5"), ("near.png", "1")] {
-        folder.succeed(&format!("render low.obj -o {name} --zoom {zoom}"));
-    }
-    assert!(edges("far.png")[0] > edges("near.png")[0] + 60);
-    folder.succeed("render low.obj -o from.png --camera 0,0,99");
-    assert!(edges("from.png")[0] > 140);
+    let asked = "--background #ffffff --up z";
+    assert_eq!(picture(asked).colors()[0], Rgb::WHITE);
+    assert_ne!(edges(asked), edges(""));
+    assert!(edges("--zoom 0.5")[0] > edges("--zoom 1")[0] + 60);
+    assert!(edges("--camera 0,0,99")[0] > 140);
 }
 
 #[test]
@@ -1221,13 +1203,10 @@ fn a_scene_may_ask_for_a_palette_made_for_it() {
     };
     folder.put("auto.toml", text("auto"));
     folder.put("cube.toml", text("cube"));
-    folder.succeed("render auto.toml -o auto.png");
-    folder.succeed("render cube.toml -o asked.png --palette auto");
-    assert_eq!(folder.read("auto.png"), folder.read("asked.png"));
-    folder.succeed("render auto.toml -o cube.png --palette cube");
-    folder.succeed("render cube.toml -o asked.png");
-    assert_eq!(folder.read("cube.png"), folder.read("asked.png"));
-    let png = folder.png("auto.png");
+    let auto = folder.picture("auto.toml");
+    assert!(auto == folder.picture("cube.toml --palette auto"));
+    assert!(folder.picture("auto.toml --palette cube") == folder.picture("cube.toml"));
+    let png = Png::decode(&auto);
     let background = png.colors()[0];
     // A step of the card, at most.
     assert!(background.distance_squared(Rgb::new(0x20, 0x30, 0x60)) <= 3 * 4 * 4, "{background:?}");
@@ -1329,21 +1308,18 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     assert_eq!(folder.read("fog.toml"), b"what stood there");
     folder.fails("scenes copy fog -o none/x.toml", 3, "none does not exist");
     // A copy is the scene.
-    folder.succeed("render other.toml -o copy.png --time 1");
-    folder.succeed("render fog -o fog.png --time 1");
-    assert!(folder.read("copy.png") == folder.read("fog.png"));
+    assert!(folder.picture("other.toml --time 1") == folder.picture("fog --time 1"));
 }
 
 #[test]
 fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
     let folder = Folder::new();
     for scene in &shipped::ALL {
-        folder.succeed(&format!("render {} -o x.png --time 1.5", scene.name));
-        assert_eq!(folder.png("x.png").size, (320, 200), "{}", scene.name);
+        let png = Png::decode(&folder.picture(&format!("{} --time 1.5", scene.name)));
+        assert_eq!(png.size, (320, 200), "{}", scene.name);
     }
     // The teapot of the scene has its palette, not that of a shape.
-    folder.succeed("render teapot -o x.png");
-    assert_eq!(folder.png("x.png").palette[200], builtin::COPPER.on_dac()[200]);
+    assert_eq!(Png::decode(&folder.picture("teapot")).palette[200], builtin::COPPER.on_dac()[200]);
 }
 
 /// Options of the command line override the scene.

@@ -294,12 +294,11 @@ fn quiet_commands_say_nothing() {
 fn time_is_the_same_for_all_that_draw() {
     let folder = Folder::new();
     let read = |name: &str| folder.read(name);
-    folder.printed("render flash --time 0.25 -o at.png");
-    folder.printed("render flash -o usual.png");
+    let [at, usual] = ["flash --time 0.25", "flash"].map(|words| folder.picture(words));
     assert!(folder.run("flash --time 0.25").status.success());
     assert!(folder.run("demo flash").status.success());
-    assert!(read("mode13h-0001.png") == read("at.png") && read("mode13h-0002.png") == read("usual.png"));
-    assert!(read("at.png") != read("usual.png"));
+    assert!(read("mode13h-0001.png") == at && read("mode13h-0002.png") == usual);
+    assert!(at != usual);
     assert!(folder.printed("plan flash --time 0.25").starts_with("flash at 0.25 s, "));
     assert!(folder.printed("explain flash --row 9 --time 0.25").starts_with("flash at 0.25 s, "));
 }
