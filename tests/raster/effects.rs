@@ -19,7 +19,6 @@ use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point, Ratio};
 use num_bigint::BigInt;
 use num_traits::Signed;
-use std::iter;
 use std::ops::Range;
 
 const WIDTH: i32 = 150;
@@ -743,11 +742,10 @@ fn effects_in_batches_are_those_row_by_row() {
         let (size, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
         // All over the frame, or tiny, on the same few pixels, and of similar depths.
         let is_crowd = size > 0 && random.within(0, 1) == 0;
-        let (right, bottom, wide, high) =
-            if is_crowd { (8, 2, 4, 2) } else { (i64::from(WIDTH), i64::from(HEIGHT), 9, high) };
-        // In the first corner of the frame or in the last.
-        let (x0, y0) = if is_crowd && random.within(0, 1) == 0 { (WIDTH - 8, HEIGHT - 2) } else { (0, 0) };
-        let (x0, y0) = (i64::from(x0), i64::from(y0));
+        let [right, bottom, wide, high] = if is_crowd { [8, 2, 4, 2] } else { [WIDTH.into(), HEIGHT.into(), 9, high] };
+        // A crowd is in the first corner of the frame or in the last.
+        let is_last = is_crowd && random.within(0, 1) == 0;
+        let [x0, y0] = if is_last { [WIDTH - 8, HEIGHT - 2].map(i64::from) } else { [0, 0] };
         let faces: Vec<_> = (0..count)
             .map(|_| {
                 let (left, top) = (x0 + random.within(-4, right), y0 + random.within(-4, bottom));
@@ -764,8 +762,12 @@ fn effects_in_batches_are_those_row_by_row() {
             })
             .collect();
         let look = if is_crowd {
-            let of = |random: &mut Random| fused(look(random, &stock));
-            iter::repeat_with(|| of(&mut random)).find(|look| look.texture.is_some()).expect("every second has one")
+            loop {
+                let look = fused(look(&mut random, &stock));
+                if look.texture.is_some() {
+                    break look;
+                }
+            }
         } else if random.within(0, 1) == 0 {
             look(&mut random, &stock)
         } else {

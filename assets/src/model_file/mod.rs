@@ -289,8 +289,8 @@ fn read(
     finish(draft, path, named, options)
 }
 
-/// Makes the mesh from what a format's reader produced. The warnings are apart, as there may be more of them. `named`
-/// are the files that the caller was asked for.
+/// Makes the mesh from what a format's reader produced; `named` are the files that the caller was asked for. The
+/// warnings are returned separately, so that the caller can add some.
 pub(crate) fn finish(
     draft: Draft,
     path: &Path,

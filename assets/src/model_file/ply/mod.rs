@@ -104,9 +104,11 @@ impl Reading {
             values.row(element, &mut row, |_, _| Ok(()))?;
             let number = |property: Option<usize>| {
                 let value = property.map_or(0.0, |property| row[property]);
-                Some(value)
-                    .filter(|value| (*value as f32).is_finite())
-                    .ok_or_else(|| ModelFileErrorKind::NotFinite(value.to_string()))
+                if (value as f32).is_finite() {
+                    Ok(value)
+                } else {
+                    Err(ModelFileErrorKind::NotFinite(value.to_string()))
+                }
             };
             let [x, y, z] = place;
             push(&mut lists.positions, Wide::new([number(x)?, number(y)?, number(z)?]))?;
