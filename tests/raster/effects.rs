@@ -67,8 +67,8 @@ impl Size {
         for (row, pixels) in bytes.chunks_mut(pitch).zip(pixels.chunks(width)) {
             row[..width].copy_from_slice(pixels);
         }
-        // No more bytes than a frame needs.
-        let end = bytes.len() - (pitch - width);
+        // No more bytes than a frame needs, or whole rows.
+        let end = if pitch % 2 == 0 { bytes.len() } else { bytes.len() - (pitch - width) };
         let frame = Frame::band(&mut bytes[..end], self.width as u32, self.height as u32, pitch, rows);
         let drawn = draw(frame.expect("a legal frame"));
         for (row, pixels) in bytes.chunks(pitch).zip(pixels.chunks_mut(width)) {
@@ -739,9 +739,10 @@ fn effects_in_batches_are_those_row_by_row() {
     while tried.more() {
         // Up to 9 pixels across, some of them over the frame's edges and some with many rows; or of any size.
         let count = random.one_of(&[1, 3, 20, EffectBatch::CAPACITY]);
-        let (size, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
+        let (kind, high) = (random.within(0, 2), random.one_of(&[3, 9, 40]));
+        let size = Size { pitch: WIDTH + random.within(11, 12) as i32, ..SIZE };
         // All over the frame, or tiny, on the same few pixels, and of similar depths.
-        let is_crowd = size > 0 && random.within(0, 1) == 0;
+        let is_crowd = kind > 0 && random.within(0, 1) == 0;
         let [right, bottom, wide, high] = if is_crowd { [8, 2, 4, 2] } else { [WIDTH.into(), HEIGHT.into(), 9, high] };
         // A crowd is in the first corner of the frame or in the last.
         let is_last = is_crowd && random.within(0, 1) == 0;
@@ -757,7 +758,7 @@ fn effects_in_batches_are_those_row_by_row() {
                     Vertex::new(x, y, shade, depth as u32).expect("in range")
                 });
                 let vertices =
-                    if size == 0 { triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into()) } else { small };
+                    if kind == 0 { triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into()) } else { small };
                 (vertices, attributes(&mut random))
             })
             .collect();
@@ -779,8 +780,8 @@ fn effects_in_batches_are_those_row_by_row() {
         let clip = random.one_of(&[whole, Rect { x0: left + x / 2, y0: top + y / 2, x1: left + x, y1: top + y }]);
         let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
         let draw = |draw: &mut dyn FnMut(&mut Raster<'_>) -> DrawStats| {
-            let (mut depths, mut bytes) = (before.clone(), SIZE.pixels());
-            let drawn = SIZE.draw(&mut bytes, SIZE.rows(), |frame| {
+            let (mut depths, mut bytes) = (before.clone(), size.pixels());
+            let drawn = size.draw(&mut bytes, size.rows(), |frame| {
                 let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
                 let raster = Raster::new(frame).with_kernel(kernel).with_clip(clip);
                 draw(&mut if has_depth { raster.with_depth(buffer) } else { raster })
@@ -802,7 +803,7 @@ fn effects_in_batches_are_those_row_by_row() {
         for (vertices, attributes) in &faces {
             for y in clip.y0..clip.y1 {
                 let row = Rect { y0: y, y1: y + 1, ..clip };
-                sum += SIZE.draw(&mut expected, y..y + 1, |frame| {
+                sum += size.draw(&mut expected, y..y + 1, |frame| {
                     let first = y as usize * WIDTH as usize;
                     let buffer = DepthBuffer::new(&mut expected_depths[first..], &frame).expect("long enough");
                     let raster = Raster::new(frame).with_kernel(kernel).with_clip(row);
