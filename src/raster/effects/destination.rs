@@ -10,24 +10,16 @@ use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_blo
 
 /// Destination of the pixels of spans.
 pub(super) trait Destination {
+    /// True if two short spans are shown at once. With a depth buffer it is slower than one by one, since some of them are
+    /// hidden.
+    const SHOWS_PAIRS: bool = true;
+
     /// Where the pixels of span `i` begin, how many there are, and how many leading ones are left
     /// out.
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
 
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
-
-    /// Returns whether four pixels can be written at each of spans `i` and `i + 1`, the later of which begins at `at`.
-    #[inline(always)]
-    fn has_four(&mut self, _: (&Spans<'_>, usize), at: usize) -> bool {
-        at + FOUR <= self.all().len()
-    }
-
-    /// The mask of the pixels of spans `i` and `i + 1` that stay as they are, four of each.
-    #[inline(always)]
-    fn pair_stays<S: Lanes8>(&mut self, _: S, _: (&Spans<'_>, usize), pair: &Pair) -> u64 {
-        stays_behind(pair.lengths)
-    }
 
     /// Writes texels to the pixels of span `i` from `at` on, after this many of its drawn ones.
     #[inline(always)]
@@ -58,18 +50,25 @@ pub(super) struct Pair {
 impl Pair {
     /// Spans `i` and `i + 1`, if they are short and `T` can show both at once.
     #[inline(always)]
-    pub(super) fn of<T: Tint>(to: &mut impl Destination, spans: &Spans<'_>, i: usize) -> Option<Self> {
+    pub(super) fn of<T: Tint, D: Destination>(to: &mut D, spans: &Spans<'_>, i: usize) -> Option<Self> {
         let (a, length_a, skipped_a) = to.span(spans, i);
-        if IS_COMPACT || length_a > FOUR || i + 1 >= spans.count() {
+        // Blended spans are no faster in pairs.
+        let has_pairs = D::SHOWS_PAIRS && !T::READS_PIXELS && !IS_COMPACT;
+        if !has_pairs || length_a > FOUR || i + 1 >= spans.count() {
             return None;
         }
         let (b, length_b, skipped_b) = to.span(spans, i + 1);
-        // Blending reads the pixels of both before it writes any.
-        let is_apart = !T::READS_PIXELS || a.abs_diff(b) >= FOUR;
-        if length_b > FOUR || !is_apart || !to.has_four((spans, i), a.max(b)) {
+        if length_b > FOUR || a.max(b) + FOUR > to.all().len() {
             return None;
         }
         Some(Self { at: [a, b], skipped: [skipped_a, skipped_b], lengths: [length_a, length_b] })
+    }
+
+    /// The mask of the pixels that stay as they are, four of each.
+    #[inline(always)]
+    pub(super) fn stays(&self) -> u64 {
+        let [low, high] = self.lengths;
+        behind(low) & u64::from(u32::MAX) | behind(high) << 32
     }
 
     /// The numbers of the pixels in their spans.
@@ -130,6 +129,8 @@ pub(super) struct Masked<'a> {
 }
 
 impl Destination for Masked<'_> {
+    const SHOWS_PAIRS: bool = false;
+
     #[inline(always)]
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
         spans.in_frame(i)
@@ -138,27 +139,6 @@ impl Destination for Masked<'_> {
     #[inline(always)]
     fn all(&mut self) -> &mut [u8] {
         self.pixels
-    }
-
-    #[inline(always)]
-    fn has_four(&mut self, (spans, i): (&Spans<'_>, usize), at: usize) -> bool {
-        let Some(cells) = &self.cells else { return at + FOUR <= self.pixels.len() };
-        let cell = spans.depth(i).0.max(spans.depth(i + 1).0);
-        at + FOUR <= self.pixels.len() && cell + FOUR <= cells.len()
-    }
-
-    #[inline(always)]
-    fn pair_stays<S: Lanes8>(&mut self, s: S, (spans, i): (&Spans<'_>, usize), pair: &Pair) -> u64 {
-        let Some(all) = &mut self.cells else { return stays_behind(pair.lengths) };
-        let mut stays = u64::MAX;
-        for half in 0..2 {
-            let (cell, depths) = spans.depth(i + half);
-            let Some(four) = all.get_mut(cell..).and_then(|all| all.first_chunk_mut()) else { continue };
-            let of_half = s.test_four(four, depths, pair.lengths[half], self.keeps);
-            stays ^= u64::from(!of_half) << (32 * half);
-        }
-        self.nearer += stays.count_zeros() / 8;
-        stays
     }
 
     #[inline(always)]
@@ -218,10 +198,4 @@ impl Destination for Masked<'_> {
 #[inline(always)]
 fn behind(length: usize) -> u64 {
     if length < LANES { u64::MAX << (8 * length) } else { 0 }
-}
-
-/// The mask of two spans in which only the first pixels are drawn, at most four of each.
-#[inline(always)]
-fn stays_behind([low, high]: [usize; 2]) -> u64 {
-    behind(low) & u64::from(u32::MAX) | behind(high) << 32
 }

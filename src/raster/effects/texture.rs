@@ -134,7 +134,7 @@ compiled_for_each_level! {
 fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
     let mut i = 0;
     while i < spans.count() {
-        if let Some(pair) = Pair::of::<T>(to, spans, i) {
+        if let Some(pair) = Pair::of::<T, D>(to, spans, i) {
             show_two(
                 s,
                 (spans, i, &pair),
@@ -160,12 +160,9 @@ fn show_two<S: Lanes8, T: Tint, D: Destination>(
     to: &mut D,
     places: impl FnOnce() -> S::I32,
 ) {
-    let stays = to.pair_stays(s, (spans, i), pair);
-    if stays != u64::MAX {
-        // The numbers begin after the pixels that are left out.
-        let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
-        show_pair(s, (to.all(), pair.at, stays), image, (tint, values), places());
-    }
+    // The numbers begin after the pixels that are left out.
+    let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
+    show_pair(s, (to.all(), pair.at, pair.stays()), image, (tint, values), places());
 }
 
 #[inline(always)]
@@ -215,7 +212,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
 ) {
     let mut i = 0;
     while i < spans.count() {
-        if let Some(pair) = Pair::of::<T>(to, spans, i)
+        if let Some(pair) = Pair::of::<T, D>(to, spans, i)
             && spans.fits_singles(i)
             && spans.fits_singles(i + 1)
         {

@@ -156,14 +156,13 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     (tint, values): (T, PairValues<S>),
     places: S::I32,
 ) {
-    let (a, b) = (a..a + FOUR, b..b + FOUR);
-    let (Some(&[a0, a1, a2, a3]), Some(&[b0, b1, b2, b3])) = (all.get(a.clone()), all.get(b.clone())) else { return };
     // Never true: see `show_along`.
     if texels.bytes.is_empty() {
         return;
     }
     let (image, places) = ((texels, texels.bytes.len() - 1), s.low_words(places));
-    let rows = tint.rows(s, &mut tint.begin(s, values), &[a0, a1, a2, a3, b0, b1, b2, b3]);
+    // No tint that reads pixels comes here.
+    let rows = tint.rows(s, &mut tint.begin(s, values), &[0; LANES]);
     let low = u32::from_le_bytes([
         texel(tint, rows, places, image, 0),
         texel(tint, rows, places, image, 1),
@@ -177,8 +176,7 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
         texel(tint, rows, places, image, 7),
     ]);
     for (at, bytes, stay) in [(a, low, stays as u32), (b, high, (stays >> 32) as u32)] {
-        let Some(four) = all.get_mut(at) else { return };
-        let Some(four) = four.first_chunk_mut() else { return };
+        let Some(four) = all.get_mut(at..at + FOUR).and_then(<[u8]>::first_chunk_mut) else { return };
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     }
 }
