@@ -26,7 +26,7 @@ pub(crate) fn items_of(paths: &[PathBuf]) -> Vec<Item> {
     paths.iter().flat_map(|path| items(&fs::read_to_string(path).expect("a source"))).collect()
 }
 
-/// Those in one source.
+/// The public types of one source.
 pub(crate) fn items(source: &str) -> Vec<Item> {
     let word = |text: &str| -> String { text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect() };
     let public = |name: String| Item { name, is_public: true, of_type: String::new() };
