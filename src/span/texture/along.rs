@@ -161,7 +161,7 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
         return;
     }
     let (image, places) = ((texels, texels.bytes.len() - 1), s.low_words(places));
-    // No tint that reads pixels comes here.
+    // Tints that read pixels are not shown in pairs.
     let rows = tint.rows(s, &mut tint.begin(s, values), &[0; LANES]);
     let low = u32::from_le_bytes([
         texel(tint, rows, places, image, 0),

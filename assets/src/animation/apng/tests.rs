@@ -189,7 +189,7 @@ fn a_film_that_runs_out_of_room_at_any_byte_never_ends_well() {
         match written(&frames, Scale::One, &colors, &mut disk[..]) {
             Ok(_) => assert_eq!(room, whole),
             Err(error) => {
-                // What a slice without room says.
+                // A slice without room reports this kind.
                 let full =
                     matches!(&error.kind, AnimationErrorKind::Io(error) if error.kind() == io::ErrorKind::WriteZero);
                 assert!(room < whole && full, "{room}: {error}");
