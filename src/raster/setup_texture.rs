@@ -325,6 +325,10 @@ impl PerspectivePlanes8 {
 
     /// The sorted corners' coordinates relative to the triangle's base, and the greatest difference
     /// between two. No coordinate exceeds that difference plus a texel.
+    ///
+    /// A coordinate that all corners share is moved to the middle of its texel, which is in the same texel of every
+    /// level. Many models give a face one point of an image of colours, often on the border of a texel, where no
+    /// quotient could decide.
     #[inline(always)]
     fn rebase<S: Lanes8>(
         &mut self,
@@ -338,6 +342,8 @@ impl PerspectivePlanes8 {
             let [a, b, c] = basis.order.sort(s, [s.load_i32(a), s.load_i32(b), s.load_i32(c)]);
             let base = s.and_i32(a, s.splat_i32(!0xFFFF));
             s.store_i32(base, &mut self.base[i]);
+            let (is_shared, middle) = (s.and(s.is_equal(a, b), s.is_equal(a, c)), s.or_i32(base, s.splat_i32(0x8000)));
+            let [a, b, c] = [a, b, c].map(|coordinate| s.select_i32(is_shared, middle, coordinate));
             // Differences of i32 are exact in f64.
             let (base, a, b, c) = (s.to_f64(base), s.to_f64(a), s.to_f64(b), s.to_f64(c));
             greatest = s.max(greatest, s.sub(s.max(s.max(a, b), c), s.min(s.min(a, b), c)));

@@ -26,6 +26,8 @@ pub(super) struct Recorded {
     /// Start and step.
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
+    /// The same in f32, if quotients may be taken in f32.
+    pub(super) singles: Option<PerspectiveSums<f32>>,
     pub(super) depth: [i64; 2],
     /// Levels of some pixels, if the image has any: as found for eight triangles, and as defined.
     pub(super) levels: Vec<(Option<AffineLevel>, AffineLevel)>,
@@ -100,6 +102,7 @@ impl Shades8 for Recorder<'_> {
                     span: spans.span(i),
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
+                    singles: spans.fits_singles(i).then(|| spans.singles(i)),
                     depth: spans.depth(i).1.map(|z| z >> 8),
                     levels: listed.levels().map_or_else(Vec::new, |(mapping, last)| levels(&spans, i, mapping, last)),
                 });

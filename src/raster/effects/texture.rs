@@ -630,6 +630,66 @@ mod tests {
         assert!(all > 100_000 && decided > all / 2, "{mapping}: {decided} of {all}");
     }
 
+    /// Where all corners share a coordinate, quotients decide every pixel, even if it lies on the border of a texel. (It
+    /// took a textured torus without coordinates four times as long when they did not.)
+    #[test]
+    fn shared_coordinates_are_decided() {
+        let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(2_000));
+        let (decided, in_f32) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
+        let corner = || (0..16_000_i32, 0..4_000_i32, 20_000_000..1_u32 << 30);
+        // One point of the image, or one line across it; on the border of a texel, or not.
+        let line = prop_oneof![2 => Just([0; 3]), 1 => prop::array::uniform3(0..400_000_i32)];
+        let fraction = prop_oneof![3 => Just(0), 1 => 0..65_536_i32];
+        let given = (prop::array::uniform3(corner()), line, (-300..300_i32, fraction), any::<bool>());
+        let found = runner.run(&given, |(corners, line, (texel, fraction), is_u)| {
+            let shared = (texel << 16) + fraction;
+            let texture = line.map(|other| if is_u { [shared, other] } else { [other, shared] });
+            let at = corners.map(|(x, y, _)| ScreenPos::new(x, y));
+            let (depth, shade) = (corners.map(|(.., depth)| depth), [[U8F8::default(); 2]; 3]);
+            let effects = EffectColumns { texture: &texture, ..EffectColumns::default() };
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
+            let all = Triangles { columns, indices: &[[0, 1, 2]], by_corner: None };
+            let texels: Vec<u8> = (0..=255).cycle().take(65_536).collect();
+            let texels = Texels::new(&texels, 8, 8).expect("an image");
+            let stage = TextureStage { texels, levels: None, mapping: Mapping::Perspective, tables: [&[0; 65_536]; 3] };
+            let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
+            let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
+            for kernel in Kernel::available() {
+                let masks = cull(kernel.simd_level(), &at, &[[0, 1, 2]], clip, false);
+                let mut list = PickList::<16>::new();
+                pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
+                for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                    let (mut places, end) = ([0; LANES], found.span.len.min(LANES));
+                    // Only the other coordinate may be undecided.
+                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
+                    let image = (texels, 0);
+                    let in_f64 = perspective_along(BASELINE, image, found.perspective, (0, end), unsure).next();
+                    BASELINE.store_i32(in_f64, &mut places);
+                    let mut all_of_them = std::vec![places];
+                    if let Some(singles) = found.singles {
+                        BASELINE.store_i32(singles_along(BASELINE, image, singles, 0, unsure).next(), &mut places);
+                        all_of_them.push(places);
+                        in_f32.set(in_f32.get() + 1);
+                    }
+                    for places in all_of_them {
+                        prop_assert!(line != [0; 3] || places[0] != -1);
+                        if places[0] == -1 {
+                            continue;
+                        }
+                        decided.set(decided.get() + 1);
+                        let shift = if is_u { 0 } else { 8 };
+                        for place in &places[..end] {
+                            prop_assert_eq!(place >> shift & 255, texel & 255);
+                        }
+                    }
+                }
+            }
+            Ok(())
+        });
+        found.expect("decided, and the right texel");
+        assert!(decided.get() > 50_000 && in_f32.get() > 20_000, "{} and {}", decided.get(), in_f32.get());
+    }
+
     /// A face whose estimates are inconclusive at every pixel, since u is a whole number everywhere: stages that read
     /// the pixels' contents (shades lit before, or the frame behind glass) read them once.
     #[test]
@@ -637,13 +697,15 @@ mod tests {
         use crate::raster::effects::{Attributes, EffectBatch};
         use crate::raster::{Frame, Raster};
         const SIDE: usize = 48;
-        let at = |x: i32, y: i32, shade: u8, depth| {
-            Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from(shade), depth).expect("inside")
+        let at = |x: i32, y: i32, shade: u8| {
+            Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::from(shade), 4_000).expect("inside")
         };
         // Beyond the right and the lower edge, so that it covers the frame's last pixels.
-        let vertices = [at(300, 400, 10, 4_000), at(13_000, 700, 240, 9_000), at(12_500, 13_000, 90, 2_000)];
-        let texture = |v: i32| Attributes { texture: [7 << 16, v << 16], ..Attributes::default() };
-        let attributes = [texture(0), texture(90), texture(40)];
+        let vertices = [at(300, 400, 10), at(13_000, 700, 240), at(12_500, 13_000, 90)];
+        // In column x, u is x.
+        let u = |vertex: &Vertex| (vertex.x().to_bits() - 128) << 8;
+        let texture = |i: usize, v: i32| Attributes { texture: [u(&vertices[i]), v << 16], ..Attributes::default() };
+        let attributes = [texture(0, 0), texture(1, 90), texture(2, 40)];
         let texels: Vec<u8> = (0..=255).flat_map(|y: u8| (0..=255_u8).map(move |x| x.wrapping_mul(31) ^ y)).collect();
         let table: Vec<u8> = (0..65_536_u32).map(|i| (i.wrapping_mul(40_503) >> 8) as u8).collect();
         let table = table.first_chunk::<65_536>().expect("as many");
@@ -680,8 +742,8 @@ mod tests {
                         continue;
                     }
                     covered += 1;
-                    let row = usize::from(shades[i]) << 8;
-                    assert!((0..=255_u8).any(|y| table[row | usize::from((7_u8.wrapping_mul(31)) ^ y)] == own));
+                    let (row, u) = (usize::from(shades[i]) << 8, (i % SIDE) as u8);
+                    assert!((0..=255_u8).any(|y| table[row | usize::from((u.wrapping_mul(31)) ^ y)] == own));
                     assert_eq!(
                         blended[i],
                         table[usize::from(own) << 8 | usize::from(before[i])],
@@ -722,8 +784,11 @@ mod tests {
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
         let weights = Weights::new(triangle);
         for i in 0..3 {
-            let value =
-                |k: usize, base: i32| i128::from(i64::from(texture[k][i]) - i64::from(base)) * i128::from(depths[k]);
+            let shared = |i: usize| texture.iter().all(|corner| corner[i] == texture[0][i]);
+            let value = |k: usize, base: i32| {
+                let coordinate = if shared(i) { base + 0x8000 } else { texture[k][i] };
+                i128::from(i64::from(coordinate) - i64::from(base)) * i128::from(depths[k])
+            };
             let values = [0, 1, 2].map(|k| base.get(i).map_or(depths[k].into(), |&base| value(k, base)));
             let [start, step] = [u, v, divisors][i];
             for (weights, sum) in [(weights.at(x, y), start), (weights.per_column(), step)] {
