@@ -207,6 +207,13 @@ pub(crate) struct ScreenBounds {
     pub(crate) seen: Rect,
 }
 
+impl ScreenBounds {
+    /// Returns whether none of it can be seen: all of it is off the screen, or nearer than this near plane.
+    pub(crate) fn is_out_of_sight(&self, near: f32) -> bool {
+        self.seen.is_empty() || self.farthest < f64::from(near)
+    }
+}
+
 /// A vertex before the perspective division: X and Y in pixels times W; W along the view.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Homogeneous {
@@ -394,6 +401,32 @@ impl ObjectView {
     /// The near plane's distance.
     pub(crate) fn near(&self) -> f32 {
         self.near
+    }
+
+    /// Returns whether a vertex is at least as far away as the near plane, as clipping sees it.
+    pub(crate) fn is_far_enough(&self, p: Vec3) -> bool {
+        self.homogeneous(p).w >= f64::from(self.near)
+    }
+
+    /// Returns whether no part of a triangle beyond the near plane is on the screen: all corners lie to one side of it,
+    /// by more than a pixel.
+    ///
+    /// With f = x + (cx + 1)·w, a point is a pixel left of the screen where f < 0. Clipping finds its points as means of
+    /// two corners in f64, at most five times one after the other, so their f is off by less than 2⁻⁴⁰ of the greatest
+    /// term of a corner; and rounding to 1/256 pixel moves them by less than the pixel.
+    pub(crate) fn is_off_screen(&self, corners: &[Homogeneous; 3]) -> bool {
+        const SLACK: f64 = 1.0 / (1_u64 << 40) as f64;
+        let (cx, cy) = self.centre();
+        let (width, height) = self.size;
+        let all_beyond = |c: fn(&Homogeneous) -> f64, pixels: f64| {
+            let magnitude = corners.iter().fold(0.0_f64, |most, at| most.max(c(at).abs()).max((at.w * pixels).abs()));
+            // False for NaN.
+            corners.iter().all(|at| c(at) + at.w * pixels < -SLACK * magnitude)
+        };
+        all_beyond(|corner| corner.x, cx + 1.0)
+            || all_beyond(|corner| -corner.x, width - cx + 1.0)
+            || all_beyond(|corner| corner.y, cy + 1.0)
+            || all_beyond(|corner| -corner.y, height - cy + 1.0)
     }
 
     /// The gradient of the distance along the view, in the object's own space, and the distance of

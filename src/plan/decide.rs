@@ -62,31 +62,39 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             plan.objects.push(ObjectPlan::new(shading));
             continue;
         }
+        let view = &inputs.views[place];
+        let reach = view.reach(object.mesh().bounds());
+        let change = inputs.change.get(place).copied().unwrap_or(Change::New);
         let rules = Rules {
             scene: inputs.scene,
             place,
             object,
-            view: &inputs.views[place],
-            reach: inputs.views[place].reach(object.mesh().bounds()),
-            change: inputs.change.get(place).copied().unwrap_or(Change::New),
+            view,
+            reach,
+            // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
+            is_out_of_sight: !is_integer && shading != Shading::GouraudVintage && reach.is_out_of_sight(view.near()),
+            change,
             inputs,
             is_integer,
             max_error,
             shading: if max_error.is_some() && has_custom_response(object) { Shading::Phong } else { shading },
             way: (way, reason),
         };
-        plan.seen = plan.seen.hull(rules.reach.seen);
         farthest = farthest.max(rules.reach.farthest);
         let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
         // Built in place, because it is large.
         plan.objects.push(ObjectPlan::new(rules.shading));
-        if let Some(plan) = plan.objects.last_mut() {
-            rules.all(in_range, plan);
+        if let Some(object) = plan.objects.last_mut() {
+            rules.all(in_range, object);
+            if !object.stages.is_out_of_sight {
+                plan.seen = plan.seen.hull(rules.reach.seen);
+            }
         }
     }
+    let Plan { order, objects, .. } = plan;
+    order.retain(|place| !objects[*place].stages.is_out_of_sight);
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
-    // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
     if shading == Shading::GouraudVintage || is_integer {
         plan.seen = Rect::EVERYWHERE;
     }
@@ -120,6 +128,7 @@ struct Rules<'a> {
     object: &'a Object,
     view: &'a ObjectView,
     reach: ScreenBounds,
+    is_out_of_sight: bool,
     change: Change,
     inputs: &'a Inputs<'a>,
     /// Whether vertices are transformed in 16.16.
@@ -169,6 +178,7 @@ impl Rules<'_> {
         let channels = is_on(Effect::RgbChannels);
         Stages {
             switches: Switches::of(is_on),
+            is_out_of_sight: self.is_out_of_sight && !forced(Effect::Transform),
             vertices: match is_on(Effect::Transform) {
                 false => VertexStage::Keep,
                 true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
@@ -256,7 +266,9 @@ impl Rules<'_> {
     fn transform(&self) -> Decision {
         match self.change {
             _ if self.is_integer => Decision::on(Reason::NotKept),
+            // Wherever it is, so that no later frame allocates memory for it.
             Change::New => Decision::on(Reason::FirstFrame),
+            _ if self.is_out_of_sight => Decision::off(Reason::OutOfSight),
             Change::Changed => Decision::on(Reason::Changed),
             Change::Unchanged if self.inputs.keeps => Decision::off(Reason::Unchanged),
             Change::Unchanged => Decision::on(Reason::NotKept),

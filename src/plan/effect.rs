@@ -5,7 +5,8 @@ use crate::names::named;
 named! {
     /// A decision that the plan makes for every object.
     pub enum Effect, "effect" {
-        /// Transforms and projects the object's vertices; otherwise the last frame's are reused.
+        /// Transforms and projects the object's vertices; otherwise the last frame's are reused, or the object is out of
+        /// sight and needs none.
         Transform = "transform",
         /// Tests every vertex against the near plane; otherwise no vertex is tested.
         NearClipping = "near-clipping",

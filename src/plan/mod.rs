@@ -93,6 +93,7 @@ impl ObjectPlan {
     fn new(shading: Shading) -> Self {
         let stages = Stages {
             switches: Switches::default(),
+            is_out_of_sight: false,
             vertices: VertexStage::MakeAnew,
             nearest: 0.0,
             lighting: Lighting::None,
@@ -180,7 +181,7 @@ pub struct Plan {
     /// Whether the plan chose the method, rather than the settings.
     pub(crate) chosen: bool,
     pub(crate) objects: Vec<ObjectPlan>,
-    /// The indices of the objects in drawing order.
+    /// The indices of the objects in drawing order, without those out of sight.
     pub(crate) order: Vec<usize>,
     /// The part of the screen where any of them may be visible.
     pub(crate) seen: Rect,

@@ -19,6 +19,8 @@ pub enum Reason {
     Unchanged,
     /// Vertices are not cached between frames.
     NotKept,
+    /// Its bounds are off the screen, or nearer than the near plane.
+    OutOfSight,
     /// This build does not contain the effect.
     LeftOut,
     /// The distances of the object and of the near plane.
@@ -183,6 +185,7 @@ impl Reason {
             Self::Changed => "it, the camera or its light changed since the last frame".to_string(),
             Self::Unchanged => "nothing it depends on changed since the last frame".to_string(),
             Self::NotKept => "vertices are not cached".to_string(),
+            Self::OutOfSight => "its bounds are out of sight".to_string(),
             Self::LeftOut => "this build leaves it out".to_string(),
             Self::Nearest { nearest, near } if nearest > near => {
                 format!("its bounds come no nearer than {nearest:.3}; the near plane is at {near:.3}")

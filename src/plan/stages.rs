@@ -162,6 +162,8 @@ switches! {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Stages {
     pub(super) switches: Switches,
+    /// Whether the object is not drawn, because it is out of sight.
+    pub(crate) is_out_of_sight: bool,
     pub(crate) vertices: VertexStage,
     /// The least distance of the object's bounds along the view.
     pub(crate) nearest: f64,

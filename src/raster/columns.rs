@@ -24,6 +24,11 @@ impl ScreenPos {
     pub(crate) const BEYOND: i32 = i32::MIN;
     #[cfg(any(feature = "alloc", test))]
     pub(crate) const NEEDS_CLIPPING: Self = Self::new(Self::BEYOND, 0);
+    /// A vertex nearer than the near plane. A triangle of three such vertices is not drawn.
+    #[cfg(any(feature = "alloc", test))]
+    pub(crate) const TOO_NEAR: Self = Self::new(Self::BEYOND, Self::TOO_NEAR_Y);
+    /// The y of such a vertex; 0 for others that need clipping.
+    pub(crate) const TOO_NEAR_Y: i32 = 1;
 
     #[inline(always)]
     pub(crate) const fn new(x: i32, y: i32) -> Self {

@@ -18,6 +18,8 @@ pub(crate) const TINY_SIDE: i32 = 2;
 pub(crate) struct CullMasks {
     /// A corner needs clipping. The other bits of such a triangle are 0.
     pub(crate) clipped: u64,
+    /// All corners are nearer than the near plane. The other bits of such a triangle are 0.
+    pub(crate) too_near: u64,
     /// Turned toward the eye.
     pub(crate) front: u64,
     /// Turned away from the eye. A triangle in neither mask has no area.
@@ -100,7 +102,9 @@ fn cull_in_integers(triangles: impl Iterator<Item = [ScreenPos; 3]>, culls: bool
     let mut masks = CullMasks::default();
     for (i, [a, b, c]) in triangles.take(CHUNK).enumerate() {
         if a.needs_clipping() || b.needs_clipping() || c.needs_clipping() {
-            masks.clipped |= 1 << i;
+            let is_too_near = a == b && b == c && a.y() == ScreenPos::TOO_NEAR_Y;
+            masks.clipped |= u64::from(!is_too_near) << i;
+            masks.too_near |= u64::from(is_too_near) << i;
             continue;
         }
         // At most 2²¹ each.
@@ -117,11 +121,21 @@ fn cull_in_integers(triangles: impl Iterator<Item = [ScreenPos; 3]>, culls: bool
 
 /// The bits of eight triangles, in the order of the fields of [`CullMasks`].
 #[inline(always)]
-fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) -> [u32; 7] {
+fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) -> [u32; 8] {
     let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
     // The mark is the smallest i32. The other values of such a triangle are meaningless.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
-    let clipped = s.to_bitmask(s.is_equal(least, s.splat_i32(ScreenPos::BEYOND)));
+    let beyond = s.splat_i32(ScreenPos::BEYOND);
+    let clipped = s.to_bitmask(s.is_equal(least, beyond));
+    let mut too_near = 0;
+    if clipped != 0 {
+        let all_beyond = s.is_equal(s.max_i32(s.max_i32(ax, bx), cx), beyond);
+        let least = s.min_i32(s.min_i32(ay, by), cy);
+        too_near = s.to_bitmask(s.and(all_beyond, s.is_equal(least, s.splat_i32(ScreenPos::TOO_NEAR_Y))));
+        if too_near == 0xFF {
+            return [0, too_near, 0, 0, 0, 0, 0, 0];
+        }
+    }
     // Exact in f64: differences are at most 2²¹, products 2⁴².
     let (dx1, dy1) = (s.to_f64(s.sub_i32(bx, ax)), s.to_f64(s.sub_i32(by, ay)));
     let (dx2, dy2) = (s.to_f64(s.sub_i32(cx, ax)), s.to_f64(s.sub_i32(cy, ay)));
@@ -132,7 +146,7 @@ fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) 
     // Neighbours usually face the same way.
     let seen = if culls { front } else { front | back };
     if seen == 0 {
-        return [clipped, front, back, 0, 0, 0, 0];
+        return [clipped & !too_near, too_near, front, back, 0, 0, 0, 0];
     }
     let (x, y) = ([ax, bx, cx], [ay, by, cy]);
     let bounds = Bounds::of(s, x, y);
@@ -143,15 +157,17 @@ fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) 
     let crosses = s.to_bitmask(bounds.cross(s, clip));
     // Neighbours are usually of similar size.
     let large = if covers & (!small | crosses) == 0 { 0xFF } else { s.to_bitmask(bounds.are_batched(s)) };
-    [clipped, front, back, covers, large & !small & !crosses, large & crosses, !large & 0xFF]
+    let classes = [large & !small & !crosses, large & crosses, !large & 0xFF];
+    [clipped & !too_near, too_near, front, back, covers, classes[0], classes[1], classes[2]]
 }
 
 impl CullMasks {
     /// Inserts the bits of up to eight triangles, the first at bit `first`.
     #[inline(always)]
-    fn add(&mut self, first: usize, are_triangles: u64, found: [u32; 7]) {
-        let [clipped, front, back, covers, large, crosses, unbatched] = found;
+    fn add(&mut self, first: usize, are_triangles: u64, found: [u32; 8]) {
+        let [clipped, too_near, front, back, covers, large, crosses, unbatched] = found;
         self.clipped |= (u64::from(clipped) & are_triangles) << first;
+        self.too_near |= (u64::from(too_near) & are_triangles) << first;
         self.front |= (u64::from(front) & are_triangles) << first;
         self.back |= (u64::from(back) & are_triangles) << first;
         self.covers |= (u64::from(covers) & are_triangles) << first;
@@ -374,7 +390,7 @@ mod tests {
         let on_halves = (15_i32..23, 15_i32..23).prop_map(|(x, y)| (x * 128, y * 128));
         let legal = prop_oneof![4 => near, 2 => on_centres, 8 => tiny, 8 => on_halves, 1 => far, 1 => ends]
             .prop_map(|(x, y)| ScreenPos::new(x, y));
-        prop_oneof![30 => legal, 1 => Just(ScreenPos::NEEDS_CLIPPING)]
+        prop_oneof![30 => legal, 1 => Just(ScreenPos::NEEDS_CLIPPING), 6 => Just(ScreenPos::TOO_NEAR)]
     }
 
     fn kernels() -> Vec<Kernel> {
@@ -392,7 +408,11 @@ mod tests {
         };
         for _ in 0..200 {
             let at: Vec<ScreenPos> = (0..40)
-                .map(|i| if i == 7 { ScreenPos::NEEDS_CLIPPING } else { ScreenPos::new(next(900), next(900)) })
+                .map(|i| match i {
+                    7 => ScreenPos::NEEDS_CLIPPING,
+                    8..20 => ScreenPos::TOO_NEAR,
+                    _ => ScreenPos::new(next(900), next(900)),
+                })
                 .collect();
             let triangles: Vec<[u32; 3]> = (0..CHUNK).map(|_| [0; 3].map(|_| next(40) as u32)).collect();
             for culls in [false, true] {
@@ -400,7 +420,8 @@ mod tests {
                 let lanes = cull(Kernel::PORTABLE.simd_level(), &at, &triangles, clip, culls);
                 let corners = triangles.iter().map(|corners| corners.map(|i| at[i as usize]));
                 let integers = cull_in_integers(corners, culls);
-                assert_eq!((integers.clipped, integers.front, integers.back), (lanes.clipped, lanes.front, lanes.back));
+                let sides = |masks: &CullMasks| (masks.clipped, masks.too_near, masks.front, masks.back);
+                assert_eq!(sides(&integers), sides(&lanes));
                 assert_eq!(lanes.covers & !integers.covers, 0);
             }
         }
@@ -431,10 +452,11 @@ mod tests {
             }
             for (i, triangle) in triangles.iter().enumerate() {
                 let is = |bits: u64| bits >> i & 1 == 1;
-                let CullMasks { clipped, front, back, covers, .. } = all[0];
+                let CullMasks { clipped, too_near, front, back, covers, .. } = all[0];
                 let corners = triangle.map(|i| places[i as usize]);
-                prop_assert_eq!(is(clipped), corners.contains(&ScreenPos::NEEDS_CLIPPING));
-                if is(clipped) {
+                prop_assert_eq!(is(too_near), corners == [ScreenPos::TOO_NEAR; 3]);
+                prop_assert_eq!(is(clipped), !is(too_near) && corners.iter().any(|corner| corner.needs_clipping()));
+                if is(clipped) || is(too_near) {
                     prop_assert!(!is(front) && !is(back) && !is(covers));
                     continue;
                 }

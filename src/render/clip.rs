@@ -159,7 +159,52 @@ pub(super) fn clip(
 
 #[cfg(all(test, feature = "std"))]
 mod tests {
+    use glam::Vec3;
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::Angle;
+    use crate::lanes::three;
+    use crate::mesh::shapes;
+    use crate::scene::{Camera, Object};
+    use crate::view::{Screen, View};
+
+    /// What is left of a face that is off the screen lies off the screen, however long its edges.
+    #[test]
+    fn faces_off_the_screen_stay_there() {
+        let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(200_000));
+        let (off, left) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
+        let coordinate =
+            || prop_oneof![8 => -3.0..3.0_f32, 2 => -300.0..300.0_f32, 1 => -1e30..1e30_f32, 1 => -1e9..1e9_f32];
+        let corner = || prop::array::uniform3(coordinate()).prop_map(Vec3::from);
+        let given = (prop::array::uniform3(corner()), prop::array::uniform2(-4.0..4.0_f64), 0.01..2.0_f32);
+        let found = runner.run(&given, |(corners, [x, y], near)| {
+            let camera = Camera { eye: Vec3::new(0.2, 0.1, 1.0), near, ..Camera::default() };
+            let mut object = Object::new(shapes::cube());
+            object.angles = [Angle::from_radians(x), Angle::from_radians(y), Angle::default()];
+            let view = View::new(&camera, Screen::MODE_13H).expect("a legal camera");
+            let view = ObjectView::new(&view, &object);
+            let at = three(corners, |corner| view.homogeneous(corner));
+            if !view.is_off_screen(&at) {
+                return Ok(());
+            }
+            off.set(off.get() + 1);
+            let progressions = Progressions { interpolation: Interpolation::Gouraud, affine: false };
+            let corner = |at| Corner { at, shade: 0.0, vertex: None, attributes: Attributes::default() };
+            if let Some((polygon, _)) = clip(&view, progressions, at.map(corner)) {
+                left.set(left.get() + 1);
+                let all = |beyond: fn(&Vertex) -> bool| polygon.vertices().iter().all(beyond);
+                let is_beyond = all(|v| v.x().to_bits() < 0)
+                    || all(|v| v.x().to_bits() > 320 << 8)
+                    || all(|v| v.y().to_bits() < 0)
+                    || all(|v| v.y().to_bits() > 200 << 8);
+                prop_assert!(is_beyond, "{:?}", polygon);
+            }
+            Ok(())
+        });
+        found.expect("nothing on the screen");
+        assert!(off.get() > 20_000 && left.get() > 5_000, "{} and {}", off.get(), left.get());
+    }
 
     /// Coordinates and shades of a cut are the nearest to the exact ones; halves round up.
     #[test]

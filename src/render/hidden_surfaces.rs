@@ -238,6 +238,10 @@ fn each_run(
     counts.clear();
     counts.resize(scene.objects().len(), Shares::default());
     pick.added.clear();
+    // Even if the objects that reach the near plane are out of sight yet, so that no later frame allocates memory.
+    if cache.plan.objects.iter().any(|plan| plan.stages().nearest <= f64::from(scene.camera.near)) {
+        pick.added.make_room();
+    }
     for &object in &cache.plan.order {
         let (of_scene, plan) = (&scene.objects()[object], &cache.plan.objects[object]);
         let mut of_object = |run: &Run<'_>| draw(object, run);

@@ -404,6 +404,9 @@ impl Renderer {
                 state.invalidate();
                 continue;
             }
+            if plan.stages().is_out_of_sight && self.cache.change[i] != Change::New {
+                continue;
+            }
             if self.cache.plan.is_integer {
                 changed = true;
                 state.invalidate();

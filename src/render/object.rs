@@ -217,8 +217,8 @@ impl ObjectState {
         stats: &mut Stats,
     ) -> bool {
         let mut stages = *plan.stages();
-        // Neither affects the vertices.
-        (stages.vertices, stages.nearest) = (VertexStage::Make, 0.0);
+        // These do not affect the vertices.
+        (stages.vertices, stages.nearest, stages.is_out_of_sight) = (VertexStage::Make, 0.0, false);
         if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) {
             return false;
         }
@@ -470,7 +470,7 @@ impl ObjectState {
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &ObjectPlan) -> Option<Faces<'a>> {
         let stages = plan.stages();
         // Without computed vertices there are none.
-        self.made_by?;
+        self.made_by.filter(|_| !stages.is_out_of_sight)?;
         let source = self.source.as_ref()?;
         Some(Faces {
             shading: plan.shading(),

@@ -333,8 +333,8 @@ impl Faces<'_> {
                 }
                 if is(masks.clipped) {
                     let culls = CULLS || is(self.twins_of(chunk));
-                    let shading = self.clipped(culls, face, budget, stats, picker);
-                    if budget.is_some() {
+                    let shading = self.clipped((culls, exact_cover), face, budget, stats, picker);
+                    if let Some(shading) = shading.filter(|_| budget.is_some()) {
                         counts.add(shading, 1);
                     }
                 } else if let (Some(budget), Some(classes)) = (budget, &classes) {
@@ -367,7 +367,8 @@ impl Faces<'_> {
     #[inline]
     fn drawn<const CULLS: bool>(&self, chunk: usize, count: usize, masks: &CullMasks, stats: &mut Stats) -> u64 {
         let drawn = if CULLS { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
-        let (drawn_here, clipped) = (u64::from(drawn.count_ones()), u64::from(masks.clipped.count_ones()));
+        let clipped = u64::from((masks.clipped | masks.too_near).count_ones());
+        let drawn_here = u64::from(drawn.count_ones());
         stats.drawn += drawn_here;
         stats.clipped += clipped;
         stats.culled += count as u64 - drawn_here - clipped;
@@ -474,18 +475,22 @@ impl Faces<'_> {
         fit.shading
     }
 
-    /// Picks a face that reaches beyond the near plane or the guard band. Separate, as it is rare.
+    /// Picks a face that reaches beyond the near plane or the guard band, unless all of it is off the screen. Separate,
+    /// as it is rare.
     #[cold]
     #[inline(never)]
     fn clipped(
         &self,
-        culls: bool,
+        (culls, exact_cover): (bool, bool),
         face: Face,
         budget: Option<&Budget>,
         stats: &mut Stats,
         picker: &mut Picker<'_>,
-    ) -> FaceShading {
+    ) -> Option<FaceShading> {
         let at = three(face.indices, |i| self.view.homogeneous(self.geometry.positions[i as usize]));
+        if picker.culler.is_some() && exact_cover && self.view.is_off_screen(&at) {
+            return None;
+        }
         let face = Face { back_facing: !culls && is_turned_away(&at), ..face };
         let (shading, before) =
             (budget.map_or(self.shading.into(), |budget| self.decide_clipped(budget, face)), stats.drawn);
@@ -498,7 +503,7 @@ impl Faces<'_> {
         if budget.is_some() {
             stats.shares.add(shading, stats.drawn - before);
         }
-        shading
+        Some(shading)
     }
 
     /// Adds the triangles into which clipping turns a face.

@@ -59,7 +59,8 @@ fn check(scene: &Scene, shading: Shading) -> usize {
         let differs = vga.pixels().iter().zip(&expected).position(|(is, should)| is != should);
         assert_eq!(differs, None, "kernel {}", kernel.name());
         assert_eq!(stats.kernel, kernel.name());
-        assert_eq!(stats.drawn, triangles.len() as u64);
+        // Parts of a clipped face that are off the screen are not passed to the raster.
+        assert!(stats.drawn <= triangles.len() as u64);
         assert_eq!(stats.raster.covered, covered);
     }
     shown.into_iter().filter(|&shown| shown).count()

@@ -1,13 +1,18 @@
 //! What games need from a picture: where a point is in it, and what was there before.
 
+use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::I24F8;
 use mode13h::glam::Vec3;
+use mode13h::light::{Blend, Light};
 use mode13h::mesh::{Mesh, shapes};
+use mode13h::palette::Rgb;
+use mode13h::plan::{Effect, Reason};
 use mode13h::raster::{Frame, Vertex};
 use mode13h::render::{Renderer, Screen};
-use mode13h::scene::{Camera, Object, Scene};
-use mode13h::settings::HiddenSurfaces;
+use mode13h::scene::{Camera, Fog, Object, Scene};
+use mode13h::settings::{Accuracy, HiddenSurfaces, Settings, Shading, VertexPath};
+use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
 const SCREEN: Screen = Screen { width: 400, height: 300, pixel_aspect: (1, 1) };
@@ -22,6 +27,69 @@ fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurface
         false => renderer.draw_over(scene, frame, SCREEN.pixel_aspect),
     };
     drawn.expect("drawn");
+}
+
+/// Objects out of sight are not drawn, which changes no byte, whether they have just left or have just come: a renderer
+/// that is kept draws what a new one does that transforms everything.
+#[test]
+fn objects_leave_sight_and_come_back() {
+    let mut random = Random::named("out of sight");
+    let mut tried = Tried::new("objects_leave_sight_and_come_back", 4_800);
+    let accuracies = [Shading::Flat, Shading::Phong, Shading::GouraudVintage, Shading::GouraudTessellated];
+    let mut settings = vec![Settings::default(); 3];
+    settings[1].accuracy = Some(Accuracy::WithinError(2.0));
+    settings[2].vertex_path = Some(VertexPath::Integer);
+    settings.extend(accuracies.map(|shading| Settings { accuracy: Some(shading.into()), ..Settings::default() }));
+    settings.extend(HiddenSurfaces::ALL.map(|way| Settings { hidden_surfaces: Some(way), ..Settings::default() }));
+    let (mut unseen, mut seen, mut still) = (0, 0, 0);
+    for number in 0..480 {
+        let settings = settings[number % settings.len()];
+        let mut scene = Scene::new();
+        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+        if number % 3 == 0 {
+            scene.add_light(Light::lamp([1.0, 1.0, 1.0], 4.0));
+        }
+        if number % 5 == 0 {
+            scene.fog = Some(Fog { color: Rgb::new(90, 90, 90), start: 2.0, end: 9.0 });
+        }
+        let mut number_within = |from: i64, to: i64| random.within(from, to) as f32 / 100.0;
+        let mut point = |reach: i64| Vec3::from([0; 3].map(|_| number_within(-reach, reach)));
+        for kind in 0..9 {
+            let mesh = [shapes::cube(), shapes::torus(9, 6), shapes::sphere(9, 6)][kind % 3].clone();
+            let id = scene.add(Object::new(mesh).at(point(600)).scaled(0.4));
+            if kind == 4 && number % 4 == 0 {
+                scene[id].materials[0].blend = Blend::Mix(128);
+            }
+        }
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        renderer.settings = settings;
+        let (mut eye, mut target) = (point(500), point(500));
+        for frame in 0..10 {
+            // Look elsewhere, go elsewhere, move something, or change nothing.
+            match frame % 5 {
+                0 | 1 => target = point(500),
+                2 => eye = point(500),
+                3 => scene.objects_mut()[frame % 9].position = point(600),
+                _ => {}
+            }
+            scene.camera = Camera { eye, target, near: 0.5, ..Camera::default() };
+            let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+            let mut new = renderer.with_same_settings();
+            new.force(Effect::Transform, Some(true));
+            let mut expected = Vga::new();
+            new.draw(&scene, &mut expected).expect("a legal scene");
+            assert!(vga.pixels() == expected.pixels(), "scene {number}, frame {frame}, {settings:?}");
+            for plan in renderer.plan().objects() {
+                match plan[Effect::Transform].reason {
+                    Reason::OutOfSight => unseen += 1,
+                    _ => seen += 1,
+                }
+            }
+            still += u64::from(!stats.redrawn);
+            tried.add(1);
+        }
+    }
+    assert!(unseen > 9_000 && seen > 9_000 && still > 300, "{unseen} {seen} {still}");
 }
 
 /// A small sphere is drawn around the point that its centre projects to.

@@ -26,7 +26,7 @@ pub(super) struct Recorded {
     /// Start and step.
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
-    /// The same in f32, if quotients may be taken in f32.
+    /// In f32, if quotients may be taken in f32.
     pub(super) singles: Option<PerspectiveSums<f32>>,
     pub(super) depth: [i64; 2],
     /// Levels of some pixels, if the image has any: as found for eight triangles, and as defined.

@@ -61,10 +61,12 @@ fn project_eight<S: F32Lanes8>(
     let inverse = s.div_f32(s.splat_f32(1.0), w);
     let x = s.add_f32(s.splat_f32(narrow.centre.0), s.mul_f32(row(s, narrow, at, 0), inverse));
     let y = s.add_f32(s.splat_f32(narrow.centre.1), s.mul_f32(row(s, narrow, at, 1), inverse));
-    let within = s.and(s.is_at_least(w, s.splat_f32(narrow.near)), s.and(is_near(s, x), is_near(s, y)));
+    let is_far_enough = s.is_at_least(w, s.splat_f32(narrow.near));
+    let within = s.and(is_far_enough, s.and(is_near(s, x), is_near(s, y)));
     let nothing = s.splat_i32(0);
+    let mark = s.select_i32(is_far_enough, nothing, s.splat_i32(ScreenPos::TOO_NEAR_Y));
     let x = s.select_i32(within, units(s, x), s.splat_i32(ScreenPos::BEYOND));
-    let y = s.select_i32(within, units(s, y), nothing);
+    let y = s.select_i32(within, units(s, y), mark);
     // As in `ObjectView::depth`: 1 to 2³⁰ for vertices within it.
     let part = s.mul(s.div(s.splat_f64(narrow.near.into()), s.widen(w)), s.splat_f64(1_073_741_824.0));
     let depth = s.max_i32(s.whole(s.add(part, s.splat_f64(0.5))), s.splat_i32(1));
@@ -130,7 +132,11 @@ pub(super) fn one_by_one<const TESTED: bool>(
     vertices: &mut VertexColumns,
 ) {
     for (i, &position) in positions.iter().enumerate().skip(first) {
-        vertices.put(i, if TESTED { view.project(position) } else { Some(view.project_inside(position)) });
+        let vertex = if TESTED { view.project(position) } else { Some(view.project_inside(position)) };
+        vertices.put(i, vertex);
+        if TESTED && vertex.is_none() && !view.is_far_enough(position) {
+            vertices.at[i] = ScreenPos::TOO_NEAR;
+        }
     }
 }
 
@@ -322,10 +328,11 @@ mod tests {
                 project_tested(&view, &geometry, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
                     let alone = view.project(position);
-                    prop_assert_eq!(vertices.at[i].needs_clipping(), alone.is_none(), "{:?}", position);
-                    if let Some(alone) = alone {
-                        prop_assert_eq!(vertices.at[i], ScreenPos::of(&alone), "{:?}", position);
-                    }
+                    let mark = match view.homogeneous(position).w >= f64::from(view.near()) {
+                        true => ScreenPos::NEEDS_CLIPPING,
+                        false => ScreenPos::TOO_NEAR,
+                    };
+                    prop_assert_eq!(vertices.at[i], alone.map_or(mark, |v| ScreenPos::of(&v)), "{:?}", position);
                     prop_assert_eq!(vertices.depth[i], alone.unwrap_or_default().depth(), "{:?}", position);
                 }
                 project_inside(&view, &geometry, kernel, &mut vertices);
