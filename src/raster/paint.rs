@@ -329,7 +329,7 @@ impl<D: Cell> Tested<'_, D> {
 /// pixels from there; a row whose drawn part begins later continues from the last start at or left of it, so that the
 /// clip rectangle changes no byte.
 #[inline]
-fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Range<usize>, u16)) {
+pub(super) fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Range<usize>, u16)) {
     let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
     if !reseeded {
         let start = shade.start(row.origin, row.y);

@@ -17,10 +17,10 @@ use super::pick::Pick;
 use super::reference::cover::SortedTriangle;
 use super::reference::level;
 use super::reference::quotient::Divisor;
-use super::reference::texture::{AffineLevel, AffinePlane};
+use super::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture, depth};
 use super::rows::Lane;
 use super::setup::{Basis, Corners8, Floats, Ints};
-use crate::fixed::ROUND_MAGIC;
+use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, each};
 use crate::simd::Lanes8;
 use crate::span::texture::{PerspectiveSums, fits_singles};
@@ -423,12 +423,26 @@ impl PerspectivePlanes8 {
         (self.fits_levels >> lane & 1 != 0 && least == most).then_some(least)
     }
 
-    /// Sets the change of triangle 0's sums per pixel; neither its quotients in f32 nor estimates decide anything.
-    pub(super) fn set_steps(&mut self, steps: [f64; 3]) {
-        for (to, step) in self.step.iter_mut().zip(steps) {
-            to[0] = step;
+    /// Sets up a single triangle, number 0, with these coordinates, u and v, at its corners. Its base is 0.
+    pub(super) fn set_up_alone(
+        &mut self,
+        triangle: &SortedTriangle,
+        coordinates: &[[i32; 3]; 2],
+        texture: &PerspectiveTexture,
+    ) {
+        let [steps, row_steps] = texture.steps();
+        for i in 0..3 {
+            (self.step[i][0], self.row_step[i][0]) = (steps[i], row_steps[i]);
         }
-        (self.base, self.fits, self.fits_levels) = ([[0; LANES]; 2], 0, 0);
+        (self.base, self.fits) = ([[0; LANES]; 2], 0);
+        // As in `set_up_levels`.
+        let greatest_of = |most: u32, coordinate: &i32| most.max(coordinate.unsigned_abs());
+        let q = f64::from(coordinates.as_flattened().iter().fold(0, greatest_of)) + 65_536.0;
+        let depths = [0, 1, 2].map(|corner| depth(triangle, corner));
+        let (least, greatest) = (depths.into_iter().fold(i64::MAX, i64::min), depths.into_iter().fold(0, i64::max));
+        let (a, b) = (triangle.area() as f64 * least as f64, texture.sides() * greatest as f64);
+        let is_accurate = q * b * (a + b) < a * a * 4_398_046_511_104.0;
+        self.fits_levels = u32::from(HAS_F64 && is_accurate && least > 65_536);
     }
 
     /// The sums along a span of triangle `lane`, from those at its first pixel.

@@ -22,13 +22,16 @@ use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
+use super::paint::starts;
 use super::pick::{MAX_WIDTH, Pick, SizeClass};
+use super::reference::cover::SortedTriangle;
 use super::reference::depth::DepthPlane;
-use super::reference::shade::RESEED;
+use super::reference::shade::{RESEED, ShadePlane};
 use super::rows::{self, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
+use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
@@ -106,7 +109,11 @@ impl<D: Cell> Raster<'_, D> {
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
             if together == 0 {
-                drawn += self.triangle_by_rows(&triangles.vertices(&picks, first), interpolation);
+                let vertices = triangles.vertices(&picks, first);
+                drawn += match kind {
+                    Some(_) => self.triangle_by_rows(&vertices, interpolation),
+                    None => self.list_rows(&vertices, in_pieces, layout, list),
+                };
                 first += 1;
                 continue;
             }
@@ -127,6 +134,47 @@ impl<D: Cell> Raster<'_, D> {
 }
 
 impl<D: Cell> Raster<'_, D> {
+    /// Draws a triangle with linear shades that is too large for set-up in f64: walks down its edges, and lists its rows.
+    #[inline(never)]
+    fn list_rows(
+        &mut self,
+        vertices: &[Vertex; 3],
+        in_pieces: bool,
+        layout: FrameLayout,
+        list: &mut SpanList,
+    ) -> DrawStats {
+        let (width, clip, kernel) = (self.frame.width(), self.clip, self.kernel);
+        let triangle = SortedTriangle::new(vertices);
+        if triangle.extent(clip).is_none() {
+            return DrawStats::default();
+        }
+        let shade = ShadePlane::of_values(&triangle, triangle.shades());
+        // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
+        let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+        let plane = depth.as_ref().map(|depth| DepthPlane::new(&triangle).raised_by(depth.base));
+        let (pixels, _) = self.frame.pixels_mut();
+        let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
+        let of_pixels = (target.pixels.len(), layout.pitch);
+        list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
+        triangle.rows(width, clip, |row| {
+            // A row of the frame.
+            let down = (row.y as u32 - layout.first_row) as usize;
+            starts(&row, &shade, in_pieces, |columns, start| {
+                if !list.has_room(1) {
+                    list.draw(target);
+                }
+                let at = [layout.pitch, layout.width].map(|row| down * row as usize + columns.start);
+                let paint = u32::from(start) | u32::from(shade.step()) << 16;
+                let z = plane.map_or([0; 2], |plane| [plane.fixed_at(columns.start as i32, row.y), plane.step()]);
+                list.push(at, columns.len(), paint, z.map(|z| z << 8));
+            });
+        });
+        list.draw(target);
+        let (spans, covered, nearer) = list.counts();
+        let (pixels, tested) = if plane.is_some() { (nearer, covered) } else { (covered, 0) };
+        DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
+    }
+
     /// Returns whether lists can hold the positions of spans: offsets of pixels have 32 bits, and a depth buffer must
     /// hold exactly the frame's rows.
     pub(super) fn fits_lists(&mut self) -> bool {

@@ -236,6 +236,11 @@ impl SpanList {
         (mask, count)
     }
 
+    /// Draws the spans, where they are nearer if there are cells, and empties the list.
+    pub(crate) fn draw(&mut self, target: &mut Target<'_>) {
+        if target.cells.is_some() { self.draw_by::<true>(target) } else { self.draw_by::<false>(target) }
+    }
+
     /// Draws the spans, with `DEPTHS` only where they are nearer than the cells, and empties the
     /// list. If there are fewer pixels or cells than the list was made for, nothing is drawn.
     #[inline(never)]
@@ -268,17 +273,22 @@ impl SpanList {
         (self.length[k] as usize, self.paint[k])
     }
 
-    /// Appends a span with its depth and the change per pixel, if it lies inside and there is room. Its pixels and its
-    /// cells have the same offset. Returns its index.
-    #[cfg(feature = "alloc")]
-    pub(crate) fn push(&mut self, (at, length): (usize, usize), paint: u32, [z, dz]: [i64; 2]) -> Option<usize> {
-        let end = at.checked_add(length)?;
-        if self.count >= CAPACITY || length == 0 || end > self.pixels.min(self.cells) as usize {
+    /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it lies
+    /// inside and there is room. Returns its index.
+    pub(crate) fn push(
+        &mut self,
+        [at, cell]: [usize; 2],
+        length: usize,
+        paint: u32,
+        [z, dz]: [i64; 2],
+    ) -> Option<usize> {
+        let is_inside = |from: usize, most: i32| from.checked_add(length).is_some_and(|end| end <= most as usize);
+        if self.count >= CAPACITY || length == 0 || !is_inside(at, self.pixels) || !is_inside(cell, self.cells) {
             return None;
         }
         let k = self.count;
         // Below 2³¹.
-        (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, at as u32, length as u32, paint);
+        (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, cell as u32, length as u32, paint);
         (self.z[k], self.dz[k]) = (z, dz);
         self.covered[0] = self.covered[0].wrapping_add(length as i32);
         self.count += 1;

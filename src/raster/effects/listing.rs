@@ -20,10 +20,10 @@ use crate::raster::interpolation::Interpolation;
 use crate::raster::pick::{Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
-use crate::raster::reference::level;
+use crate::raster::reference::level::{self, LevelPlane};
 use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::shade::{RESEED, ShadePlane};
-use crate::raster::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture};
+use crate::raster::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture, depth};
 use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value_of};
 use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
@@ -204,9 +204,20 @@ impl FaceCorners<'_> {
         (planes, level.unwrap_or_default())
     }
 
-    /// Texture coordinates linear on the face.
+    /// Texture coordinates linear on the face. One that all corners share is moved to the middle of its texel, as in the
+    /// set-up of eight.
     pub(super) fn perspective_texture(&self) -> PerspectiveTexture {
-        PerspectiveTexture::new(&self.triangle, [self.texture(0), self.texture(1)])
+        let coordinates = [self.texture(0), self.texture(1)].map(|[a, b, c]| match a == b && b == c {
+            true => [a & !0xFFFF | 0x8000; 3],
+            false => [a, b, c],
+        });
+        PerspectiveTexture::new(&self.triangle, coordinates)
+    }
+
+    /// The levels of texture coordinates linear on the face.
+    pub(super) fn levels(&self) -> LevelPlane {
+        let depths = |corner: usize| i128::from(depth(&self.triangle, corner));
+        LevelPlane::new(&self.triangle, [self.texture(0), self.texture(1)], [depths(0), depths(1), depths(2)])
     }
 
     /// A linear value.
@@ -308,6 +319,8 @@ pub(super) struct WalkedFace {
     depth: DepthPlane,
     values: [Option<ShadePlane>; Value::MAX_COUNT],
     texture: Option<WalkedTexture>,
+    /// The levels of coordinates linear on the face, if the image has any.
+    levels: Option<LevelPlane>,
 }
 
 /// Texture coordinates of a walked face.
@@ -367,6 +380,15 @@ impl Listed<'_> {
         }
     }
 
+    /// The texture coordinates of a face, linear on it, and their levels, as they are defined.
+    pub(super) fn exact_texture(&self, face: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
+        if let Some(WalkedFace { texture: Some(WalkedTexture::OnFace(coordinates)), levels, .. }) = self.walked {
+            return (coordinates, levels);
+        }
+        let corners = self.corners(face);
+        (corners.perspective_texture(), self.wanted.last_level.map(|_| corners.levels()))
+    }
+
     /// The planes of a face's batch, and the face's lane.
     #[inline(always)]
     pub(super) fn planes(&self, face: usize) -> (&FacePlanes8, usize) {
@@ -416,6 +438,7 @@ impl<'a> EffectSpans<'a> {
         let planes = &mut self.listed.planes[0];
         // Columns and rows are those of the frame.
         (planes.column, planes.row) = ([0; LANES], [0; LANES]);
+        let mut levels = None;
         let texture = texture.map(|mapping| match mapping {
             Mapping::Affine => {
                 let (coordinates, level) = corners.affine_texture(last_level);
@@ -424,7 +447,9 @@ impl<'a> EffectSpans<'a> {
             }
             _ => {
                 let coordinates = corners.perspective_texture();
-                planes.perspective.set_steps(coordinates.steps());
+                let of_corners = [corners.texture(0), corners.texture(1)];
+                planes.perspective.set_up_alone(&triangle, &of_corners, &coordinates);
+                levels = last_level.map(|_| corners.levels());
                 WalkedTexture::OnFace(coordinates)
             }
         });
@@ -437,6 +462,7 @@ impl<'a> EffectSpans<'a> {
                 Some(ShadePlane::of_values(&triangle, corners.value(value)))
             }),
             texture,
+            levels,
         });
         self.listed.batches = Batches::from_pick(k);
         triangle
@@ -473,7 +499,8 @@ impl<'a> EffectSpans<'a> {
             }
             // A column of a frame.
             let z = depth.fixed_at(x, row.y);
-            if let Some(k) = list.push((x as usize, (end - x) as usize), paint, [z << 8, depth.step() << 8]) {
+            let at = [x as usize; 2];
+            if let Some(k) = list.push(at, (end - x) as usize, paint, [z << 8, depth.step() << 8]) {
                 let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);

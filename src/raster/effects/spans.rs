@@ -8,8 +8,9 @@ use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::RowShader;
 use crate::raster::reference::cover::Row;
+use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::shade::RESEED;
-use crate::raster::reference::texture::AffineLevel;
+use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::at_best_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
@@ -164,6 +165,11 @@ impl<'a> Spans<'a> {
     #[inline(never)]
     pub(super) fn corners(&self, span: &Span) -> FaceCorners<'a> {
         self.listed.corners(span.mark.face())
+    }
+
+    /// The texture coordinates of the face of span `i`, linear on it, and their levels, as they are defined.
+    pub(super) fn exact_texture(&self, i: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
+        self.listed.exact_texture(self.listed.mark(self.first + i).face())
     }
 
     /// The first shade of span `i`, with the step in the upper half.

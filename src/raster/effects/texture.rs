@@ -12,7 +12,7 @@ use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::lanes::LANES;
 use crate::mapping::Mapping;
 use crate::raster::reference::level::LevelPlane;
-use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture, depth};
+use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
@@ -73,7 +73,7 @@ impl Spans<'_> {
     #[inline(never)]
     fn every_16(&self, image: Image<'_>, out: &mut [u8]) {
         let (all, last_level) = (image.all(), image.last());
-        let planes = |face: &FaceCorners<'_>| (face.perspective_texture(), (last_level > 0).then(|| level_plane(face)));
+        let planes = |face: &FaceCorners<'_>| (face.perspective_texture(), (last_level > 0).then(|| face.levels()));
         self.each(out, planes, |(plane, levels), span, pixels| {
             let (y, last) = (span.y, span.x + span.last());
             for (x, part) in (span.x..).step_by(EVERY as usize).zip(pixels.chunks_mut(EVERY as usize)) {
@@ -319,10 +319,9 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
 #[cold]
 #[inline(never)]
 pub(super) fn exact_level(spans: &Spans<'_>, i: usize, k: i32, last: u32) -> u32 {
-    let span = spans.span(i);
-    let face = spans.corners(&span);
+    let (span, (plane, levels)) = (spans.span(i), spans.exact_texture(i));
     // Below 64.
-    level_at(&face.perspective_texture(), &level_plane(&face), span.x + k, span.y, last)
+    levels.map_or(0, |levels| level_at(&plane, &levels, span.x + k, span.y, last))
 }
 
 /// The indices of eight texels of span `i`, from its pixel `first` on, where its quotients cannot decide.
@@ -346,19 +345,13 @@ fn exact_eight(
             return;
         }
     }
-    let plane = plane.get_or_insert_with(|| spans.corners(&spans.span(i)).perspective_texture());
+    let plane = plane.get_or_insert_with(|| spans.exact_texture(i).0);
     for (place, k) in eight.iter_mut().zip(first..span.len) {
         // Below 64.
         let [u, v] = plane.at(span.x + k as i32, span.y).map(|coordinate| (coordinate >> level).cast_unsigned());
         // Below 65,536.
         *place = texels.place(u, v) as i32;
     }
-}
-
-fn level_plane(face: &FaceCorners<'_>) -> LevelPlane {
-    let depths = |corner: usize| i128::from(depth(&face.triangle, corner));
-    let texture = [face.texture(0), face.texture(1)];
-    LevelPlane::new(&face.triangle, texture, [depths(0), depths(1), depths(2)])
 }
 
 #[cfg(all(test, feature = "std"))]
@@ -372,8 +365,9 @@ mod tests {
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
     use crate::raster::cull::{PickList, cull, pick};
+    use crate::raster::effects::listing::{self, EffectSpans, Faces};
     use crate::raster::effects::recorded::record;
-    use crate::raster::effects::{PixelPipeline, ShadeSource};
+    use crate::raster::effects::{Buffers, PixelPipeline, ShadeSource};
     use crate::raster::frame::Rect;
     use crate::raster::interpolation::Interpolation;
     use crate::raster::pick::Pick;
@@ -381,9 +375,10 @@ mod tests {
     use crate::raster::reference::depth::DepthPlane;
     use crate::raster::reference::quotient::Divisor;
     use crate::raster::reference::texture::AffinePlane;
-    use crate::raster::reference::texture::exact;
+    use crate::raster::reference::texture::{depth, exact};
     use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
+    use crate::span::list::{SpanList, Target};
     use crate::span::texture::Levels;
     use crate::span::texture::PerspectiveSums;
 
@@ -628,6 +623,57 @@ mod tests {
         found.expect("each level that is decided");
         let (decided, all) = (decided.get(), all.get());
         assert!(all > 100_000 && decided > all / 2, "{mapping}: {decided} of {all}");
+    }
+
+    /// Levels estimated for a face that is walked row by row match the definition, and most are decided.
+    #[test]
+    fn levels_of_a_walked_face_are_the_definition() {
+        let (decided, all) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
+        let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(2_000));
+        let place = || prop_oneof![3 => -(1 << 20)..=1 << 20, 1 => -20_000..100_000_i32];
+        let depth = prop_oneof![8 => 17.0..30.0_f64, 1 => 0.0..32.0_f64].prop_map(|bits| bits.exp2() as u32);
+        let corner = (place(), place(), depth);
+        let coordinate = (0_u32..32, any::<i32>()).prop_map(|(bits, n)| n >> bits);
+        let given = (prop::array::uniform3(corner), prop::array::uniform3([coordinate.clone(), coordinate]));
+        let found = runner.run(&given, |(corners, texture)| {
+            let at = corners.map(|(x, y, _)| ScreenPos::new(x, y));
+            let (depth, shade) = (corners.map(|(.., depth)| depth), [[U8F8::default(); 2]; 3]);
+            let effects = EffectColumns { texture: &texture, ..EffectColumns::default() };
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
+            let triangles = Triangles { columns, indices: &[[0, 1, 2]], by_corner: None };
+            let (texels, levels) = (std::vec![0; 65_536], std::vec![0; Levels::length(8, 8)]);
+            let stage = TextureStage {
+                texels: Texels::new(&texels, 8, 8).expect("an image"),
+                levels: Some(Levels::new(&levels, 8, 8).expect("its levels")),
+                mapping: Mapping::Perspective,
+                tables: [&[0; 65_536]; 3],
+            };
+            let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
+            let last = stage.levels.expect("it has some").last();
+            let (mut memory, mut buffers) = (listing::Columns::NONE, Buffers::default());
+            let faces = Faces { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
+            let mut of_face = EffectSpans::new(faces, &pipeline, &mut memory, &mut buffers);
+            let (mut rows, clip) = (Vec::new(), Rect { x0: 0, y0: 0, x1: 320, y1: 200 });
+            of_face.walk(0, 0).rows(320, clip, |row| rows.push(row));
+            let (mut pixels, mut list) = ([0; 320], SpanList::NONE);
+            for row in rows.iter().step_by(7) {
+                list.begin((320, 0), (320, 0));
+                let mut target = Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
+                of_face.add_row(row, &mut list, &mut target);
+                let spans = Spans::all(&of_face.listed, &list);
+                for (i, k) in
+                    (0..spans.count()).flat_map(|i| (0..=spans.last(i).min(63)).step_by(9).map(move |k| (i, k)))
+                {
+                    let (estimated, exact) = (spans.level(i, k, last), exact_level(&spans, i, k, last));
+                    all.set(all.get() + 1);
+                    decided.set(decided.get() + i32::from(estimated.is_some()));
+                    prop_assert!(estimated.is_none_or(|level| level == exact), "{estimated:?}, not {exact}");
+                }
+            }
+            Ok(())
+        });
+        found.expect("each level that is decided");
+        assert!(all.get() > 100_000 && decided.get() > all.get() / 2, "{} of {}", decided.get(), all.get());
     }
 
     /// Where all corners share a coordinate, quotients decide every pixel, even if it lies on the border of a texel. (It

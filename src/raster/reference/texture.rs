@@ -142,8 +142,8 @@ pub(in crate::raster) struct PerspectiveTexture {
     /// Each corner's u, v and 1, times its depth; below 2⁶³.
     values: [[i64; 3]; 3],
     estimated: [[f64; 3]; 3],
-    /// Change of the sums from one pixel to the next, in f64.
-    steps: [f64; 3],
+    /// Change of the sums from one pixel to the next, and from one row to the next, in f64.
+    steps: [[f64; 3]; 2],
 }
 
 /// The sum over the corners of weights times values, exact.
@@ -180,12 +180,12 @@ impl PerspectiveTexture {
             |[a, b, c]: [i32; 3]| [i64::from(a) * depths[0], i64::from(b) * depths[1], i64::from(c) * depths[2]];
         let values = [times(u), times(v), depths];
         let weights = Weights::new(triangle);
-        let (mut estimated, mut steps) = ([[0.0; 3]; 3], [0.0; 3]);
+        let (mut estimated, mut steps) = ([[0.0; 3]; 3], [[0.0; 3]; 2]);
         if HAS_F64 {
-            let per_column = in_f64(weights.per_column());
+            let (per_column, per_row) = (in_f64(weights.per_column()), in_f64(weights.per_row()));
             for (i, [a, b, c]) in values.into_iter().enumerate() {
                 estimated[i] = [a as f64, b as f64, c as f64];
-                steps[i] = estimate(per_column, estimated[i]);
+                (steps[0][i], steps[1][i]) = (estimate(per_column, estimated[i]), estimate(per_row, estimated[i]));
             }
         }
         Self { weights, values, estimated, steps }
@@ -205,9 +205,15 @@ impl PerspectiveTexture {
         self.estimated.map(|values| estimate(at, values))
     }
 
-    /// The change of the [sums](Self::sums) from one pixel to the next.
-    pub(in crate::raster) fn steps(&self) -> [f64; 3] {
+    /// The changes of the [sums](Self::sums) from one pixel to the next, and from one row to the next.
+    pub(in crate::raster) fn steps(&self) -> [[f64; 3]; 2] {
         self.steps
+    }
+
+    /// The sum of the magnitudes of the weights' changes per pixel and per row.
+    pub(in crate::raster) fn sides(&self) -> f64 {
+        let changes = self.weights.per_column().into_iter().chain(self.weights.per_row());
+        changes.fold(0.0, |sum, change| sum + change.unsigned_abs() as f64)
     }
 
     /// The coordinates at a pixel, rounded down; 16.16.

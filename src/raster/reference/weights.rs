@@ -48,6 +48,14 @@ impl Weights {
     }
 }
 
+impl Weights {
+    /// Change of the weights per row, like [`per_column`](Self::per_column).
+    #[inline]
+    pub(in crate::raster) fn per_row(&self) -> [i64; 3] {
+        self.per_row
+    }
+}
+
 /// Weights in f64, exactly: they are at most 2⁴⁴.
 #[inline]
 pub(in crate::raster) fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {
