@@ -36,10 +36,19 @@ impl Lut64K {
     }
 
     /// Refills this table as [`from_fn`](Self::from_fn) would.
-    pub(crate) fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
+    fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
         for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
             for (low, entry) in (0..=255).zip(row) {
                 *entry = byte(high, low);
+            }
+        }
+    }
+
+    /// Refills this table, eight bytes of a row at a time: `bytes` is given their row and the first column.
+    pub(crate) fn fill_by_eights(&mut self, mut bytes: impl FnMut(u8, u8) -> [u8; 8]) {
+        for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
+            for (low, eight) in (0..=255).step_by(8).zip(row.as_chunks_mut::<8>().0) {
+                *eight = bytes(high, low);
             }
         }
     }

@@ -29,12 +29,11 @@ pub(super) struct VertexColumns {
 
 impl VertexColumns {
     /// Makes room for `count` vertices with unspecified values. They must then be projected, and
-    /// lit or left without light.
+    /// lit or left without light. Texture coordinates stay as they are.
     pub(super) fn begin(&mut self, count: usize) {
         self.at.resize(count, ScreenPos::NEEDS_CLIPPING);
         self.depth.resize(count, 0);
         self.shade.resize(count, [U8F8::default(); 2]);
-        self.texture.clear();
         self.fog.clear();
         self.channels.clear();
         self.slope.clear();

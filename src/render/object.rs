@@ -11,8 +11,7 @@ use super::columns::VertexColumns;
 use super::faces::{FacePoints, Faces, face_points};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
-use super::pixel_light::fill_normal_table;
-
+use super::pixel_light::{PixelLight, fill_normal_table};
 use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex;
@@ -153,6 +152,9 @@ pub(super) struct ObjectState {
     tessellated: Tessellated,
     /// True if the tessellated mesh is drawn. Otherwise it is cached for later.
     is_tessellated: bool,
+    /// The mesh whose texture coordinates the columns hold, and the sizes of its surfaces' images.
+    texels_of: Option<Shared<Mesh>>,
+    texture_sizes: Vec<Option<[u32; 2]>>,
     /// The mesh and the index of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
     /// Where each face is lit, and the mesh of these faces, if faces are lit.
@@ -273,6 +275,7 @@ impl ObjectState {
 
     /// Projects the vertices to the screen.
     fn project(&mut self, &Made { object, plan, kernel, .. }: &Made<'_>, stats: &mut Stats) {
+        self.forget_texels(object, plan);
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
         let count = geometry.positions.len();
@@ -297,6 +300,21 @@ impl ObjectState {
         }
         if plan.stages().has_channels() {
             channels.resize(count, [[U8F8::default(); 3]; 2]);
+        }
+    }
+
+    /// Clears the texture coordinates, unless those of the last frame are still right.
+    fn forget_texels(&mut self, object: &Object, plan: &ObjectPlan) {
+        let stages = plan.stages();
+        let stay = self.texels_of.as_ref().is_some_and(|mesh| Shared::ptr_eq(mesh, object.shared_mesh()))
+            && stages.vertices != VertexStage::MakeAnew
+            && stages.has_texture()
+            && !stages.has_environment()
+            && !self.is_tessellated
+            && self.paints.iter().map(|paint| paint.texture_size).eq(self.texture_sizes.iter().copied());
+        if !stay {
+            self.columns.texture.clear();
+            self.texels_of = None;
         }
     }
 
@@ -340,8 +358,12 @@ impl ObjectState {
     fn add_attributes(&mut self, &Made { scene, object, plan, .. }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         let geometry = drawn_geometry(self.is_tessellated, &self.tessellated, object);
-        if plan.stages().has_texture() {
+        if plan.stages().has_texture() && self.texels_of.is_none() {
             vertex::texture_coordinates(&geometry, &self.paints, &mut self.columns.texture);
+            let stay = !self.is_tessellated && !plan.stages().has_environment();
+            self.texels_of = stay.then(|| Shared::clone(object.shared_mesh()));
+            self.texture_sizes.clear();
+            self.texture_sizes.extend(self.paints.iter().map(|paint| paint.texture_size));
         }
         if plan.stages().has_environment() {
             vertex::environment_coordinates(&geometry, &source.view, &self.paints, &mut self.columns.texture);
@@ -377,7 +399,7 @@ impl ObjectState {
     }
 
     /// Prepares per-pixel lighting, if all pixels are lit.
-    fn prepare_pixels(&mut self, &Made { scene, object, view, plan, .. }: &Made<'_>) {
+    fn prepare_pixels(&mut self, &Made { scene, object, view, plan, kernel }: &Made<'_>) {
         let Some(source) = &self.source else { return };
         if plan.stages().lit_at != LitAt::Pixels {
             self.normal_tables = Vec::new();
@@ -388,12 +410,12 @@ impl ObjectState {
             self.columns.slope.resize(geometry.normals.len(), [U8F8::default(); 2]);
             vertex::slopes(&geometry, &source.view, &mut self.columns.slope);
             let at = source.view.position();
-            self.tables_of_normals(scene, at, view);
+            self.tables_of_normals(scene, at, view, kernel);
         }
     }
 
     /// Updates the tables of shades by normal in eye space; they stay valid as the object turns.
-    fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View) {
+    fn tables_of_normals(&mut self, scene: &Scene, at: Vec3, view: &View, kernel: Kernel) {
         self.beams.clear();
         self.beams.extend(scene.lights().iter().filter_map(|light| {
             // A lamp counts as a sun at the object's position, since a table knows no positions.
@@ -424,11 +446,11 @@ impl ObjectState {
                 Some((of, by, table)) => {
                     of.clone_from(&self.beams);
                     by.clone_from(paint);
-                    fill_normal_table(table, &lights, paint);
+                    fill_normal_table(table, &PixelLight { lights, paint, kernel });
                 }
                 None => {
                     let mut table = Lut64K::from_fn(|_, _| 0);
-                    fill_normal_table(&mut table, &lights, paint);
+                    fill_normal_table(&mut table, &PixelLight { lights, paint, kernel });
                     self.normal_tables.push((self.beams.clone(), paint.clone(), table));
                 }
             }
@@ -522,6 +544,7 @@ impl ObjectState {
     pub(super) fn bytes(&self) -> usize {
         self.columns.bytes()
             + self.paints.capacity() * size_of::<SurfaceMaterial>()
+            + self.texture_sizes.capacity() * size_of::<Option<[u32; 2]>>()
             + self.lamps.capacity() * size_of::<LampBeam>()
             + self.tessellated.bytes()
             + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)

@@ -44,23 +44,15 @@ impl Lighting for PixelLight<'_> {
 /// Fills `table` with the shade of every normal that the eye may see: column and row are the normal's x and y, from −1
 /// to 1; its z points toward the eye and completes unit length. Beyond the circle the normal on its rim is used.
 ///
-/// `lights` are in eye space, with the eye far away on z.
+/// The light is in eye space, with the eye far away on z.
 #[inline(never)]
-pub(super) fn fill_normal_table(table: &mut Lut64K, lights: &Lights<'_>, paint: &SurfaceMaterial) {
-    let mut eight = [0; LANES];
-    table.fill(|row, column| {
-        let at = |step: u8| (f32::from(step) - 127.5) / 127.5;
-        // Row by row, eight columns at a time.
-        let lane = usize::from(column) % LANES;
-        if lane == 0 {
-            // At most 248 + 7.
-            let x: Lanes<f32> = core::array::from_fn(|lane| at(column + lane as u8));
-            let y = at(row);
-            let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
-            let points = [x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]];
-            let intensities = lights.front_of_one_channel(&paint.answer, &points, Kernel::PORTABLE);
-            eight = intensities.map(|intensity| paint.respond(paint.shade(intensity)).nearest());
-        }
-        eight[lane]
+pub(super) fn fill_normal_table(table: &mut Lut64K, light: &PixelLight<'_>) {
+    let at = |step: u8| (f32::from(step) - 127.5) / 127.5;
+    table.fill_by_eights(|row, first| {
+        // At most 248 + 7.
+        let (x, y): (Lanes<f32>, f32) = (each!(lane => at(first + lane as u8)), at(row));
+        let z = x.map(|x| libm::sqrtf((1.0 - x * x - y * y).max(0.0)));
+        let shades = light.shades(&[x, [y; LANES], z, [0.0; LANES], [0.0; LANES], [0.0; LANES]]);
+        each!(lane => U8F8::from_bits(shades[lane]).nearest())
     });
 }
