@@ -34,15 +34,16 @@ fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurface
 #[test]
 fn objects_leave_sight_and_come_back() {
     let mut random = Random::named("out of sight");
-    let mut tried = Tried::new("objects_leave_sight_and_come_back", 4_800);
+    let mut tried = Tried::new("objects_leave_sight_and_come_back", 2_400);
     let accuracies = [Shading::Flat, Shading::Phong, Shading::GouraudVintage, Shading::GouraudTessellated];
     let mut settings = vec![Settings::default(); 3];
     settings[1].accuracy = Some(Accuracy::WithinError(2.0));
     settings[2].vertex_path = Some(VertexPath::Integer);
     settings.extend(accuracies.map(|shading| Settings { accuracy: Some(shading.into()), ..Settings::default() }));
     settings.extend(HiddenSurfaces::ALL.map(|way| Settings { hidden_surfaces: Some(way), ..Settings::default() }));
+    let scales = [0.4, 0.4, 0.05, 3.0, 200.0];
     let (mut unseen, mut seen, mut still) = (0, 0, 0);
-    for number in 0..480 {
+    for number in 0..240 {
         let settings = settings[number % settings.len()];
         let mut scene = Scene::new();
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
@@ -56,7 +57,7 @@ fn objects_leave_sight_and_come_back() {
         let mut point = |reach: i64| Vec3::from([0; 3].map(|_| number_within(-reach, reach)));
         for kind in 0..9 {
             let mesh = [shapes::cube(), shapes::torus(9, 6), shapes::sphere(9, 6)][kind % 3].clone();
-            let id = scene.add(Object::new(mesh).at(point(600)).scaled(0.4));
+            let id = scene.add(Object::new(mesh).at(point(600)).scaled(scales[kind * number % 5]));
             if kind == 4 && number % 4 == 0 {
                 scene[id].materials[0].blend = Blend::Mix(128);
             }
@@ -72,7 +73,8 @@ fn objects_leave_sight_and_come_back() {
                 3 => scene.objects_mut()[frame % 9].position = point(600),
                 _ => {}
             }
-            scene.camera = Camera { eye, target, near: 0.5, ..Camera::default() };
+            let near = if number % 7 == 0 { 0.01 } else { 0.5 };
+            scene.camera = Camera { eye, target, near, ..Camera::default() };
             let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
             let mut new = renderer.with_same_settings();
             new.force(Effect::Transform, Some(true));
@@ -89,7 +91,7 @@ fn objects_leave_sight_and_come_back() {
             tried.add(1);
         }
     }
-    assert!(unseen > 9_000 && seen > 9_000 && still > 300, "{unseen} {seen} {still}");
+    assert!(unseen > 4_000 && seen > 4_000 && still > 150, "{unseen} {seen} {still}");
 }
 
 /// A small sphere is drawn around the point that its centre projects to.

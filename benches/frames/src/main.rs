@@ -1,6 +1,6 @@
 //! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects
-//! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces; `list` is a
-//! list of small triangles for the rasterizer, without a scene. A fourth argument is an error budget
+//! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces; `level` is a room with 100
+//! objects, seen from inside; `list` is a list of small triangles for the rasterizer, without a scene. A fourth argument is an error budget
 //! in shades, or a shading. A fifth one replaces the 35 frames per second; the camera then orbits a
 //! scene that does not move by itself.
 //!
@@ -13,15 +13,16 @@ use std::collections::BTreeSet;
 use std::error::Error;
 
 use mode13h::Angle;
-use mode13h::glam::Quat;
+use mode13h::glam::{Quat, Vec3};
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Raster, RasterError, Vertex};
 use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::{Motion, Object, Scene};
+use mode13h::scene::{Motion, Object, Scene, Shared};
 use mode13h::settings::{Accuracy, Shading};
 use mode13h::span::Kernel;
+use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_assets::shipped;
 use mode13h_conformance::Random;
@@ -77,6 +78,30 @@ fn sphere() -> Scene {
     scene
 }
 
+/// A room with textured walls and floors, and small objects all around the eye, most of them out of sight.
+fn level() -> Result<Scene, Box<dyn Error>> {
+    let mut scene = Scene::new();
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    (scene.camera.eye, scene.camera.near) = (Vec3::ZERO, 0.1);
+    scene.camera.field_of_view = Angle::from_degrees(70.0);
+    let bricks: Shared<Texture> = "bricks".parse::<Texture>()?.into();
+    let (wall, torus) = (Shared::new(shapes::wall(8, 8)), Shared::new(shapes::torus(24, 12)));
+    let turns = [[0.0, 0.0], [0.0, 90.0], [0.0, 180.0], [0.0, 270.0], [90.0, 0.0], [-90.0, 0.0]];
+    for [x, y] in turns.map(|turn| turn.map(Angle::from_degrees)) {
+        let turn = Quat::from_rotation_y(y.to_radians() as f32) * Quat::from_rotation_x(x.to_radians() as f32);
+        // A wall faces the eye from 4 units away, and is a little larger than the room.
+        let id = scene.add(Object::new(Shared::clone(&wall)).at(turn * Vec3::new(0.0, 0.0, -4.0)).scaled(6.0));
+        scene[id].angles = [x, y, Angle::default()];
+        scene[id].materials[0].texture = Some(Shared::clone(&bricks));
+    }
+    for i in 0..100_u8 {
+        let (around, height) = (2.4 * f32::from(i), f32::from(i % 7) - 3.0);
+        let at = Quat::from_rotation_y(around) * Vec3::new(0.0, height, -1.5 - f32::from(i % 5) / 3.0);
+        scene.add(Object::new(Shared::clone(&torus)).at(at).scaled(0.3));
+    }
+    Ok(scene)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [name, frames, kernel, more @ ..] = words.as_slice() else {
@@ -94,6 +119,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = match name.parse::<shipped::Shipped>() {
         Ok(shipped) => shipped.load()?.scene,
         Err(_) if name == "sphere" => sphere(),
+        Err(_) if name == "level" => level()?,
         Err(_) => return Err("no such scene".into()),
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
@@ -107,6 +133,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut all, mut on) = (START, BTreeSet::new());
     for frame in 0..frames.parse::<u32>()? {
         scene.set_time(f64::from(frame) / rate.unwrap_or(35.0));
+        if name == "level" {
+            scene.camera.target = Quat::from_rotation_y(frame as f32) * Vec3::NEG_Z;
+        }
         if rate.is_some() && scene.motions.is_empty() {
             let around = scene.camera.eye - scene.camera.target;
             scene.camera.eye = scene.camera.target + Quat::from_rotation_y(0.5).mul_vec3(around);
