@@ -169,7 +169,7 @@ mod tests {
     use crate::scene::{Camera, Object};
     use crate::view::{Screen, View};
 
-    /// What is left of a face that is off the screen lies off the screen, however long its edges.
+    /// Clipping leaves no part of a face on the screen if the face is off it, however long its edges.
     #[test]
     fn faces_off_the_screen_stay_there() {
         let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(200_000));

@@ -29,8 +29,8 @@ fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurface
     drawn.expect("drawn");
 }
 
-/// Objects out of sight are not drawn, which changes no byte, whether they have just left or have just come: a renderer
-/// that is kept draws what a new one does that transforms everything.
+/// Leaving out objects that are out of sight changes no byte: a renderer that is kept draws the same frames as a new one
+/// that transforms every object.
 #[test]
 fn objects_leave_sight_and_come_back() {
     let mut random = Random::named("out of sight");
