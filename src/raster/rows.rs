@@ -455,7 +455,7 @@ const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
 /// Calls a part of the loop over triangles, inlined unless lanes are plain arrays.
 #[inline(always)]
 pub(super) fn part<S: Lanes8, R>(part: impl FnOnce() -> R) -> R {
-    if are_arrays::<S>() { apart(part) } else { part() }
+    if const { are_arrays::<S>() } { apart(part) } else { part() }
 }
 
 /// [`Shades8::append`].
