@@ -25,13 +25,17 @@ pub(super) fn parsed<T: FromStr + Copy>(word: &[u8], is_finite: fn(T) -> bool) -
 
 /// A word as shown in an error: on one line, and short, for words may be a megabyte long.
 pub(super) fn shown(word: &[u8]) -> String {
-    const MAX: usize = 40;
-    let text = String::from_utf8_lossy(&word[..word.len().min(MAX)]);
-    let mut shown = text.replace(char::is_control, "\u{FFFD}");
-    if word.len() > MAX {
+    shortened(word, 40)
+}
+
+/// The first `most` bytes of a text, on one line, with an ellipsis if there are more.
+pub(super) fn shortened(text: &[u8], most: usize) -> String {
+    let begin = String::from_utf8_lossy(&text[..text.len().min(most)]);
+    let mut shown = begin.replace(char::is_control, "\u{FFFD}");
+    if text.len() > most {
         shown.push('…');
     }
-    shown.to_owned()
+    shown
 }
 
 /// The bytes without the byte order mark that some editors put first.

@@ -153,6 +153,26 @@ fn every_container_gives_the_mesh_that_obj_gives() {
 }
 
 #[test]
+fn a_missing_buffer_is_named_on_one_short_line() {
+    let mut file = Gltf::default();
+    let position = file.floats(&TRIANGLE);
+    file.shown(&format!("\"POSITION\":{position}"), "");
+    let missing = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let long = "A".repeat(2_000);
+    for (uri, expected) in [
+        (String::from("gone.bin"), String::from("buffers[0]: folder/gone.bin: entity not found")),
+        (long.clone(), format!("buffers[0]: folder/{}…: entity not found", &long[..255])),
+        (String::from("a%0Ab"), String::from("buffers[0]: folder/a\u{FFFD}b: entity not found")),
+        // Not a file's name.
+        (format!("data:;base64{long}"), String::from("buffers[0]: a data URI without a comma")),
+    ] {
+        let json = file.json(&format!(",\"uri\":\"{uri}\""));
+        let error = model_file::parse(json.as_bytes(), "folder/a.gltf", missing, &Options::default()).unwrap_err();
+        assert_eq!(error.to_string(), format!("folder/a.gltf: {expected}"));
+    }
+}
+
+#[test]
 fn strips_fans_and_lists_without_indices() {
     let positions =
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.5, 2.0, 0.0], [2.0, 2.0, 1.0]];

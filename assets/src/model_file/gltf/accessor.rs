@@ -10,6 +10,8 @@ use base64::Engine;
 use base64::engine::general_purpose::GeneralPurpose;
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
 
+use crate::model_file::word::shortened;
+
 /// An image used by the file.
 pub(super) enum Image {
     /// The bytes of a picture file.
@@ -24,6 +26,9 @@ pub(super) struct Buffers {
     /// Each image: its bytes or its path.
     pub(super) images: Vec<Image>,
 }
+
+/// The most bytes of a file's name that an error shows; file systems allow no more.
+const MAX_NAME: usize = 255;
 
 /// The most rows of an accessor without a buffer, whose values are all 0.
 const MAX_ZEROS: usize = 1 << 16;
@@ -47,8 +52,9 @@ impl Buffers {
                 Source::Uri(uri) => match data(uri) {
                     Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?,
                     None => {
-                        let path = folder.join(decoded(uri));
-                        file(&path).map_err(|error| format!("{part}: {}: {error}", path.display()))?
+                        let name = decoded(uri);
+                        let shown = || folder.join(shortened(name.as_bytes(), MAX_NAME));
+                        file(&folder.join(&name)).map_err(|error| format!("{part}: {}: {error}", shown().display()))?
                     }
                 },
             };
@@ -166,7 +172,9 @@ fn row<const N: usize>(bytes: &[u8], kind: DataType, normalized: bool) -> [f64; 
 
 /// The bytes of a data URI; `None` for any other URI.
 fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
-    let (head, body) = uri.strip_prefix("data:")?.split_once(',')?;
+    let Some((head, body)) = uri.strip_prefix("data:")?.split_once(',') else {
+        return Some(Err(String::from("a data URI without a comma")));
+    };
     if !head.ends_with(";base64") {
         return Some(Ok(decoded_bytes(body)));
     }
