@@ -188,7 +188,8 @@ pub fn load_with(
     for surface in loaded.mesh.surfaces_mut() {
         let is_missing = |texture: &mut String| !loaded.textures.contains_key(texture) && !Path::new(texture).is_file();
         if let Some(texture) = surface.texture.take_if(is_missing) {
-            let name = if surface.name.is_empty() { String::new() } else { format!(" {}", surface.name) };
+            let name =
+                if surface.name.is_empty() { String::new() } else { format!(" {}", word::shown_name(&surface.name)) };
             warnings.push(|| format!("{texture}: no such texture; the material{name} is drawn without it"));
         }
     }

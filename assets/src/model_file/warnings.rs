@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Warnings, of which the first [`MAX`](Self::MAX) are stored and the others counted: a file may cause one in every
-/// line, and each contains a path as long as the file likes.
+/// line.
 #[derive(Default)]
 pub(crate) struct Warnings {
     kept: Vec<String>,

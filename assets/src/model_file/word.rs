@@ -28,8 +28,13 @@ pub(super) fn shown(word: &[u8]) -> String {
     shortened(word, 40)
 }
 
+/// A name or a path as shown in an error or a warning: on one line, with at most the 255 bytes that a file's name may have.
+pub(super) fn shown_name(name: &str) -> String {
+    shortened(name.as_bytes(), 255)
+}
+
 /// The first `most` bytes of a text, on one line, with an ellipsis if there are more.
-pub(super) fn shortened(text: &[u8], most: usize) -> String {
+fn shortened(text: &[u8], most: usize) -> String {
     let begin = String::from_utf8_lossy(&text[..text.len().min(most)]);
     let mut shown = begin.replace(char::is_control, "\u{FFFD}");
     if text.len() > most {

@@ -645,6 +645,14 @@ fn missing_files_are_one_warning() {
 
     let Loaded { warnings, .. } = parse(format!("{TRIANGLE}usemtl x\nf 1 2 3\nusemtl x\nf 1 2 3\n")).unwrap();
     assert_eq!(warnings, ["model.obj:4: there is no material x; it is white and matt"]);
+
+    // Long names are shortened.
+    let long = "A".repeat(100_000);
+    let shown = &long[..255];
+    let Loaded { warnings, .. } = parse(format!("{TRIANGLE}usemtl {long}\nf 1 2 3\n")).unwrap();
+    assert_eq!(warnings, [format!("model.obj:4: there is no material {shown}…; it is white and matt")]);
+    let Loaded { warnings, .. } = parse(format!("mtllib {long}\n{TRIANGLE}f 1 2 3\n")).unwrap();
+    assert!(warnings[0].starts_with(&format!("model.obj:1: cannot read {shown}… (")), "{warnings:?}");
 }
 
 /// `Ns` 0, or none, means no highlight; a note says so once if there is a `Ks`.

@@ -10,7 +10,7 @@ use base64::Engine;
 use base64::engine::general_purpose::GeneralPurpose;
 use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
 
-use crate::model_file::word::shortened;
+use crate::model_file::word::shown_name;
 
 /// An image used by the file.
 pub(super) enum Image {
@@ -26,9 +26,6 @@ pub(super) struct Buffers {
     /// Each image: its bytes or its path.
     pub(super) images: Vec<Image>,
 }
-
-/// The most bytes of a file's name that an error shows; file systems allow no more.
-const MAX_NAME: usize = 255;
 
 /// The most rows of an accessor without a buffer, whose values are all 0.
 const MAX_ZEROS: usize = 1 << 16;
@@ -53,7 +50,7 @@ impl Buffers {
                     Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?,
                     None => {
                         let name = decoded(uri);
-                        let shown = || folder.join(shortened(name.as_bytes(), MAX_NAME));
+                        let shown = || folder.join(shown_name(&name));
                         file(&folder.join(&name)).map_err(|error| format!("{part}: {}: {error}", shown().display()))?
                     }
                 },

@@ -10,7 +10,7 @@ use mode13h::mesh::Surface;
 use super::line::{Lines, keyword, number, numbers};
 use super::statement::Statements;
 use crate::model_file::warnings::{LeftOut, Warnings};
-use crate::model_file::word::{name, words};
+use crate::model_file::word::{name, shown_name, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
 /// The surfaces for `model.names`, in their order.
@@ -45,7 +45,8 @@ pub(super) fn surfaces(
                 all_read = false;
                 let path = path.display();
                 warnings.push(|| {
-                    format!("{path}:{line}: cannot read {text} ({error}); materials are white and matt") //
+                    let name = shown_name(text);
+                    format!("{path}:{line}: cannot read {name} ({error}); materials are white and matt")
                 });
             }
         }
@@ -56,7 +57,9 @@ pub(super) fn surfaces(
             // A missing file has already been reported.
             if all_read && !name.is_empty() {
                 let path = path.display();
-                warnings.push(|| format!("{path}:{line}: there is no material {name}; it is white and matt"));
+                warnings.push(|| {
+                    format!("{path}:{line}: there is no material {}; it is white and matt", shown_name(name)) //
+                });
             }
             Surface { name: name.clone(), ..Surface::default() }
         }));
