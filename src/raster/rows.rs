@@ -452,7 +452,8 @@ const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
 }
 
-/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays.
+/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that the
+/// call is not compiled for the other levels.
 #[inline(always)]
 pub(super) fn part<S: Lanes8, R>(part: impl FnOnce() -> R) -> R {
     if const { are_arrays::<S>() } { apart(part) } else { part() }
