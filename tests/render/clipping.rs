@@ -2,50 +2,26 @@
 
 mod far;
 
-use crate::floor::{HEIGHT, WIDTH, counts_by, floor, scene};
-use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
+use crate::floor::{HEIGHT, WIDTH, counts_by, scene};
+use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
 use crate::support::tried::Tried;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Frame, Vertex};
-use mode13h::render::{Renderer, Screen, Stats};
-use mode13h::scene::Scene;
+use mode13h::render::{Renderer, Screen};
 use mode13h::settings::{HiddenSurfaces, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-/// How often each pixel is covered.
-fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
-    counts_by(&mut Renderer::new(), scene)
-}
-
 #[test]
 fn r7_a_floor_of_any_size_is_closed_to_the_horizon() {
-    let mut tried = Tried::new("r7_a_floor_of_any_size_is_closed_to_the_horizon", 36);
-    for reach in [1e4_f32, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0] {
-        for n in [1, 2, 3, 5, 8, 13] {
-            // The far edge is projected fy / reach below the horizon: less than half a pixel. So exactly the rows from
-            // the horizon down, 100 to 199, are all floor. (The floor begins under the eye, and the picture's lower
-            // edge is much nearer than the far edge.)
-            let (counts, stats) = counts(&scene(floor(reach, n)));
-            for (place, &times) in counts.iter().enumerate() {
-                let inside = place / WIDTH >= HEIGHT / 2;
-                assert_eq!(
-                    times,
-                    u32::from(inside),
-                    "({}, {}) of a floor of {reach:e}, {n} squares a side",
-                    place % WIDTH,
-                    place / WIDTH
-                );
-            }
-            assert!(stats.clipped > 0, "{stats}");
-            tried.add(1);
-        }
-    }
+    let tried = Tried::new("r7_a_floor_of_any_size_is_closed_to_the_horizon", 36);
+    let reaches = [1e4, 1e6, 1e12, 1e20, 1e30, f32::MAX / 2.0];
+    floors_are_closed(tried, VertexPath::Float, &reaches, &[1, 2, 3, 5, 8, 13]);
 }
 
 #[test]
@@ -148,99 +124,24 @@ fn c3_what_is_very_far_is_drawn() {
 
 #[test]
 fn c1_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    corners_about_the_near_plane(Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000));
+    corners_about_the_near_plane(
+        Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000),
+        VertexPath::Float,
+    );
 }
 
 #[test]
 #[ignore = "the long run: a million faces through the near plane"]
 fn c1_long_a_million_faces_through_the_near_plane() {
-    corners_about_the_near_plane(Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000));
-}
-
-fn corners_about_the_near_plane(mut tried: Tried) {
-    let mut random = Random::named("c1");
-    let (mut drawn, mut hidden, mut cuts) = (0_u64, 0_u64, 0_u64);
-    while tried.more() {
-        let mut corner = || {
-            let z = random.one_of(&[-0.25, -0.0, 0.0, 0.25, 1.0, -1.0, -0.250_000_03, -0.249_999_99, -5.0]);
-            Vec3::new(random.unit() as f32 * 4.0 - 2.0, random.unit() as f32 * 4.0 - 2.0, z)
-        };
-        let corners = [corner(), corner(), corner()];
-        let visible = corners.iter().any(|p| -p.z >= 0.25);
-        let intensities = [0; 3].map(|_| random.unit());
-        let normals = intensities.map(normal).to_vec();
-        let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
-        let scene = lit(scene(mesh));
-        let (counts, _) = counts(&scene);
-        let (once, twice) = counts.iter().fold((0, 0), |(once, twice), &times| match times {
-            0 => (once, twice),
-            1 => (once + 1, twice),
-            _ => (once, twice + 1),
-        });
-        let out_of_sight = if visible { 0 } else { once + twice };
-        tried.worst("double pixels", f64::from(twice));
-        tried.worst("pixels out of sight", f64::from(out_of_sight));
-        assert_eq!(out_of_sight, 0, "nothing of {corners:?} is in sight");
-        assert_eq!(twice, 0, "{corners:?} is cut into parts that overlap");
-        drawn += u64::from(once > 0);
-        hidden += u64::from(!visible);
-        cuts += cuts_on_the_near_plane(&mut Renderer::new(), &scene, corners, intensities, 1.0);
-    }
-    let stated = tried.stated();
-    tried.worst("faces in sight", drawn as f64);
-    tried.worst("cuts with their shades", cuts as f64);
-    // Of the nine distances three are beyond the near plane and one is on it. With the three alone 19 of 27 faces have
-    // a corner in sight, and at least half of those show something on the screen.
-    assert!(drawn * 4 > stated && hidden * 10 > stated, "of {stated} faces {drawn} in sight, {hidden} before the eye");
-    assert!(cuts * 4 > stated, "{cuts} cuts");
+    corners_about_the_near_plane(
+        Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000),
+        VertexPath::Float,
+    );
 }
 
 #[test]
 fn c1_the_visible_part_is_what_a_ray_hits() {
-    let mut tried = Tried::new("c1_the_visible_part_is_what_a_ray_hits", 300);
-    let mut random = Random::named("c1 rays");
-    let fy = 100.0 / f64::tan(0.5);
-    let fx = fy * 6.0 / 5.0;
-    let mut hits = 0;
-    while tried.more() {
-        // In front of the eye, behind it, to the sides; also beyond the guard band.
-        let size = f64::from(random.log_uniform(10) as u32);
-        let mut corner = || [0; 3].map(|_| (random.unit() * 2.0 - 1.0) * size).map(|c| f64::from(c as f32));
-        let [a, b, c] = [corner(), corner(), corner()];
-        let narrow = |p: [f64; 3]| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32);
-        let Ok(mesh) = Mesh::new(vec![narrow(a), narrow(b), narrow(c)], vec![[0, 1, 2]]) else { continue };
-        let (counts, _) = counts(&scene(mesh));
-        for y in 0..HEIGHT {
-            for x in 0..WIDTH {
-                let centre = (x as f64 + 0.5, y as f64 + 0.5);
-                let ray = |dx: f64, dy: f64| [(centre.0 + dx - 160.0) / fx, -(centre.1 + dy - 100.0) / fy, -1.0];
-                // Within 1/64 pixel of an edge rounding may decide: vertices are rounded by half of 1/256 both ways, an
-                // f32 vertex is off by less than that, and a cut by 1/128.
-                let near_edge = |dx: f64, dy: f64| hit(a, b, c, ray(dx, dy));
-                let middle = near_edge(0.0, 0.0);
-                let e = 1.0 / 64.0;
-                if [(e, e), (e, -e), (-e, e), (-e, -e)].iter().any(|&(dx, dy)| near_edge(dx, dy) != middle) {
-                    continue;
-                }
-                assert_eq!(counts[y * WIDTH + x], u32::from(middle), "({x}, {y}) of {a:?} {b:?} {c:?}");
-                hits += u32::from(middle);
-            }
-        }
-    }
-    assert!(hits > 100_000, "faces were hit: {hits}");
-}
-
-/// Returns whether the ray from the origin hits the triangle beyond the near plane. `ray`'s z is −1, so its parameter
-/// is the distance along the view.
-fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
-    let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let cross =
-        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let (u, v, w) = (dot(ray, cross(a, b)), dot(ray, cross(b, c)), dot(ray, cross(c, a)));
-    let normal = cross(sub(b, a), sub(c, a));
-    let along = dot(normal, a) / dot(normal, ray);
-    ((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)) && along > 0.25
+    the_visible_part_is_hit(Tried::new("c1_the_visible_part_is_what_a_ray_hits", 300), VertexPath::Float);
 }
 
 #[test]

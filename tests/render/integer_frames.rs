@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::floor::{HEIGHT, WIDTH, counts_by, floor, scene};
-use crate::support::near_plane::{cuts_on_the_near_plane, lit, normal};
+use crate::floor::{HEIGHT, WIDTH};
+use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
 use crate::support::tried::Tried;
 use mode13h::Angle;
@@ -335,105 +335,24 @@ fn r8_bands_on_the_integer_path_give_the_bytes_of_the_whole() {
 
 // ------------------------------------------------------------------ clipping
 
-/// How often each pixel is covered.
-fn counts(scene: &Scene) -> (Vec<u32>, Stats) {
-    counts_by(&mut renderer(VertexPath::Integer), scene)
-}
-
 #[test]
 fn r7_a_floor_on_the_integer_path_is_closed_to_the_horizon() {
-    let mut tried = Tried::new("r7_a_floor_on_the_integer_path_is_closed_to_the_horizon", 20);
-    for reach in [500.0_f32, 2e3, 1e4, 3e4, 6e4] {
-        for n in [1, 2, 3, 8] {
-            // The far edge is projected fy / reach below the horizon: less than half a pixel.
-            let (counts, stats) = counts(&scene(floor(reach, n)));
-            for (place, &times) in counts.iter().enumerate() {
-                let inside = place / WIDTH >= HEIGHT / 2;
-                let at = (place % WIDTH, place / WIDTH);
-                assert_eq!(times, u32::from(inside), "{at:?} of a floor of {reach:e}, {n} squares a side");
-            }
-            assert!(stats.clipped > 0, "{stats}");
-            tried.add(1);
-        }
-    }
+    let tried = Tried::new("r7_a_floor_on_the_integer_path_is_closed_to_the_horizon", 20);
+    floors_are_closed(tried, VertexPath::Integer, &[500.0, 2e3, 1e4, 3e4, 6e4], &[1, 2, 3, 8]);
 }
 
 #[test]
 fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    let mut tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
-    let mut random = Random::named("c1 integer");
-    let (mut drawn, mut cuts) = (0_u64, 0_u64);
-    while tried.more() {
-        let mut corner = || {
-            let z = random.one_of(&[-0.25, -0.0, 0.0, 0.25, 1.0, -1.0, -0.250_000_03, -0.249_999_99, -5.0]);
-            Vec3::new(random.unit() as f32 * 4.0 - 2.0, random.unit() as f32 * 4.0 - 2.0, z)
-        };
-        let corners = [corner(), corner(), corner()];
-        // In 16.16 a corner slightly nearer than the near plane may lie on it.
-        let visible = corners.iter().any(|p| -p.z >= 0.249_999);
-        let intensities = [0; 3].map(|_| random.unit());
-        let normals = intensities.map(normal).to_vec();
-        let Ok(mesh) = Mesh::with_normals(corners.to_vec(), normals, vec![[0, 1, 2]]) else { panic!("{corners:?}") };
-        let scene = lit(scene(mesh));
-        let (counts, _) = counts(&scene);
-        // Normals and cosines are in 16.16: each is off by one or two units, which is as many 256ths of a shade.
-        let renderer = &mut renderer(VertexPath::Integer);
-        cuts += cuts_on_the_near_plane(renderer, &scene, corners, intensities, 6.0);
-        assert!(visible || counts.iter().all(|&times| times == 0), "nothing of {corners:?} is in sight");
-        assert!(counts.iter().all(|&times| times <= 1), "{corners:?} is cut into parts that overlap");
-        drawn += u64::from(counts.contains(&1));
-    }
-    tried.worst("faces in sight", drawn as f64);
-    tried.worst("cuts with their shades", cuts as f64);
-    let stated = tried.stated();
-    assert!(drawn * 4 > stated && cuts * 4 > stated, "{drawn} of {stated} in sight, {cuts} cuts");
+    corners_about_the_near_plane(
+        Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000),
+        VertexPath::Integer,
+    );
 }
 
 #[test]
 fn c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits() {
-    let mut tried = Tried::new("c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits", 200);
-    let mut random = Random::named("c1 integer rays");
-    let fy = 100.0 / f64::tan(0.5);
-    let fx = fy * 6.0 / 5.0;
-    let mut hits = 0;
-    while tried.more() {
-        let size = f64::from(random.log_uniform(10) as u32);
-        let mut corner = || [0; 3].map(|_| (random.unit() * 2.0 - 1.0) * size).map(|c| f64::from(c as f32));
-        let [a, b, c] = [corner(), corner(), corner()];
-        let narrow = |p: [f64; 3]| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32);
-        let Ok(mesh) = Mesh::new(vec![narrow(a), narrow(b), narrow(c)], vec![[0, 1, 2]]) else { continue };
-        let (counts, _) = counts(&scene(mesh));
-        for y in 0..HEIGHT {
-            for x in 0..WIDTH {
-                let ray =
-                    |dx: f64, dy: f64| [(x as f64 + 0.5 + dx - 160.0) / fx, -(y as f64 + 0.5 + dy - 100.0) / fy, -1.0];
-                // Within 1/64 pixel of an edge rounding may decide: vertices and cuts are rounded by half of 1/256. The
-                // matrix is exact here, and vertices have 30 bits: near the eye, at 1/4 of up to 1,024 units, 2⁻¹⁹ of
-                // the distance, which is 2⁻¹⁰ pixel.
-                let middle = hit(a, b, c, ray(0.0, 0.0));
-                let e = 1.0 / 64.0;
-                if [(e, e), (e, -e), (-e, e), (-e, -e)].iter().any(|&(dx, dy)| hit(a, b, c, ray(dx, dy)) != middle) {
-                    continue;
-                }
-                assert_eq!(counts[y * WIDTH + x], u32::from(middle), "({x}, {y}) of {a:?} {b:?} {c:?}");
-                hits += u32::from(middle);
-            }
-        }
-    }
-    assert!(hits > 100_000, "faces were hit: {hits}");
-}
-
-/// Returns whether the ray from the origin hits the triangle beyond the near plane. `ray`'s z is −1, so its parameter
-/// is the distance along the view.
-fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
-    let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let cross =
-        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-    let (u, v, w) = (dot(ray, cross(a, b)), dot(ray, cross(b, c)), dot(ray, cross(c, a)));
-    let normal = cross(sub(b, a), sub(c, a));
-    let along = dot(normal, a) / dot(normal, ray);
-    ((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)) && along > 0.25
+    let tried = Tried::new("c1_on_the_integer_path_the_visible_part_is_what_a_ray_hits", 200);
+    the_visible_part_is_hit(tried, VertexPath::Integer);
 }
 
 // ------------------------------------------------------------------ what is refused

@@ -20,6 +20,8 @@ mod integer_frames;
 #[cfg(feature = "alloc")]
 mod integer_path;
 #[cfg(feature = "alloc")]
+mod near_plane;
+#[cfg(feature = "alloc")]
 mod objects;
 mod on_screen;
 #[cfg(feature = "alloc")]

@@ -7,7 +7,6 @@ pub mod golden;
 #[cfg(feature = "alloc")]
 pub mod judged;
 #[cfg(feature = "alloc")]
-pub mod near_plane;
 #[cfg(feature = "alloc")]
 pub mod odd_views;
 pub mod property;

@@ -6,8 +6,8 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::settings::Shading;
 
 use super::scene;
+use crate::near_plane::{lit, normal};
 use crate::support::judged::judged;
-use crate::support::near_plane::{lit, normal};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
 
