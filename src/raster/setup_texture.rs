@@ -244,6 +244,13 @@ fn doubled<S: Lanes8>(s: S, u: S::F64, v: S::F64) -> S::F64 {
     s.add(s.add(u, v), s.max(u, v))
 }
 
+/// The least n for which a quotient, at least 0, is at most 2ⁿ, from its exponent; 0 for those up to 1.
+#[inline(always)]
+fn level_of<S: Lanes8>(s: S, quotient: S::F64) -> S::I32 {
+    let [_, upper] = s.halves_of_i64(s.add_i64(s.bits(quotient), s.splat_i64((1 << 52) - 1)));
+    s.max_i32(s.sub_i32(s.shr_i32(upper, 20), s.splat_i32(1_023)), s.splat_i32(0))
+}
+
 /// Coordinates that are linear on the face, of eight triangles: numerators and divisor are sums over the corners of weights
 /// times values.
 #[derive(Clone, Debug)]
@@ -264,6 +271,8 @@ pub(super) struct PerspectivePlanes8 {
     row_step: [Floats; 3],
     /// A bit for each triangle whose levels may be estimated, see [`level`](Self::level).
     fits_levels: u32,
+    /// The level of each triangle that has a single one, otherwise −1.
+    single_level: Ints,
 }
 
 impl PerspectivePlanes8 {
@@ -276,6 +285,7 @@ impl PerspectivePlanes8 {
         single_step: [[0.0; LANES]; 3],
         row_step: [[0.0; LANES]; 3],
         fits_levels: 0,
+        single_level: [-1; LANES],
     };
 
     #[inline(always)]
@@ -285,7 +295,7 @@ impl PerspectivePlanes8 {
         basis: &Basis<S>,
         corners: &Corners8,
         coordinates: &[[Ints; 3]; 2],
-        has_levels: bool,
+        last: Option<u32>,
     ) {
         let [depth_a, depth_b, depth_c] = &corners.depth;
         let depth = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
@@ -318,8 +328,9 @@ impl PerspectivePlanes8 {
             let step = &*step;
             self.single_step[i] = each!(lane => step[lane] as f32);
         }
-        if has_levels {
+        if let Some(last) = last {
             self.set_up_levels(s, (range, basis.area), ends);
+            self.set_up_single_levels(s, basis.area, ends, last);
         }
     }
 
@@ -391,6 +402,62 @@ impl PerspectivePlanes8 {
         self.fits_levels = s.to_bitmask(s.and(is_accurate, s.is_less(s.splat_f64(65_536.0), least)));
     }
 
+    /// Finds the triangles all of whose pixels have the same level, up to the last: bounds of the quotient of
+    /// [`level`](Self::level) over a whole triangle.
+    ///
+    /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This is linear on
+    /// the triangle, as is the same by rows, and D is. So each lies between the values at the corners, and G / D² between
+    /// the least G over the greatest D² and the greatest G over the least D².
+    ///
+    /// With depths that differ by a factor of at most 2, D² is at most 4 times the square of any D: G, which is off by less
+    /// than 1.2 · D², and the square of the depth are off by 2⁻¹⁴ of themselves where the level is above 0.
+    #[inline(always)]
+    fn set_up_single_levels<S: Lanes8>(&mut self, s: S, area: S::F64, [least, greatest]: [S::F64; 2], last: u32) {
+        let [shortest_across, longest_across] = self.steps_of_corners(s, &self.step);
+        let [shortest_down, longest_down] = self.steps_of_corners(s, &self.row_step);
+        let unit = s.mul(area, s.splat_f64(185_344.0));
+        let off = 1.0 / 8_192.0;
+        let (low, high) = (s.mul(unit, s.mul(greatest, greatest)), s.mul(unit, s.mul(least, least)));
+        let low = s.div(s.mul(s.max(shortest_across, shortest_down), s.splat_f64(1.0 - off)), low);
+        let high = s.div(s.mul(s.max(longest_across, longest_down), s.splat_f64(1.0 + off)), high);
+        // At most 8.
+        let last = s.splat_i32(last as i32);
+        let (low, high) = (s.min_i32(level_of(s, low), last), s.min_i32(level_of(s, high), last));
+        let is_single = s.and_not(s.is_equal(low, high), s.is_less(s.add(least, least), greatest));
+        // Eight bits.
+        let is_single = s.and(is_single, s.mask_from_bits((self.fits_levels & 0xFF) as u8));
+        s.store_i32(s.select_i32(is_single, low, s.splat_i32(-1)), &mut self.single_level);
+    }
+
+    /// Bounds of twice the length of a step, given the changes of the sums: the least and the greatest, times the square of
+    /// the depth.
+    #[inline(always)]
+    fn steps_of_corners<S: Lanes8>(&self, s: S, steps: &[Floats; 3]) -> [S::F64; 2] {
+        let zero = s.splat_f64(0.0);
+        let (mut shortest, mut longest) = ([zero; 2], [zero; 2]);
+        for i in 0..2 {
+            let (step, of_depth) = (s.load_f64(&steps[i]), s.load_f64(&steps[2]));
+            let mut corners = [zero; 3];
+            for (corner, values) in corners.iter_mut().zip(&self.values) {
+                let (value, depth) = (s.load_f64(&values[i]), s.load_f64(&values[2]));
+                *corner = s.neg_mul_add(value, of_depth, s.mul(step, depth));
+            }
+            let [a, b, c] = corners;
+            let (least, greatest) = (s.min(s.min(a, b), c), s.max(s.max(a, b), c));
+            let negative = s.sub(zero, least);
+            longest[i] = s.max(greatest, negative);
+            // 0 if signs differ.
+            shortest[i] = s.max(s.max(least, s.sub(zero, greatest)), zero);
+        }
+        [doubled(s, shortest[0], shortest[1]), doubled(s, longest[0], longest[1])]
+    }
+
+    /// The level of all pixels of triangle `lane`, if it has only one.
+    #[inline(always)]
+    pub(super) fn single_level(&self, lane: usize) -> Option<u32> {
+        u32::try_from(self.single_level[lane % LANES]).ok()
+    }
+
     /// The level of a texture at pixel `k` of a span of triangle `lane`, from the sums at its first, or `None` where an
     /// estimate cannot decide.
     ///
@@ -434,7 +501,7 @@ impl PerspectivePlanes8 {
         for i in 0..3 {
             (self.step[i][0], self.row_step[i][0]) = (steps[i], row_steps[i]);
         }
-        (self.base, self.fits) = ([[0; LANES]; 2], 0);
+        (self.base, self.fits, self.single_level[0]) = ([[0; LANES]; 2], 0, -1);
         // As in `set_up_levels`.
         let greatest_of = |most: u32, coordinate: &i32| most.max(coordinate.unsigned_abs());
         let q = f64::from(coordinates.as_flattened().iter().fold(0, greatest_of)) + 65_536.0;

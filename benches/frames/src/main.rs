@@ -1,8 +1,9 @@
 //! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects
 //! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces; `level` is a room with 100
-//! objects, seen from inside; `list` is a list of small triangles for the rasterizer, without a scene. A fourth argument is an error budget
-//! in shades, or a shading. A fifth one replaces the 35 frames per second; the camera then orbits a
-//! scene that does not move by itself.
+//! objects, seen from inside; `mipmaps` is a turning torus with an image finer than the screen, in perspective,
+//! `textured` the same without mipmaps; `list` is a list of small triangles for the rasterizer, without a scene. A fourth argument is an
+//! error budget in shades, or a shading. A fifth one replaces the 35 frames per second; the camera then orbits a scene
+//! that does not move by itself.
 //!
 //!     cargo run --release -p frames -- fog 35 portable
 //!
@@ -13,14 +14,15 @@ use std::collections::BTreeSet;
 use std::error::Error;
 
 use mode13h::Angle;
-use mode13h::glam::{Quat, Vec3};
+use mode13h::glam::{Quat, Vec2, Vec3};
 use mode13h::light::Light;
 use mode13h::mesh::shapes;
+use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Raster, RasterError, Vertex};
 use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::{Motion, Object, Scene, Shared};
-use mode13h::settings::{Accuracy, Shading};
+use mode13h::settings::{Accuracy, Mapping, Shading};
 use mode13h::span::Kernel;
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
@@ -78,6 +80,24 @@ fn sphere() -> Scene {
     scene
 }
 
+/// A torus with an image finer than the screen, in perspective.
+fn textured(mipmaps: bool) -> Result<Scene, Box<dyn Error>> {
+    let mut scene = Scene::new();
+    (scene.settings.mapping, scene.settings.mipmaps) = (Some(Mapping::Perspective), Some(mipmaps));
+    let pixels: Vec<Rgb> = (0..=255_u8)
+        .flat_map(|y| (0..=255_u8).map(move |x| Rgb::new((x ^ y).wrapping_mul(3), x | 15, y | 15)))
+        .collect();
+    let torus = shapes::torus(48, 24);
+    let places = torus.positions().iter().map(|at| Vec2::new(at.x + 0.3 * at.z, at.y)).collect();
+    let mut torus = Object::new(torus.with_texcoords(places)?);
+    torus.materials[0].texture = Some(Texture::from_rgb(256, 256, &pixels)?.into());
+    let object = scene.add(torus);
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let start = [1.0, 0.0, 0.1].map(Angle::from_radians);
+    scene.motions.push(Motion::Spin { object, start, turns: [0.0, 0.1, 0.0] });
+    Ok(scene)
+}
+
 /// A room with textured walls and floors, and small objects all around the eye, most of them out of sight.
 fn level() -> Result<Scene, Box<dyn Error>> {
     let mut scene = Scene::new();
@@ -120,6 +140,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(shipped) => shipped.load()?.scene,
         Err(_) if name == "sphere" => sphere(),
         Err(_) if name == "level" => level()?,
+        Err(_) if name == "mipmaps" || name == "textured" => textured(name == "mipmaps")?,
         Err(_) => return Err("no such scene".into()),
     };
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());

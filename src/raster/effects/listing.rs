@@ -572,7 +572,7 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
                         }
                     }
                 }
-                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.last_level.is_some()),
+                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.last_level),
             }
         }
         for (planes, value) in planes.values.iter_mut().zip(wanted.values) {

@@ -141,8 +141,8 @@ impl<'a> Image<'a> {
     pub(super) fn all(self) -> [Texels<'a>; LEVELS] {
         let mut all = [self.texels; LEVELS];
         if let Some(levels) = self.levels {
-            for level in 1..=levels.last() {
-                all[level as usize % LEVELS] = levels.get(level).unwrap_or(self.texels);
+            for (level, texels) in all[1..].iter_mut().zip(levels.iter()) {
+                *level = texels;
             }
         }
         all

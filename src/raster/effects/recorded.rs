@@ -31,6 +31,8 @@ pub(super) struct Recorded {
     pub(super) depth: [i64; 2],
     /// Levels of some pixels, if the image has any: as found for eight triangles, and as defined.
     pub(super) levels: Vec<(Option<AffineLevel>, AffineLevel)>,
+    /// The level of all of the face's pixels, if it is linear on the face and has only one.
+    pub(super) single_level: Option<u32>,
 }
 
 /// The levels of span `i`, the last being `last`.
@@ -105,6 +107,10 @@ impl Shades8 for Recorder<'_> {
                     singles: spans.fits_singles(i).then(|| spans.singles(i)),
                     depth: spans.depth(i).1.map(|z| z >> 8),
                     levels: listed.levels().map_or_else(Vec::new, |(mapping, last)| levels(&spans, i, mapping, last)),
+                    single_level: match listed.levels() {
+                        None | Some((Some(Mapping::Affine), _)) => None,
+                        Some(_) => spans.single_level(i),
+                    },
                 });
             }
             first += spans.count();

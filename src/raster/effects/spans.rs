@@ -211,6 +211,13 @@ impl<'a> Spans<'a> {
         planes.perspective.sums(lane, self.listed.sums(self.first + i))
     }
 
+    /// The level of the image in the face of span `i`, whose texture is linear on it, if it has only one.
+    #[inline(always)]
+    pub(super) fn single_level(&self, i: usize) -> Option<u32> {
+        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        planes.perspective.single_level(lane)
+    }
+
     /// The level of the image at pixel `k` of span `i`, whose texture is linear on the face, if an
     /// estimate decides it.
     #[inline(always)]

@@ -205,8 +205,8 @@ pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
 
 /// Computes indices of texels in vectors.
 #[derive(Clone, Copy)]
-pub(super) struct PlaceLanes<S: Lanes8> {
-    pub(super) s: S,
+pub(crate) struct PlaceLanes<S: Lanes8> {
+    pub(crate) s: S,
     columns: S::I32,
     rows: S::I32,
     width: S::I32,
@@ -217,7 +217,7 @@ pub(super) struct PlaceLanes<S: Lanes8> {
 impl<S: Lanes8> PlaceLanes<S> {
     /// Indices in a level of an image, of coordinates in level 0.
     #[inline(always)]
-    pub(super) fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
+    pub(crate) fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
         let columns = (1 << texels.ubits) - 1;
         let rows = ((1 << texels.vbits) - 1) << texels.ubits;
         let bits = 16 + level.cast_signed();
@@ -255,7 +255,8 @@ pub(crate) struct AffineAlong<S: Lanes8> {
 impl<S: Lanes8> AffineAlong<S> {
     /// The texels from (`u`, `v`) on, with the change per pixel.
     #[inline(always)]
-    pub(crate) fn new(s: S, texels: Texels<'_>, [[u, v], [du, dv]]: [[u32; 2]; 2]) -> Self {
+    pub(crate) fn new(places: PlaceLanes<S>, texels: Texels<'_>, [[u, v], [du, dv]]: [[u32; 2]; 2]) -> Self {
+        let s = places.s;
         let along = |first: u32, step: u32| {
             let (first, step) = (first.cast_signed(), step.cast_signed());
             let at = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
@@ -263,7 +264,7 @@ impl<S: Lanes8> AffineAlong<S> {
         };
         let (u, du) = along(u, du);
         let (v, dv) = along(v << texels.ubits, dv << texels.ubits);
-        Self { places: PlaceLanes::of_level(s, (texels, 0)), at: [u, v], step: [du, dv] }
+        Self { places, at: [u, v], step: [du, dv] }
     }
 }
 

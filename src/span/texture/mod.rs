@@ -23,8 +23,8 @@ use core::fmt;
 
 #[cfg(feature = "alloc")]
 pub(crate) use self::along::{
-    AffineAlong, FOUR, FirstPlace, LevelTexels, PlacesAlong, affine_pair, show_along, show_block, show_masked,
-    show_pair,
+    AffineAlong, FOUR, FirstPlace, LevelTexels, PlaceLanes, PlacesAlong, affine_pair, show_along, show_block,
+    show_masked, show_pair,
 };
 #[cfg(feature = "alloc")]
 pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along, singles_pair};
@@ -158,13 +158,19 @@ impl<'a> Levels<'a> {
     /// The texels of a level from 1 to the last. A higher level gives the last one, level 0 `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
-        let level = level.min(self.last());
-        let bits = |level: u32| (self.ubits.saturating_sub(level), self.vbits.saturating_sub(level));
-        let length = |(ubits, vbits): (u32, u32)| 1 << (ubits + vbits);
-        let first: usize = (1..level).map(|before| length(bits(before))).sum();
-        let (ubits, vbits) = bits(level);
-        let bytes = self.bytes.get(first..first + length((ubits, vbits)))?;
-        if level == 0 { None } else { Some(Texels { bytes, ubits, vbits }) }
+        // At most 7.
+        self.iter().nth(level.min(self.last()).checked_sub(1)? as usize)
+    }
+
+    /// The texels of all levels from 1 on.
+    pub(crate) fn iter(self) -> impl Iterator<Item = Texels<'a>> {
+        let mut rest = self.bytes;
+        (1..=self.last()).map_while(move |level| {
+            let (ubits, vbits) = (self.ubits.saturating_sub(level), self.vbits.saturating_sub(level));
+            let (bytes, behind) = rest.split_at_checked(1 << (ubits + vbits))?;
+            rest = behind;
+            Some(Texels { bytes, ubits, vbits })
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Texels in exact perspective: coordinates are quotients, in f32, f64 or integers, whichever decides first.
 
 use super::Texels;
-use super::along::{LevelTexels, PlaceLanes, PlacesAlong, show_along};
+use super::along::{PlaceLanes, PlacesAlong, show_along};
 use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8};
@@ -88,7 +88,7 @@ fn fill_perspective_estimated(
                 *place = exact_place(texels, [u, v], d) as i32;
             }
         };
-        let places = perspective_along(BASELINE, (texels, 0), sums, (0, n), exact);
+        let places = perspective_along(PlaceLanes::of_level(BASELINE, (texels, 0)), sums, (0, n), exact);
         show_along(BASELINE, (piece, n), texels, ((), &mut ()), places);
     }
 }
@@ -118,14 +118,14 @@ impl PerspectiveSums<f64> {
 /// eight texels, from the one with this number on.
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
-    s: S,
-    texels: LevelTexels<'_>,
+    places: PlaceLanes<S>,
     sums: PerspectiveSums<f64>,
     range: (usize, usize),
     exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl PlacesAlong<S> {
     let sums = if HAS_F64 { sums } else { PerspectiveSums::NONE };
-    let mut quotients = Quotients::new(s, texels, &sums, range.1);
+    let s = places.s;
+    let mut quotients = Quotients::new(places, &sums, range.1);
     quotients.are_sure &= HAS_F64;
     // At most 64.
     let numbers = s.add_i32(s.splat_i32(range.0 as i32), s.load_i32(&NUMBERS));
@@ -135,14 +135,13 @@ pub(crate) fn perspective_along<S: Lanes8>(
 /// [`perspective_along`] by quotients in f32, where [`fits_singles`] allows them.
 #[inline(always)]
 pub(crate) fn singles_along<S: F32Lanes8>(
-    s: S,
-    texels: LevelTexels<'_>,
+    places: PlaceLanes<S>,
     sums: PerspectiveSums<f32>,
     first: usize,
     exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl PlacesAlong<S> {
     const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let quotients = Singles::new(PlaceLanes::of_level(s, texels), &sums);
+    let (s, quotients) = (places.s, Singles::new(places, &sums));
     // At most 64.
     let numbers = s.add_f32(s.splat_f32(first as f32), s.load_f32(&NUMBERS));
     PerspectiveAlong { places: quotients.places, quotients, numbers, first, exact }
@@ -243,7 +242,7 @@ struct Quotients<S: Lanes8> {
 impl<S: Lanes8> Quotients<S> {
     /// The quotients of the first `end` pixels of a row, at most [`PIECE`].
     #[inline(always)]
-    fn new(s: S, texels: LevelTexels<'_>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
+    fn new(places: PlaceLanes<S>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
         let mut are_sure = HAS_F64;
         if HAS_F64 {
             let [d, dd] = sums.divisors;
@@ -253,7 +252,7 @@ impl<S: Lanes8> Quotients<S> {
             // False for NaN too.
             are_sure = least * MAX_RATIO >= greatest;
         }
-        Self { places: PlaceLanes::of_level(s, texels), sums: *sums, end: s.splat_i32(end as i32), are_sure }
+        Self { places, sums: *sums, end: places.s.splat_i32(end as i32), are_sure }
     }
 
     /// The coordinates at pixels with these numbers, and whether any of them is undecided.
