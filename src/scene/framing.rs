@@ -27,9 +27,9 @@ use crate::angle::Angle;
 const FILL: f64 = 0.9;
 /// The aspect ratio of the picture: that of the screens of 1994.
 const ASPECT: f64 = 4.0 / 3.0;
-/// The min distance of the eye from the nearest point, as a fraction of the total depth.
+/// The least distance of the eye from the nearest point, as a fraction of the total depth.
 const CLEARANCE: f64 = 1.0 / 64.0;
-/// The max number of iterations until the picture is centred. Convergence is quadratic; two or three suffice.
+/// The most iterations until the picture is centred. Convergence is quadratic; two or three suffice.
 const ROUNDS: usize = 8;
 
 type Row = [f64; 3];

@@ -60,9 +60,9 @@ pub struct Host {
 pub struct Nanoseconds {
     /// The median.
     pub median: f64,
-    /// A quarter of the samples are less.
+    /// A quarter of the samples are below it.
     pub lower_quartile: f64,
-    /// A quarter of the samples are more.
+    /// A quarter of the samples are above it.
     pub upper_quartile: f64,
 }
 
