@@ -242,7 +242,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
         }
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
-        show_part(s, (spans, i, 0), (at, length), skipped as usize, ((image, 0), places), tint, to);
+        show_part((spans, i, 0), (at, length), skipped as usize, ((image, 0), places), tint, to);
         i += 1;
     }
 }
@@ -275,13 +275,14 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
-        if let Some(level) = single {
+        // In f32 alone, since each loop takes long to compile.
+        if let Some(level) = single.filter(|_| !IS_COMPACT && spans.fits_singles(i)) {
             // At most 64.
             if level != image.1 {
                 image = (texels[level as usize % LEVELS], level);
                 places = PlaceLanes::of_level(s, image);
             }
-            show_part(s, (spans, i, 0), (at, length), skipped as usize, (image, places), tint, to);
+            show_in_singles((spans, i, 0), (at, length), skipped as usize, (image, places), tint, to);
             continue;
         }
         // At most 64, all of them.
@@ -294,8 +295,9 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
                 None => exact_level(spans, i, k, last_level),
             }
         };
-        let mut next = first / EVERY * EVERY;
-        let mut level = level_of_16(next);
+        // Where the next level is chosen.
+        let mut next = if single.is_some() { end } else { first / EVERY * EVERY };
+        let mut level = single.unwrap_or_else(|| level_of_16(next));
         while first < end {
             let (shown, before) = (level, first - skipped as usize);
             while level == shown && next < end {
@@ -306,18 +308,34 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
             }
             let (place, n) = ((spans, i, before as u32), next.min(end) - first);
             let image = (texels[shown as usize % LEVELS], shown);
-            show_part(s, place, (at + before, n), first, (image, PlaceLanes::of_level(s, image)), tint, to);
+            show_part(place, (at + before, n), first, (image, PlaceLanes::of_level(s, image)), tint, to);
             first += n;
         }
     }
 }
 
-/// Draws texels of a level in a span from its pixel `first` on, linear on the face.
+/// Draws texels in a span from its pixel `first` on, linear on the face, after this many of its drawn pixels.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
-    s: S,
     (spans, i, before): (&Spans<'_>, usize, u32),
-    (at, length): (usize, usize),
+    at: (usize, usize),
+    first: usize,
+    image: (LevelTexels<'_>, PlaceLanes<S>),
+    tint: T,
+    to: &mut D,
+) {
+    if !IS_COMPACT && spans.fits_singles(i) {
+        show_in_singles((spans, i, before), at, first, image, tint, to);
+    } else {
+        show_in_doubles((spans, i, before), at, first, image, tint, to);
+    }
+}
+
+/// [`show_part`] by quotients in f32, which must be allowed.
+#[inline(always)]
+fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
+    (spans, i, before): (&Spans<'_>, usize, u32),
+    at: (usize, usize),
     first: usize,
     (image, places): (LevelTexels<'_>, PlaceLanes<S>),
     tint: T,
@@ -327,14 +345,27 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     let mut plane = None;
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
     // At most 64.
-    let along = &mut tint.begin(s, spans.values::<T>(i, first as u32));
-    if !IS_COMPACT && spans.fits_singles(i) {
-        let places = singles_along(places, spans.singles(i), first, exact);
-        to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
-        return;
-    }
-    let places = perspective_along(places, spans.sums(i), (first, first + length), exact);
-    to.show(s, (spans, i, before), (at, length), (image.0, tint, along), places);
+    let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
+    let all = singles_along(places, spans.singles(i), first, exact);
+    to.show(places.s, (spans, i, before), at, (image.0, tint, along), all);
+}
+
+/// [`show_part`] by quotients in f64.
+#[inline(always)]
+fn show_in_doubles<S: F32Lanes8, T: Tint, D: Destination>(
+    (spans, i, before): (&Spans<'_>, usize, u32),
+    (at, length): (usize, usize),
+    first: usize,
+    (image, places): (LevelTexels<'_>, PlaceLanes<S>),
+    tint: T,
+    to: &mut D,
+) {
+    let mut plane = None;
+    let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
+    // At most 64.
+    let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
+    let all = perspective_along(places, spans.sums(i), (first, first + length), exact);
+    to.show(places.s, (spans, i, before), (at, length), (image.0, tint, along), all);
 }
 
 /// The level of an image at pixel `k` of span `i`, by its definition.
