@@ -402,15 +402,15 @@ impl PerspectivePlanes8 {
         self.fits_levels = s.to_bitmask(s.and(is_accurate, s.is_less(s.splat_f64(65_536.0), least)));
     }
 
-    /// Finds the triangles all of whose pixels have the same level, up to the last: bounds of the quotient of
-    /// [`level`](Self::level) over a whole triangle.
+    /// Finds the triangles all of whose pixels have the same level, from bounds of the quotient of [`level`](Self::level)
+    /// over a whole triangle. Levels beyond the last count as the last.
     ///
     /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This is linear on
     /// the triangle, as is the same by rows, and D is. So each lies between the values at the corners, and G / D² between
     /// the least G over the greatest D² and the greatest G over the least D².
     ///
-    /// With depths that differ by a factor of at most 2, D² is at most 4 times the square of any D: G, which is off by less
-    /// than 1.2 · D², and the square of the depth are off by 2⁻¹⁴ of themselves where the level is above 0.
+    /// Depths differ by a factor of at most 2, so the greatest D² is at most 4 times any other: where the level is above 0, G,
+    /// which is off by less than 1.2 · D², and the square of the depth are together off by less than 2⁻¹⁴ of themselves.
     #[inline(always)]
     fn set_up_single_levels<S: Lanes8>(&mut self, s: S, area: S::F64, [least, greatest]: [S::F64; 2], last: u32) {
         let [shortest_across, longest_across] = self.steps_of_corners(s, &self.step);

@@ -1,9 +1,9 @@
 //! Draws frames of a shipped scene at 35 per second, and prints a hash of them all and the effects
 //! that were on for any object in any frame. `sphere` is a turning sphere of 79,600 faces; `level` is a room with 100
 //! objects, seen from inside; `mipmaps` is a turning torus with an image finer than the screen, in perspective,
-//! `textured` the same without mipmaps; `list` is a list of small triangles for the rasterizer, without a scene. A fourth argument is an
-//! error budget in shades, or a shading. A fifth one replaces the 35 frames per second; the camera then orbits a scene
-//! that does not move by itself.
+//! `textured` the same without mipmaps; `list` is a list of small triangles for the rasterizer, without a scene. A
+//! fourth argument is an error budget in shades, or a shading. A fifth one replaces the 35 frames per second; the camera
+//! then orbits a scene that does not move by itself.
 //!
 //!     cargo run --release -p frames -- fog 35 portable
 //!
