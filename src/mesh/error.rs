@@ -57,7 +57,7 @@ impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NoTriangles => write!(f, "no faces"),
-            Self::TooLarge => write!(f, "more than 1,431,655,765 vertices or triangles"),
+            Self::TooLarge => write!(f, "more than 268,435,456 vertices or triangles"),
             Self::PositionNotFinite { vertex } => write!(f, "the position of vertex {vertex} is not finite"),
             Self::NormalNotFinite { vertex } => write!(f, "the normal of vertex {vertex} is not finite"),
             Self::NormalZero { vertex } => write!(f, "the normal of vertex {vertex} is zero"),

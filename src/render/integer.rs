@@ -174,8 +174,9 @@ impl IntegerPath {
         // Lamps, including spot lights, are left out, as the plan reports.
         let suns = scene.lights().iter().enumerate().filter(|(_, light)| matches!(light, Light::Sun { .. }));
         for (index, light) in suns {
-            let what = "its intensity is beyond ±32,767, or it is one of more than 4,096: too much for 16.16";
-            let sun = sun(light).filter(|_| index < Sun::MAX_COUNT).ok_or(RenderError::Light { index, what })?;
+            let what = "its intensity is beyond ±32,767, or it is one of more than 4,096 suns: too much for 16.16";
+            let sun =
+                sun(light).filter(|_| self.suns.len() < Sun::MAX_COUNT).ok_or(RenderError::Light { index, what })?;
             self.suns.push(sun);
         }
         self.convert(scene.objects());

@@ -157,8 +157,8 @@ pub(super) struct ObjectState {
     texture_sizes: Vec<Option<[u32; 2]>>,
     /// The mesh and the index of each vertex's point, for tessellation.
     points: Option<(Shared<Mesh>, Vec<u32>)>,
-    /// Where each face is lit, and the mesh of these faces, if faces are lit.
-    face_points: Option<(Shared<Mesh>, FacePoints)>,
+    /// Where each face is lit, if faces are lit, and the mesh of these faces; `None` for parts of split faces.
+    face_points: Option<(Option<Shared<Mesh>>, FacePoints)>,
     /// One for each surface, with its inputs.
     normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be computed from now.
@@ -377,14 +377,15 @@ impl ObjectState {
 
     /// Computes the points at which faces are lit, if they are and the mesh has changed.
     fn keep_face_points(&mut self, &Made { object, plan, .. }: &Made<'_>) {
-        let is_known = matches!(&self.face_points, Some((mesh, _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
+        let is_known = matches!(&self.face_points, Some((Some(mesh), _)) if Shared::ptr_eq(mesh, object.shared_mesh()));
         if plan.stages().lit_at != LitAt::Faces || (is_known && !self.is_tessellated) {
             return;
         }
         let (_, mut points) = self.face_points.take().unzip();
         let points = points.get_or_insert_default();
         face_points(&drawn_geometry(self.is_tessellated, &self.tessellated, object), points);
-        self.face_points = Some((Shared::clone(object.shared_mesh()), core::mem::take(points)));
+        let mesh = (!self.is_tessellated).then(|| Shared::clone(object.shared_mesh()));
+        self.face_points = Some((mesh, core::mem::take(points)));
     }
 
     /// Prepares a budget's decisions on faces, if there is one.

@@ -1,5 +1,6 @@
 //! The lookup tables of effects. Each is computed when first needed, and again when the palette or
-//! another of its inputs has changed; unneeded tables do not exist.
+//! another of its inputs has changed. Those of an image that nobody holds any more are dropped when
+//! another image needs a table.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -8,7 +9,7 @@ use crate::light::Blend;
 use crate::palette::cube::CUBE;
 use crate::palette::{InverseColormap, Lut64K, Palette, Rgb};
 use crate::raster::effects::Mix;
-use crate::shared::Shared;
+use crate::shared::{Shared, WeakShared};
 use crate::span::texture::Levels;
 use crate::texture::{Mipmap, Texture};
 
@@ -20,10 +21,10 @@ pub(super) struct Image<'a> {
     pub(super) has_levels: bool,
 }
 
-/// A table computed for an image.
+/// What was computed for an image.
 #[derive(Debug)]
 struct Made<T> {
-    texture: Shared<Texture>,
+    texture: WeakShared<Texture>,
     has_levels: bool,
     made: T,
 }
@@ -35,7 +36,7 @@ pub(super) struct Tables {
     fog: Option<(Rgb, Lut64K)>,
     nearest: Option<InverseColormap>,
     /// Valid for every palette.
-    mipmaps: Vec<(Shared<Texture>, Mipmap)>,
+    mipmaps: Vec<Made<Mipmap>>,
     shades: Vec<Made<Lut64K>>,
     channels: Vec<Made<[Lut64K; 3]>>,
     blends: Vec<(Blend, Lut64K)>,
@@ -100,13 +101,12 @@ impl Tables {
     /// Computes the smaller copies of an image that has them.
     pub(super) fn ensure_levels(&mut self, image: Image<'_>) {
         if image.has_levels && self.mipmap(image).is_none() {
-            self.mipmaps.push((Shared::clone(image.texture), Mipmap::new(image.texture)));
+            add(&mut self.mipmaps, image, Mipmap::new(image.texture));
         }
     }
 
     fn mipmap(&self, image: Image<'_>) -> Option<&Mipmap> {
-        let mut made = self.mipmaps.iter().filter(|_| image.has_levels);
-        made.find(|(of, _)| Shared::ptr_eq(of, image.texture)).map(|(_, mipmap)| mipmap)
+        find(&self.mipmaps, image)
     }
 
     /// The smaller copies of an image that has some.
@@ -124,7 +124,7 @@ impl Tables {
             None if self.neutral_shades.is_none() => self.neutral_shades = Some(Lut64K::from_fn(|shade, _| shade)),
             Some(image) if find(&self.shades, image).is_none() => {
                 let table = Lut64K::shades(self.palette(), self.colors(image));
-                self.shades.push(Made::of(image, table));
+                add(&mut self.shades, image, table);
             }
             _ => {}
         }
@@ -151,7 +151,7 @@ impl Tables {
                 })
             };
             let tables = [lit(|c| c.r), lit(|c| c.g), lit(|c| c.b)];
-            self.channels.push(Made::of(image, tables));
+            add(&mut self.channels, image, tables);
         }
     }
 
@@ -183,19 +183,21 @@ impl Tables {
             + self.blends.len()
             + usize::from(self.neutral_shades.is_some())
             + usize::from(self.neutral_fog.is_some());
-        let levels: usize = self.mipmaps.iter().map(|(_, mipmap)| mipmap.bytes()).sum();
+        let levels: usize = self.mipmaps.iter().map(|mipmap| mipmap.made.bytes()).sum();
         levels + tables * Lut64K::BYTES + if self.nearest.is_some() { InverseColormap::BYTES } else { 0 }
     }
 }
 
-impl<T> Made<T> {
-    fn of(image: Image<'_>, made: T) -> Self {
-        Self { texture: Shared::clone(image.texture), has_levels: image.has_levels, made }
-    }
+/// Adds what was computed for an image, and drops what belongs to textures that are gone.
+fn add<T>(all: &mut Vec<Made<T>>, image: Image<'_>, made: T) {
+    all.retain(|made| made.texture.strong_count() > 0);
+    all.push(Made { texture: Shared::downgrade(image.texture), has_levels: image.has_levels, made });
 }
 
 /// Finds the table of an image, by the identity of its texture: an equal texture does not match.
 fn find<'a, T>(all: &'a [Made<T>], image: Image<'_>) -> Option<&'a T> {
-    let is_of = |made: &&Made<T>| Shared::ptr_eq(&made.texture, image.texture) && made.has_levels == image.has_levels;
+    // No other texture gets the address of one that is gone as long as a weak reference to it exists.
+    let is_of =
+        |made: &&Made<T>| made.texture.as_ptr() == Shared::as_ptr(image.texture) && made.has_levels == image.has_levels;
     all.iter().find(is_of).map(|made| &made.made)
 }

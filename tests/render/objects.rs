@@ -1,16 +1,17 @@
 //! Objects that are hidden, removed, or move with others.
 
 use mode13h::Angle;
-use mode13h::glam::Vec3;
+use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Light, LightResponse};
 use mode13h::mesh::shapes;
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
 use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::Motion;
-use mode13h::scene::{Moving, Object, ObjectId, Path, Scene};
+use mode13h::scene::{Moving, Object, ObjectId, Path, Scene, Shared};
 use mode13h::settings::Settings;
 use mode13h::settings::{Accuracy, Shading, VertexPath};
+use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
 use crate::support::tried::Tried;
@@ -201,4 +202,41 @@ fn a_constant_response_is_one_shade() {
         let wrong = seen.find(|byte| !near(palette[*byte], shown));
         assert_eq!(wrong.map(|byte| palette[byte]), None, "{colored}, {constant}");
     }
+}
+
+/// A texture that is replaced in every frame, as procedural ones are, is freed with its tables.
+#[test]
+fn tables_of_textures_that_nobody_holds_are_freed() {
+    for colored in [false, true] {
+        let mut scene = Scene::showing(shapes::wall(1, 1).with_texcoords(vec![Vec2::ZERO; 4]).expect("four vertices"));
+        scene.settings.mipmaps = Some(true);
+        scene.objects_mut()[0].materials[0].color = if colored { [1.0, 0.5, 0.5] } else { [1.0; 3] };
+        let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+        let mut textures = Vec::new();
+        for frame in 0..6_u8 {
+            let texture = Shared::new(Texture::from_rgb(2, 2, &[Rgb::new(frame, 0, 9); 4]).expect("a texture"));
+            textures.push(Shared::downgrade(&texture));
+            scene.objects_mut()[0].materials[0].texture = Some(texture);
+            let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+            assert!(stats.redrawn);
+        }
+        let held = textures.iter().filter(|texture| texture.strong_count() > 0).count();
+        assert_eq!(held, 1, "only the last is in use, colored: {colored}");
+    }
+}
+
+/// On the integer path only suns count towards the limit of lights, as lamps are left out.
+#[test]
+fn lamps_do_not_use_up_the_suns_of_the_integer_path() {
+    let (mut scene, _) = three();
+    scene.settings.vertex_path = Some(VertexPath::Integer);
+    scene.clear_lights();
+    for _ in 0..4096 {
+        scene.add_light(Light::lamp([0.0, 0.0, 5.0], 8.0));
+    }
+    scene.add_light(Light::sun([0.4, 0.6, 1.0]));
+    let mut suns = scene.clone();
+    suns.clear_lights();
+    suns.add_light(Light::sun([0.4, 0.6, 1.0]));
+    assert!(drawn(&scene) == drawn(&suns));
 }

@@ -189,6 +189,23 @@ fn n7_a_highlight_inside_a_face() {
 }
 
 /// A highlight splits the faces that it touches, and none on the other side of a sphere.
+/// A renderer that has lit the parts of split faces, each at its middle, lights the whole faces at theirs afterwards.
+#[test]
+fn whole_faces_are_lit_at_their_own_middles_after_split_ones() {
+    let mut scene = highlight();
+    scene.settings.accuracy = Some(Shading::Flat.into());
+    scene.settings.tessellation = Some(5.0);
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    let split = vga.pixels().to_vec();
+    scene.settings.tessellation = None;
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    let mut fresh = Vga::new();
+    Renderer::new().draw(&scene, &mut fresh).expect("a legal scene");
+    assert!(vga.pixels() == fresh.pixels(), "the reused renderer draws something else");
+    assert!(vga.pixels() != split.as_slice(), "nothing was split");
+}
+
 #[test]
 fn faces_far_from_a_highlight_are_not_split() {
     let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);

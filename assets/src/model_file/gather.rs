@@ -163,7 +163,7 @@ fn vertices(
         };
         if vertex == new {
             if triples.len() == Mesh::MAX_COUNT {
-                return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 vertices"));
+                return Err(ModelFileErrorKind::TooLarge("more than 268,435,456 vertices"));
             }
             triples.push(triple);
         }

@@ -55,7 +55,7 @@ impl Lists {
             return Err(ModelFileErrorKind::TooLarge("more than 4,294,967,295 corners"));
         }
         if self.corners.len() - 2 * self.sizes.len() > Mesh::MAX_COUNT + 2 {
-            return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 triangles"));
+            return Err(ModelFileErrorKind::TooLarge("more than 268,435,456 triangles"));
         }
         reserve(&mut self.sizes)?;
         // Fits, as checked above.
@@ -71,7 +71,7 @@ impl Lists {
 /// Adds an entry to a list, if there is room for it.
 pub(crate) fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), ModelFileErrorKind> {
     if list.len() >= Mesh::MAX_COUNT {
-        return Err(ModelFileErrorKind::TooLarge("more than 1,431,655,765 of a kind"));
+        return Err(ModelFileErrorKind::TooLarge("more than 268,435,456 of a kind"));
     }
     reserve(list)?;
     list.push(value);
