@@ -148,7 +148,7 @@ struct Pipeline {
     no_dither: bool,
     /// Round vertices to N fractional bits, 0 to 8
     ///
-    /// 0 puts them on whole pixels.
+    /// 0 puts them on whole pixels. With --arithmetic fixed there are always 8.
     ///
     /// [default: the scene's, or else 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(..=8), hide_short_help = true)]
@@ -224,7 +224,8 @@ impl Drawing {
 
     /// The options given that say nothing to a program for DOS, which draws by the integer path of its own.
     pub(crate) fn ignored_by_dos(&self) -> Vec<&'static str> {
-        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, kernel, .. } = &self.pipeline;
+        let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, kernel, vertex_bits, .. } =
+            &self.pipeline;
         [
             ("--hidden-surfaces", hidden_surfaces.is_some()),
             ("--mapping", mapping.is_some()),
@@ -232,6 +233,7 @@ impl Drawing {
             ("--no-mipmaps", *no_mipmaps),
             ("--arithmetic", *arithmetic == Some(VertexPath::Float)),
             ("--kernel", kernel.is_some()),
+            ("--vertex-bits", vertex_bits.is_some()),
         ]
         .into_iter()
         .filter_map(|(name, is_given)| is_given.then_some(name))

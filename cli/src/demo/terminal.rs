@@ -4,6 +4,7 @@
 
 use std::ffi::OsStr;
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::mem;
 use std::time::{Duration, Instant};
 
 use mode13h::export::{Picture, Scale};
@@ -71,10 +72,11 @@ impl Sending {
         let begun = Instant::now();
         let (mut vga, mut shown) = (Vga::new(), None);
         let mut due = Instant::now();
+        let mut begun_key = Vec::new();
         for number in 1_u32.. {
             let typed = screen.keys.read().map_err(|error| Failure::file(format!("standard input: {error}")))?;
             motion.now = begun.elapsed().as_secs_f64();
-            for key in keys(&typed) {
+            for key in keys(&whole_keys(&mut begun_key, &typed)) {
                 match key {
                     Key::End => return Ok(()),
                     Key::Stop => motion.toggle(),
@@ -224,10 +226,26 @@ enum Key {
     Zoom(f64),
 }
 
+const ESCAPE: u8 = 0x1b;
+
+/// The bytes to decode now: those that waited in `begun`, and new ones. What may be the beginning of an arrow key waits
+/// in `begun` until its rest arrives, or nothing does: over a slow line a key may come in two parts.
+fn whole_keys(begun: &mut Vec<u8>, new: &[u8]) -> Vec<u8> {
+    let mut bytes = mem::take(begun);
+    bytes.extend_from_slice(new);
+    let length = match bytes.as_slice() {
+        _ if new.is_empty() => 0,
+        [.., ESCAPE] => 1,
+        [.., ESCAPE, b'[' | b'O'] => 2,
+        _ => 0,
+    };
+    *begun = bytes.split_off(bytes.len() - length);
+    bytes
+}
+
 /// The keys that a terminal's bytes stand for, without unknown ones.
 fn keys(mut bytes: &[u8]) -> Vec<Key> {
     const CTRL_C: u8 = 3;
-    const ESCAPE: u8 = 0x1b;
     let mut keys = Vec::new();
     loop {
         let (key, rest) = match bytes {
@@ -267,5 +285,22 @@ mod tests {
         assert_eq!(keys(b"\x1b[5~\x1b[15;2~\x1bxa"), []);
         assert_eq!(keys(b"\x1b[5~q"), [Key::End]);
         assert_eq!(keys(b"\x1b["), []);
+    }
+
+    #[test]
+    fn a_key_may_arrive_in_parts() {
+        let right = [Key::Turn(ARROW_TAP, 0.0)];
+        for parts in [["\x1b", "[C", ""], ["\x1b[", "C", ""], [" \x1b", "[C", ""], ["", "\x1b[C", ""]] {
+            let mut begun = Vec::new();
+            let pressed: Vec<Key> =
+                parts.iter().flat_map(|part| keys(&whole_keys(&mut begun, part.as_bytes()))).collect();
+            assert!(pressed.ends_with(&right) && !pressed.contains(&Key::End), "{parts:?}: {pressed:?}");
+        }
+        // Alone, it is the key itself.
+        let mut begun = Vec::new();
+        assert_eq!(keys(&whole_keys(&mut begun, b"\x1b")), []);
+        assert_eq!(keys(&whole_keys(&mut begun, b"")), [Key::End]);
+        assert_eq!(keys(&whole_keys(&mut begun, b"\x1b")), []);
+        assert_eq!(keys(&whole_keys(&mut begun, b"\x1b")), [Key::End]);
     }
 }

@@ -811,8 +811,8 @@ fn dos_says_what_is_left_out() {
         "mode13h: left out, because the program computes in 16.16: perspective, texture, mipmaps\n"
     );
     assert_eq!(
-        said("torus --kernel portable --mapping affine"),
-        "mode13h: ignored, because the program computes in 16.16: --mapping, --kernel\n"
+        said("torus --kernel portable --mapping affine --vertex-bits 0"),
+        "mode13h: ignored, because the program computes in 16.16: --mapping, --kernel, --vertex-bits\n"
     );
 }
 

@@ -60,6 +60,10 @@ impl Stage {
             false => loaded.scene.palette.clone().map(Colors::from),
         };
         let mut turntable = Turntable::of_scene(loaded.scene);
+        // Its colours, too, are those of the look.
+        if let Some(look) = loaded.look {
+            turntable.set_look(look);
+        }
         if let Some(colors) = colors {
             turntable.set_colors(&colors).map_err(|error| json!({ "message": error.to_string() }))?;
         }
