@@ -82,7 +82,7 @@ use alloc::vec::Vec;
 use crate::light::{Light, Material};
 use crate::mesh::Mesh;
 pub use crate::plan::reason::name_of;
-pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of, rows_of};
+pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of};
 pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle};
 pub use crate::render::integer_frame::IntegerFrame;
 use crate::render::{RenderError, Renderer, Screen, Stats};

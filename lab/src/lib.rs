@@ -8,8 +8,6 @@
 //! | [`museum`] | methods of the sources that the engine has replaced |
 //! | [`hard_cases`] | hard cases as pictures: the right way beside the fault |
 
-extern crate alloc;
-
 pub mod cost;
 pub mod explain;
 pub mod hard_cases;

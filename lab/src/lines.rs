@@ -1,8 +1,5 @@
 //! Text broken into lines.
 
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use textwrap::{Options, WordSeparator, WordSplitter};
 
 /// Breaks a text into lines of at most `columns` characters, only at spaces.

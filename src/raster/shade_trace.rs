@@ -3,8 +3,6 @@
 //! The loops of [`span`](crate::span) store none of this. It is recomputed here for a single pixel, from the planes
 //! that the loops start from.
 
-use alloc::vec::Vec;
-
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::reference::cover::{Row, SortedTriangle};
@@ -189,30 +187,14 @@ pub fn row_of(
     x: u32,
     y: u32,
 ) -> Option<Row> {
+    let clip = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
     let mut found = None;
-    each_row(triangle, interpolation, width, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |row| found = Some(row));
-    found
-}
-
-/// All rows that a triangle draws in a frame of this size.
-pub fn rows_of(triangle: &SortedTriangle, interpolation: Option<Interpolation>, width: u32, height: u32) -> Vec<Row> {
-    let mut rows = Vec::new();
-    each_row(triangle, interpolation, width, Rect { x0: 0, y0: 0, x1: width, y1: height }, |row| rows.push(row));
-    rows
-}
-
-fn each_row(
-    triangle: &SortedTriangle,
-    interpolation: Option<Interpolation>,
-    width: u32,
-    clip: Rect,
-    mut each: impl FnMut(Row),
-) {
     if interpolation == Some(Interpolation::GouraudVintage) {
-        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| each(row));
+        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| found = Some(row));
     } else {
-        triangle.rows(width, clip, each);
+        triangle.rows(width, clip, |row| found = Some(row));
     }
+    found
 }
 
 #[cfg(test)]

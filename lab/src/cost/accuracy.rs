@@ -3,9 +3,8 @@
 //! The truth of a frame is drawn once and shared by all configurations. Frames are compared on all processors; the
 //! results do not depend on which thread compared which frame.
 
-use alloc::collections::BTreeMap;
-use alloc::vec::Vec;
 use core::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::thread;
 
@@ -327,7 +326,7 @@ pub(super) fn against(
     ways: &[&Configuration<'_>],
     base: &dyn Fn() -> Renderer,
 ) -> Result<Vec<Against>, CostError> {
-    let mut all = alloc::vec![Against::default(); ways.len()];
+    let mut all = vec![Against::default(); ways.len()];
     let mut probe = Probe::new(base());
     for scene in frames {
         let truth = Truth::new(scene, Screen::MODE_13H)?.draw(standard);

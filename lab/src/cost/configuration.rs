@@ -1,8 +1,5 @@
 //! Configurations of the renderer that are measured against each other.
 
-use alloc::boxed::Box;
-use alloc::string::{String, ToString};
-use alloc::vec::Vec;
 use core::fmt;
 
 use super::Aspect;

@@ -7,14 +7,10 @@
 //! since the last one ([`Effect::Transform`] is forced on). The time of a budget therefore includes its decisions, even
 //! for an object that stands still.
 
-use alloc::borrow::Cow;
-use alloc::format;
-use alloc::string::String;
-use alloc::vec;
-use alloc::vec::Vec;
 use core::fmt::Write as _;
 use core::hint::black_box;
 use core::mem::size_of;
+use std::borrow::Cow;
 use std::time::Instant;
 
 use super::clock::Clock;
@@ -248,7 +244,7 @@ fn is_narrow(ways: &[(&Configuration<'_>, &[Scene])], samples: &Samples, seed: u
 
 #[cfg(test)]
 mod tests {
-    use alloc::collections::BTreeSet;
+    use std::collections::BTreeSet;
 
     use super::*;
     use crate::cost::Aspect;

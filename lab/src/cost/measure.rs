@@ -1,8 +1,5 @@
 //! A study: errors, times and what follows from them.
 
-use alloc::string::ToString;
-use alloc::vec::Vec;
-
 use super::accuracy::{Referee, Results};
 use super::claims::claims;
 use super::clock::Clock;
@@ -371,7 +368,7 @@ pub(super) mod tests {
     /// and in it the shadings take the times of two of the six, also picked at random, so the noise is real and the
     /// only difference is the planted one.
     fn told(recorded: &[Vec<f64>], slower: f64, chance: &mut Random) -> (f64, (f64, f64), bool) {
-        let mut times = alloc::vec![Vec::new(), Vec::new()];
+        let mut times = vec![Vec::new(), Vec::new()];
         for _ in 0..ROUNDS {
             let round = &recorded[chance.below(recorded.len())];
             let one = chance.below(round.len());
@@ -380,10 +377,10 @@ pub(super) mod tests {
             times[1].push(round[other] * slower);
         }
         let ways = [Configuration::shading(REFERENCE), Configuration::shading(Shading::Gouraud1616)];
-        let outcome = Outcome { samples: Samples::default(), work: alloc::vec![Default::default(); 2] };
+        let outcome = Outcome { samples: Samples::default(), work: vec![Default::default(); 2] };
         // Below 2⁶³.
         let seed = chance.below(usize::MAX) as u64;
-        let rows = Rows { ways: &ways, times, findings: alloc::vec![Results::default(); 2], outcome: &outcome, seed };
+        let rows = Rows { ways: &ways, times, findings: vec![Results::default(); 2], outcome: &outcome, seed };
         let shadings = rows.shadings(&[Split::default(); 2], 1);
         let study = Study { shadings, ..Study::default() };
         (study.shadings[1].ratio, study.shadings[1].ratio_interval, ties(&study).is_empty())

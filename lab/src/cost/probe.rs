@@ -1,7 +1,5 @@
 //! Probes a renderer pixel by pixel: which face is shown, and its shade before texture, fog, dither and blending.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::fmt;
 
 use crate::truth::{Face, Shown};

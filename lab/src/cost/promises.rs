@@ -1,9 +1,5 @@
 //! The promises that a study checks, and its reports on broken ones.
 
-use alloc::format;
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use super::{BudgetRow, ShadingRow, Study};
 use mode13h::settings::Shading;
 
@@ -146,18 +142,15 @@ mod tests {
     fn a_broken_promise_is_a_warning() {
         for (broken, says) in [
             (
-                study(Vec::new(), alloc::vec![budget(8.0, PROMISE, None), budget(0.5, 0.9956, None)]),
+                study(Vec::new(), vec![budget(8.0, PROMISE, None), budget(0.5, 0.9956, None)]),
                 "the budget of 0.5 keeps 99.56 % of the pixels within 0.5 shades, not 100 %",
             ),
             (
-                study(Vec::new(), alloc::vec![budget(4.0, 1.0, Some((1.2, (1.1, 1.3))))]),
+                study(Vec::new(), vec![budget(4.0, 1.0, Some((1.2, (1.1, 1.3))))]),
                 "a budget of 4 takes 1.20 times as long as phong; the aim is at most 1.05",
             ),
             (
-                study(
-                    alloc::vec![ShadingRow { excess: Some(0.125), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) }],
-                    Vec::new(),
-                ),
+                study(vec![ShadingRow { excess: Some(0.125), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) }], Vec::new()),
                 "gouraud-8.8 is off by 0.12 shades more than its bound",
             ),
         ] {
@@ -167,10 +160,10 @@ mod tests {
         // At the bound, at the limit, and beyond it by no more than chance allows.
         let at_bound = ShadingRow { excess: Some(0.0), ..row(Shading::Gouraud88, 1.0, 0.0, &[]) };
         let times = [(1.05, (1.02, 1.08)), (1.06, (1.04, 1.08))].map(|times| budget(4.0, 1.0, Some(times)));
-        let kept = study(alloc::vec![at_bound], times.to_vec());
+        let kept = study(vec![at_bound], times.to_vec());
         assert!(warnings(&kept).is_empty() && promises_are_kept(&kept));
         // Pixels that were not compared break no promise, but are reported.
-        let blind = study(Vec::new(), alloc::vec![BudgetRow { not_compared: 0.68, ..budget(4.0, 1.0, None) }]);
+        let blind = study(Vec::new(), vec![BudgetRow { not_compared: 0.68, ..budget(4.0, 1.0, None) }]);
         assert_eq!(warnings(&blind), ["68.00 % of the covered pixels could not be compared with lit"]);
         assert!(promises_are_kept(&blind));
     }
@@ -188,7 +181,7 @@ mod tests {
         ] {
             let row = budget(4.0, within, best);
             assert_eq!(row.verdict(), text);
-            assert_eq!(promises_are_kept(&study(Vec::new(), alloc::vec![row])), !text.contains("not kept"), "{text}");
+            assert_eq!(promises_are_kept(&study(Vec::new(), vec![row])), !text.contains("not kept"), "{text}");
         }
     }
 
@@ -200,6 +193,6 @@ mod tests {
             row(Flat, 1.0, 0.0, &[Float, Gouraud88]),
             row(Gouraud88, 2.0, 0.0, &[Flat]),
         ];
-        assert_eq!(ties(&study(rows.to_vec(), Vec::new())), [(Flat, alloc::vec![Gouraud88, Float])]);
+        assert_eq!(ties(&study(rows.to_vec(), Vec::new())), [(Flat, vec![Gouraud88, Float])]);
     }
 }

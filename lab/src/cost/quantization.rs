@@ -1,6 +1,6 @@
 //! Quantization error: the difference between a shade and the nearest entry of a ramp or a palette.
 
-use alloc::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::truth::Shown;
 use mode13h::palette::{BIOS, Palette, Ramp, Rgb};
@@ -32,7 +32,7 @@ impl Entries {
     pub(super) fn count(&mut self, scene: &Scene, shown: &Shown, renderer: &mut Renderer) {
         // A scene that was drawn has a plan.
         let Ok(plan) = renderer.make_plan(scene, Screen::MODE_13H) else { return };
-        let channels: alloc::vec::Vec<bool> =
+        let channels: Vec<bool> =
             (0..scene.objects().len()).map(|object| plan.objects()[object].is_on(Effect::RgbChannels)).collect();
         let palette = scene.palette.as_ref().unwrap_or(&BIOS);
         let mut ramps: BTreeMap<(usize, u16), Option<Ramp>> = BTreeMap::new();

@@ -14,8 +14,6 @@
 //! counts as set-up. Rows so short that they cover no pixel in one of the frames blur the line between the two parts;
 //! the smaller the faces, the more.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::hint::black_box;
 use std::time::Instant;
 

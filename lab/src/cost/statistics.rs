@@ -1,7 +1,5 @@
 //! Statistics of many time samples: quartiles, and ratios with their confidence intervals.
 
-use alloc::vec::Vec;
-
 use mode13h_conformance::Random;
 
 use super::Nanoseconds;
@@ -67,7 +65,7 @@ impl Ratio {
         }
         // The list is sorted, so only indices are drawn, and their order statistics looked up.
         let mut medians = Vec::with_capacity(RESAMPLES);
-        let mut places = alloc::vec![0; count];
+        let mut places = vec![0; count];
         for _ in 0..RESAMPLES {
             places.iter_mut().for_each(|place| *place = chance.below(count));
             let (low, &mut middle, _) = places.select_nth_unstable(count / 2);
@@ -111,7 +109,7 @@ mod tests {
     #[test]
     fn a_shuffle_loses_nothing_and_leaves_no_order_out() {
         let mut chance = Random::again(1);
-        let mut seen = alloc::collections::BTreeMap::<[u8; 3], u32>::new();
+        let mut seen = std::collections::BTreeMap::<[u8; 3], u32>::new();
         for _ in 0..6000 {
             let mut list = [1, 2, 3];
             chance.shuffle(&mut list);

@@ -3,9 +3,6 @@
 //! With the feature `serde` everything can be serialized: a time with its quartiles is an object, a ratio with its
 //! interval a list `[ratio, [low, high]]`, and anything that has a name is written as that name.
 
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use mode13h::plan::FaceShading;
 use mode13h::settings::Shading;
 

@@ -1,7 +1,6 @@
 //! Frames against the clock: a pace chooses the smallest error that fits in a given time, learning from the times of
 //! its frames.
 
-use alloc::vec::Vec;
 use core::time::Duration;
 
 use super::accuracy::Results;

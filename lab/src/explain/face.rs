@@ -1,6 +1,5 @@
 //! A triangle at a pixel: its corners, its edges, who owns a tie, and its fate.
 
-use alloc::string::String;
 use core::fmt;
 
 use mode13h::raster::{Interpolation, Vertex};

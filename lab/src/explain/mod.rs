@@ -6,7 +6,7 @@
 //! | `pixel` | [`pixel()`]: everything about one |
 //! | `trace`, `one_pixel` | the triangles at the pixel, and which is seen; its byte, stage by stage |
 //! | `text`, `span_text`, `paragraph` | the explanation in words |
-//! | `walk` | [`Walk`]: a triangle pixel by pixel, with the registers of the 1994 loop at each |
+//! | `registers` | [`Registers`]: what the loop of 1994 holds at a pixel |
 //! | `row` | [`row()`]: a row's intensity and its slope, as drawn and true |
 //!
 //! The bytes are the rasterizer's own: every face is drawn again, clipped to the one pixel, and the byte of a stage is
@@ -32,11 +32,11 @@ mod face;
 mod one_pixel;
 mod paragraph;
 mod pixel;
+mod registers;
 mod row;
 mod span_text;
 mod text;
 mod trace;
-mod walk;
 
 use core::fmt;
 
@@ -48,9 +48,9 @@ use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Screen};
 pub use one_pixel::ShadedBy;
 pub use pixel::{Against, Pixel, PixelStage, Seen, pixel};
+pub use registers::Registers;
 pub use row::{Column, Row, row};
 pub use trace::Fate;
-pub use walk::{Registers, Step, Walk};
 
 /// Error of explaining a pixel or a row.
 #[derive(Clone, PartialEq, Eq, Debug)]

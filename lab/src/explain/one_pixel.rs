@@ -3,8 +3,6 @@
 //! Nothing that drawing computes is recomputed here: the rasterizer draws a face clipped to the pixel, and the byte of
 //! a stage is what it draws with the later stages removed.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 use core::fmt;
 

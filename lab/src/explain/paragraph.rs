@@ -1,8 +1,5 @@
 //! Labelled lines of text.
 
-use alloc::format;
-use alloc::string::String;
-
 use crate::lines::lines;
 
 /// Columns per line.

@@ -1,9 +1,5 @@
 //! Everything about one pixel.
 
-use alloc::format;
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use super::face::{FaceHere, clockwise};
 use super::one_pixel::{Bytes, ShadedBy};
 use super::trace::{Fate, Met, trace};

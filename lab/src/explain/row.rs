@@ -3,8 +3,6 @@
 //! Where the slope changes abruptly, as on every edge between two linearly shaded faces, the eye sees a line: a Mach
 //! band, though the intensity itself has no step there.
 
-use alloc::vec::Vec;
-
 use super::{ExplainError, check};
 use crate::cost::Probe;
 use crate::truth::{Face, Standard, Truth, TruthFrame};

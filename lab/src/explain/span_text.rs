@@ -1,9 +1,5 @@
 //! A span explained in words: start, step, sums, and how far the byte is from exact.
 
-use alloc::format;
-use alloc::string::String;
-use alloc::vec::Vec;
-
 use super::paragraph::Text;
 use mode13h::internals::{Accumulator, Progression, Ratio, ShadeTrace};
 

@@ -1,8 +1,5 @@
 //! A pixel explained in words.
 
-use alloc::format;
-use alloc::string::{String, ToString};
-use alloc::vec::Vec;
 use core::fmt;
 
 use super::face::{EdgeKind, FaceHere};
@@ -44,33 +41,6 @@ impl fmt::Display for Pixel {
 }
 
 impl Pixel {
-    /// Writes the explanation in at most six short lines, for tight spaces. Each line is cut to `width` characters.
-    #[must_use]
-    pub fn lines(&self, width: usize) -> Vec<String> {
-        let Self { x, y, byte, color, .. } = self;
-        let mut lines = Vec::from([format!("({x}, {y}) byte {byte} #{:06x}", color)]);
-        match self.front() {
-            None => lines.push("background: no face is here".into()),
-            Some((face, seen)) => {
-                let losers = self.losers().count();
-                let others = if losers > 0 { format!(", {losers} behind") } else { String::new() };
-                lines.push(format!("{}{others}", self.name(face)));
-                let edge = if seen.exact_cover { short_edges(face, *x, *y) } else { String::new() };
-                lines.push(format!("{}{edge}", self.shading_of(face, seen)));
-                lines.extend(seen.accounts.first().and_then(short_account));
-                if let ShadedBy::Light { shades: [shade, ..], .. } = seen.shaded_by {
-                    lines.push(format!("light here {:.2}", f64::from(shade) / 256.0));
-                }
-                let errors = seen.against.iter().map(|a| format!("{} {:+.2}", a.standard, a.error));
-                let errors = errors.collect::<Vec<_>>().join(", ");
-                lines.extend((!errors.is_empty()).then(|| format!("off {errors}")));
-                lines.extend((seen.stages.len() > 1).then(|| stages(seen, false)));
-            }
-        }
-        lines.truncate(6);
-        lines.iter().map(|line| line.chars().take(width).collect()).collect()
-    }
-
     /// Names an object and one of its triangles, with its material and its line in the model's file.
     fn name(&self, face: &FaceHere) -> String {
         let mut name = self.objects.get(face.object).cloned().unwrap_or_default();
@@ -287,13 +257,6 @@ impl Pixel {
 
 fn owner(kind: EdgeKind) -> &'static str {
     if kind.owns_ties() { "which owns it" } else { "which the neighbour owns" }
-}
-
-fn short_edges(face: &FaceHere, x: u32, y: u32) -> String {
-    match face.edges(x, y).iter().find(|edge| edge.value == 0) {
-        Some(edge) => format!(", on a {} edge", edge.kind),
-        None => String::new(),
-    }
 }
 
 /// A shade as light, of one channel or three.

@@ -1,8 +1,5 @@
 //! One pixel of a frame: which triangles cover it, which of them is visible, and what each stage makes of its byte.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
 use mode13h::internals::raster::effects::Attributes;
 use mode13h::internals::raster::reference::cover::SortedTriangle;
 use mode13h::internals::raster::reference::depth::DepthPlane;

@@ -1,7 +1,5 @@
 //! An object of the scene in world space.
 
-use alloc::vec::Vec;
-
 use super::eye::Eye;
 use super::vector::{Vector, add, sub, times, unit, wide};
 use mode13h::light::{Light, Material};

@@ -4,8 +4,6 @@
 //! right, up and down. The remaining polygon is drawn as the fan of triangles from its first corner or, if rounding has
 //! dented it, from the first corner whose fan has no triangle that turns the other way.
 
-use alloc::vec::Vec;
-
 use super::body::Corner;
 use super::eye::Eye;
 use super::vector::{Vector, between};

@@ -1,7 +1,5 @@
 //! Cover of a face whose corners are rounded to 1/256 pixel, computed exactly in integers.
 
-use alloc::vec::Vec;
-
 use super::body::Corner;
 use super::clip::{Kept, clip, fan};
 use super::eye::Eye;

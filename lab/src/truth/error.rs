@@ -4,8 +4,6 @@
 //! and frame show the same face; every other pixel is counted separately, as an error of cover or of visible surface.
 //! With three channels the one that is farthest off counts.
 
-use alloc::vec::Vec;
-
 use super::{Face, TruePixel, TruthFrame};
 
 /// Pixels of a frame that is to be compared with the truth.
@@ -247,7 +245,6 @@ impl Swim {
 
 #[cfg(test)]
 mod tests {
-    use alloc::vec;
 
     use super::*;
 

@@ -5,8 +5,6 @@
 //! the volumes of the three tetrahedra that p forms with two of them each. No clipping is needed: a corner behind the
 //! eye simply has a negative w.
 
-use alloc::vec::Vec;
-
 use super::body::Corner;
 use super::clip::{clip, fan};
 use super::eye::Eye;

@@ -3,8 +3,6 @@
 //! Every face is projected once and entered into the tiles that it may cover, unless it is a back face or outside the
 //! frame. After that a tile costs no more than its own faces.
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::clip::{self, is_whole};

@@ -6,17 +6,16 @@ use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
 use mode13h::plan::FaceShading;
-use mode13h::raster::{Frame, Interpolation};
+use mode13h::raster::{Frame, Interpolation, Vertex};
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::settings::{Accuracy, HiddenSurfaces, Shading, VertexPath};
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Shades};
-use mode13h_lab::cost::Probe;
 use mode13h_lab::explain::{
-    self, Column, EdgeKind, ExplainError, Fate, Pixel, PixelStage, Progression, ShadeTrace, ShadedBy, Walk,
+    self, Column, EdgeKind, ExplainError, Fate, Pixel, PixelStage, Progression, Registers, ShadeTrace, ShadedBy,
 };
-use mode13h_lab::truth::{Face, Standard, Truth};
+use mode13h_lab::truth::{Standard, Truth};
 
 const SCREEN: Screen = Screen::MODE_13H;
 
@@ -138,8 +137,6 @@ fn an_account_ends_with_the_byte_of_the_frame() {
                 let text = pixel.to_string();
                 assert!(text.lines().all(|line| line.chars().count() <= 100), "{what}:\n{text}");
                 assert!(text.lines().count() <= 40, "{what}:\n{text}");
-                let lines = pixel.lines(40);
-                assert!(lines.len() <= 6 && lines.iter().all(|line| line.chars().count() <= 40), "{lines:?}");
             }
         }
     }
@@ -395,22 +392,6 @@ fn a_row_is_its_pixels() {
     assert_eq!(row.slope(|column| column.drawn), [None, Some(15.0), None, None]);
 }
 
-/// The short form, word for word: a byte, its face, its sums, its errors, its stages.
-#[test]
-fn the_short_form_fits_beside_a_picture() {
-    let scene = square([100.0, 132.0], [60.0, 92.0]);
-    let pixel = explain(&mut Renderer::new(), &scene, 110, 65);
-    let lines = ["(110, 65) byte 255 #ffffff", "square, triangle 1", "gouraud-8.8-reseeded"];
-    // The sun is straight ahead, so all shades are 255.0, or 0xff80 with the half. The row begins on the diagonal.
-    let sums = ["ff80 at 105 + 5 x +0.000 = ff80", "off gouraud +0.00, lit +0.00"];
-    assert_eq!(pixel.lines(40), [lines.as_slice(), sums.as_slice()].concat());
-    assert_eq!(pixel.lines(6)[1], "square");
-    let tie = explain(&mut Renderer::new(), &scene, 110, 70);
-    assert_eq!(tie.lines(40)[2], "gouraud-8.8-reseeded, on a left edge");
-    let none = explain(&mut Renderer::new(), &scene, 10, 70);
-    assert_eq!(none.lines(40), ["(10, 70) byte 0 #000000", "background: no face is here"]);
-}
-
 #[test]
 fn what_is_not_in_the_frame_is_refused() {
     let scene = scenes::showing("cube");
@@ -433,97 +414,74 @@ const LOOPS: [(Interpolation, u32); 4] = [
     (Interpolation::GouraudVintage, 8),
 ];
 
-/// Walks over a triangle as the loop would, writing from its registers alone. Every stretch starts with what the walk
-/// says and continues by addition.
-fn run_the_loop(walk: &Walk, bits: u32, pixels: &mut [Option<u8>], what: &str) {
+/// Checks the registers at each drawn pixel of a row of a triangle: from one to the next the loop adds, and it starts
+/// again in a new row or after 64 pixels. `drawn` has the row's bytes.
+fn check_row(triangle: &[Vertex; 3], (interpolation, bits): (Interpolation, u32), y: u32, drawn: &[Option<u8>]) {
     let mask = if bits == 8 { 0xFFFF } else { 0xFF_FFFF };
-    let mut left = None;
-    let mut at = (0_u32, 0_u32, 0_u32);
-    for number in 0..walk.pixels() {
-        let step = walk.step(number).expect("a pixel");
-        let registers = step.registers.expect("a sum");
-        assert_eq!(registers.edi, 320 * step.y + step.x, "{what}");
-        assert_eq!(walk.number(step.x, step.y), Some(number), "{what}");
-        match left {
-            Some(count) => {
-                let [edi, eax, ebx]: [u32; 3] = [at.0 + 1, at.1.wrapping_add(at.2), at.2];
-                let sums = [registers.edi, registers.eax & mask, registers.ebx & mask, registers.cx];
-                assert_eq!(sums, [edi, eax & mask, ebx & mask, count - 1], "{what}: pixel {number}");
+    let what = format!("row {y} by {interpolation:?}: {triangle:?}");
+    let at = |x: u32| Registers::at(x, y, triangle, (interpolation, interpolation.has_exact_cover()), 320);
+    let mut last: Option<Registers> = None;
+    let mut column = 0;
+    for (x, drawn) in (0..).zip(drawn) {
+        let Some(byte) = drawn else {
+            assert!(last.is_none_or(|last| last.cx == 1), "{what}: the last count is 1");
+            last = None;
+            continue;
+        };
+        let registers = at(x).expect("a sum");
+        assert_eq!((registers.edi, (registers.eax >> bits) as u8), (320 * y + x, *byte), "{what}: column {x}");
+        match last.filter(|last| last.cx > 1) {
+            Some(last) => {
+                let sum = last.eax.wrapping_add(last.ebx) & mask;
+                let now = (registers.eax & mask, registers.ebx, registers.cx);
+                assert_eq!(now, (sum, last.ebx, last.cx - 1), "{what}: column {x}");
             }
-            // The loop starts: in a new row, or 64 pixels on.
-            None => assert!(step.x == step.start && (step.column == 0 || step.column.is_multiple_of(64)), "{what}"),
+            None => assert!(column % 64 == 0, "{what}: the loop starts in column {x}"),
         }
-        at = (registers.edi, registers.eax, registers.ebx);
-        left = (registers.cx > 1).then_some(registers.cx);
-        assert!(pixels[registers.edi as usize].is_none(), "{what}: pixel {number} is written twice");
-        // AH, or the third byte of EAX.
-        pixels[registers.edi as usize] = Some((registers.eax >> bits) as u8);
-        assert_eq!(step.shade_trace.byte, (registers.eax >> bits) as u8, "{what}");
+        column += 1;
+        last = Some(registers);
     }
-    assert_eq!(left, None, "{what}: the last count is 1");
+    // Beside the row there is nothing.
+    let first = drawn.iter().position(Option::is_some).and_then(|first| first.checked_sub(1));
+    let after = drawn.iter().rposition(Option::is_some).map(|last| last + 1);
+    assert!([first, after].into_iter().flatten().all(|x| at(x as u32).is_none()), "{what}");
 }
 
 #[test]
-fn a_walk_writes_what_the_raster_does() {
-    let mut random = Random::named("walk");
+fn registers_are_those_of_a_loop_that_writes_what_the_raster_does() {
+    let mut random = Random::named("registers");
     let mut tried = [0; 4];
-    for i in 0..400 {
+    for _ in 0..400 {
         let triangle = triangles::triangle(&mut random, 320, 200);
         for ((interpolation, bits), tried) in LOOPS.into_iter().zip(&mut tried) {
-            let what = format!("triangle {i} by {interpolation:?}: {triangle:?}");
             // Whatever the byte, one of the two frames shows that it was written.
             let [zeros, ones] = [0, 255].map(|empty| triangles::draw(&triangle, interpolation, 320, 200, None, empty));
-            let walk = Walk::new(&triangle, interpolation, interpolation.has_exact_cover(), SCREEN);
-            let mut walked = vec![None; 64_000];
-            run_the_loop(&walk, bits, &mut walked, &what);
-            for (place, walked) in walked.into_iter().enumerate() {
-                let drawn = (zeros[place] == ones[place]).then_some(zeros[place]);
-                assert_eq!(walked, drawn, "{what} at ({}, {})", place % 320, place / 320);
+            let drawn: Vec<Option<u8>> =
+                zeros.iter().zip(&ones).map(|(zero, one)| (zero == one).then_some(*zero)).collect();
+            for (y, row) in (0..).zip(drawn.chunks(320)) {
+                check_row(&triangle, (interpolation, bits), y, row);
             }
-            *tried += walk.pixels();
+            *tried += drawn.iter().flatten().count();
         }
     }
     assert!(tried.into_iter().all(|pixels| pixels > 100_000), "{tried:?}");
 }
 
 #[test]
-fn a_walk_over_what_is_seen_has_the_frames_bytes() {
-    let loops = [Shading::Gouraud88, Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudVintage];
-    let mut random = Random::named("walk of scenes");
-    for (shape, shading) in
-        ["torus", "cube", "cone", "teapot"].into_iter().flat_map(|s| loops.map(|shading| (s, shading)))
-    {
-        let scene = scenes::showing(shape);
-        let mut renderer = shaded(shading);
-        let bytes = frame(&mut renderer, &scene);
-        let shown = Probe::new(renderer.with_same_settings()).look(&scene, SCREEN).expect("a legal scene");
-        let mut seen = 0;
-        for (x, y) in some_pixels(&bytes, scene.background, 12, &mut random) {
-            let pixel = explain(&mut renderer, &scene, x, y);
-            let Some((face, of_face)) = pixel.front() else { continue };
-            let walk = Walk::new(&face.corners, face.interpolation, of_face.exact_cover, SCREEN);
-            let asked = walk.number(x, y).and_then(|number| walk.step(number)).expect("it covers the pixel");
-            assert_eq!(vec![asked.shade_trace], of_face.accounts, "{shape} by {shading} at ({x}, {y})");
-            let name = face.triangle.map(|triangle| Face { object: face.object, triangle });
-            for step in (0..walk.pixels()).filter_map(|number| walk.step(number)) {
-                let place = (320 * step.y + step.x) as usize;
-                if shown.faces[place] == name {
-                    assert_eq!(step.shade_trace.byte, bytes[place], "{shape} by {shading} at ({}, {})", step.x, step.y);
-                    seen += 1;
-                }
-            }
-        }
-        assert!(seen > 12, "{shape} by {shading}: {seen}");
-    }
-}
-
-#[test]
 fn what_keeps_no_sum_has_no_registers() {
-    let triangle = triangles::triangle(&mut Random::named("no registers"), 320, 200);
-    for interpolation in [Interpolation::Flat(9), Interpolation::GouraudHyperbolic, Interpolation::Float] {
-        let walk = Walk::new(&triangle, interpolation, true, SCREEN);
-        assert!((0..walk.pixels()).all(|i| walk.step(i).is_some_and(|step| step.registers.is_none())));
+    let mut random = Random::named("no registers");
+    let mut tried = 0;
+    for _ in 0..100 {
+        let triangle = triangles::triangle(&mut random, 320, 200);
+        let drawn = triangles::draw(&triangle, Interpolation::Flat(9), 320, 200, None, 0);
+        let Some(place) = drawn.iter().position(|byte| *byte == 9) else { continue };
+        for interpolation in [Interpolation::Flat(9), Interpolation::GouraudHyperbolic, Interpolation::Float] {
+            let (x, y) = (place as u32 % 320, place as u32 / 320);
+            assert_eq!(Registers::at(x, y, &triangle, (interpolation, true), 320), None);
+        }
+        tried += 1;
     }
+    assert!(tried > 5, "{tried}");
 }
 
 /// The level of a texel is the one that was chosen: over far and near rows of a floor it rises with distance, and an

@@ -4,7 +4,7 @@ use mode13h::plan::Row;
 use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::Scene;
-use mode13h_lab::explain::{self, FaceHere, Pixel, Registers, Seen, ShadedBy, Walk};
+use mode13h_lab::explain::{self, FaceHere, Pixel, Registers, Seen, ShadedBy};
 use serde_json::{Value, json};
 
 /// The counts of a frame.
@@ -66,6 +66,6 @@ fn registers(pixel: &Pixel, face: &FaceHere, seen: &Seen) -> Option<Registers> {
     if seen.shaded_by != ShadedBy::Corners {
         return None;
     }
-    let walk = Walk::new(&face.corners, face.interpolation, seen.exact_cover, Screen::MODE_13H);
-    walk.step(walk.number(pixel.x, pixel.y)?)?.registers
+    let width = Screen::MODE_13H.width;
+    Registers::at(pixel.x, pixel.y, &face.corners, (face.interpolation, seen.exact_cover), width)
 }

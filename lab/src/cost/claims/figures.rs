@@ -1,9 +1,5 @@
 //! Figures for the claims, and the text that reports them.
 
-use alloc::format;
-use alloc::string::{String, ToString};
-use alloc::vec::Vec;
-
 use super::verdict::{ACCURATE, AS_FAST, FEW, INSIGNIFICANT, LITTLE_MORE, MET, THREE, both, falls};
 use crate::cost::{Claim, Errors, Verdict};
 
@@ -216,7 +212,7 @@ mod tests {
             ..Sphere::default()
         };
         Figures {
-            spheres: alloc::vec![sphere(100, 1.0), sphere(1000, 0.05), sphere(10_000, 0.01)],
+            spheres: vec![sphere(100, 1.0), sphere(1000, 0.05), sphere(10_000, 0.01)],
             fixed: [errors(1.5, 0.4), errors(0.7, 0.3), errors(0.5, 0.3)],
             float: errors(0.5, 0.3),
             of_default: [0.9, 1.2, 3.0],

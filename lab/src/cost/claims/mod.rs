@@ -13,8 +13,6 @@ mod figures;
 mod scenes;
 mod verdict;
 
-use alloc::vec::Vec;
-
 use self::figures::{Figures, Sphere};
 use self::scenes::SLICES;
 use super::accuracy::{against, between};

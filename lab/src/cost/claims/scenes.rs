@@ -1,6 +1,5 @@
 //! The scenes that claims are measured on.
 
-use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use mode13h::Angle;
