@@ -1,4 +1,4 @@
-# The span loop of 1994 on x86-64, and its unrolled twin. Intel syntax, for LLVM's assembler.
+# The span loop of 1994 on x86-64, and an unrolled version. Intel syntax, for LLVM's assembler.
 #
 #   void mode13h_span_x86_64(uint8_t *row, uint32_t count, uint16_t shade, uint16_t step)
 #   {

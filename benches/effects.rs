@@ -165,8 +165,8 @@ fn main() {
         line(name, &medians[i], 1);
         if i > 0 && LOOPS[i - 1].0 == format!("{name} portable") {
             let ratios: Vec<f64> =
-                medians[i - 1].iter().zip(&medians[i]).map(|(portable, twin)| portable / twin).collect();
-            line("portable ÷ twin", &ratios, 2);
+                medians[i - 1].iter().zip(&medians[i]).map(|(portable, vector)| portable / vector).collect();
+            line("portable ÷ vector", &ratios, 2);
         }
     }
 }

@@ -48,8 +48,8 @@
 //! # Angles, positions and colours
 //!
 //! Each of these has one type. An angle is an `Angle` everywhere except on the 16.16 path, where it
-//! is an [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and functions take
-//! anything that converts to one, such as `[0.0, 1.0, 0.0]`. A colour in a palette, a picture or
+//! is an [`integer::BinaryAngle`]. A position or a direction is a `glam::Vec3`, and most functions
+//! take anything that converts to one, such as `[0.0, 1.0, 0.0]`. A colour in a palette, a picture or
 //! fog is an [`Rgb`](palette::Rgb) of three bytes. The colour of a light or a surface is
 //! `[f32; 3]`: red, green and blue, usually 0 to 1. An `Rgb` converts to one with `into`.
 //!

@@ -10,8 +10,8 @@
 //!
 //! n is the unit normal, l points to the light, v to the eye, and r = 2·(n·l)·n − l is l mirrored
 //! at the surface. A light behind a face adds nothing, never a negative amount. The sum is clamped
-//! once, at the end: the Russian article clamps each component after summing, so several lights
-//! together may reach full intensity where one alone would not. Intensities are DAC values without
+//! once, after all lights, as in the Russian article: several lights together may reach full
+//! intensity where one alone would not. Intensities are DAC values without
 //! gamma, as was usual then.
 
 // | file | what |

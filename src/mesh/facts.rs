@@ -96,7 +96,7 @@ fn longest_edges(mesh: &Mesh) -> (f32, f32) {
     (libm::sqrtf(edge), libm::sqrtf(texture_edge))
 }
 
-/// For each surface, the max change of texture coordinates over one unit of its faces. Faces
+/// For each surface, the largest change of texture coordinates over one unit of its faces. Faces
 /// without area are ignored.
 ///
 /// On a face with edges e and f, let a coordinate change by g along e and by h along f, and another by g' and h'. Then

@@ -108,7 +108,7 @@ impl<'a> Frame<'a> {
         Ok(Self { pixels, width, height, pitch, rows })
     }
 
-    /// Columns.
+    /// The width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width

@@ -66,7 +66,7 @@ pub(super) struct Corners8 {
     /// A [`ScreenPos`](super::columns::ScreenPos) each.
     at: [[i64; LANES]; 3],
     pub(super) shade: [Ints; 3],
-    /// The bits of u32.
+    /// Depths: the bits of a `u32` each.
     pub(super) depth: [Ints; 3],
     /// True if all corners have the shade of the first.
     are_flat: bool,

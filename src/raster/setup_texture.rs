@@ -86,7 +86,7 @@ impl AffinePlanes8 {
         falls: [0; 2],
     };
 
-    /// The difference from which on corners are too far apart.
+    /// The difference between two corners' coordinates from which on eight faces are not set up at once.
     const TOO_FAR: i32 = 1 << 22;
 
     /// Sets up eight triangles, with levels up to the last if the image has any. Returns a bit for each small one whose

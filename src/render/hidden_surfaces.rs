@@ -1,4 +1,5 @@
-//! Hidden-surface methods: a frame's faces are drawn in scene order, far to near, or row by row.
+//! Hidden-surface methods: a frame's faces are drawn in scene order (with or without a depth buffer), far to near, or
+//! row by row.
 
 use alloc::vec::Vec;
 

@@ -12,7 +12,7 @@
 // | `faces` | the input for an object's faces |
 // | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
 // | `budget` | the error budget: the shading for each triangle |
-// | `hidden_surfaces` | hidden-surface methods: faces in scene order, far to near, or row by row |
+// | `hidden_surfaces` | hidden-surface methods: faces in scene order (with or without a depth buffer), far to near, or row by row |
 // | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 // | `integer` | a scene in 16.16 |
 // | `pace` | the least error that fits in a time, independent of the renderer |

@@ -46,8 +46,6 @@ mod ray;
 mod tiles;
 pub(crate) mod vector;
 
-use alloc::vec;
-use alloc::vec::Vec;
 use core::fmt;
 
 use self::body::{Body, Corner};
@@ -111,14 +109,14 @@ pub enum TruthError {
     Camera(&'static str),
     /// An object, by its index in the scene.
     Object {
-        /// Its index.
+        /// The index in [`Scene::objects`].
         index: usize,
         /// The fault.
         what: &'static str,
     },
     /// A light, by its index in the scene.
     Light {
-        /// Its index.
+        /// The index in [`Scene::lights`].
         index: usize,
         /// The fault.
         what: &'static str,

@@ -111,7 +111,7 @@ pub(crate) struct EffectScratch {
 struct Buffers {
     /// The bytes that are finally drawn.
     bytes: Vec<u8>,
-    /// Texels, levels of fog, or rows of a table.
+    /// The stage's second operand: texels, levels of fog, or rows of a table.
     other: Vec<u8>,
     /// Red, green and blue.
     channels: [Vec<u8>; 3],

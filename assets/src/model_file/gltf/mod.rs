@@ -133,7 +133,7 @@ struct Reading<'a> {
     left_out: LeftOut,
     /// Faces with a colour of their own.
     colors: Vec<(usize, Rgb)>,
-    /// The surface of these faces.
+    /// The surface that these faces share.
     color_surface: Option<usize>,
     /// The transforms that vertices are bound to, at rest.
     transforms: Vec<Placement>,

@@ -113,7 +113,7 @@ impl Skeleton {
         places
     }
 
-    /// The transforms that vertices are bound to.
+    /// The transforms of the joints that vertices are bound to.
     pub(crate) fn transforms(&self, places: &[Option<Placement>]) -> Vec<Placement> {
         let place = |matrix: &Matrix| {
             let place = places[matrix.node].unwrap_or(Placement::NONE);
