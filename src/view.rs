@@ -15,8 +15,9 @@ use glam::{Mat3, Vec3};
 use crate::angle::Angle;
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
+use crate::mesh::wide::{dot, widen};
 use crate::raster::{Rect, Vertex};
-use crate::scene::framing::{axes, dot, unit, widen};
+use crate::scene::framing::{axes, unit};
 use crate::scene::object::Placement;
 use crate::scene::{Camera, Object, matrix_product};
 
@@ -38,6 +39,15 @@ pub struct Screen {
 impl Screen {
     /// 320 × 200, with 5:6 pixels.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
+
+    /// Checks that it has pixels, and that they have a shape.
+    pub(crate) fn check(self) -> Result<(), &'static str> {
+        let Self { width, height, pixel_aspect: (pixel_width, pixel_height) } = self;
+        match [width, height, pixel_width, pixel_height].contains(&0) {
+            true => Err("its width, height and pixel aspect ratio must be above 0"),
+            false => Ok(()),
+        }
+    }
 
     /// fx and fy, in pixels; the field of view is the vertical one.
     pub(crate) fn focal_lengths(self, field_of_view: Angle) -> [f64; 2] {
@@ -76,7 +86,7 @@ impl View {
             return Err("its near distance must be above 0 and finite");
         }
         if !(field_of_view > Angle::default() && field_of_view < Angle::TURN / 2.0) {
-            return Err("its field of view must lie between 0 and π");
+            return Err("its field of view must be above 0 and below 180°");
         }
         let (eye, up) = (widen(eye), widen(up));
         let to_target = widen(target);
@@ -124,7 +134,7 @@ impl View {
 impl Camera {
     /// Projects a point of the scene onto the screen, for labels, crosshairs and flares: x and y in pixels from the
     /// upper left corner, and the distance in front of the eye, along the view. The point may be off the screen. `None`
-    /// if it is nearer than the near distance, behind the eye, or not finite, or if the camera is invalid.
+    /// if it is nearer than the near distance, behind the eye, or not finite, or if the camera or the screen is invalid.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -139,6 +149,7 @@ impl Camera {
     /// ```
     #[must_use]
     pub fn project(&self, point: impl Into<Vec3>, screen: Screen) -> Option<[f32; 3]> {
+        screen.check().ok()?;
         let on_screen = View::new(self, screen).ok()?.on_screen(point.into())?;
         Some(on_screen.map(|c| c as f32)).filter(|on_screen| on_screen.iter().all(|c| c.is_finite()))
     }
@@ -147,8 +158,8 @@ impl Camera {
 impl Camera {
     /// The direction from the eye through a point of the screen, as a unit vector, to find out what is there: the
     /// opposite of [`project`](Self::project). The point is in pixels from the upper left corner, and may be off the
-    /// screen; the middle of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite or the camera is
-    /// invalid.
+    /// screen; the middle of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite, or the camera or
+    /// the screen is invalid.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -161,6 +172,7 @@ impl Camera {
     /// ```
     #[must_use]
     pub fn ray(&self, [x, y]: [f32; 2], screen: Screen) -> Option<Vec3> {
+        screen.check().ok()?;
         let view = View::new(self, screen).ok()?;
         let [fx, fy] = screen.focal_lengths(self.field_of_view);
         let right = (f64::from(x) - f64::from(view.centre.0)) / fx;

@@ -6,8 +6,7 @@ use super::power::Shininess;
 use super::source::Cone;
 use crate::lanes::three;
 use crate::mesh::Bounds;
-
-pub(super) type Wide = [f64; 3];
+use crate::mesh::wide::{Wide, dot, sub, widen};
 
 /// A sun transformed into an object's space.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -263,18 +262,6 @@ fn highlight(to_eye: Option<Wide>, normal: Wide, towards: Wide, cosine: f64, shi
     let Some(to_eye) = to_eye else { return 0.0 };
     let along = 2.0 * cosine * dot(normal, to_eye) - dot(towards, to_eye);
     shininess.of(along)
-}
-
-pub(crate) fn widen(v: Vec3) -> Wide {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-fn sub(a: Wide, b: Wide) -> Wide {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Wide, b: Wide) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `None` for the zero vector.

@@ -9,9 +9,10 @@
 //! part, and three coloured lamps took a sixth longer.
 
 use super::ConeBeam;
-use super::intensity::{Lights, Reflectance, Wide};
+use super::intensity::{Lights, Reflectance};
 use super::power::Shininess;
 use crate::lanes::{LANES, Lanes, Points};
+use crate::mesh::wide::Wide;
 use crate::simd::{F32Lanes8, Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::Mesh;
 use super::normals::face_normal;
+use super::wide::dot;
 
 /// The derived properties of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -110,7 +111,6 @@ fn steepest_texcoords(mesh: &Mesh) -> Vec<f64> {
         let [p, q, r] = corners.map(|i| mesh.positions[i as usize].to_array().map(f64::from));
         let [s, t, w] = corners.map(|i| texcoords[i as usize].to_array().map(f64::from));
         let (e, f) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
         let area = ee * ff - ef * ef;
         if area <= 0.0 {

@@ -21,7 +21,7 @@ mod stretch;
 mod surface;
 mod topology;
 mod twins;
-mod wide;
+pub(crate) mod wide;
 mod winding;
 
 use alloc::vec;

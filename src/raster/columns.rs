@@ -105,7 +105,8 @@ pub(crate) struct EffectColumns<'a> {
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {
-    /// Texture coordinates, across and down, in texels with 16 fraction bits.
+    /// Texture coordinates, across and up, in texels with 16 fraction bits. Row 0 of a
+    /// [`Texture`](crate::texture::Texture) is the lowest of its picture.
     pub texture: [i32; 2],
     /// Density of the fog, 0 to 0xFF00.
     pub fog: U8F8,

@@ -11,6 +11,8 @@ use crate::scene::Scene;
 pub enum RenderError {
     /// The camera.
     Camera(&'static str),
+    /// The screen, or the frame's pixel aspect ratio.
+    Screen(&'static str),
     /// An object, by its index in the scene.
     Object {
         /// Its index, from 0.
@@ -41,6 +43,7 @@ impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Camera(what) => write!(f, "camera: {what}"),
+            Self::Screen(what) => write!(f, "screen: {what}"),
             Self::Object { index, name, what } if name.is_empty() => write!(f, "object {index}: {what}"),
             Self::Object { index, name, what } => write!(f, "object {index}, {name:?}: {what}"),
             Self::Light { index, what } => write!(f, "light {index}: {what}"),

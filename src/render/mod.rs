@@ -49,7 +49,7 @@ use self::object::ObjectState;
 use self::pipelines::Pipelines;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Change, Effect, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
+use crate::plan::{self, Change, Effect, FaceCounts, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
 use crate::raster::columns::Triangles;
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
@@ -190,14 +190,16 @@ impl Renderer {
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.cache.plan.rows_with(scene, |object| Findings {
-            face_counts: self
-                .cache
-                .states
-                .get(object)
-                .zip(scene.objects().get(object))
-                .and_then(|(of, at)| of.face_counts(at, self.scratch.counts.get(object)?)),
+            face_counts: self.face_counts(scene, object),
             linear_error: self.linear_error(scene, object),
         })
+    }
+
+    /// The faces of an object by the shading that a budget gave them in the last frame; `None` without a budget.
+    fn face_counts(&self, scene: &Scene, object: usize) -> Option<FaceCounts> {
+        self.cache.plan.objects().get(object)?.max_error()?;
+        let counts = self.scratch.counts.get(object)?;
+        Some(self.cache.states.get(object)?.face_counts(scene.objects().get(object)?, counts))
     }
 
     /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
@@ -434,6 +436,7 @@ impl Renderer {
     /// The view of a valid scene.
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
+        screen.check().map_err(RenderError::Screen)?;
         self.settings.or(&scene.settings).check().map_err(RenderError::Settings)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }

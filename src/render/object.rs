@@ -16,8 +16,9 @@ use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex;
 use crate::fixed::U8F8;
-use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material, widen};
+use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material};
 use crate::mesh::Mesh;
+use crate::mesh::wide::widen;
 use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, Stages, VertexStage};
 use crate::plan::{Change, FaceCounts, FaceShading, ObjectPlan};
@@ -530,15 +531,13 @@ impl ObjectState {
         self.paints.iter().any(|paint| paint.has_effects)
     }
 
-    /// Counts the faces by the shading that a budget chose; `None` without a budget.
-    pub(super) fn face_counts(&self, object: &Object, counts: &Shares) -> Option<FaceCounts> {
-        self.has_budget.then(|| {
-            let drawn: Vec<(FaceShading, u64)> = (*counts).into_iter().collect();
-            // Below 2³².
-            let faces = self.most_faces(object) as u64;
-            let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
-            FaceCounts { drawn, not_drawn }
-        })
+    /// Counts the faces by the shading that a budget chose.
+    pub(super) fn face_counts(&self, object: &Object, counts: &Shares) -> FaceCounts {
+        let drawn: Vec<(FaceShading, u64)> = (*counts).into_iter().collect();
+        // Below 2³².
+        let faces = self.most_faces(object) as u64;
+        let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
+        FaceCounts { drawn, not_drawn }
     }
 
     /// Its size in bytes.

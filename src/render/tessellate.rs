@@ -23,6 +23,7 @@ use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
+use crate::mesh::wide::{dot, sub, widen};
 
 /// The most halvings of an edge: 64 pieces.
 const DEPTH: usize = 6;
@@ -356,18 +357,6 @@ impl Bend<'_> {
                 strong(eye.min(to_segment(lamp.position, ends)), angles(i), f64::from(lamp.intensity.abs()))
             })
     }
-}
-
-fn widen(v: Vec3) -> [f64; 3] {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn unit3(v: [f64; 3]) -> [f64; 3] {

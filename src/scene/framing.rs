@@ -22,6 +22,7 @@ use glam::Vec3;
 
 use super::{Camera, Object, Path, object};
 use crate::angle::Angle;
+use crate::mesh::wide::{cross, dot, widen};
 
 /// The fraction of the picture's width or height that is filled, whichever is filled more.
 const FILL: f64 = 0.9;
@@ -267,18 +268,6 @@ pub(crate) fn axes(forward: Row, up: Row) -> Option<[Row; 3]> {
         .and_then(unit)
         .or_else(|| unit(cross(forward, axis)))?;
     Some([right, cross(right, forward), forward.map(|c| -c)])
-}
-
-pub(crate) fn dot(a: Row, b: Row) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: Row, b: Row) -> Row {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(crate) fn widen(v: Vec3) -> Row {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
 /// Returns `None` for the zero vector. Finite f32 components can neither overflow nor vanish in f64.

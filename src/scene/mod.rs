@@ -360,7 +360,7 @@ impl Index<ObjectId> for Scene {
     type Output = Object;
 
     /// # Panics
-    /// If the object was removed, or `id` is from another scene. [`get`](Scene::get) does not panic.
+    /// If the object was removed. An id from another scene may name any object, or none. [`get`](Scene::get) does not panic.
     #[track_caller]
     fn index(&self, id: ObjectId) -> &Object {
         self.get(id).unwrap_or_else(|| not_there("object"))
@@ -371,7 +371,7 @@ impl Index<LightId> for Scene {
     type Output = Light;
 
     /// # Panics
-    /// If the light was removed, or `id` is from another scene.
+    /// If the light was removed. An id from another scene may name any light, or none.
     #[track_caller]
     fn index(&self, id: LightId) -> &Light {
         let index = self.light_ids.binary_search(&id);
@@ -381,7 +381,7 @@ impl Index<LightId> for Scene {
 
 impl IndexMut<LightId> for Scene {
     /// # Panics
-    /// If the light was removed, or `id` is from another scene.
+    /// If the light was removed. An id from another scene may name any light, or none.
     #[track_caller]
     fn index_mut(&mut self, id: LightId) -> &mut Light {
         self.light_mut(id).unwrap_or_else(|| not_there("light"))
@@ -390,7 +390,7 @@ impl IndexMut<LightId> for Scene {
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
-    /// If the object was removed, or `id` is from another scene. [`get_mut`](Scene::get_mut) does not panic.
+    /// If the object was removed. An id from another scene may name any object, or none. [`get_mut`](Scene::get_mut) does not panic.
     #[track_caller]
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
         self.get_mut(id).unwrap_or_else(|| not_there("object"))

@@ -64,16 +64,16 @@ impl Object {
     /// A material takes the brightness of its surface's `diffuse`, 15 % of it as ambient light and the rest as diffuse
     /// light, and not its hue: colours are those of the ramp. To see the hue, set [`Material::color`], or make a palette
     /// with `mode13h_assets::auto_palette`.
+    ///
+    /// A mesh with vertices that several surfaces share is copied, with such a vertex once for each. For objects that
+    /// are to share one mesh, call [`Mesh::with_one_surface_a_vertex`] first.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = in_parts(mesh.into());
-        // A palette has at most 256 ramps, a power of two, and their numbers wrap around.
-        let numbers = (0..=u16::MAX).cycle();
-        let materials = numbers.zip(mesh.surfaces()).map(|(i, s)| Material::from_surface(s, i)).collect();
         Self {
             name: String::new(),
+            materials: materials_of(&mesh).collect(),
             mesh,
-            materials,
             pivot: Vec3::ZERO,
             position: Vec3::ZERO,
             scale: 1.0,
@@ -135,11 +135,14 @@ impl Object {
         &self.mesh
     }
 
-    /// Replaces the mesh and keeps the position and the materials, one for each of its surfaces:
-    /// the next pose of an animation. The renderer recomputes everything it caches for the object,
-    /// even if the mesh is equal, so do not call this while nothing moves.
+    /// Replaces the mesh and keeps everything else: the next pose of an animation. If the mesh has more surfaces than
+    /// there are materials, the others get new ones, as by [`new`](Self::new), and shared vertices are split as there.
+    /// The renderer recomputes everything it caches for the object, even if the mesh is equal, so do not call this while
+    /// nothing moves.
     pub fn set_mesh(&mut self, mesh: impl Into<Shared<Mesh>>) {
         self.mesh = in_parts(mesh.into());
+        let first = self.materials.len();
+        self.materials.extend(materials_of(&self.mesh).skip(first));
     }
 
     /// The mesh, for callers who store it.
@@ -343,6 +346,13 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// A material for each surface of a mesh.
+fn materials_of(mesh: &Mesh) -> impl Iterator<Item = Material> {
+    // A palette has at most 256 ramps, a power of two, and their numbers wrap around.
+    let numbers = (0..=u16::MAX).cycle();
+    numbers.zip(mesh.surfaces()).map(|(i, surface)| Material::from_surface(surface, i))
 }
 
 /// The mesh, with vertices split so that each belongs to one surface.

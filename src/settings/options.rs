@@ -30,8 +30,12 @@ named! {
         /// Vertices in f32.
         #[default]
         Float = "float",
-        /// Vertices in 16.16, by [`integer`](crate::integer). The scene's own numbers are floats, so they are
-        /// converted: a mesh when it is first seen, angles to the nearest 1/65,536 of a turn.
+        /// Vertices in 16.16, by [`integer`](crate::integer), for processors without floating point; elsewhere it is the
+        /// slower path. The scene's own numbers are floats, so they are converted: a mesh when it is first seen, angles
+        /// to the nearest 1/65,536 of a turn.
+        ///
+        /// It draws matt surfaces under suns, flat or by Gouraud shading. Lamps, highlights, colours, textures, fog,
+        /// transparency and dither are left out, as the [plan](crate::plan) says.
         Integer = "fixed",
     }
 }
@@ -186,6 +190,9 @@ impl Settings {
         let legal = |number: Option<f32>| number.is_none_or(|n| n > 0.0 && n.is_finite());
         if !legal(self.tessellation) || !legal(self.accuracy.and_then(Accuracy::max_error)) {
             return Err("a number of shades must be above 0 and finite");
+        }
+        if self.vertex_bits.is_some_and(|bits| bits > 8) {
+            return Err("vertices have at most 8 fraction bits");
         }
         Ok(())
     }

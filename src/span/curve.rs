@@ -3,21 +3,23 @@
 use super::Kernel;
 use crate::simd::at_best_level;
 
-/// Shades in 8.8 on a parabola, clamped between two limits of at most 0xFF00:
-///
-/// ```text
-/// shades[k] = nearest(min(max(a + k·(b + k·c), least), most))
-/// ```
-///
-/// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k is
-/// at most 4,095.
-///
-/// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast
-/// Phong shading*, 1986, use two additions per pixel for it; here every pixel is computed from its
-/// own k, so it is as accurate as the first.)
-#[inline]
-pub fn curve(shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-    curve_inlined(shades, parabola, least, most);
+at_best_level! {
+    /// Shades in 8.8 on a parabola, clamped between two limits of at most 0xFF00:
+    ///
+    /// ```text
+    /// shades[k] = nearest(min(max(a + k·(b + k·c), least), most))
+    /// ```
+    ///
+    /// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k is
+    /// at most 4,095.
+    ///
+    /// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast
+    /// Phong shading*, 1986, use two additions per pixel for it; here every pixel is computed from its
+    /// own k, so it is as accurate as the first.)
+    #[inline]
+    pub fn curve[][](kernel: Kernel, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
+        curve_inlined(shades, parabola, least, most)
+    }
 }
 
 #[inline(always)]
@@ -36,22 +38,5 @@ fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16)
         // The lower half of the bits is the number itself.
         shades[pixel] = (value + WHOLE).to_bits() as u16;
         pixel += 1;
-    }
-}
-
-impl Kernel {
-    internal! {
-    /// [`curve`], compiled for the kernel's processor: the same numbers.
-    #[inline]
-    fn curve(self, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        curve_at_best(self, shades, parabola, least, most);
-    }
-    }
-}
-
-at_best_level! {
-    #[inline]
-    fn curve_at_best[][](kernel: Kernel, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
-        curve_inlined(shades, parabola, least, most)
     }
 }

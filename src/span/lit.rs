@@ -26,14 +26,18 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
     for (lane, place) in (0_u16..).zip(&mut places) {
         *place = f64::from(first) + f64::from(lane);
     }
-    interpolate_at(&places, a, da, d, dd)
+    interpolate_inlined(&places, a, da, d, dd)
 }
 
-/// Six numbers at each of any eight pixels of a row, given by their indices; see [`interpolate`].
-#[inline]
-#[must_use]
-pub fn interpolate_at(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-    interpolate_inlined(places, a, da, d, dd)
+at_best_level! {
+    /// Six numbers at each of any eight pixels of a row, given by their indices; see [`interpolate`].
+    #[inline]
+    #[must_use]
+    pub fn interpolate_at[][](
+        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
+    ) -> Points {
+        interpolate_inlined(places, a, da, d, dd)
+    }
 }
 
 #[inline(always)]
@@ -52,12 +56,16 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The numerators of six numbers at each of eight pixels, and their denominators.
 pub type Numerators = [Lanes<f64>; 7];
 
-/// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of
-/// different rows.
-#[inline]
-#[must_use]
-pub fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-    numerators_inlined(places, a, da, d, dd)
+at_best_level! {
+    /// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of
+    /// different rows.
+    #[inline]
+    #[must_use]
+    pub fn numerators[][](
+        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
+    ) -> Numerators {
+        numerators_inlined(places, a, da, d, dd)
+    }
 }
 
 #[inline(always)]
@@ -72,11 +80,13 @@ fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
     numerators
 }
 
-/// The quotients of [`numerators`].
-#[inline]
-#[must_use]
-pub fn divide(numerators: &Numerators) -> Points {
-    divide_inlined(numerators)
+at_best_level! {
+    /// The quotients of [`numerators`].
+    #[inline]
+    #[must_use]
+    pub fn divide[][](kernel: Kernel, numerators: &Numerators) -> Points {
+        divide_inlined(numerators)
+    }
 }
 
 #[inline(always)]
@@ -89,58 +99,4 @@ fn divide_inlined(numerators: &Numerators) -> Points {
         i += 1;
     }
     points
-}
-
-impl Kernel {
-    internal! {
-    /// [`numerators`], compiled for the kernel's processor: the same numbers.
-    #[inline]
-    #[must_use]
-    fn numerators(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
-        numerators_at_best(self, places, a, da, d, dd)
-    }
-    }
-
-    internal! {
-    /// [`divide`], compiled for the kernel's processor: the same numbers.
-    #[inline]
-    #[must_use]
-    fn divide(self, numerators: &Numerators) -> Points {
-        divide_at_best(self, numerators)
-    }
-    }
-
-    internal! {
-    /// [`interpolate_at`], compiled for the kernel's processor: the same numbers.
-    #[inline]
-    #[must_use]
-    fn interpolate_at(self, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-        interpolate_at_best(self, places, a, da, d, dd)
-    }
-    }
-}
-
-at_best_level! {
-    #[inline]
-    fn numerators_at_best[][](
-        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
-    ) -> Numerators {
-        numerators_inlined(places, a, da, d, dd)
-    }
-}
-
-at_best_level! {
-    #[inline]
-    fn divide_at_best[][](kernel: Kernel, numerators: &Numerators) -> Points {
-        divide_inlined(numerators)
-    }
-}
-
-at_best_level! {
-    #[inline]
-    fn interpolate_at_best[][](
-        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
-    ) -> Points {
-        interpolate_inlined(places, a, da, d, dd)
-    }
 }

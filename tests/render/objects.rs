@@ -3,10 +3,11 @@
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Light, LightResponse};
-use mode13h::mesh::shapes;
+use mode13h::mesh::{Surface, shapes};
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
-use mode13h::render::{RenderError, Renderer};
+use mode13h::raster::Frame;
+use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::Motion;
 use mode13h::scene::{Moving, Object, ObjectId, Path, Scene, Shared};
 use mode13h::settings::Settings;
@@ -239,4 +240,69 @@ fn lamps_do_not_use_up_the_suns_of_the_integer_path() {
     suns.clear_lights();
     suns.add_light(Light::sun([0.4, 0.6, 1.0]));
     assert!(drawn(&scene) == drawn(&suns));
+}
+
+/// What a budget gave the faces is told of frames within a budget alone.
+#[test]
+fn rows_of_a_frame_without_a_budget_count_no_faces() {
+    let (mut scene, _) = three();
+    let mut renderer = Renderer::new();
+    scene.settings.accuracy = Some(Accuracy::WithinError(2.0));
+    renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+    let counts = |renderer: &Renderer, scene: &Scene| {
+        renderer.rows(scene).iter().filter(|row| row.reason.contains("not drawn")).count()
+    };
+    assert!(counts(&renderer, &scene) > 0);
+    scene.settings.accuracy = Some(Shading::Flat.into());
+    scene.settings.vertex_path = Some(VertexPath::Integer);
+    renderer.draw(&scene, &mut Vga::new()).expect("a legal scene");
+    assert_eq!(counts(&renderer, &scene), 0);
+}
+
+/// A screen or a pixel without a size is refused on both paths, and nothing is projected on it.
+#[test]
+fn screens_and_pixels_need_a_size() {
+    let (mut scene, _) = three();
+    for vertex_path in VertexPath::ALL {
+        scene.settings.vertex_path = Some(vertex_path);
+        for pixel_aspect in [(0, 1), (1, 0), (0, 0)] {
+            let mut bytes = [7; 64 * 40];
+            let frame = Frame::new(&mut bytes, 64, 40, 64).expect("a frame");
+            let error = Renderer::new().draw_frame(&scene, frame, pixel_aspect).expect_err("no shape");
+            assert!(matches!(error, RenderError::Screen(_)), "{error}");
+            assert_eq!(bytes, [7; 64 * 40]);
+            let screen = Screen { pixel_aspect, ..Screen::MODE_13H };
+            assert_eq!(scene.camera.project(Vec3::ZERO, screen), None);
+            assert_eq!(scene.camera.ray([1.0, 1.0], screen), None);
+        }
+        for (width, height) in [(0, 200), (320, 0)] {
+            let screen = Screen { width, height, ..Screen::MODE_13H };
+            let error = Renderer::new().make_plan(&scene, screen).expect_err("no pixels");
+            assert!(matches!(error, RenderError::Screen(_)), "{error}");
+        }
+    }
+}
+
+#[test]
+fn a_mesh_with_more_surfaces_brings_their_materials() {
+    let (mut scene, [torus, ..]) = three();
+    scene[torus].materials[0].diffuse = 0.25;
+    let cube = shapes::cube();
+    let surfaces = vec![Surface::default(); 2];
+    let of_triangle = (0..12).map(|triangle| triangle / 6).collect();
+    let mesh = cube.with_surfaces(surfaces, of_triangle).expect("a surface for each triangle");
+    scene[torus].set_mesh(mesh.clone());
+    assert_eq!(scene[torus].materials[1..], Object::new(mesh).materials[1..]);
+    assert_eq!((scene[torus].materials.len(), scene[torus].materials[0].diffuse), (2, 0.25));
+    drawn(&scene);
+}
+
+#[test]
+fn vertices_with_more_fraction_bits_than_there_are_are_refused() {
+    let (mut scene, _) = three();
+    scene.settings.vertex_bits = Some(8);
+    drawn(&scene);
+    scene.settings.vertex_bits = Some(9);
+    let refused = Renderer::new().draw(&scene, &mut Vga::new());
+    assert!(matches!(refused, Err(RenderError::Settings(_))));
 }

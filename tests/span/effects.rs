@@ -490,7 +490,7 @@ fn wrong_curves_are_caught() {
         }
     };
     assert_caught("shades that are cut off", check_curve(full(), truncated));
-    let unheld: Curve = |shades, parabola, _, most| curve(shades, parabola, 0, most);
+    let unheld: Curve = |shades, parabola, _, most| curve(Kernel::PORTABLE, shades, parabola, 0, most);
     assert_caught("no least", check_curve(full(), unheld));
     let fused: Curve = |shades, [a, b, c], least, most| {
         for (k, shade) in (0_u16..).map(f32::from).zip(shades) {

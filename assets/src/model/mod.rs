@@ -42,8 +42,8 @@ crate::errors::debug_as_display!(ModelError);
 impl Error for ModelError {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         match self {
-            Self::File(error) => Some(error),
-            Self::Scene(error) => Some(error),
+            Self::File(error) => error.source(),
+            Self::Scene(error) => error.source(),
         }
     }
 }

@@ -38,7 +38,7 @@ use mode13h::internals::span::fixed16::fill_16_16;
 use mode13h::internals::span::float::fill_float;
 use mode13h::internals::span::hyperbolic::fill_quotients;
 use mode13h::internals::span::list;
-use mode13h::internals::span::lit::interpolate;
+use mode13h::internals::span::lit::{self, interpolate};
 use mode13h::internals::span::lookup;
 use mode13h::internals::span::texture::{fill_affine, fill_perspective, fill_perspective_portable};
 use mode13h::span::Kernel;
@@ -123,7 +123,10 @@ const LOOPS: [(&str, Check); 17] = [
     ("copy_nearer and copy_nearer_keep_depth, u32", check_copies::<u32>),
     ("copy_nearer and copy_nearer_keep_depth, u16", check_copies::<u16>),
     ("interpolate and curve", |cases| {
-        Ok(light::check_interpolate(cases, interpolate)? + light::check_curve(cases, curve)?)
+        Ok(light::check_interpolate(cases, interpolate)?
+            + light::check_curve(cases, |shades, parabola, least, most| {
+                curve(Kernel::PORTABLE, shades, parabola, least, most)
+            })?)
     }),
 ];
 
@@ -148,15 +151,15 @@ const BY_KERNEL: [(&str, CheckKernel); 11] = [
     ("list::fill_where_nearer, u32", list_nearer::<u32>),
     ("list::fill_where_nearer, u16", list_nearer::<u16>),
     ("interpolate_at", |cases, kernel| {
-        light::check_interpolate_at(cases, |places, a, da, d, dd| kernel.interpolate_at(places, a, da, d, dd))
+        light::check_interpolate_at(cases, |places, a, da, d, dd| lit::interpolate_at(kernel, places, a, da, d, dd))
     }),
     ("numerators and divide", |cases, kernel| {
         light::check_interpolate_at(cases, |places, a, da, d, dd| {
-            kernel.divide(&kernel.numerators(places, a, da, d, dd))
+            lit::divide(kernel, &lit::numerators(kernel, places, a, da, d, dd))
         })
     }),
     ("curve", |cases, kernel| {
-        light::check_curve(cases, |shades, parabola, least, most| kernel.curve(shades, parabola, least, most))
+        light::check_curve(cases, |shades, parabola, least, most| curve(kernel, shades, parabola, least, most))
     }),
 ];
 

@@ -33,7 +33,7 @@ impl Eye {
             return Err("its near distance must be above 0 and finite");
         }
         if !(field_of_view > Angle::default() && field_of_view < Angle::from_degrees(180.0)) {
-            return Err("its field of view must lie between 0 and π");
+            return Err("its field of view must be above 0 and below 180°");
         }
         let (at, up) = (wide(eye), wide(up));
         let forward = unit(sub(wide(target), at)).ok_or("it looks at its own position")?;

@@ -20,7 +20,7 @@ use super::listing::FaceCorners;
 use crate::fixed::U8F8;
 use crate::lanes::three;
 use crate::raster::reference::weights::{Weights, in_f64};
-use crate::span::Kernel;
+use crate::span::{Kernel, curve};
 
 /// Greatest shade at a point, in 8.8: 2⁸ times the brightest that can be shown. It keeps sums finite.
 const GREATEST: f32 = 16_777_216.0;
@@ -96,6 +96,6 @@ impl CurvePlane {
         let weights = three(in_f64(self.weights.at(x, y)), |weight| weight * self.share);
         let Limits { least, most } = self.limits[channel];
         let parabola = self.curves[channel].parabola(weights, self.steps);
-        kernel.curve(shades, parabola, least.to_bits(), most.to_bits());
+        curve::curve(kernel, shades, parabola, least.to_bits(), most.to_bits());
     }
 }

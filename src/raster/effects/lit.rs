@@ -8,7 +8,7 @@ use crate::raster::paint::to_bytes;
 use crate::raster::reference::weights::{Weights, in_f64};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
-use crate::span::lit::Numerators;
+use crate::span::lit::{self, Numerators};
 
 /// The most lit pixels of a span of which only some are lit, its end included, rounded up to whole
 /// vectors.
@@ -119,7 +119,7 @@ impl Waiting {
         for (i, eight) in numerators.iter_mut().enumerate() {
             *eight = each!(lane => self.numerators[i][lane]);
         }
-        let lit = light.at(&kernel.divide(&numerators));
+        let lit = light.at(&lit::divide(kernel, &numerators));
         for (lane, &pixel) in self.places[..self.count.min(LANES)].iter().enumerate() {
             for (i, out) in out.iter_mut().enumerate() {
                 out[pixel] = lit[i][lane];
@@ -155,7 +155,7 @@ impl Spans<'_> {
             let length = span.len;
             let mut first = 0;
             while length - first >= LANES {
-                let lit = light.at(&kernel.interpolate_at(&places(first), &a, da, d, *dd));
+                let lit = light.at(&lit::interpolate_at(kernel, &places(first), &a, da, d, *dd));
                 for (i, out) in out.iter_mut().enumerate() {
                     if let Some(to) = out[span.first + first..].first_chunk_mut() {
                         *to = lit[i];
@@ -164,7 +164,7 @@ impl Spans<'_> {
                 first += LANES;
             }
             if first < length {
-                let numerators = kernel.numerators(&places(first), &a, da, d, *dd);
+                let numerators = lit::numerators(kernel, &places(first), &a, da, d, *dd);
                 waiting.push(&numerators, span.first + first..span.first + length);
                 if waiting.count >= LANES {
                     waiting.light(kernel, light, &mut out);
@@ -236,7 +236,7 @@ impl Knots {
             for (lane, place) in eight.iter().enumerate() {
                 places[lane] = f64::from(*place);
             }
-            light(first * LANES, &kernel.interpolate_at(&places, &a, da, d, *dd));
+            light(first * LANES, &lit::interpolate_at(kernel, &places, &a, da, d, *dd));
         }
     }
 

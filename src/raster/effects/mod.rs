@@ -17,13 +17,13 @@
 //! let dither = DitherPattern::Ordered.thresholds();
 //! let pipeline = PixelPipeline { texture: Some(texture), dither: Some(dither), ..PixelPipeline::PLAIN };
 //!
-//! // In full light; half of the image across, all of it down.
+//! // In full light; half of the image across, all of it up: row 0 is the lowest.
 //! let corner = |x, y, u, v| -> Result<_, mode13h::raster::RasterError> {
 //!     let vertex = Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::MAX_VERTEX, 0)?;
 //!     let [columns, rows] = [bricks.width(), bricks.height()].map(|texels| texels as i32);
 //!     Ok((vertex, Attributes { texture: [u * columns << 15, v * rows << 16], ..Attributes::default() }))
 //! };
-//! let corners = [corner(8, 8, 0, 0)?, corner(56, 8, 1, 0)?, corner(8, 56, 0, 1)?];
+//! let corners = [corner(8, 8, 0, 1)?, corner(56, 8, 1, 1)?, corner(8, 56, 0, 0)?];
 //! let mut batch = EffectBatch::new();
 //! batch.push(&corners.map(|(vertex, _)| vertex), &corners.map(|(_, attributes)| attributes));
 //!

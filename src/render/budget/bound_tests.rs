@@ -13,8 +13,9 @@ use super::clusters::{Clusters, radius};
 use super::ranges::{EightFaces, ZERO};
 use crate::Angle;
 use crate::lanes::LANES;
-use crate::light::{Beam, Cone, ConeBeam, LampBeam, Lights, Reflectance, widen};
+use crate::light::{Beam, Cone, ConeBeam, LampBeam, Lights, Reflectance};
 use crate::mesh::normals::unit;
+use crate::mesh::wide::widen;
 use crate::random::Random;
 use crate::render::geometry::Geometry;
 

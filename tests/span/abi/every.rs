@@ -7,6 +7,7 @@
 
 use mode13h::glam::Vec3;
 use mode13h::internals::span::channels;
+use mode13h::internals::span::curve::curve;
 use mode13h::internals::span::depth::Cell;
 use mode13h::internals::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
 use mode13h::internals::span::list::{self, Listed, ListedDepths};
@@ -120,7 +121,7 @@ fn s7_rows_keep_the_rules() {
                 fill_dithered(&mut dithered, shade, step, &thresholds, x);
                 channels::mix_cube(&mut mixed, &r, &g, &b, &thresholds, x);
             }
-            kernel.curve(&mut shades, parabola, 0, 0xFF00);
+            curve(kernel, &mut shades, parabola, 0, 0xFF00);
             (dithered, mixed, shades)
         });
     }
