@@ -259,6 +259,28 @@ fn numbers_of_all_types() {
     assert_eq!(mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::new(0.2, 1.0), Vec2::new(1.0, 0.6)]);
 }
 
+/// A moving triangle whose positions stand among others, at `places`.
+fn triangle_among(count: usize, places: [u32; 3]) -> Gltf {
+    let mut file = Gltf::default();
+    let mut positions = vec![[f32::INFINITY; 3]; count];
+    places.iter().zip(TRIANGLE).for_each(|(&place, position)| positions[place as usize] = position);
+    let (position, index) = (file.floats(&positions), file.indices(&places, 5125));
+    let (times, moves) = (file.accessor(&[0; 4], 5126, 1, "SCALAR", ""), file.floats(&[[0.0, 1.0, 0.0]]));
+    file.shown(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
+    let channel = "{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}";
+    let sampler = format!("{{\"input\":{times},\"output\":{moves}}}");
+    file.add("animations", format!("{{\"channels\":[{channel}],\"samplers\":[{sampler}]}}"));
+    file
+}
+
+/// Many nodes may share a list of which each uses little: the rest is neither placed nor stored for motion.
+#[test]
+fn vertices_without_a_triangle_are_not_placed() {
+    let expected = loaded(triangle_among(3, [0, 1, 2]).glb(), "a.glb");
+    assert!(expected.rig.is_some());
+    assert_eq!(loaded(triangle_among(99, [7, 90, 31]).glb(), "a.glb"), expected);
+}
+
 /// A picture with a red pixel, and a blue one below or beside it.
 pub(crate) fn picture(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -125,6 +125,12 @@ impl Buffers {
         Ok(rows)
     }
 
+    /// The rows of an accessor at these indices, which must be below its count.
+    pub(super) fn rows_at<const N: usize>(&self, accessor: &Accessor<'_>, at: &[u32]) -> Result<Vec<[f64; N]>, String> {
+        let rows = self.rows::<N>(accessor)?;
+        Ok(at.iter().map(|&index| rows[index as usize]).collect())
+    }
+
     /// The integers of an accessor.
     pub(super) fn read_indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, String> {
         if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32) || accessor.normalized() {

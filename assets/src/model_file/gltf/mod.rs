@@ -30,6 +30,7 @@
 
 mod accessor;
 mod container;
+mod corners;
 mod material;
 mod motion;
 mod nodes;
@@ -55,8 +56,8 @@ pub(crate) use container::recognizes;
 use material::{Materials, encoded};
 use skin::Skins;
 
-/// The most corners of all faces together: a mesh may be used by many nodes, so a small file may be a large model.
-const MAX_CORNERS: usize = 3 << 26;
+/// The most triangles of all nodes together: a mesh may be used by many nodes, so a small file may be a large model.
+const MAX_TRIANGLES: usize = 1 << 26;
 
 /// Reads a file and the buffers that it names.
 pub(crate) fn draft(
@@ -162,20 +163,25 @@ impl Reading<'_> {
         let (surface, mapping) = self.materials.surface(&material);
         let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
         let count = positions.len();
+        let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
+        let room = MAX_TRIANGLES.saturating_sub(draft.lists.sizes.len());
+        let mut triangles = corners::triangles(primitive.mode(), indices.as_deref(), count, room)?;
+        let used = corners::used(&mut triangles, count);
+        let positions: Vec<[f64; 3]> = used.iter().map(|vertex| positions[*vertex as usize]).collect();
         let attribute = |semantic: &Semantic| {
             // An attribute with too few entries for the vertices is ignored.
             primitive.get(semantic).filter(|accessor| accessor.count() >= count)
         };
-        let normals = attribute(&Semantic::Normals).map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
-        let set = Semantic::TexCoords(mapping.set);
-        let pairs = attribute(&set).map(|a| self.buffers.rows::<2>(&a)).transpose().map_err(fault)?;
+        let normals = attribute(&Semantic::Normals).map(|a| self.buffers.rows_at::<3>(&a, &used));
+        let normals = normals.transpose().map_err(fault)?;
+        let pairs = attribute(&Semantic::TexCoords(mapping.set)).map(|a| self.buffers.rows_at::<2>(&a, &used));
+        let pairs = pairs.transpose().map_err(fault)?;
         let is_textured = self.materials.surfaces[surface].texture.is_some();
         let colors = attribute(&Semantic::Colors(0)).filter(|_| !is_textured);
-        let colors = colors.map(|a| self.buffers.rows::<3>(&a)).transpose().map_err(fault)?;
-        let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
+        let colors = colors.map(|a| self.buffers.rows_at::<3>(&a, &used)).transpose().map_err(fault)?;
         // By the specification a skinned mesh is not where its node is, but where its joints are.
         let skinned = match binding.joints {
-            Some(joints) => skin::influences(primitive, count, joints, self.buffers).map_err(fault)?,
+            Some(joints) => skin::influences(primitive, count, &used, joints, self.buffers).map_err(fault)?,
             None => None,
         };
         let own = self.transforms[binding.of_node as usize];
@@ -183,7 +189,7 @@ impl Reading<'_> {
         let place = |vertex: usize| skinned.as_ref().map_or(own, |skinned| skinned.blended(vertex, transforms));
 
         if let Some(moving) = &mut self.moving {
-            for vertex in 0..count {
+            for vertex in 0..used.len() {
                 moving.positions.push(positions[vertex].map(|c| c as f32));
                 moving.normals.push(normals.as_ref().map_or([0.0; 3], |normals| normals[vertex].map(|c| c as f32)));
                 match &skinned {
@@ -201,13 +207,13 @@ impl Reading<'_> {
             }
             push(&mut lists.positions, Wide::new(position))?;
         }
-        for (vertex, normal) in normals.iter().flatten().take(count).enumerate() {
+        for (vertex, normal) in normals.iter().flatten().enumerate() {
             let normal = place(vertex).normal(*normal);
             let length = libm::sqrt(dot(normal, normal));
             let normal = Vec3::from_array(normal.map(|c| (c / length) as f32));
             push(&mut lists.normals, if normal.is_finite() { normal } else { Vec3::ZERO })?;
         }
-        for &[u, v] in pairs.iter().flatten().take(count) {
+        for &[u, v] in pairs.iter().flatten() {
             let pair = mapping.apply([u, v]);
             // v points down in the file.
             let pair = Vec2::new(pair[0] as f32, (1.0 - pair[1]) as f32);
@@ -223,31 +229,13 @@ impl Reading<'_> {
         };
         draft.lists.runs.push((draft.lists.sizes.len(), run));
 
-        let length = indices.as_ref().map_or(count, Vec::len);
-        let vertex = |i: usize| indices.as_ref().map_or(i, |indices| indices[i] as usize);
-        let triangles: usize = match primitive.mode() {
-            Mode::Triangles => length / 3,
-            _ => length.saturating_sub(2),
-        };
-        for i in 0..triangles {
-            let corners = match primitive.mode() {
-                Mode::Triangles => [3 * i, 3 * i + 1, 3 * i + 2],
-                Mode::TriangleFan => [0, i + 1, i + 2],
-                _ if i.is_multiple_of(2) => [i, i + 1, i + 2],
-                _ => [i + 1, i, i + 2],
-            };
-            let mut corners: [usize; 3] = corners.map(vertex);
-            if let Some(beyond) = corners.iter().find(|&&corner| corner >= count) {
-                return Err(ModelFileErrorKind::Fault(format!("there is no vertex {beyond}, only {count}")));
-            }
+        for triangle in triangles {
+            let mut corners = triangle.map(|vertex| vertex as usize);
             if place(corners[0]).mirrors() {
                 corners.swap(1, 2);
             }
             let lists = &mut draft.lists;
             let start = lists.corners.len();
-            if start > MAX_CORNERS {
-                return Err(ModelFileErrorKind::TooLarge("more than 67,108,864 triangles, counted in each node"));
-            }
             // Fewer than 2³² of each, see `push`.
             let index = |first: usize, is_there: bool, corner: usize| {
                 if is_there { (first + corner) as u32 } else { Corner::NONE }

@@ -58,10 +58,13 @@ impl Skins {
 /// The most lists of four joints that a vertex may have.
 const SETS: u32 = 8;
 
-/// The joints of each vertex of a skinned primitive, and their weights, which add up to 1. `None` if it names none.
+/// The joints of the vertices of a skinned primitive, and their weights, which add up to 1. `None` if it names none.
+///
+/// The primitive has `count` vertices, and those in `used` are read.
 pub(super) fn influences(
     primitive: &Primitive<'_>,
     count: usize,
+    used: &[u32],
     (first, joints): (u32, usize),
     buffers: &Buffers,
 ) -> Result<Option<Influences>, String> {
@@ -70,14 +73,14 @@ pub(super) fn influences(
         // A list that is too short for the vertices is left out.
         let list = |semantic: Semantic| primitive.get(&semantic).filter(|accessor| accessor.count() >= count);
         let (Some(names), Some(weights)) = (list(Semantic::Joints(set)), list(Semantic::Weights(set))) else { break };
-        sets.push((buffers.rows::<4>(&names)?, buffers.rows::<4>(&weights)?));
+        sets.push((buffers.rows_at::<4>(&names, used)?, buffers.rows_at::<4>(&weights, used)?));
     }
     if sets.is_empty() || joints == 0 {
         return Ok(None);
     }
     let mut influences = Influences::default();
     let mut own = Vec::new();
-    for vertex in 0..count {
+    for vertex in 0..used.len() {
         own.clear();
         for (names, weights) in &sets {
             for (joint, weight) in names[vertex].into_iter().zip(weights[vertex]) {
