@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use mode13h::glam::Vec2;
+use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::Rgb;
 use mode13h::scene::UpAxis;
@@ -257,6 +257,37 @@ fn numbers_of_all_types() {
     assert_eq!(places, [[-32767.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 16384.0, 0.0]]);
     // v runs up.
     assert_eq!(mesh.texcoords().unwrap(), [Vec2::ZERO, Vec2::new(0.2, 1.0), Vec2::new(1.0, 0.6)]);
+}
+
+/// An accessor without a buffer view has zeros, of which sparse values may replace some.
+#[test]
+fn numbers_without_bytes_are_zeros() {
+    let places = |count: usize| {
+        let mut file = Gltf::default();
+        let (at, new) = (file.view(&[1, 0, 7, 0], None), file.view(&[0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0], None));
+        let sparse = format!(
+            "\"sparse\":{{\"count\":2,\"indices\":{{\"bufferView\":{at},\"componentType\":5123}},\
+             \"values\":{{\"bufferView\":{new}}}}}"
+        );
+        let bounds = "\"min\":[0,0,0],\"max\":[0,0,0]";
+        let kind = format!("\"count\":{count},\"type\":\"VEC3\",\"componentType\":5122,{bounds}");
+        let position = file.add("accessors", format!("{{{kind},{sparse}}}"));
+        let zeros = file.add("accessors", format!("{{{kind}}}"));
+        let index = file.indices(&[0, 1, 7], 5125);
+        file.shown(&format!("\"POSITION\":{position}"), &format!(",\"indices\":{index}"));
+        (file, zeros)
+    };
+    let of_mesh = |file: &Gltf| loaded(file.glb(), "a.glb").mesh.positions().to_vec();
+    let expected = [Vec3::ZERO, Vec3::Y, Vec3::Z * 2.0];
+    for count in [8, 70_000, 1 << 20] {
+        assert_eq!(of_mesh(&places(count).0), expected, "{count}");
+    }
+    // A mesh all of whose vertices are at 0 has no area, but is no fault.
+    let (mut file, zeros) = places(8);
+    file.shown(&format!("\"POSITION\":{zeros}"), ",\"mode\":5");
+    assert_eq!(of_mesh(&file)[..3], expected);
+    let what = "a.glb: meshes[0].primitives[0]: accessors[0]: more than 1,048,576 elements without a bufferView";
+    assert_eq!(refused(places((1 << 20) + 1).0.glb(), "a.glb"), what);
 }
 
 /// A moving triangle whose positions stand among others, at `places`.

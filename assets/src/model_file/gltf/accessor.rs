@@ -27,8 +27,8 @@ pub(super) struct Buffers {
     pub(super) images: Vec<Image>,
 }
 
-/// The most rows of an accessor without a buffer, whose values are all 0.
-const MAX_ZEROS: usize = 1 << 16;
+/// The most rows of an accessor without a buffer view. They are 0, and a short file may ask for any number.
+const MAX_ZEROS: usize = 1 << 20;
 
 impl Buffers {
     /// Reads all buffers and images.
@@ -99,7 +99,10 @@ impl Buffers {
                 let rows = slices(bytes, accessor.offset(), view.stride(), size, accessor.count());
                 rows.ok_or_else(|| format!("{part} ends beyond bufferViews[{}]", view.index()))?.map(row).collect()
             }
-            None if accessor.count() > MAX_ZEROS => return Err(format!("{part} has no bufferView")),
+            None if accessor.count() > MAX_ZEROS => {
+                return Err(format!("{part}: more than 1,048,576 elements without a bufferView"));
+            }
+            // The allocator gives zeros that take no memory until they are used.
             None => vec![[0.0; N]; accessor.count()],
         };
         if let Some(sparse) = accessor.sparse() {

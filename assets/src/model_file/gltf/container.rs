@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use ::gltf::{Document, Error, json};
+use ::gltf::json::validation::{self, Validate};
+use ::gltf::{Document, json};
 
 use crate::errors::clause;
 use crate::model_file::word::without_mark;
@@ -67,18 +68,27 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     }
     // Whatever other extensions are required, the rest can be drawn.
     root.extensions_required.clear();
-    let document = Document::from_json(root).map_err(|error| match error {
-        Error::Validation(faults) => match faults.first() {
-            Some((part, what)) => {
-                // The crate names the field of its own struct.
-                let part = part.to_string().replace("khrLightsPunctual", "KHR_lights_punctual");
-                fault(format!("{part}: {}", clause(&what.to_string())))
-            }
-            None => fault(String::from("not valid")),
-        },
-        error => fault(clause(&error.to_string())),
-    })?;
-    Ok((document, binary))
+    if let Some((part, what)) = first_fault(&root) {
+        // The crate names the field of its own struct.
+        let part = part.replace("khrLightsPunctual", "KHR_lights_punctual");
+        return Err(fault(format!("{part}: {}", clause(&what.to_string()))));
+    }
+    Ok((Document::from_json_without_validation(root), binary))
+}
+
+/// The part of a file that `gltf` finds at fault first, and its fault.
+///
+/// For `gltf` an accessor needs a buffer view or sparse values; by the specification it is zeros without.
+fn first_fault(root: &json::Root) -> Option<(String, validation::Error)> {
+    let mut first = None;
+    root.validate(root, json::Path::new, &mut |path, error| {
+        let part = path().to_string();
+        let is_zeros = part.starts_with("accessors[") && part.ends_with("].bufferView");
+        if !(is_zeros && error == validation::Error::Missing) {
+            first.get_or_insert((part, error));
+        }
+    });
+    first
 }
 
 /// The JSON of a binary file, the offset where it begins, and the binary chunk.
