@@ -359,6 +359,39 @@ fn textures_lie_as_the_file_says() {
     }
 }
 
+/// Textures repeat here. Another wrapping mode is a warning, but clamping only where coordinates leave the texture.
+#[test]
+fn textures_that_clamp_are_a_warning() {
+    let image = |view| format!("{{\"bufferView\":{view}}}");
+    let moved = |offset: &str| {
+        format!(",\"extensions\":{{\"KHR_texture_transform\":{{\"offset\":{offset},\"scale\":[0.5,0.5]}}}}")
+    };
+    let (inside, right) = (moved("[0.5,0.5]"), moved("[0.75,0]"));
+    let (rounded, above) = (moved("[0.5000005,-0.0000005]"), moved("[0,-0.01]"));
+    let of = |modes: &str, base: &str| {
+        let mut file = textured(image, base, "");
+        file.replace("textures", "}", ",\"sampler\":0}");
+        file.add("samplers", format!("{{{modes}}}"));
+        loaded(file.glb(), "a.glb").warnings
+    };
+    let (both, only_u, only_v) = ("\"wrapS\":33071,\"wrapT\":33071", "\"wrapS\":33071", "\"wrapT\":33071");
+    let clamped = ["a.glb: left out: clamped textures"];
+    for (modes, base, expected) in [
+        ("", right.as_str(), &[][..]),
+        (both, "", &[]),
+        (both, &inside, &[]),
+        (both, &rounded, &[]),
+        (both, &right, &clamped),
+        (only_u, &right, &clamped),
+        (only_v, &right, &[]),
+        (both, &above, &clamped),
+        (only_u, &above, &[]),
+        ("\"wrapS\":33648", "", &["a.glb: left out: mirrored textures"]),
+    ] {
+        assert_eq!(of(modes, base), expected, "{modes} {base}");
+    }
+}
+
 /// An image whose type is not said is seen by its bytes; one without any is refused, by its place.
 #[test]
 fn images_need_bytes_and_no_type() {

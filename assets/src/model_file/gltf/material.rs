@@ -16,7 +16,7 @@ use super::accessor::{Buffers, Image};
 use crate::model_file::Embedded;
 use crate::texture::{Decoded, decode_all};
 
-/// How a texture is placed: `KHR_texture_transform`.
+/// How a texture is placed: `KHR_texture_transform`, and the wrapping modes of its sampler.
 #[derive(Clone, Copy)]
 pub(super) struct Mapping {
     /// The set of texture coordinates.
@@ -24,19 +24,28 @@ pub(super) struct Mapping {
     offset: [f64; 2],
     scale: [f64; 2],
     rotation: f64,
+    /// Whether the texture's edge continues beyond it in u and in v, instead of the texture.
+    clamps: [bool; 2],
 }
 
+/// How far beyond 0 to 1 coordinates may be before they count as outside: sixteen roundings of an f32 near 1, of which
+/// a few add up where exporters scale or move coordinates, and 1/4096 texel of the largest texture, which no one sees.
+const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
+
 impl Mapping {
-    const NONE: Self = Self { set: 0, offset: [0.0; 2], scale: [1.0; 2], rotation: 0.0 };
+    const NONE: Self = Self { set: 0, offset: [0.0; 2], scale: [1.0; 2], rotation: 0.0, clamps: [false; 2] };
 
     fn of(info: &Info<'_>) -> Self {
         let set = info.tex_coord();
-        let Some(transform) = info.texture_transform() else { return Self { set, ..Self::NONE } };
+        let sampler = info.texture().sampler();
+        let clamps = [sampler.wrap_s(), sampler.wrap_t()].map(|mode| mode == WrappingMode::ClampToEdge);
+        let Some(transform) = info.texture_transform() else { return Self { set, clamps, ..Self::NONE } };
         Self {
             set: transform.tex_coord().unwrap_or(set),
             offset: transform.offset().map(f64::from),
             scale: transform.scale().map(f64::from),
             rotation: transform.rotation().into(),
+            clamps,
         }
     }
 
@@ -45,6 +54,11 @@ impl Mapping {
         let [u, v] = [0, 1].map(|i| pair[i] * self.scale[i]);
         let (sin, cos) = (libm::sin(self.rotation), libm::cos(self.rotation));
         [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
+    }
+
+    /// Returns whether a placed pair is where the texture should be clamped.
+    pub(super) fn is_clamped(self, pair: [f64; 2]) -> bool {
+        pair.iter().zip(self.clamps).any(|(c, clamps)| clamps && (*c < -ROUNDING || *c > 1.0 + ROUNDING))
     }
 }
 

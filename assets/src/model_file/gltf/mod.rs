@@ -26,7 +26,8 @@
 //! | texture | that of the base colour |
 //!
 //! A metallic-roughness texture is replaced by its means. Emission is added to the diffuse colour; an emissive texture
-//! is shown where the base colour is black and has no texture. Unlit materials are matt.
+//! is shown where the base colour is black and has no texture. Unlit materials are matt. Textures repeat: a sampler that
+//! clamps causes a warning if coordinates leave the texture.
 
 mod accessor;
 mod container;
@@ -215,6 +216,9 @@ impl Reading<'_> {
         }
         for &[u, v] in pairs.iter().flatten() {
             let pair = mapping.apply([u, v]);
+            if is_textured && mapping.is_clamped(pair) {
+                self.left_out.insert("clamped textures");
+            }
             // v points down in the file.
             let pair = Vec2::new(pair[0] as f32, (1.0 - pair[1]) as f32);
             push(&mut lists.texcoords, if pair.is_finite() { pair } else { Vec2::ZERO })?;
