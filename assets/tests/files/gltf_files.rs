@@ -431,6 +431,26 @@ fn materials_follow_the_rule() {
     }
 }
 
+/// As in MTL files with `d 0`, and only where the mode counts alpha.
+#[test]
+fn fully_transparent_materials_are_opaque_with_a_warning() {
+    let warning = "a.glb: a fully transparent material is drawn opaque; its alpha is left out";
+    for (mode, alpha, opacity, expected) in [
+        ("BLEND", "0", 1.0, &[warning][..]),
+        ("BLEND", "-1", 1.0, &[warning]),
+        ("BLEND", "0.25", 0.25, &[]),
+        ("MASK", "0", 1.0, &[]),
+        ("OPAQUE", "0", 1.0, &[]),
+    ] {
+        let mut file = with_triangle(",\"material\":0");
+        let base = format!("\"pbrMetallicRoughness\":{{\"baseColorFactor\":[1,1,1,{alpha}]}}");
+        file.add("materials", format!("{{\"alphaMode\":\"{mode}\",{base}}}"));
+        let Loaded { mesh, warnings, .. } = loaded(file.glb(), "a.glb");
+        assert_eq!(mesh.surfaces()[0].opacity, opacity, "{mode} {alpha}");
+        assert_eq!(warnings, expected, "{mode} {alpha}");
+    }
+}
+
 /// Faces with coloured vertices get the mean, in sRGB.
 #[test]
 fn colors_of_vertices_are_texels() {

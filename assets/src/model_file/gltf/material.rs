@@ -69,6 +69,8 @@ pub(super) struct Materials<'a> {
     pub(super) surfaces: Vec<Surface>,
     pub(super) textures: Embedded,
     pub(super) left_out: LeftOut,
+    /// Whether one of them should be fully transparent. It is drawn opaque.
+    pub(super) has_unseen: bool,
     known: HashMap<Option<usize>, (usize, Mapping)>,
     /// The images read so far: the texture, and whether some of it was not opaque.
     images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
@@ -85,6 +87,7 @@ impl<'a> Materials<'a> {
             surfaces: Vec::new(),
             textures: Embedded::new(),
             left_out: LeftOut::new(),
+            has_unseen: false,
             known: HashMap::new(),
             images: HashMap::new(),
         }
@@ -145,8 +148,11 @@ impl<'a> Materials<'a> {
             shininess: shininess as f32,
             ..Surface::default()
         };
-        if material.alpha_mode() == AlphaMode::Blend && alpha > 0.0 && alpha < 1.0 {
-            surface.opacity = alpha;
+        if material.alpha_mode() == AlphaMode::Blend {
+            self.has_unseen |= alpha <= 0.0;
+            if alpha > 0.0 && alpha < 1.0 {
+                surface.opacity = alpha;
+            }
         }
         let mut mapping = Mapping::NONE;
         if let Some(info) = &image {

@@ -22,7 +22,7 @@
 //! | diffuse | b · (1 − m·(1 − r)/2): a smooth metal is darker, as it does not mirror its surroundings here; a rough one keeps b |
 //! | specular | (1 − r) · ((1 − m)·0.22 + m·b); 0.22 is 4 % in sRGB |
 //! | shininess | 2/r⁴ − 2, at most 1000: Blinn's exponent for that roughness |
-//! | opacity | alpha of the base colour in the mode `BLEND`; textures' alpha is ignored, and so is the mode `MASK` |
+//! | opacity | alpha of the base colour in the mode `BLEND`, or 1 for an alpha of 0, with a warning; textures' alpha is ignored, and so is the mode `MASK` |
 //! | texture | that of the base colour |
 //!
 //! A metallic-roughness texture is replaced by its means. Emission is added to the diffuse colour; an emissive texture
@@ -111,6 +111,10 @@ pub(crate) fn draft(
     draft.textures = core::mem::take(&mut materials.textures);
     if let Some(surface) = color_surface {
         draft.surfaces[surface] = paint(&mut draft, &colors, format!("{}#colours", path.display()));
+    }
+    if materials.has_unseen {
+        let what = "a fully transparent material is drawn opaque; its alpha is left out";
+        draft.warnings.push(|| format!("{}: {what}", path.display()));
     }
     left_out.append(&mut materials.left_out);
     if !left_out.is_empty() {
