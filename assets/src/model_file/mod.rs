@@ -156,7 +156,8 @@ fn has_extension(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
 
-/// Reads a model and the files that it names. Textures outside it are only tested for existence.
+/// Reads a model and the files that it names. Textures outside it are only tested for existence, except that those of
+/// metallic factor and roughness are read for their means.
 ///
 /// # Errors
 /// A file that cannot be read, or that is broken: see [`ModelFileErrorKind`].
@@ -198,7 +199,7 @@ pub fn load_with(
 
 /// Reads a model from `reader`. `path` is used in errors, its extension determines the format, and the files that the
 /// model names are resolved relative to it: `file` is given their paths and returns their bytes. Textures outside the
-/// file are not looked for. Contents in no known format are read as OBJ.
+/// file are not looked for, except those of metallic factor and roughness. Contents in no known format are read as OBJ.
 ///
 /// ```
 /// use mode13h_assets::model_file;

@@ -451,6 +451,28 @@ fn fully_transparent_materials_are_opaque_with_a_warning() {
     }
 }
 
+/// The means of a metallic-roughness texture count, wherever its picture is; without them there is a warning.
+#[test]
+fn metallic_roughness_is_read_from_a_file_too() {
+    let read = |image: fn(usize) -> String, picture: Option<Vec<u8>>| {
+        let mut file = textured(image, "", "");
+        file.replace("materials", "baseColorTexture", "metallicRoughnessTexture");
+        let beside = |_: &Path| picture.clone().ok_or_else(|| io::ErrorKind::NotFound.into());
+        model_file::parse(&file.glb()[..], "folder/a.glb", beside, &Options::default()).unwrap()
+    };
+    let inside = read(|view| format!("{{\"bufferView\":{view}}}"), None);
+    let outside = |picture| read(|_| "{\"uri\":\"a%20b.png\"}".into(), picture);
+    let found = outside(Some(picture(1, 2)));
+    assert_eq!(found.mesh.surfaces(), inside.mesh.surfaces());
+    assert_eq!((found.warnings.len(), found.files), (0, vec![Path::new("folder").join("a b.png")]));
+    // A mean of 0 for roughness and half of full light for metal.
+    assert_eq!(found.mesh.surfaces()[0].diffuse, [0.75; 3]);
+    for picture in [None, Some(b"no picture".to_vec())] {
+        let warnings = outside(picture).warnings;
+        assert_eq!(warnings, ["folder/a.glb: left out: metallic-roughness textures that cannot be read"]);
+    }
+}
+
 /// Faces with coloured vertices get the mean, in sRGB.
 #[test]
 fn colors_of_vertices_are_texels() {

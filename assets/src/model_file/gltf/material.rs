@@ -1,7 +1,8 @@
 //! Surfaces and textures of materials, by the rules given in the parent module.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
 
 use ::gltf::Material;
@@ -66,6 +67,8 @@ impl Mapping {
 pub(super) struct Materials<'a> {
     path: &'a Path,
     buffers: &'a Buffers,
+    /// Reads a picture beside the file.
+    file: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     pub(super) surfaces: Vec<Surface>,
     pub(super) textures: Embedded,
     pub(super) left_out: LeftOut,
@@ -80,10 +83,15 @@ pub(super) struct Materials<'a> {
 const MAX_SHININESS: f64 = 1000.0;
 
 impl<'a> Materials<'a> {
-    pub(super) fn new(path: &'a Path, buffers: &'a Buffers) -> Self {
+    pub(super) fn new(
+        path: &'a Path,
+        buffers: &'a Buffers,
+        file: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
+    ) -> Self {
         Self {
             path,
             buffers,
+            file,
             surfaces: Vec::new(),
             textures: Embedded::new(),
             left_out: LeftOut::new(),
@@ -112,8 +120,11 @@ impl<'a> Materials<'a> {
         let [red, green, blue, alpha] = pbr.base_color_factor();
         let base = [red, green, blue].map(|channel| encoded(channel.into()));
         let (mut metallic, mut roughness) = (f64::from(pbr.metallic_factor()), f64::from(pbr.roughness_factor()));
-        if let Some([_, rough, metal]) = pbr.metallic_roughness_texture().and_then(|info| self.means(&info)) {
-            (metallic, roughness) = (metallic * metal, roughness * rough);
+        if let Some(info) = pbr.metallic_roughness_texture() {
+            match self.means(&info) {
+                Some([_, rough, metal]) => (metallic, roughness) = (metallic * metal, roughness * rough),
+                None => self.leave_out("metallic-roughness textures that cannot be read"),
+            }
         }
         let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
         let mut diffuse = base.map(|b| b * (1.0 - metallic * (1.0 - roughness) / 2.0));
@@ -189,18 +200,22 @@ impl<'a> Materials<'a> {
         Some(name)
     }
 
-    /// The texture of an image in the file, and whether some of it was not opaque.
+    /// The texture of an image in the file or beside it, and whether some of it was not opaque.
     fn image(&mut self, index: usize) -> Option<(Shared<Texture>, bool)> {
         let buffers = self.buffers;
+        let file = &mut self.file;
         let read = || {
-            let Image::Bytes(bytes) = buffers.images.get(index)? else { return None };
+            let bytes = match buffers.images.get(index)? {
+                Image::Bytes(bytes) => Cow::Borrowed(bytes.as_slice()),
+                Image::File(path) => Cow::Owned(file(Path::new(path)).ok()?),
+            };
             let Decoded { texture, was_transparent, .. } = decode_all(Cursor::new(bytes)).ok()?;
             Some((Shared::new(texture), was_transparent))
         };
         self.images.entry(index).or_insert_with(read).clone()
     }
 
-    /// The channel means of a texture in the file.
+    /// The channel means of a texture. `None` if it cannot be read.
     fn means(&mut self, info: &Info<'_>) -> Option<[f64; 3]> {
         let (texture, _) = self.image(info.texture().source()?.index())?;
         let (mut sums, mut count) = ([0.0; 3], 0.0);

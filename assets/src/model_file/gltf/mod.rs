@@ -60,15 +60,15 @@ use skin::Skins;
 /// The most triangles of all nodes together: a mesh may be used by many nodes, so a small file may be a large model.
 const MAX_TRIANGLES: usize = 1 << 26;
 
-/// Reads a file and the buffers that it names.
+/// Reads a file, the buffers that it names, and the pictures whose means are needed.
 pub(crate) fn draft(
     bytes: &[u8],
     path: &Path,
-    file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
+    mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<Draft, ModelFileError> {
     let (document, binary) = container::open(bytes, path)?;
     let fault = |what: String| ModelFileError::of_file(path, ModelFileErrorKind::Fault(what));
-    let buffers = Buffers::read(&document, binary, path, file).map_err(fault)?;
+    let buffers = Buffers::read(&document, binary, path, &mut file).map_err(fault)?;
     let mut draft = Draft { up: Some(UpAxis::Y), ..Draft::default() };
     let mut left_out = LeftOut::default();
     let (mut skeleton, scene) = nodes::read(&document).map_err(fault)?;
@@ -85,7 +85,7 @@ pub(crate) fn draft(
         bindings.push((mesh, Binding { of_node, joints }));
     }
     let mut reading = Reading {
-        materials: Materials::new(path, &buffers),
+        materials: Materials::new(path, &buffers, &mut file),
         buffers: &buffers,
         left_out,
         colors: Vec::new(),
