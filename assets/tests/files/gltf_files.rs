@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use mode13h::glam::{Vec2, Vec3};
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::Rgb;
 use mode13h::scene::UpAxis;
 use mode13h_assets::model_file::{self, Loaded, Options};
@@ -498,6 +498,44 @@ fn colors_of_vertices_are_texels() {
     };
     // A third of full light is 0.6124 in sRGB, 156.2 of 255.
     assert_eq!([2, 3].map(color), [Rgb::new(156, 156, 156), Rgb::new(0, 156, 156)]);
+}
+
+/// Colours of vertices multiply the base colour, and the material stays as it is: two of them, painted and plain.
+#[test]
+fn colors_of_vertices_leave_the_material() {
+    let mut file = Gltf::default();
+    let positions = file.floats(&TRIANGLE);
+    let colors = file.floats(&[[0.0, 0.5, 1.0]; 3]);
+    let own = "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,0.5],\"metallicFactor\":0.5,\"roughnessFactor\":0.25}";
+    file.add(
+        "materials",
+        format!("{{\"name\":\"glass\",\"alphaMode\":\"BLEND\",\"emissiveFactor\":[0,0.02,0],{own}}}"),
+    );
+    let unlit = "\"extensions\":{\"KHR_materials_unlit\":{}}";
+    file.add("materials", format!("{{\"emissiveFactor\":[1,0,0],{own},{unlit}}}"));
+    for material in [0, 1] {
+        file.shown(&format!("\"POSITION\":{positions}"), &format!(",\"material\":{material}"));
+        let painted = format!("\"POSITION\":{positions},\"COLOR_0\":{colors}");
+        file.shown(&painted, &format!(",\"material\":{material}"));
+    }
+    let Loaded { mesh, textures, .. } = loaded(file.glb(), "a.glb");
+    let [plain, painted, unlit, unlit_painted] = mesh.surfaces() else { panic!("{:?}", mesh.surfaces()) };
+    let texture = painted.texture.clone();
+    let expected = Surface { diffuse: [1.0; 3], texture: texture.clone(), ..plain.clone() };
+    assert_eq!((painted, painted.opacity, painted.shininess > 0.0), (&expected, 0.5, true));
+    let expected = Surface { diffuse: [1.0; 3], texture: texture.clone(), name: "colours".into(), ..unlit.clone() };
+    assert_eq!(unlit_painted, &expected);
+    let texture = &textures[&texture.unwrap()];
+    let color = |triangle: usize| {
+        let pair = mesh.texcoords().unwrap()[mesh.triangles()[triangle][0] as usize] * 16.0;
+        texture[(pair.x as u32, pair.y as u32)]
+    };
+    let srgb = |linear: f64| if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let rounded = |channels: [f64; 3]| Rgb::from_intensities(channels.map(|c| c as f32));
+    // A metallic factor of 0.5 and a roughness of 0.25 leave 1 - 0.5 * 0.75 / 2 of the colour.
+    let left = 0.8125;
+    assert_eq!(color(1), rounded([0.0, left * srgb(0.25) + srgb(0.02), left * srgb(0.25)]));
+    assert_eq!(color(3), rounded([1.0, srgb(0.25), srgb(0.25)]));
 }
 
 #[test]

@@ -63,6 +63,27 @@ impl Mapping {
     }
 }
 
+/// How the diffuse colour of a material follows from its base colour.
+#[derive(Clone, Copy)]
+pub(super) struct Shade {
+    /// The factor of the base colour, linear.
+    factor: [f64; 3],
+    /// How much of the base colour is diffuse.
+    share: f64,
+    /// What is added, in sRGB.
+    emission: [f64; 3],
+}
+
+impl Shade {
+    /// The diffuse colour, in sRGB, where the base colour is multiplied by the linear `color`.
+    pub(super) fn diffuse(&self, color: [f64; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|i| {
+            let base = encoded(color[i] * self.factor[i]);
+            (base * self.share + self.emission[i]).min(1.0) as f32
+        })
+    }
+}
+
 /// The surfaces of the materials in use.
 pub(super) struct Materials<'a> {
     path: &'a Path,
@@ -70,11 +91,13 @@ pub(super) struct Materials<'a> {
     /// Reads a picture beside the file.
     file: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     pub(super) surfaces: Vec<Surface>,
+    /// The painted surface of each that has one: the same material, but with the colours of faces.
+    pub(super) painted: HashMap<usize, usize>,
     pub(super) textures: Embedded,
     pub(super) left_out: LeftOut,
     /// Whether one of them should be fully transparent. It is drawn opaque.
     pub(super) has_unseen: bool,
-    known: HashMap<Option<usize>, (usize, Mapping)>,
+    known: HashMap<Option<usize>, (usize, Mapping, Shade)>,
     /// The images read so far: the texture, and whether some of it was not opaque.
     images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
 }
@@ -93,6 +116,7 @@ impl<'a> Materials<'a> {
             buffers,
             file,
             surfaces: Vec::new(),
+            painted: HashMap::new(),
             textures: Embedded::new(),
             left_out: LeftOut::new(),
             has_unseen: false,
@@ -105,8 +129,8 @@ impl<'a> Materials<'a> {
         self.left_out.insert(what);
     }
 
-    /// The index of a material's surface, and how its texture is placed.
-    pub(super) fn surface(&mut self, material: &Material<'_>) -> (usize, Mapping) {
+    /// The index of a material's surface, how its texture is placed, and its shade.
+    pub(super) fn surface(&mut self, material: &Material<'_>) -> (usize, Mapping, Shade) {
         if let Some(known) = self.known.get(&material.index()) {
             return *known;
         }
@@ -115,10 +139,20 @@ impl<'a> Materials<'a> {
         made
     }
 
-    fn made(&mut self, material: &Material<'_>) -> (usize, Mapping) {
+    /// The surface with the material of another, for faces with colours of their own. It has no texture yet.
+    pub(super) fn painted(&mut self, surface: usize) -> usize {
+        let Self { surfaces, painted, .. } = self;
+        *painted.entry(surface).or_insert_with(|| {
+            surfaces.push(Surface { diffuse: [1.0; 3], ..surfaces[surface].clone() });
+            surfaces.len() - 1
+        })
+    }
+
+    fn made(&mut self, material: &Material<'_>) -> (usize, Mapping, Shade) {
         let pbr = material.pbr_metallic_roughness();
         let [red, green, blue, alpha] = pbr.base_color_factor();
-        let base = [red, green, blue].map(|channel| encoded(channel.into()));
+        let factor = [red, green, blue].map(f64::from);
+        let base = factor.map(encoded);
         let (mut metallic, mut roughness) = (f64::from(pbr.metallic_factor()), f64::from(pbr.roughness_factor()));
         if let Some(info) = pbr.metallic_roughness_texture() {
             match self.means(&info) {
@@ -127,20 +161,21 @@ impl<'a> Materials<'a> {
             }
         }
         let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
-        let mut diffuse = base.map(|b| b * (1.0 - metallic * (1.0 - roughness) / 2.0));
+        let share = 1.0 - metallic * (1.0 - roughness) / 2.0;
+        let mut shade = Shade { factor, share, emission: [0.0; 3] };
         let mut specular = base.map(|b| (1.0 - roughness) * ((1.0 - metallic) * encoded(0.04) + metallic * b));
         let mut shininess = (2.0 / (roughness * roughness * roughness * roughness) - 2.0).clamp(0.0, MAX_SHININESS);
         if material.unlit() {
-            (diffuse, specular, shininess) = (base, [0.0; 3], 0.0);
+            (shade.share, specular, shininess) = (1.0, [0.0; 3], 0.0);
             self.leave_out("unlit shading");
         }
         let mut image = pbr.base_color_texture();
         let emission = material.emissive_factor().map(|channel| encoded(channel.into()));
         if emission != [0.0; 3] {
             match material.emissive_texture() {
-                None => diffuse = [0, 1, 2].map(|i| (diffuse[i] + emission[i]).min(1.0)),
+                None => shade.emission = emission,
                 Some(emissive) if image.is_none() && base == [0.0; 3] => {
-                    (diffuse, image) = (emission, Some(emissive));
+                    (shade.emission, image) = (emission, Some(emissive));
                 }
                 Some(_) => self.leave_out("emissive textures"),
             }
@@ -154,7 +189,7 @@ impl<'a> Materials<'a> {
         let is_opaque = material.alpha_mode() == AlphaMode::Opaque;
         let mut surface = Surface {
             name: material.name().unwrap_or_default().to_owned(),
-            diffuse: diffuse.map(|channel| channel as f32),
+            diffuse: shade.diffuse([1.0; 3]),
             specular: specular.map(|channel| channel as f32),
             shininess: shininess as f32,
             ..Surface::default()
@@ -175,7 +210,7 @@ impl<'a> Materials<'a> {
             }
         }
         self.surfaces.push(surface);
-        (self.surfaces.len() - 1, mapping)
+        (self.surfaces.len() - 1, mapping, shade)
     }
 
     /// The name of a texture: that of a file, or of an image inside the model file.

@@ -26,8 +26,9 @@
 //! | texture | that of the base colour |
 //!
 //! A metallic-roughness texture is replaced by its means. Emission is added to the diffuse colour; an emissive texture
-//! is shown where the base colour is black and has no texture. Unlit materials are matt. Textures repeat: a sampler that
-//! clamps causes a warning if coordinates leave the texture.
+//! is shown where the base colour is black and has no texture. Unlit materials are matt. Colours of vertices multiply
+//! the base colour where it is diffuse, and leave the rest of the material. Textures repeat: a sampler that clamps
+//! causes a warning if coordinates leave the texture.
 
 mod accessor;
 mod container;
@@ -54,7 +55,7 @@ use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place, paint}
 use crate::wide::dot;
 use accessor::Buffers;
 pub(crate) use container::recognizes;
-use material::{Materials, encoded};
+use material::Materials;
 use skin::Skins;
 
 /// The most triangles of all nodes together: a mesh may be used by many nodes, so a small file may be a large model.
@@ -89,7 +90,6 @@ pub(crate) fn draft(
         buffers: &buffers,
         left_out,
         colors: Vec::new(),
-        color_surface: None,
         transforms: skeleton.transforms(&skeleton.places(|_| None)),
         moving: (!clips.is_empty()).then(Vertices::default),
     };
@@ -105,12 +105,19 @@ pub(crate) fn draft(
             })?;
         }
     }
-    let Reading { mut materials, mut left_out, colors, color_surface, moving, .. } = reading;
+    let Reading { mut materials, mut left_out, colors, moving, .. } = reading;
     draft.nodes = rig::Nodes { skeleton, clips, vertices: moving.unwrap_or_default(), lights, camera };
     draft.surfaces = core::mem::take(&mut materials.surfaces);
     draft.textures = core::mem::take(&mut materials.textures);
-    if let Some(surface) = color_surface {
-        draft.surfaces[surface] = paint(&mut draft, &colors, format!("{}#colours", path.display()));
+    if !colors.is_empty() {
+        let painted = paint(&mut draft, &colors, format!("{}#colours", path.display()));
+        for surface in materials.painted.values() {
+            let own = &mut draft.surfaces[*surface];
+            own.texture.clone_from(&painted.texture);
+            if own.name.is_empty() {
+                own.name.clone_from(&painted.name);
+            }
+        }
     }
     if materials.has_unseen {
         let what = "a fully transparent material is drawn opaque; its alpha is left out";
@@ -139,8 +146,6 @@ struct Reading<'a> {
     left_out: LeftOut,
     /// Faces with a colour of their own.
     colors: Vec<(usize, Rgb)>,
-    /// The surface that these faces share.
-    color_surface: Option<usize>,
     /// The transforms that vertices are bound to, at rest.
     transforms: Vec<Placement>,
     /// The vertices before their transforms, one for each position, if anything moves.
@@ -164,8 +169,7 @@ impl Reading<'_> {
             self.left_out.insert("meshes without positions");
             return Ok(());
         };
-        let material = primitive.material();
-        let (surface, mapping) = self.materials.surface(&material);
+        let (surface, mapping, shade) = self.materials.surface(&primitive.material());
         let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
         let count = positions.len();
         let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
@@ -227,14 +231,7 @@ impl Reading<'_> {
             let pair = Vec2::new(pair[0] as f32, (1.0 - pair[1]) as f32);
             push(&mut lists.texcoords, if pair.is_finite() { pair } else { Vec2::ZERO })?;
         }
-        let run = match (&colors, self.color_surface) {
-            (None, _) => surface,
-            (Some(_), Some(known)) => known,
-            (Some(_), None) => {
-                self.materials.surfaces.push(Default::default());
-                *self.color_surface.insert(self.materials.surfaces.len() - 1)
-            }
-        };
+        let run = if colors.is_some() { self.materials.painted(surface) } else { surface };
         draft.lists.runs.push((draft.lists.sizes.len(), run));
 
         for triangle in triangles {
@@ -254,12 +251,11 @@ impl Reading<'_> {
                 normal: index(first[2], normals.is_some(), corner),
             }));
             if let Some(colors) = &colors {
-                let factor = material.pbr_metallic_roughness().base_color_factor();
                 let mean = [0, 1, 2].map(|channel| {
                     let sum: f64 = corners.iter().map(|&corner| colors[corner][channel]).sum();
-                    encoded(sum / 3.0 * f64::from(factor[channel])) as f32
+                    sum / 3.0
                 });
-                self.colors.push((lists.sizes.len(), Rgb::from_intensities(mean)));
+                self.colors.push((lists.sizes.len(), Rgb::from_intensities(shade.diffuse(mean))));
             }
             // The position only matters for faces that are dropped, and none is.
             lists.end_face(start, Place::Offset(0))?;
