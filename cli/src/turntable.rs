@@ -1,5 +1,7 @@
 //! Turntable: a model in a scene made for it, or a scene of its own.
 
+use core::f64::consts::TAU;
+
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material, RampChoice};
@@ -344,7 +346,7 @@ impl Turntable {
         let made = match self.automatic.take() {
             Some(made) => made,
             None => {
-                let mut made = auto_palette::of_scene(&self.round())?;
+                let mut made = self.made()?;
                 if let Some(look) = self.look {
                     made.palette = look.rounded(&made.palette);
                 }
@@ -354,16 +356,32 @@ impl Turntable {
         Ok(self.automatic.insert(made))
     }
 
-    /// The scene as it moves by itself, in its own palette.
-    fn round(&self) -> Scene {
+    /// A palette for what is seen over a round.
+    fn made(&self) -> Result<AutomaticPalette, RenderError> {
+        let mut scene = self.at_first();
+        if self.playbacks.is_empty() {
+            return auto_palette::of_scene(&scene);
+        }
+        let round = scene.duration;
+        let is_model = matches!(self.shown, Shown::Model);
+        if is_model {
+            // In a second round it also turns, as the user may turn it.
+            scene.duration *= 2.0;
+        }
+        auto_palette::of_moving_scene(&scene, |scene, seconds| {
+            self.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
+            if is_model && seconds > round {
+                let turn = Angle::from_radians(TAU * (seconds / round - 1.0));
+                scene.objects_mut().iter_mut().for_each(|object| object.angles[1] += turn);
+            }
+        })
+    }
+
+    /// The scene at the beginning of a round, in its own palette.
+    fn at_first(&self) -> Scene {
         let mut stage = Turntable { frames_still: false, ..self.clone() };
         stage.show(0.0, Pose::FIRST);
         let mut scene = stage.scene;
-        // The user may turn it.
-        if !self.playbacks.is_empty() && matches!(self.shown, Shown::Model) {
-            let turns = 1.0 / scene.duration;
-            scene.motions.iter_mut().for_each(|motion| turn_by(motion, turns));
-        }
         scene.palette.clone_from(&self.palette);
         scene.objects_mut().iter_mut().zip(self.materials_shown()).for_each(|(object, own)| object.materials = own);
         scene
@@ -434,7 +452,6 @@ fn about(axis: Vec3, angle: f64, v: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use mode13h_assets::shipped;
-    use std::f64::consts::TAU;
 
     fn near(a: Vec3, b: Vec3) -> bool {
         (a - b).length() < 1e-5

@@ -14,7 +14,7 @@ use mode13h::scene::{Fog, Scene, Shared};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
-use super::seen::{Numbers, Picture, moments};
+use super::seen::{Numbers, Picture, Round};
 
 /// The colour of a material, and that of its highlight, on three channels.
 pub(super) type OwnColors = ([f32; 3], [f32; 3]);
@@ -22,7 +22,12 @@ pub(super) type OwnColors = ([f32; 3], [f32; 3]);
 /// The colours of mixed pixels, or of all pixels if `everywhere`, as the card shows them, each with its area as a
 /// fraction of all covered pixels. The background's colour is among them, if one was chosen. `own` are the colours of
 /// the scene's materials, of all objects in order.
-pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Result<Vec<(Rgb, f32)>, RenderError> {
+pub(super) fn colors(
+    scene: &Scene,
+    round: &Round<'_>,
+    own: &[OwnColors],
+    everywhere: bool,
+) -> Result<Vec<(Rgb, f32)>, RenderError> {
     let materials = scene.objects().iter().flat_map(|object| &object.materials);
     let shines: Vec<bool> = materials.clone().map(|material| material.blend != Blend::Opaque).collect();
     let mixes = everywhere || shines.contains(&true);
@@ -40,15 +45,15 @@ pub(super) fn colors(scene: &Scene, own: &[OwnColors], everywhere: bool) -> Resu
     let grey = grey();
     let mut counts: BTreeMap<Rgb, u32> = BTreeMap::new();
     let mut covered = 0_u32;
-    for seconds in moments(scene) {
-        let numbers = numbers.at(seconds)?;
+    for moment in round.moments() {
+        let numbers = numbers.at(moment)?;
         let background = numbers.iter().filter(|number| number.is_none()).count() as u32;
         covered += Vga::SHOWN as u32 - background;
         if let Some(color) = scene.background_color {
             *counts.entry(color.nearest_on_dac()).or_default() += background;
         }
         let Some(channels) = &mut channels else { continue };
-        let seen = channels.iter_mut().map(|channel| channel.at(seconds)).collect::<Result<Vec<_>, _>>()?;
+        let seen = channels.iter_mut().map(|channel| channel.at(moment)).collect::<Result<Vec<_>, _>>()?;
         for (i, number) in numbers.iter().enumerate() {
             if number.is_some_and(|number| everywhere || shines[number]) {
                 let [r, g, b] = [0, 1, 2].map(|channel| grey[seen[last.min(channel)][i]].r);

@@ -21,8 +21,8 @@ use mode13h::plan::Effect;
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::texture::{Mipmap, Texture};
+use seen::{Round, full_light, seen_in};
 pub use seen::{Seen, seen};
-use seen::{full_light, moments};
 pub use share::{Automatic, Entries, Use, share, share_beside};
 
 /// A palette for a scene, and the scene's materials in it.
@@ -88,11 +88,41 @@ impl AutomaticPalette {
 /// # Errors
 /// Those of [`Renderer::draw`].
 pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
+    of_round(scene, &Round::of(scene))
+}
+
+/// Makes a palette for a scene in which more moves than its [motions](Scene::motions), such as a model that plays an
+/// animation.
+///
+/// `pose` moves that to where it is at a time, in seconds, in a copy of the scene whose time is already set. Otherwise
+/// like [`of_scene`].
+///
+/// ```
+/// # use mode13h::scene::Scene;
+/// use mode13h_assets::{SceneExt, auto_palette};
+///
+/// # let text = "objects = [{ shape = 'torus' }]";
+/// # let no_files = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
+/// let mut loaded = Scene::from_toml(text, "scene.toml", no_files)?;
+/// let made = auto_palette::of_moving_scene(&loaded.scene, |scene, seconds| {
+///     loaded.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
+/// })?;
+/// made.apply(&mut loaded.scene);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Those of [`Renderer::draw`].
+pub fn of_moving_scene(scene: &Scene, pose: impl Fn(&mut Scene, f64)) -> Result<AutomaticPalette, RenderError> {
+    of_round(scene, &Round::moved(scene, &pose))
+}
+
+fn of_round(scene: &Scene, round: &Round<'_>) -> Result<AutomaticPalette, RenderError> {
     let in_channels = mixed::has_colored_light(scene) || scene.settings.channels == Some(true);
     let mut tints = Tints::default();
     let bodies: Vec<Vec<Body>> = scene.objects().iter().map(|object| bodies(object, scene, &mut tints)).collect();
     let mut texels: Vec<Option<Vec<(Rgb, u32)>>> = Vec::new();
-    for (object, (bodies, has_levels)) in scene.objects().iter().zip(bodies.iter().zip(have_mipmaps(scene)?)) {
+    for (object, (bodies, has_levels)) in scene.objects().iter().zip(bodies.iter().zip(have_mipmaps(scene, round)?)) {
         for (material, body) in object.materials.iter().zip(bodies) {
             texels.push(match &body.image {
                 _ if in_channels => Some(Vec::new()),
@@ -102,7 +132,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
             });
         }
     }
-    let seen = seen(scene)?;
+    let seen = seen_in(scene, round)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
     for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
         // The shades of an image, or of a ramp that is taken over, are not rescaled.
@@ -119,7 +149,7 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
     }
     let own: Vec<OwnColors> = bodies.iter().flatten().map(|body| body.own).collect();
     let Automatic { palette, entries } =
-        share_beside(&uses, &mixed::colors(scene, &own, in_channels || scene.fog.is_some())?);
+        share_beside(&uses, &mixed::colors(scene, round, &own, in_channels || scene.fog.is_some())?);
 
     let mut entries = entries.into_iter();
     let mut automatic = AutomaticPalette { palette, entries: Vec::new(), materials: Vec::new() };
@@ -145,16 +175,16 @@ pub(crate) fn colors_seen(scene: &Scene) -> Result<Vec<(Rgb, f32)>, RenderError>
         let surfaces = object.mesh().surfaces().iter().chain(core::iter::repeat(&plain));
         object.materials.iter().zip(surfaces).map(|(material, surface)| material.own_colors(surface))
     });
-    mixed::colors(scene, &own.collect::<Vec<_>>(), true)
+    mixed::colors(scene, &Round::of(scene), &own.collect::<Vec<_>>(), true)
 }
 
 /// Returns for each object whether its plan ever calls for mipmaps.
-fn have_mipmaps(scene: &Scene) -> Result<Vec<bool>, RenderError> {
+fn have_mipmaps(scene: &Scene, round: &Round<'_>) -> Result<Vec<bool>, RenderError> {
     let mut any = vec![false; scene.objects().len()];
     if scene.objects().iter().flat_map(|object| &object.materials).any(|material| material.texture.is_some()) {
         let (mut moved, mut renderer) = (scene.clone(), Renderer::new());
-        for seconds in moments(scene) {
-            moved.set_time(seconds);
+        for moment in round.moments() {
+            moment.show(&mut moved);
             let plan = renderer.make_plan(&moved, Screen::MODE_13H)?;
             any.iter_mut().enumerate().for_each(|(object, any)| *any |= plan.objects()[object].is_on(Effect::Mipmaps));
         }

@@ -37,15 +37,20 @@ pub struct Seen {
 /// # Errors
 /// Those of [`Renderer::draw`].
 pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
+    seen_in(scene, &Round::of(scene))
+}
+
+/// Measures each material of each object at the moments of a round.
+pub(super) fn seen_in(scene: &Scene, round: &Round<'_>) -> Result<Vec<Vec<Seen>>, RenderError> {
     let materials = || scene.objects().iter().flat_map(|object| &object.materials);
     let mut tallies = vec![Tally::default(); materials().count()];
     let shines: Vec<bool> = materials().map(|material| material.blend != Blend::Opaque).collect();
     let mut front = Layer::new(scene, false);
     let mut behind = shines.contains(&true).then(|| Layer::new(scene, true));
-    for seconds in moments(scene) {
-        front.add(seconds, &mut tallies, |number| behind.is_none() || shines[number])?;
+    for moment in round.moments() {
+        front.add(moment, &mut tallies, |number| behind.is_none() || shines[number])?;
         if let Some(behind) = &mut behind {
-            behind.add(seconds, &mut tallies, |number| !shines[number])?;
+            behind.add(moment, &mut tallies, |number| !shines[number])?;
         }
     }
     let all: u32 = tallies.iter().map(|tally| tally.pixels).sum();
@@ -53,11 +58,48 @@ pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
 }
 
-/// The moments of a loop that are drawn, in seconds.
-pub(super) fn moments(scene: &Scene) -> impl Iterator<Item = f64> {
-    let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
-    let duration = scene.duration;
-    (0..poses).map(move |pose| from + duration * f64::from(pose) / f64::from(POSES))
+/// A loop of a scene: the moments that are drawn, and what moves in addition to the scene's motions.
+pub(super) struct Round<'p> {
+    poses: u32,
+    /// The time of the first moment, and the length of the loop, in seconds.
+    from: f64,
+    duration: f64,
+    pose: &'p dyn Fn(&mut Scene, f64),
+}
+
+/// A moment of a [`Round`].
+#[derive(Clone, Copy)]
+pub(super) struct Moment<'p> {
+    seconds: f64,
+    pose: &'p dyn Fn(&mut Scene, f64),
+}
+
+impl Round<'_> {
+    /// A loop of a scene in which nothing moves but its motions.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
+        Self { poses, from, duration: scene.duration, pose: &|_, _| {} }
+    }
+
+    pub(super) fn moments(&self) -> impl Iterator<Item = Moment<'_>> {
+        let seconds = |pose| self.from + self.duration * f64::from(pose) / f64::from(self.poses);
+        (0..self.poses).map(move |pose| Moment { seconds: seconds(pose), pose: self.pose })
+    }
+}
+
+impl<'p> Round<'p> {
+    /// A loop of a scene in which `pose` moves something, too.
+    pub(super) fn moved(scene: &Scene, pose: &'p dyn Fn(&mut Scene, f64)) -> Self {
+        Self { poses: POSES, from: 0.0, duration: scene.duration, pose }
+    }
+}
+
+impl Moment<'_> {
+    /// Moves everything in the scene, or in a copy of it, to where it is.
+    pub(super) fn show(self, scene: &mut Scene) {
+        scene.set_time(self.seconds);
+        (self.pose)(scene, self.seconds);
+    }
 }
 
 /// A scene prepared for measuring, and the renderer that draws it.
@@ -91,9 +133,9 @@ impl Picture {
         &mut self.scene
     }
 
-    /// Draws the scene at a time, in seconds, and returns its pixels.
-    pub(super) fn at(&mut self, seconds: f64) -> Result<&[u8], RenderError> {
-        self.scene.set_time(seconds);
+    /// Draws the scene at a moment, and returns its pixels.
+    pub(super) fn at(&mut self, moment: Moment<'_>) -> Result<&[u8], RenderError> {
+        moment.show(&mut self.scene);
         self.renderer.draw(&self.scene, &mut self.vga)?;
         Ok(self.vga.pixels())
     }
@@ -121,9 +163,14 @@ impl Layer {
     }
 
     /// Counts the pixels of the materials for which `counts` is true.
-    fn add(&mut self, seconds: f64, tallies: &mut [Tally], counts: impl Fn(usize) -> bool) -> Result<(), RenderError> {
-        let intensities = self.intensities.at(seconds)?;
-        for (number, &intensity) in self.numbers.at(seconds)?.iter().zip(intensities) {
+    fn add(
+        &mut self,
+        moment: Moment<'_>,
+        tallies: &mut [Tally],
+        counts: impl Fn(usize) -> bool,
+    ) -> Result<(), RenderError> {
+        let intensities = self.intensities.at(moment)?;
+        for (number, &intensity) in self.numbers.at(moment)?.iter().zip(intensities) {
             if let Some(number) = number.filter(|number| counts(*number)) {
                 tallies[number].add(intensity);
             }
@@ -167,10 +214,10 @@ impl Numbers {
     }
 
     /// The number of each pixel's material, from 0, through all objects in order.
-    pub(super) fn at(&mut self, seconds: f64) -> Result<&[Option<usize>], RenderError> {
+    pub(super) fn at(&mut self, moment: Moment<'_>) -> Result<&[Option<usize>], RenderError> {
         let mut numbers = vec![0; Vga::SHOWN];
         for (place, picture) in (0..).step_by(8).zip(&mut self.bytes) {
-            for (number, &byte) in numbers.iter_mut().zip(picture.at(seconds)?) {
+            for (number, &byte) in numbers.iter_mut().zip(picture.at(moment)?) {
                 *number |= usize::from(byte) << place;
             }
         }

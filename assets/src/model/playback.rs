@@ -94,6 +94,11 @@ impl Playback {
         }
     }
 
+    /// Moves the model in a copy of its scene, whatever is shown there or in the scene itself.
+    pub fn show_in(&self, copy: &mut Scene, seconds: f64) {
+        Self { shown: None, ..self.clone() }.show(copy, seconds);
+    }
+
     fn pose(&self, seconds: f64) -> Pose {
         let mut pose = self.rig.pose(&self.mesh, self.clip, seconds);
         if self.stretch != Vec3::ONE {

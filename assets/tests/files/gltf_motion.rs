@@ -12,6 +12,7 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::vga::Vga;
 use mode13h_assets::SceneExt;
+use mode13h_assets::auto_palette::{self, AutomaticPalette, Entries};
 use mode13h_assets::model::{Playback, composed};
 use mode13h_assets::model_file::{Loaded, Rig};
 
@@ -402,6 +403,43 @@ fn a_body_that_bends_is_drawn_as_a_new_one() {
     }
     assert!(pictures[0] == pictures[4] && pictures[1] == pictures[3]);
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+}
+
+/// Two spheres, red and green, of which the second grows in a second from one size to another.
+fn growing(from: f32, to: f32) -> Gltf {
+    let (positions, indices) = points_of(&shapes::sphere(16, 8));
+    let mut file = Gltf::default();
+    let (position, index) = (file.floats(&positions), file.indices(&indices, 5125));
+    for (material, [red, green], x) in [(0, [1, 0], -1.5), (1, [0, 1], 1.5)] {
+        let color = format!("{{\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{red},{green},0,1]}}}}");
+        file.add("materials", color);
+        let more = format!(",\"indices\":{index},\"material\":{material}");
+        let mesh = file.mesh(&format!("\"POSITION\":{position}"), &more);
+        file.add("nodes", format!("{{\"mesh\":{mesh},\"translation\":[{x},0,0]}}"));
+    }
+    let values = file.floats(&[[from; 3], [to; 3]]);
+    animate(&mut file, 1, "scale", "LINEAR", &[0.0, 1.0], values);
+    file
+}
+
+/// An automatic palette is for what is visible while a model plays, not only where it is at rest.
+#[test]
+fn a_palette_is_for_the_whole_animation() {
+    let made = |file: Gltf| -> AutomaticPalette {
+        let model = loaded(file.glb(), "a.glb");
+        let mut scene = composed(Object::new(model.mesh.clone()), &[], None).expect("a scene");
+        scene.duration = rig(&model).clips()[0].duration();
+        let playback = Playback::new(rig(&model).clone(), 0, &scene, scene.object_ids()[0]).expect("an object");
+        playback.show_in(&mut scene, 0.0);
+        auto_palette::of_moving_scene(&scene, |scene, seconds| playback.show_in(scene, seconds)).expect("a scene")
+    };
+    let entries = |made: &AutomaticPalette| match made.entries[0][1] {
+        Entries::Ramp { ramp, .. } => ramp.entries(),
+        other => panic!("{other:?}"),
+    };
+    let [grows, shrinks, hides] =
+        [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(|(from, to)| entries(&made(growing(from, to))));
+    assert!(grows > hides && grows.abs_diff(shrinks) < 16, "{grows} {shrinks} {hides}");
 }
 
 /// A cube with clips called `translation`, `scale` and, without a name, a second move: to x = 1, twice as large, to x = 2.

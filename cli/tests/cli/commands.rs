@@ -746,6 +746,47 @@ fn an_animation_is_played() {
     }
 }
 
+/// A red triangle, and a green one that grows from nothing in a second.
+const GROWS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "nodes": [{"mesh": 0, "translation": [-1, 0, 0]}, {"mesh": 1, "translation": [1, 0, 0]}],
+    "materials": [
+        {"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}},
+        {"name": "green", "pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]}}],
+    "meshes": [
+        {"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+        {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+        {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+        {"bufferView": 0, "byteOffset": 44, "componentType": 5126, "count": 2, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 68}],
+    "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AACAPwAAgD8="}],
+    "animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 1, "path": "scale"}}]}]}"#;
+
+/// A palette that is made for a model or a scene with one, is for its whole animation, not only for its beginning.
+#[test]
+fn a_palette_is_made_for_an_animation() {
+    let folder = Folder::new();
+    let growing = "gD8AAAAAAAAAAAAAAAAAAIA/AACAPwAAgD8=";
+    folder.put("grows.gltf", GROWS);
+    folder.put("shrinks.gltf", GROWS.replace(growing, "gD8AAIA/AACAPwAAgD8AAAAAAAAAAAAAAAA="));
+    folder.put("still.gltf", GROWS.replace(growing, "gD8AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA="));
+    let entries = |model: &str| -> u32 {
+        let text = folder.printed(&format!("palette --from {model}.gltf"));
+        let ramp = text.lines().find(|line| line.starts_with("green: a ramp")).expect("a ramp");
+        let numbers: Vec<u32> = ramp.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+        numbers[1] + 1 - numbers[0]
+    };
+    let [grows, shrinks, still] = ["grows", "shrinks", "still"].map(entries);
+    assert!(grows > still && grows.abs_diff(shrinks) < 16, "{grows} {shrinks} {still}");
+    for model in ["grows", "shrinks", "still"] {
+        let objects = format!("objects = [{{ model = '{model}.gltf' }}]\nlights = [{{ sun = [0, 0, 1] }}]");
+        folder.put(&format!("{model}.toml"), format!("palette = 'auto'\nduration = 1\n{objects}"));
+    }
+    let palette = |scene: &str| Png::decode(&folder.picture(&format!("{scene}.toml"))).palette;
+    assert!(palette("grows") != palette("still"));
+}
+
 /// A triangle that goes aside in its first animation, and up in its second.
 const TWO_CLIPS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
