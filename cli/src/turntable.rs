@@ -368,7 +368,8 @@ impl Turntable {
             // In a second round it also turns, as the user may turn it.
             scene.duration *= 2.0;
         }
-        auto_palette::of_moving_scene(&scene, |scene, seconds| {
+        let periods: Vec<f64> = self.playbacks.iter().map(|playback| playback.clip().duration()).collect();
+        auto_palette::of_moving_scene(&scene, &periods, |scene, seconds| {
             self.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
             if is_model && seconds > round {
                 let turn = Angle::from_radians(TAU * (seconds / round - 1.0));

@@ -61,7 +61,7 @@ pub(super) fn colors(
             }
         }
     }
-    // 16 pictures at most: 1,024,000 pixels.
+    // 64 pictures at most: 4,096,000 pixels.
     Ok(counts.into_iter().map(|(color, count)| (color, count as f32 / covered.max(1) as f32)).collect())
 }
 

@@ -94,8 +94,8 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
 /// Makes a palette for a scene in which more moves than its [motions](Scene::motions), such as a model that plays an
 /// animation.
 ///
-/// `pose` moves that to where it is at a time, in seconds, in a copy of the scene whose time is already set. Otherwise
-/// like [`of_scene`].
+/// `pose` moves that to where it is at a time, in seconds, in a copy of the scene whose time is already set. It repeats
+/// after each of the `periods`, in seconds. Otherwise like [`of_scene`].
 ///
 /// ```
 /// # use mode13h::scene::Scene;
@@ -104,7 +104,8 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
 /// # let text = "objects = [{ shape = 'torus' }]";
 /// # let no_files = |_: &std::path::Path| Err(std::io::ErrorKind::NotFound.into());
 /// let mut loaded = Scene::from_toml(text, "scene.toml", no_files)?;
-/// let made = auto_palette::of_moving_scene(&loaded.scene, |scene, seconds| {
+/// let periods: Vec<f64> = loaded.playbacks.iter().map(|playback| playback.clip().duration()).collect();
+/// let made = auto_palette::of_moving_scene(&loaded.scene, &periods, |scene, seconds| {
 ///     loaded.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
 /// })?;
 /// made.apply(&mut loaded.scene);
@@ -113,8 +114,12 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
-pub fn of_moving_scene(scene: &Scene, pose: impl Fn(&mut Scene, f64)) -> Result<AutomaticPalette, RenderError> {
-    of_round(scene, &Round::moved(scene, &pose))
+pub fn of_moving_scene(
+    scene: &Scene,
+    periods: &[f64],
+    pose: impl Fn(&mut Scene, f64),
+) -> Result<AutomaticPalette, RenderError> {
+    of_round(scene, &Round::moved(scene, periods, &pose))
 }
 
 fn of_round(scene: &Scene, round: &Round<'_>) -> Result<AutomaticPalette, RenderError> {

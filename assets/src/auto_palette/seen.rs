@@ -12,12 +12,15 @@ use alloc::vec::Vec;
 use mode13h::light::{Blend, Material, RampChoice};
 use mode13h::palette::Ramp;
 use mode13h::render::{RenderError, Renderer};
-use mode13h::scene::Scene;
+use mode13h::scene::{Motion, Path, Scene};
 use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
-/// The number of pictures per loop.
+/// The number of pictures per loop, unless too many of them would be alike.
 const POSES: u32 = 16;
+
+/// The greatest number of pictures per loop.
+const MAX_POSES: u32 = 64;
 
 /// Area and brightness of a material, as visible over one loop of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -31,8 +34,8 @@ pub struct Seen {
     pub brightest: f32,
 }
 
-/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, or at one if
-/// nothing moves.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, at more if
+/// something repeats 8 times in it or a multiple of that, or at one if nothing moves.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -77,8 +80,7 @@ pub(super) struct Moment<'p> {
 impl Round<'_> {
     /// A loop of a scene in which nothing moves but its motions.
     pub(super) fn of(scene: &Scene) -> Self {
-        let (poses, from) = if scene.motions.is_empty() { (1, scene.time()) } else { (POSES, 0.0) };
-        Self { poses, from, duration: scene.duration, pose: &|_, _| {} }
+        Self::moved(scene, &[], &|_, _| {})
     }
 
     pub(super) fn moments(&self) -> impl Iterator<Item = Moment<'_>> {
@@ -88,10 +90,41 @@ impl Round<'_> {
 }
 
 impl<'p> Round<'p> {
-    /// A loop of a scene in which `pose` moves something, too.
-    pub(super) fn moved(scene: &Scene, pose: &'p dyn Fn(&mut Scene, f64)) -> Self {
-        Self { poses: POSES, from: 0.0, duration: scene.duration, pose }
+    /// A loop of a scene in which `pose` moves something, too, that repeats after each of these times, in seconds.
+    pub(super) fn moved(scene: &Scene, periods: &[f64], pose: &'p dyn Fn(&mut Scene, f64)) -> Self {
+        let (poses, from) = match scene.motions.is_empty() && periods.is_empty() {
+            true => (1, scene.time()),
+            false => (poses(&rounds(scene, periods)), 0.0),
+        };
+        Self { poses, from, duration: scene.duration, pose }
     }
+}
+
+/// How often each motion repeats in a loop, to the nearest whole number above 0.
+fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
+    let of_motion = |motion: &Motion| match motion {
+        Motion::Spin { turns, .. } => turns.map(|turns| turns * scene.duration),
+        Motion::Path { path: Path::Line { period, .. } | Path::Circle { period, .. }, .. } => {
+            [scene.duration / period, 0.0, 0.0]
+        }
+        _ => [0.0; 3],
+    };
+    let all = scene.motions.iter().flat_map(of_motion).chain(periods.iter().map(|period| scene.duration / period));
+    all.map(|rounds| libm::round(libm::fabs(rounds)) as u32).filter(|rounds| *rounds > 0).collect()
+}
+
+/// The number of moments in a loop that show each motion in at least four poses.
+///
+/// Of n moments of a motion with r rounds, n / gcd(n, r) are different: of 16 moments with 8 rounds only two, and with
+/// 16 rounds one. The number is 16 unless some r is a multiple of 8.
+fn poses(rounds: &[u32]) -> u32 {
+    let shows_all = |poses: &u32| rounds.iter().all(|rounds| poses / common_divisor(*poses, *rounds) >= 4);
+    (POSES..=MAX_POSES).find(shows_all).unwrap_or(POSES)
+}
+
+/// The greatest common divisor.
+fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
 impl Moment<'_> {
@@ -243,7 +276,7 @@ impl Tally {
         self.pixels += 1;
     }
 
-    /// The result, relative to `all` pixels, which are at most those of 32 full pictures: 2,048,000.
+    /// The result, relative to `all` pixels, which are at most those of 128 full pictures: 8,192,000.
     fn of(self, all: u32) -> Seen {
         Seen {
             area: self.pixels as f32 / all.max(1) as f32,

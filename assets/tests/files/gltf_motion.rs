@@ -425,21 +425,28 @@ fn growing(from: f32, to: f32) -> Gltf {
 /// An automatic palette is for what is visible while a model plays, not only where it is at rest.
 #[test]
 fn a_palette_is_for_the_whole_animation() {
-    let made = |file: Gltf| -> AutomaticPalette {
+    let made = |file: Gltf, rounds: f64| -> AutomaticPalette {
         let model = loaded(file.glb(), "a.glb");
         let mut scene = composed(Object::new(model.mesh.clone()), &[], None).expect("a scene");
-        scene.duration = rig(&model).clips()[0].duration();
+        let period = rig(&model).clips()[0].duration();
+        scene.duration = rounds * period;
         let playback = Playback::new(rig(&model).clone(), 0, &scene, scene.object_ids()[0]).expect("an object");
         playback.show_in(&mut scene, 0.0);
-        auto_palette::of_moving_scene(&scene, |scene, seconds| playback.show_in(scene, seconds)).expect("a scene")
+        auto_palette::of_moving_scene(&scene, &[period], |scene, seconds| playback.show_in(scene, seconds))
+            .expect("a scene")
     };
     let entries = |made: &AutomaticPalette| match made.entries[0][1] {
         Entries::Ramp { ramp, .. } => ramp.entries(),
         other => panic!("{other:?}"),
     };
     let [grows, shrinks, hides] =
-        [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(|(from, to)| entries(&made(growing(from, to))));
+        [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(|(from, to)| entries(&made(growing(from, to), 1.0)));
     assert!(grows > hides && grows.abs_diff(shrinks) < 16, "{grows} {shrinks} {hides}");
+    // However often it plays in a round of the scene.
+    for rounds in [2.0, 8.0, 16.0, 48.0] {
+        let often = entries(&made(growing(0.0, 1.0), rounds));
+        assert!(grows.abs_diff(often) < 16, "{rounds}: {often}, not {grows}");
+    }
 }
 
 /// A cube with clips called `translation`, `scale` and, without a name, a second move: to x = 1, twice as large, to x = 2.

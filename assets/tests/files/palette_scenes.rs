@@ -351,6 +351,34 @@ fn a_round_is_seen_and_not_its_beginning() {
     assert!((all - 1.0).abs() < 1e-5);
 }
 
+/// What moves through the picture, or faces it, for a part of each of its rounds is seen, however many rounds there are.
+#[test]
+fn a_round_is_seen_whatever_moves_how_often_in_it() {
+    use mode13h::mesh::Mesh;
+    use mode13h::scene::{Motion, Moving, Path};
+
+    let seen = |mesh: Mesh, motion: &dyn Fn(mode13h::scene::ObjectId, f64) -> Motion| {
+        let mut scene = Scene::new();
+        let id = scene.add(Object::new(mesh));
+        let motion = motion(id, scene.duration);
+        scene.motions.push(motion);
+        auto_palette::seen(&scene).expect("a scene")[0][0].area > 0.0
+    };
+    for rounds in [1.0, 2.0, 7.0, 8.0, 15.0, 16.0, 24.0, 32.0, 272.0, 1000.0, 1e9] {
+        // In sight about a quarter of the way down.
+        let path = |id, duration| Motion::Path {
+            what: Moving::Object(id),
+            path: Path::Line { from: Vec3::Y * 8.0, to: Vec3::Y * -24.0, period: duration / rounds, back: false },
+        };
+        assert!(seen(shapes::sphere(16, 8), &path), "{rounds} times along a path");
+        // Edge-on at the beginning and after half a turn.
+        let sheet = shapes::wall(1, 1);
+        let start = [0.0, 90.0, 0.0].map(mode13h::Angle::from_degrees);
+        let spin = |object, duration: f64| Motion::Spin { object, start, turns: [0.0, -rounds / duration, 0.0] };
+        assert!(seen(sheet, &spin), "{rounds} turns");
+    }
+}
+
 /// A distant image of two colours shows their mean, and so the palette made for it contains that.
 #[test]
 fn an_automatic_palette_has_the_colours_of_mipmaps() {
