@@ -346,6 +346,48 @@ fn textures_go_before_colors() {
     assert_eq!(model.mesh.texcoords().unwrap(), [Vec2::X, Vec2::ONE, Vec2::Y]);
 }
 
+/// Three triangles with the numbers of their textures, as MeshLab writes them, unless these are empty.
+fn with_textures(comments: &str, numbers: [&str; 3]) -> Loaded {
+    let property = if numbers[0].is_empty() { "" } else { "property int texnumber\n" };
+    let faces: String = numbers.iter().map(|number| format!("3 0 1 2 6 0 0 1 0 0 1 {number}\n")).collect();
+    let text = format!(
+        "ply\nformat ascii 1.0\n{comments}element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 3\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n{property}\
+         end_header\n0 0 0\n1 0 0\n0 1 0\n{faces}"
+    );
+    loaded(text, "a.ply")
+}
+
+#[test]
+fn faces_have_the_texture_of_their_number() {
+    let two = "comment TextureFile a.png\ncomment TextureFile b c.png\n";
+    let textures = |model: &Loaded| -> Vec<Option<String>> {
+        let surfaces = model.mesh.surfaces();
+        let of = |&surface: &u16| surfaces.get(usize::from(surface)).and_then(|surface| surface.texture.clone());
+        model.mesh.triangle_surfaces().iter().map(of).collect()
+    };
+    let name = |name: &str| Some(name.to_owned());
+    let model = with_textures(two, ["1", "0", "1"]);
+    assert_eq!(textures(&model), [name("b c.png"), name("a.png"), name("b c.png")]);
+    assert_eq!(model.warnings, [""; 0]);
+    let names: Vec<&str> = model.mesh.surfaces().iter().map(|surface| &*surface.name).collect();
+    assert_eq!(names, ["b c.png", "a.png"]);
+    // A number without a texture, as for faces that have none.
+    for number in ["-1", "2", "0.5", "nan", "1e99"] {
+        assert_eq!(
+            textures(&with_textures(two, ["0", number, "1"])),
+            [name("a.png"), None, name("b c.png")],
+            "{number}"
+        );
+    }
+    // With one texture there is nothing to choose.
+    let model = with_textures("comment TextureFile a.png\n", ["3", "0", "-1"]);
+    assert!(model.mesh.surfaces().len() == 1 && model.warnings.is_empty());
+    let model = with_textures(two, [""; 3]);
+    assert_eq!(textures(&model), [name("a.png"), name("a.png"), name("a.png")]);
+    assert_eq!(model.warnings, ["a.ply:3: no texnumber of faces; drawn with the first of 2 textures"]);
+}
+
 #[test]
 pub(crate) fn contents_say_the_format() {
     let cube = Faces::of_shape(&shapes::cube());

@@ -96,8 +96,8 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The line and name of the texture in a comment, the first if there are several.
-    pub(super) texture: Option<(u64, String)>,
+    /// The line and name of each texture in a comment.
+    pub(super) textures: Vec<(u64, String)>,
     /// The number of bytes before the first row.
     pub(super) length: usize,
     /// The number of lines before the first row.
@@ -112,7 +112,7 @@ impl Header {
     pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Self, ModelFileError> {
         let mut lines = HeaderLines { bytes, at: bytes.len() - without_mark(bytes).len(), number: 0 };
         let mut elements: Vec<Element> = Vec::new();
-        let (mut encoding, mut texture) = (None, None);
+        let (mut encoding, mut textures) = (None, Vec::new());
         let mut is_first = true;
         loop {
             let line = lines.next();
@@ -138,9 +138,8 @@ impl Header {
                 }
                 b"comment" => {
                     let text = line.trim_ascii_start()[word.len()..].trim_ascii_start();
-                    if let (Some(file), None) = (text.strip_prefix(b"TextureFile"), &texture) {
-                        texture = Some((number, name(file))).filter(|(_, name)| !name.is_empty());
-                    }
+                    let file = text.strip_prefix(b"TextureFile").map(name);
+                    textures.extend(file.filter(|file| !file.is_empty()).map(|file| (number, file)));
                 }
                 b"element" => {
                     let element = rest.next().unwrap_or_default();
@@ -170,7 +169,7 @@ impl Header {
         if encoding == Encoding::Text && bytes[..lines.at].ends_with(b"\r") && bytes[lines.at..].starts_with(b"\n") {
             lines.at += 1;
         }
-        Ok(Self { encoding, elements, texture, length: lines.at, lines: lines.number })
+        Ok(Self { encoding, elements, textures, length: lines.at, lines: lines.number })
     }
 }
 

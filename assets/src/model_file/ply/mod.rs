@@ -5,6 +5,7 @@
 //! | `x`, `y`, `z` of `vertex` | positions |
 //! | `nx`, `ny`, `nz` | normals; one of length 0 counts as missing |
 //! | `s t`, `u v` or `texture_u texture_v` of `vertex`, or a list `texcoord` of `face` | texture coordinates, if a comment `TextureFile` names the texture |
+//! | `texnumber` of `face` | which of several textures, in the order of their comments; without it, the first, with a warning |
 //! | a list `vertex_indices` or `vertex_index` of `face` | a face of three corners or more, fewer are dropped with a warning |
 //! | a list `vertex_indices` of `tristrips` | triangle strips; a negative index ends one |
 //! | `red`, `green`, `blue` of `vertex` or `face` | a colour for each face, up to 256 in all: the mean over its corners |
@@ -75,7 +76,10 @@ struct Reading {
     has_texcoords: bool,
     /// True if corners of faces have their own texture coordinates.
     has_pairs: bool,
-    has_texture: bool,
+    /// The number of textures.
+    textures: usize,
+    /// True if faces have the numbers of their textures.
+    has_numbers: bool,
 }
 
 impl Reading {
@@ -88,7 +92,7 @@ impl Reading {
         }
         Ok(Self {
             vertices: vertex.map_or(0, |vertex| vertex.count),
-            has_texture: header.texture.is_some(),
+            textures: header.textures.len(),
             ..Self::default()
         })
     }
@@ -98,7 +102,7 @@ impl Reading {
         let normal = ["nx", "ny", "nz"].map(|name| element.scalar(&[name]));
         let colors = element.colors();
         let pair = [["s", "u", "texture_u"], ["t", "v", "texture_v"]].map(|names| element.scalar(&names));
-        self.has_texcoords = self.has_texture && pair.iter().all(Option::is_some);
+        self.has_texcoords = self.textures > 0 && pair.iter().all(Option::is_some);
         let mut row = Vec::new();
         for _ in 0..element.count {
             values.row(element, &mut row, |_, _| Ok(()))?;
@@ -154,7 +158,8 @@ impl Reading {
             let what = "an element `face` needs a list vertex_indices";
             return Err(ModelFileErrorKind::Fault(what.into()));
         };
-        let pairs = element.list(&["texcoord"]).filter(|_| self.has_texture);
+        let pairs = element.list(&["texcoord"]).filter(|_| self.textures > 0);
+        let texture = element.scalar(&["texnumber"]).filter(|_| self.textures > 1);
         let (colors, has_normals) = (element.colors(), has_normals(lists, self.vertices));
         let (mut row, mut corners, mut texcoords) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..element.count {
@@ -184,9 +189,19 @@ impl Reading {
             if let Some(colors) = colors.filter(|_| lists.sizes.len() > before) {
                 self.of_faces.push(element.color(colors, &row));
             }
+            if let Some(texture) = texture.filter(|_| lists.sizes.len() > before) {
+                push(&mut lists.runs, (before, self.surface(row[texture])))?;
+            }
         }
         self.has_pairs |= pairs.is_some();
+        self.has_numbers |= texture.is_some();
         Ok(())
+    }
+
+    /// The surface for a `texnumber`. The one after those of all textures has none.
+    fn surface(&self, number: f64) -> usize {
+        let is_texture = number >= 0.0 && number < self.textures as f64 && number.fract() == 0.0;
+        if is_texture { number as usize } else { self.textures }
     }
 
     fn strips(&mut self, element: &Element, values: &mut Values<'_>, lists: &mut Lists) -> Done {
@@ -194,6 +209,9 @@ impl Reading {
             return (0..element.count).try_for_each(|_| values.skip(element));
         };
         let has_normals = has_normals(lists, self.vertices);
+        if self.has_numbers {
+            push(&mut lists.runs, (lists.sizes.len(), 0))?;
+        }
         let mut row = Vec::new();
         for _ in 0..element.count {
             let place = values.place_of_next();
@@ -223,13 +241,12 @@ impl Reading {
 
     /// Adds the texture, or the colours.
     fn finish(self, header: &Header, path: &Path, draft: &mut Draft) {
-        if let (Some((_, name)), true) = (&header.texture, self.has_texcoords || self.has_pairs) {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let file = folder.join(name).to_string_lossy().into_owned();
-            draft.surfaces.push(Surface { name: name.clone(), texture: Some(file), ..Surface::default() });
-            return;
+        if self.textures > 0 && (self.has_texcoords || self.has_pairs) {
+            return self.add_textures(header, path, draft);
         }
-        if let Some((line, _)) = header.texture {
+        // There is no surface for each texture then.
+        draft.lists.runs.clear();
+        if let Some((line, _)) = header.textures.first() {
             let shown = path.display();
             draft.warnings.push(|| format!("{shown}:{line}: no texture coordinates; drawn without the texture"));
         }
@@ -245,6 +262,27 @@ impl Reading {
             let colors: Vec<(usize, Rgb)> = colors.into_iter().enumerate().collect();
             let surface = paint(draft, &colors, format!("{}#colours", path.display()));
             draft.surfaces.push(surface);
+        }
+    }
+
+    /// Adds a surface for each texture, and one without for faces whose `texnumber` is of none.
+    fn add_textures(&self, header: &Header, path: &Path, draft: &mut Draft) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let with_texture = |(_, name): &(u64, String)| {
+            let file = folder.join(name).to_string_lossy().into_owned();
+            Surface { name: name.clone(), texture: Some(file), ..Surface::default() }
+        };
+        if self.has_numbers {
+            draft.surfaces.extend(header.textures.iter().map(with_texture));
+            draft.surfaces.push(Surface::default());
+            return;
+        }
+        draft.surfaces.extend(header.textures.first().map(with_texture));
+        if let Some((line, _)) = header.textures.first().filter(|_| self.textures > 1) {
+            let (shown, count) = (path.display(), self.textures);
+            draft
+                .warnings
+                .push(|| format!("{shown}:{line}: no texnumber of faces; drawn with the first of {count} textures"));
         }
     }
 }
