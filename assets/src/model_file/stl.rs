@@ -5,7 +5,7 @@
 //! | the corners of each facet | a face; in a text file it may have more than three |
 //! | normals of facets | ignored: the corners determine them, and half the programs write zeros |
 //! | corners at the same position, to the bit | one vertex, with −0 as 0 |
-//! | names of solids; the header and the attributes of a binary file | ignored; colours there with a warning |
+//! | names of solids, up to the end of the line or a `facet normal` in it; the header and the attributes of a binary file | ignored; colours there with a warning |
 //!
 //! A file is binary if its length matches the number of triangles it announces, whatever it begins with, since some
 //! binary files begin with `solid`, too. z points up, as is usual in 3-D printing.
@@ -32,13 +32,40 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
         return true;
     }
     let mut words = Tokens::new(bytes, 1);
-    let is = |word: Option<&[u8]>, wanted: &str| word.is_some_and(|word| word.eq_ignore_ascii_case(wanted.as_bytes()));
-    if !is(words.next(), "solid") {
+    if !is(words.next(), &["solid"]) {
         return false;
     }
-    words.skip_line();
-    let next = words.next();
-    is(next, "facet") || is(next, "endsolid")
+    skip_name(&mut words);
+    is(words.next(), &["facet", "endsolid"])
+}
+
+/// Returns whether a word is one of these keywords.
+fn is(word: Option<&[u8]>, keywords: &[&str]) -> bool {
+    word.is_some_and(|word| keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword.as_bytes())))
+}
+
+/// Skips the name of a solid, of any number of words: the rest of the line, or all before `facet normal` there.
+fn skip_name(words: &mut Tokens<'_>) {
+    let line = words.word_line;
+    let mut ahead = words.clone();
+    while let word @ Some(_) = ahead.next() {
+        let begins_facet = is(word, &["facet"]) && is(ahead.clone().next(), &["normal"]);
+        if ahead.word_line != line || begins_facet {
+            return;
+        }
+        words.clone_from(&ahead);
+    }
+}
+
+/// Skips what is between `normal` and the next keyword: three numbers, which may be NaN.
+fn skip_normal(words: &mut Tokens<'_>) {
+    let mut ahead = words.clone();
+    while let word @ Some(_) = ahead.next() {
+        if is(word, &["outer", "loop", "vertex", "endloop", "endfacet", "facet", "endsolid", "solid"]) {
+            return;
+        }
+        words.clone_from(&ahead);
+    }
 }
 
 /// The number of triangles that a binary file announces.
@@ -97,8 +124,7 @@ fn read_text(bytes: &[u8], path: &Path, lists: &mut Lists, merged: &mut Merged) 
         let keyword = word.to_ascii_lowercase();
         let result = match &keyword[..] {
             b"solid" | b"endsolid" => {
-                // A name of any number of words follows.
-                words.skip_line();
+                skip_name(&mut words);
                 match facet {
                     None => Ok(()),
                     Some(_) => Err(expected("vertex, endloop or endfacet", word)),
@@ -114,9 +140,8 @@ fn read_text(bytes: &[u8], path: &Path, lists: &mut Lists, merged: &mut Merged) 
                 Some((first, line)) => lists.end_face(first, Place::Line(line)),
                 None => Err(expected("facet or endsolid", word)),
             },
-            // Three numbers follow `normal`, which may be NaN.
             b"normal" if facet.is_some() => {
-                words.skip_line();
+                skip_normal(&mut words);
                 Ok(())
             }
             b"outer" | b"loop" | b"endloop" if facet.is_some() => Ok(()),

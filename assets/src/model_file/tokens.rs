@@ -5,6 +5,7 @@ use super::{ModelFileError, ModelFileErrorKind, Place};
 use std::path::Path;
 
 /// A sequence of words. LF, CR LF and CR end a line.
+#[derive(Clone)]
 pub(crate) struct Tokens<'b> {
     bytes: &'b [u8],
     at: usize,
@@ -40,12 +41,6 @@ impl<'b> Tokens<'b> {
         self.word_line = line;
         self.at += length;
         Some(&rest[..length])
-    }
-
-    /// Skips the rest of the line.
-    pub(crate) fn skip_line(&mut self) {
-        let rest = &self.bytes[self.at..];
-        self.at += rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
     }
 
     /// The next word as a number within the range of f32.

@@ -218,6 +218,28 @@ fn corners_in_one_place_are_one_vertex_exactly() {
     assert_eq!(mesh.triangles(), [[0, 1, 2], [2, 1, 3]]);
 }
 
+/// Line ends are blanks, except that a name ends with its line, or where a facet begins.
+#[test]
+fn text_may_be_on_any_number_of_lines() {
+    let cube = Faces::of_shape(&shapes::cube());
+    let usual = cube.stl_text();
+    let expected = loaded(&usual, "a.stl");
+    for text in [
+        usual.replace("endfacet\n", "endfacet ").replace("facet of a name", "of a name"),
+        usual.replace("  outer loop\n", " outer loop").replace("    vertex", " vertex"),
+        usual.replace("facet of a name", "of a name").replace('\n', " "),
+        usual.replace("facet of a name\n", "\n").replace('\n', "\t"),
+        usual.replace("facet of a name\n", "\n").split_whitespace().map(|word| format!("{word}\n")).collect(),
+        usual.replace("solid facet of a name\n", "solid facet\r"),
+    ] {
+        assert_eq!(contents(&loaded(&text, "a.stl").mesh), contents(&expected.mesh), "{text}");
+        assert_eq!(Format::of_bytes(text.as_bytes()), Some(Format::Stl), "{text}");
+    }
+    let two = "solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet endsolid a \
+               solid b facet normal 0 0 1 outer loop vertex 0 0 2 vertex 1 0 2 vertex 0 1 2 endloop endfacet endsolid b";
+    assert_eq!(loaded(two, "a.stl").mesh.triangles().len(), 2);
+}
+
 #[test]
 fn errors_say_line_or_byte() {
     let solid = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
