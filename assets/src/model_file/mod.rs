@@ -34,7 +34,7 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use flate2::bufread::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use mode13h::Angle;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, Surface};
@@ -246,7 +246,25 @@ pub(crate) fn ordinary_file(path: &Path) -> io::Result<Vec<u8>> {
 /// The reader's.
 pub fn unpacked<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead + 'r>> {
     let is_packed = reader.fill_buf()?.starts_with(&[0x1F, 0x8B]);
-    Ok(if is_packed { Box::new(BufReader::new(MultiGzDecoder::new(reader))) } else { Box::new(reader) })
+    Ok(if is_packed { Box::new(BufReader::new(Members(Some(GzDecoder::new(reader))))) } else { Box::new(reader) })
+}
+
+/// The contents of a gzipped file: those of its members, one after another. Zeros after the last, which fill a block of a
+/// tape, are ignored, as `gzip` does.
+struct Members<R>(Option<GzDecoder<R>>);
+
+impl<R: BufRead> Read for Members<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while let Some(member) = &mut self.0 {
+            let length = member.read(buffer)?;
+            if length > 0 || buffer.is_empty() {
+                return Ok(length);
+            }
+            let is_last = member.get_mut().fill_buf()?.first().is_none_or(|byte| *byte == 0);
+            self.0 = self.0.take().filter(|_| !is_last).map(|member| GzDecoder::new(member.into_inner()));
+        }
+        Ok(0)
+    }
 }
 
 /// A model as its format's reader produces it, before faces are split and repaired.

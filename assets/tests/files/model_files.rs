@@ -240,6 +240,26 @@ fn text_may_be_on_any_number_of_lines() {
     assert_eq!(loaded(two, "a.stl").mesh.triangles().len(), 2);
 }
 
+/// Zeros after a gzipped file fill a block of a tape, as `gzip` has it; anything else is an error.
+#[test]
+fn packed_files_may_end_in_zeros() {
+    let pack = |text: &str| {
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        std::io::Write::write_all(&mut packed, text.as_bytes()).expect("packed");
+        packed.finish().expect("packed")
+    };
+    let [first, second] = ["v 0 0 0\nv 1 0 0\n", "v 0 1 0\nf 1 2 3\n"].map(pack);
+    let whole = [&first[..], &second].concat();
+    for zeros in [0, 1, 10, 512, 70_000] {
+        let bytes = [&whole[..], &vec![0; zeros]].concat();
+        assert_eq!(loaded(bytes, "a.obj.gz").mesh.triangles(), [[0, 1, 2]], "{zeros}");
+    }
+    for garbage in [&b"\x1f"[..], b"garbage that is longer than a header", &second[..second.len() - 1]] {
+        let error = refused([&whole[..], garbage].concat(), "a.obj.gz");
+        assert!(error.starts_with("a.obj.gz: ") && error != "read", "{error}");
+    }
+}
+
 #[test]
 fn errors_say_line_or_byte() {
     let solid = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
