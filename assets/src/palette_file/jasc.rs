@@ -1,6 +1,6 @@
 //! JASC `.pal` of Paint Shop Pro: `JASC-PAL`, `0100`, the number of colours, then one colour per line.
 
-use mode13h::palette::Palette;
+use mode13h::palette::{Palette, Rgb};
 
 use super::colors::Colors;
 use super::error::{Excerpt, PaletteError, PaletteErrorKind};
@@ -35,12 +35,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Palette, PaletteError> {
         if colors.count() == announced {
             return Err(PaletteError::at_line(number, PaletteErrorKind::MoreThanAnnounced { announced }));
         }
-        let Some((color, 0)) = three_numbers(line) else {
+        let Some(color) = color(line) else {
             return Err(PaletteError::at_line(number, PaletteErrorKind::NotThreeNumbers { found: Excerpt::of(line) }));
         };
         colors.push(number, color)?;
     }
     colors.into_palette(end, announced)
+}
+
+/// The colour of a line: three numbers, and some programs add its opacity, which is ignored.
+fn color(line: &[u8]) -> Option<Rgb> {
+    let (color, mut rest) = three_numbers(line)?;
+    let is_opacity = |word| decimal(word, 255).is_some();
+    (rest.next().is_none_or(is_opacity) && rest.next().is_none()).then_some(color)
 }
 
 pub(super) fn write(palette: &Palette, _name: &str, out: &mut Vec<u8>) {

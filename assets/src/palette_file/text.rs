@@ -67,10 +67,10 @@ pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     digits.parse().ok().filter(|value| *value <= most)
 }
 
-/// The three numbers, 0 to 255, at the beginning of a line, and the number of words after them.
-pub(super) fn three_numbers(line: &[u8]) -> Option<(Rgb, usize)> {
+/// The three numbers, 0 to 255, at the beginning of a line, and the words after them.
+pub(super) fn three_numbers(line: &[u8]) -> Option<(Rgb, impl Iterator<Item = &[u8]>)> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let mut channel = || words.next().and_then(|word| u8::try_from(decimal(word, 255)?).ok());
     let color = Rgb::new(channel()?, channel()?, channel()?);
-    Some((color, words.count()))
+    Some((color, words))
 }

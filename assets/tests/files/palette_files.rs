@@ -437,9 +437,10 @@ fn jasc_lines(count: &str, colors: usize) -> String {
 
 #[test]
 fn p5_text_is_read_whatever_ends_its_lines() {
-    let mut tried = Tried::new("p5_text_is_read_whatever_ends_its_lines", 4 * 7);
+    let mut tried = Tried::new("p5_text_is_read_whatever_ends_its_lines", 5 * 7);
     let texts = [
         ("jasc", "JASC-PAL\n0100\n2\n0 0 0\n 255\t128  7 \n"),
+        ("jasc", "JASC-PAL\n0100\n2\n0 0 0 255\n255 128 7\t0\n"),
         ("gimp", "GIMP Palette\nName: x\nColumns: 2\n# note\n\n  0   0   0\tblack\n255 128 7 a name of words\n"),
         ("hex", "000000\nff8007\n"),
         ("hex", "#000000\n#FF8007\n"),
@@ -466,7 +467,7 @@ fn p5_text_is_read_whatever_ends_its_lines() {
 /// Format, file, the whole message.
 #[test]
 fn p5_broken_files_are_refused_with_their_place() {
-    let mut tried = Tried::new("p5_broken_files_are_refused_with_their_place", 42);
+    let mut tried = Tried::new("p5_broken_files_are_refused_with_their_place", 43);
     let jasc = |text: &str| ("jasc", text.as_bytes().to_vec());
     let gimp = |text: &str| ("gimp", text.as_bytes().to_vec());
     let hex = |text: &str| ("hex", text.as_bytes().to_vec());
@@ -504,7 +505,8 @@ fn p5_broken_files_are_refused_with_their_place() {
         // Text in numbers.
         (jasc("JASC-PAL\n0100\n2\n0 0 0\nred 0 0\n"), "line 5: expected three numbers 0 to 255, found \"red 0 0\""),
         (jasc("JASC-PAL\n0100\n1\n0 0\n"), "line 4: expected three numbers 0 to 255, found \"0 0\""),
-        (jasc("JASC-PAL\n0100\n1\n0 0 0 0\n"), "line 4: expected three numbers 0 to 255, found \"0 0 0 0\""),
+        (jasc("JASC-PAL\n0100\n1\n0 0 0 256\n"), "line 4: expected three numbers 0 to 255, found \"0 0 0 256\""),
+        (jasc("JASC-PAL\n0100\n1\n0 0 0 0 0\n"), "line 4: expected three numbers 0 to 255, found \"0 0 0 0 0\""),
         (jasc("JASC-PAL\n0100\n1\n0 0 256\n"), "line 4: expected three numbers 0 to 255, found \"0 0 256\""),
         (jasc("JASC-PAL\n0100\n1\n0 -1 0\n"), "line 4: expected three numbers 0 to 255, found \"0 -1 0\""),
         (jasc("JASC-PAL\n0100\n1\n0 +1 0\n"), "line 4: expected three numbers 0 to 255, found \"0 +1 0\""),
