@@ -3,7 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
-use mode13h::export::{ExportError, PictureError};
+use mode13h::export::{ExportError, ExportErrorKind, PictureError};
 use mode13h::render::RenderError;
 use mode13h::window::WindowError;
 use mode13h_assets::animation::AnimationError;
@@ -85,12 +85,21 @@ failures! {
     ExplainError => words,
     CostError => words,
     PictureError => words,
-    ExportError => file,
     AnimationError => file,
     WindowError => file,
     std::io::Error => file,
     rayon::ThreadPoolBuildError => file,
     serde_json::Error => file,
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Failure {
+        match error.kind {
+            // The picture that was asked for is too large.
+            ExportErrorKind::Picture(_) => Failure::words(error),
+            _ => Failure::file(error),
+        }
+    }
 }
 
 impl From<ModelFileError> for Failure {

@@ -138,6 +138,8 @@ fn wrong_words_end_with_2() {
         ("render torus --size 640", "not a size such as 640x400, with sides from 1 to 4096"),
         ("render torus --size 0x9", "not a size such as 640x400"),
         ("render torus --size 4097x9", "not a size such as 640x400"),
+        ("render cube --size 4096x4096 --scale 5x6 -o x.png", "x.png: "),
+        ("render cube --size 4096x4096 --scale 5x6 -o x.gif", "x.gif: "),
         ("render torus --size 64x64 --max-time 9", "cannot be used with"),
         ("cost torus --open --json", "cannot be used with"),
         ("cost torus --quiet --json", "cannot be used with"),
