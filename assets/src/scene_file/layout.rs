@@ -65,7 +65,7 @@ pub(super) struct ObjectLayout {
     pub(super) model: Option<Spanned<FileName>>,
     pub(super) clip: Option<Spanned<ClipLayout>>,
     pub(super) crease: Option<Spanned<Crease>>,
-    pub(super) position: Option<Vector>,
+    pub(super) position: Option<Spanned<Vector>>,
     pub(super) positions: Option<Spanned<Vec<Vector>>>,
     pub(super) scale: Option<Spanned<OneOrThree<Positive>>>,
     pub(super) repeat: Option<Spanned<List<Positive, 2>>>,

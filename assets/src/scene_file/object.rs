@@ -71,19 +71,17 @@ impl Objects {
             Some(OneOrThree::One(scale)) => (scale.0, Vec3::ONE),
             Some(OneOrThree::Three(factors)) => (1.0, Vec3::from_array(factors.map(|factor| factor.0))),
         };
+        let given = layout.position.as_ref().map(Spanned::span).or(layout.positions.as_ref().map(Spanned::span));
+        if let (Some(span), true) = (given, layout.path.is_some()) {
+            return Err(Fault::value(span, "not allowed with a `path`, which says where the object is"));
+        }
         let positions: Vec<Vec3> = match (&layout.position, &layout.positions) {
             (Some(_), Some(positions)) => return Err(Fault::value(positions.span(), "not allowed with a `position`")),
-            (None, Some(positions)) if layout.path.is_some() => {
-                return Err(Fault::value(
-                    positions.span(),
-                    "not allowed with a `path`, which says where the object is",
-                ));
-            }
             (None, Some(positions)) if positions.get_ref().is_empty() => {
                 return Err(Fault::value(positions.span(), "at least one is needed"));
             }
             (None, Some(positions)) => positions.get_ref().iter().map(List::vec3).collect(),
-            (position, None) => [position.map_or(Vec3::ZERO, |position| position.vec3())].into(),
+            (position, None) => [position.as_ref().map_or(Vec3::ZERO, |position| position.get_ref().vec3())].into(),
         };
         let repeat = layout.repeat.as_ref().map_or(Vec2::ONE, |repeat| {
             let List([u, v]) = *repeat.get_ref();

@@ -277,6 +277,10 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         (list("[[objects]]\nname = 'none'"), "1:1: `objects[0]`: an object needs a `shape` or a `model`"),
         (object("model = 'triangle.obj'"), "3:9: `.model`: not allowed with a `shape`"),
         (object("position = [0, 0, 0]\npositions = [[0, 0, 0]]"), "4:13: `.positions`: not allowed with a `positi"),
+        (
+            object("position = [1, 0, 0]\npath = { line = [[0, 0, 0], [1, 0, 0]] }"),
+            "3:12: `.position`: not allowed with a `path`, which says where the object is",
+        ),
         (object("positions = []"), "3:13: `.positions`: at least one is needed"),
         (model("'triangle.obj'\nsubdivisions = 3"), "3:16: `.subdivisions`: only a s"),
         (light("intensity = 1"), "2:1: ``: a light is either a `sun` or a `lamp`"),
@@ -415,7 +419,6 @@ max-error = 2
 name = "bar"
 shape = "wall"
 subdivisions = [4, 2]
-position = [1, 2, 3]
 scale = [4, 2, 1]
 angles = [90, 0, -45]
 up-axis = "z"
