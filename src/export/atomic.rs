@@ -110,9 +110,10 @@ impl Error for ExportError {
 ///
 /// `write` fills a temporary file in the same directory (`.mode13h-` and two numbers), which is flushed to the disk and
 /// then renamed to `path`. If `write` fails or panics, or the disk fails, the temporary file is removed and whatever
-/// was at `path` before is unchanged. Symbolic links are followed; the permissions of a replaced file are preserved; a
-/// read-only file is an error, although a rename could replace it. An existing path that is not a regular file (a
-/// device, a pipe) is written to directly, since renaming would replace it.
+/// was at `path` before is unchanged. Symbolic links are followed, except that one whose target does not exist is itself
+/// replaced by the file. The permissions of a replaced file are preserved; a read-only file is an error, although a
+/// rename could replace it. An existing path that is not a regular file (a device, a pipe) is written to directly, since
+/// renaming would replace it.
 ///
 /// # Errors
 ///
