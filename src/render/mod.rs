@@ -155,7 +155,8 @@ impl Renderer {
 
     /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Effects that save work give the same bytes on or off. The method for hidden surfaces is set by
+    /// Effects that save work give the same bytes on or off, except that back-face culling, forced on, also hides the
+    /// backs of meshes that are open: a room seen from inside has none to hide, and is drawn faster. The method for hidden surfaces is set by
     /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
     /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {

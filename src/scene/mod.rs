@@ -61,6 +61,9 @@ pub struct Scene {
     pub background_color: Option<Rgb>,
     /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
     /// no ramps, materials that name one are drawn with the nearest entries, dithered.
+    ///
+    /// With textures, fog or transparency a new palette costs milliseconds, since their tables are computed again. Fade
+    /// by [`palette_animation`](Self::palette_animation), or by [`Vga::fade`](crate::vga::Vga::fade) after drawing.
     pub palette: Option<Palette>,
     /// The change of the palette over time.
     pub palette_animation: Option<PaletteAnimation>,

@@ -39,7 +39,7 @@ pub struct AutomaticPalette {
 impl AutomaticPalette {
     /// Sets the scene's palette, and its objects' materials for it. The scene must be the one that the palette was made
     /// for, or one with the same objects. Objects with a different number of materials are left unchanged. The scene's
-    /// preference for such a palette is cleared.
+    /// preference for such a palette is cleared. The materials' own ramps are lost: to go back, keep a copy of the scene.
     pub fn apply(&self, scene: &mut Scene) {
         scene.auto_palette = false;
         scene.set_palette(self.palette.clone());

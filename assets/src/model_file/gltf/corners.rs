@@ -37,7 +37,7 @@ pub(super) fn triangles(
     (0..triangles).map(triangle).collect()
 }
 
-/// Numbers the vertices of triangles anew, in the order of their first use, and returns the old number of each.
+/// Renumbers the vertices of triangles in the order of their first use, and returns the old number of each.
 ///
 /// Many primitives and nodes may share a list of vertices of which each uses few.
 pub(super) fn used(triangles: &mut [[u32; 3]], count: usize) -> Vec<u32> {
