@@ -159,14 +159,6 @@ fn sentence(error: &clap::Error) -> String {
         _ => None,
     };
     let help = help();
-    if first_word().is_some_and(|word| word == "plan")
-        && context(ContextKind::InvalidArg).is_some_and(|arg| arg.starts_with("--time"))
-        && [ErrorKind::InvalidValue, ErrorKind::ValueValidation].contains(&error.kind())
-    {
-        return format!(
-            "--time takes a number of SECONDS; --measure measures what effects cost ({help} shows the options)"
-        );
-    }
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
         && first_word().is_some_and(|word| word == "generate")
     {

@@ -1,4 +1,4 @@
-//! The effects, and what each of them may change.
+//! The effects.
 
 use crate::names::named;
 
@@ -50,15 +50,6 @@ named! {
     }
 }
 
-/// The difference that leaving out an effect may make.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Class {
-    /// None: always doing the full work gives the same bytes.
-    SavesWork,
-    /// The picture changes where the scene calls for the effect.
-    ChangesPicture,
-}
-
 impl Effect {
     /// Returns whether the effect keeps triangles within what the raster can draw. If so, it cannot
     /// be switched off where it is called for.
@@ -68,33 +59,6 @@ impl Effect {
 
     /// The number of effects.
     pub const COUNT: usize = Self::ALL.len();
-
-    /// The difference that leaving it out may make.
-    #[must_use]
-    pub const fn class(self) -> Class {
-        match self {
-            Self::Transform
-            | Self::NearClipping
-            | Self::ScreenClipping
-            | Self::BackFaceCulling
-            | Self::HiddenSurfaces
-            | Self::Lighting
-            | Self::PositionalLights
-            | Self::Specular
-            | Self::Gouraud
-            | Self::Fog => Class::SavesWork,
-            Self::Phong
-            | Self::Tessellation
-            | Self::Perspective
-            | Self::RgbChannels
-            | Self::Texture
-            | Self::EnvironmentMap
-            | Self::Mipmaps
-            | Self::Transparency
-            | Self::Dither
-            | Self::PaletteAnimation => Class::ChangesPicture,
-        }
-    }
 
     /// Returns whether this build leaves the effect out: it is then off whatever a scene calls for,
     /// and the compiler drops its stages. Such builds prove that a disabled effect costs nothing

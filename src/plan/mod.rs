@@ -7,7 +7,7 @@
 
 // | file | what |
 // |---|---|
-// | `effect` | `Effect`: the list, and what each may change |
+// | `effect` | `Effect`: the list |
 // | `reason` | `Reason`: the reasons |
 // | `stages` | the work for an object, as values; `Choice` |
 // | `face_shading` | `FaceShading`: how a face is shaded |
@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::ops::Index;
 
-pub use effect::{Class, Effect};
+pub use effect::Effect;
 pub use face_shading::FaceShading;
 pub(crate) use findings::{FaceCounts, Findings};
 pub use reason::Reason;

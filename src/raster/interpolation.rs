@@ -89,13 +89,4 @@ impl Interpolation {
             _ => false,
         }
     }
-
-    /// The amount added to a shade in 8.8 before its fraction is cut off: half a shade, or nothing.
-    #[must_use]
-    pub const fn rounding(self) -> u8 {
-        match self {
-            Self::GouraudVintage => 0,
-            _ => 128,
-        }
-    }
 }

@@ -10,8 +10,8 @@ use crate::palette::{Palette, Ramp};
 use crate::plan::FaceShading;
 use crate::plan::stages::Dither;
 use crate::plan::{ObjectPlan, Plan};
-use crate::raster::DrawStats;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureStage};
+use crate::raster::{DrawStats, Interpolation};
 use crate::scene::Scene;
 use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
@@ -147,7 +147,7 @@ impl Pipelines<'_> {
             channels,
             dither: match dither {
                 Dither::Neutral => {
-                    let cut = shading.interpolation().rounding() == 0 && channels.is_none();
+                    let cut = shading.interpolation() == Interpolation::GouraudVintage && channels.is_none();
                     Some(if cut { Thresholds::ZEROS } else { Thresholds::HALVES })
                 }
                 Dither::By(pattern) => Some(pattern.thresholds()),

@@ -49,14 +49,13 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Switches the tables to this palette. Returns whether it differs from the one before.
-    pub(super) fn use_palette(&mut self, palette: &Palette) -> bool {
-        if self.palette.as_ref() == Some(palette) {
-            return false;
+    /// Switches the tables to this palette.
+    pub(super) fn use_palette(&mut self, palette: &Palette) {
+        if self.palette.as_ref() != Some(palette) {
+            let mipmaps = mem::take(&mut self.mipmaps);
+            *self =
+                Self { palette: Some(palette.clone()), mipmaps, only_channel: self.only_channel, ..Self::default() };
         }
-        let mipmaps = mem::take(&mut self.mipmaps);
-        *self = Self { palette: Some(palette.clone()), mipmaps, only_channel: self.only_channel, ..Self::default() };
-        true
     }
 
     fn palette(&self) -> &Palette {

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use flate2::Crc;
+
 /// A chunk: its length, name and contents, and their checksum.
 pub(super) fn chunk(name: [u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     let body: Vec<u8> = [&name[..]].iter().chain(parts).flat_map(|part| part.iter().copied()).collect();
@@ -10,7 +12,9 @@ pub(super) fn chunk(name: [u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     // written in many chunks.
     chunk.extend((body.len() as u32 - 4).to_be_bytes());
     chunk.extend(&body);
-    chunk.extend(crc32(&body).to_be_bytes());
+    let mut check = Crc::new();
+    check.update(&body);
+    chunk.extend(check.sum().to_be_bytes());
     chunk
 }
 
@@ -31,24 +35,4 @@ pub(super) fn chunks(file: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
         rest = behind.get(4..)?;
         Some((name, contents))
     })
-}
-
-/// The cyclic redundancy check of PNG chunks (PNG specification, annex D).
-fn crc32(bytes: &[u8]) -> u32 {
-    const TABLE: [u32; 256] = {
-        let mut table = [0; 256];
-        let mut byte = 0;
-        while byte < 256 {
-            let mut crc = byte as u32;
-            let mut bit = 0;
-            while bit < 8 {
-                crc = (crc >> 1) ^ (0xEDB8_8320 * (crc & 1));
-                bit += 1;
-            }
-            table[byte] = crc;
-            byte += 1;
-        }
-        table
-    };
-    !bytes.iter().fold(u32::MAX, |crc, &byte| (crc >> 8) ^ TABLE[usize::from(crc as u8 ^ byte)])
 }

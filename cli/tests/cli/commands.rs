@@ -176,8 +176,8 @@ fn wrong_words_end_with_2() {
         ("torus --xml", "(mode13h --help shows"),
         ("torus verify", "verify is a command and goes before INPUT"),
         ("plan", "<INPUT>"),
-        ("plan torus --time inf", "--time takes a number of SECONDS; --measure measures what effects cost ("),
-        ("plan torus --time", "--time takes a number of SECONDS; --measure measures what effects cost ("),
+        ("plan torus --time inf", "invalid value 'inf' for '--time <SECONDS>': not a number (mode13h plan --help "),
+        ("plan torus --time", "a value is required for '--time <SECONDS>' but none was supplied (mode13h plan --help "),
         ("demo torus --time soon", "--time"),
         ("plan torus --shading mirror", "[possible values: flat, gouraud-vintage, gouraud-8.8, "),
     ] {

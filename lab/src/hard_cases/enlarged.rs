@@ -10,19 +10,19 @@ use super::face::Segment;
 use mode13h::raster::{Frame, Index};
 
 /// Part of a frame, drawn enlarged on another frame. Nothing is drawn outside either.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Enlarged {
+#[derive(Clone, Copy)]
+pub(super) struct Enlarged {
     /// Its upper left corner, in pixels of the frame drawn on.
-    pub at: (i32, i32),
+    pub(super) at: (i32, i32),
     /// Number of columns enlarged.
-    pub columns: u16,
+    pub(super) columns: u16,
     /// Number of rows enlarged.
-    pub rows: u16,
+    pub(super) rows: u16,
 }
 
 impl Enlarged {
     /// Magnification: pixels per enlarged pixel.
-    pub const ZOOM: i32 = 16;
+    pub(super) const ZOOM: i32 = 16;
 
     /// The upper left corner of a pixel's cell.
     fn corner(&self, x: u16, y: u16) -> Point {
@@ -35,32 +35,25 @@ impl Enlarged {
     }
 
     /// Fills a pixel's cell.
-    pub fn cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
+    pub(super) fn cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
         fill(&mut frame.clipped(&self.area()), self.corner(x, y), Self::ZOOM, index);
     }
 
     /// Fills the cell of an empty pixel, with lines in another colour along its left and upper sides.
-    pub fn empty_cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index, line: Index) {
+    pub(super) fn empty_cell(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index, line: Index) {
         self.cell(frame, x, y, line);
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + Point::new(1, 1), Self::ZOOM - 1, index);
     }
 
     /// Marks a pixel's centre.
-    pub fn centre(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
+    pub(super) fn centre(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
         let middle = Point::new(Self::ZOOM / 2 - 1, Self::ZOOM / 2 - 1);
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + middle, 2, index);
     }
 
-    /// Draws a rim just inside a pixel's cell.
-    pub fn rim(&self, frame: &mut Frame<'_>, x: u16, y: u16, index: Index) {
-        let side = Self::ZOOM.unsigned_abs();
-        let cell = Rectangle::new(self.corner(x, y), Size::new(side, side));
-        let Ok(()) = cell.into_styled(PrimitiveStyle::with_stroke(index, 1)).draw(&mut frame.clipped(&self.area()));
-    }
-
     /// Draws the parts of true edges that lie within, one pixel thick. Their ends are in pixels of the enlarged frame,
     /// relative to the upper left corner of this part.
-    pub fn edges(&self, frame: &mut Frame<'_>, outline: &[Segment], index: Index) {
+    pub(super) fn edges(&self, frame: &mut Frame<'_>, outline: &[Segment], index: Index) {
         let style = PrimitiveStyle::with_stroke(index, 1);
         let size = (f64::from(self.columns), f64::from(self.rows));
         for segment in outline {

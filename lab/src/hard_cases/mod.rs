@@ -7,7 +7,7 @@
 //! | `engine` | the right side: the engine's own calls |
 //! | `fault/` | the wrong side: small implementations of the faults, used only here |
 //! | `face`, [`Panel`] | their common input and output: faces; bytes, write counts and marks |
-//! | [`Enlarged`] | pixels enlarged, with centres and edges |
+//! | `enlarged` | pixels enlarged, with centres and edges |
 //! | `sheet` | the two side by side as a picture, with captions |
 //!
 //! ```
@@ -30,7 +30,6 @@ mod sheet;
 
 pub use cases::CASES;
 pub use engine::Triangle;
-pub use enlarged::Enlarged;
 pub use face::Segment;
 pub use panel::{Mark, Panel};
 
