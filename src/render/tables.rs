@@ -21,7 +21,7 @@ pub(super) struct Image<'a> {
     pub(super) has_levels: bool,
 }
 
-/// What was computed for an image.
+/// A table, or a mipmap, that was computed for an image.
 #[derive(Debug)]
 struct Made<T> {
     texture: WeakShared<Texture>,

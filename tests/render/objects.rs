@@ -242,7 +242,7 @@ fn lamps_do_not_use_up_the_suns_of_the_integer_path() {
     assert!(drawn(&scene) == drawn(&suns));
 }
 
-/// What a budget gave the faces is told of frames within a budget alone.
+/// Only frames within a budget tell what the budget gave the faces.
 #[test]
 fn rows_of_a_frame_without_a_budget_count_no_faces() {
     let (mut scene, _) = three();

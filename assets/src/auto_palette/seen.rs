@@ -115,7 +115,7 @@ fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
 
 /// The number of moments in a loop that show each motion in at least four poses.
 ///
-/// Of n moments of a motion with r rounds, n / gcd(n, r) are different: of 16 moments with 8 rounds only two, and with
+/// With r rounds of a motion, n / gcd(n, r) of n moments are different: of 16 moments with 8 rounds only two, and with
 /// 16 rounds one. The number is 16 unless some r is a multiple of 8.
 fn poses(rounds: &[u32]) -> u32 {
     let shows_all = |poses: &u32| rounds.iter().all(|rounds| poses / common_divisor(*poses, *rounds) >= 4);

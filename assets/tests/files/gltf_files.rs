@@ -431,7 +431,7 @@ fn materials_follow_the_rule() {
     }
 }
 
-/// As in MTL files with `d 0`, and only where the mode counts alpha.
+/// The warning is that of MTL files with `d 0`, and given only where the mode counts alpha.
 #[test]
 fn fully_transparent_materials_are_opaque_with_a_warning() {
     let warning = "a.glb: a fully transparent material is drawn opaque; its alpha is left out";

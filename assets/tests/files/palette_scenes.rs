@@ -351,7 +351,7 @@ fn a_round_is_seen_and_not_its_beginning() {
     assert!((all - 1.0).abs() < 1e-5);
 }
 
-/// What moves through the picture, or faces it, for a part of each of its rounds is seen, however many rounds there are.
+/// Surfaces seen for a part of each round of a motion are seen by the palette, too, however many rounds there are.
 #[test]
 fn a_round_is_seen_whatever_moves_how_often_in_it() {
     use mode13h::mesh::Mesh;

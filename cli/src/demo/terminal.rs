@@ -228,7 +228,7 @@ enum Key {
 
 const ESCAPE: u8 = 0x1b;
 
-/// The bytes to decode now: those that waited in `begun`, and new ones. What may be the beginning of an arrow key waits
+/// The bytes to decode now: the pending ones in `begun`, and new ones. What may be the beginning of an arrow key waits
 /// in `begun` until its rest arrives, or nothing does: over a slow line a key may come in two parts.
 fn whole_keys(begun: &mut Vec<u8>, new: &[u8]) -> Vec<u8> {
     let mut bytes = mem::take(begun);

@@ -70,7 +70,7 @@ pub(super) struct Shade {
     factor: [f64; 3],
     /// How much of the base colour is diffuse.
     share: f64,
-    /// What is added, in sRGB.
+    /// The emission, in sRGB, which is added.
     emission: [f64; 3],
 }
 
