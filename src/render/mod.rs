@@ -12,7 +12,7 @@
 // | `faces` | the input for an object's faces |
 // | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
 // | `budget` | the error budget: the shading for each triangle |
-// | `hidden_surfaces` | hidden-surface methods: faces in scene order (with or without a depth buffer), far to near, or row by row |
+// | `hidden_surfaces` | hidden-surface methods: faces in scene order, with depths or without, far to near, or by rows |
 // | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 // | `integer` | a scene in 16.16 |
 // | `pace` | the least error that fits in a time, independent of the renderer |
@@ -156,9 +156,10 @@ impl Renderer {
     /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
     /// Effects that save work give the same bytes on or off, except that back-face culling, forced on, also hides the
-    /// backs of meshes that are open: a room seen from inside has none to hide, and is drawn faster. The method for hidden surfaces is set by
-    /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
-    /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
+    /// backs of open meshes: a room seen from inside has none to hide, and is drawn faster. The method for hidden
+    /// surfaces is set by [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has
+    /// nothing to show, it runs on neutral input (no amplitude, an image that changes nothing). Clipping stays on where
+    /// the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.overrides.set(effect, on);
     }

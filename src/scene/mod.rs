@@ -363,7 +363,8 @@ impl Index<ObjectId> for Scene {
     type Output = Object;
 
     /// # Panics
-    /// If the object was removed. An id from another scene may name any object, or none. [`get`](Scene::get) does not panic.
+    /// If the object was removed. An id from another scene may name any object, or none. [`get`](Scene::get) does not
+    /// panic.
     #[track_caller]
     fn index(&self, id: ObjectId) -> &Object {
         self.get(id).unwrap_or_else(|| not_there("object"))
@@ -393,7 +394,8 @@ impl IndexMut<LightId> for Scene {
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
-    /// If the object was removed. An id from another scene may name any object, or none. [`get_mut`](Scene::get_mut) does not panic.
+    /// If the object was removed. An id from another scene may name any object, or none. [`get_mut`](Scene::get_mut) does not
+    /// panic.
     #[track_caller]
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
         self.get_mut(id).unwrap_or_else(|| not_there("object"))
