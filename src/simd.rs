@@ -44,10 +44,16 @@ pub(crate) const SSE2: wide128::Wide128<sse2::Sse2> = wide128::Wide128(sse2::Sse
 #[cfg(simd_wasm)]
 pub(crate) const SIMD128: wide128::Wide128<wasm::Simd128> = wide128::Wide128(wasm::Simd128);
 
+/// The level that every processor of the target has.
 #[cfg(simd_neon)]
 pub(crate) use NEON as BASELINE;
+#[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
+pub(crate) use Portable as BASELINE;
 #[cfg(simd_wasm)]
 pub(crate) use SIMD128 as BASELINE;
+#[cfg(simd_x86_64)]
+pub(crate) use SSE2 as BASELINE;
+
 /// Eight 16-bit words from two numbers.
 #[cfg(simd_x86_64)]
 #[inline(always)]
@@ -64,12 +70,6 @@ const fn words_of([low, high]: [i64; 2]) -> [u16; 8] {
         (high >> 48) as u16,
     ]
 }
-
-/// The level that every processor of the target has.
-#[cfg(simd_x86_64)]
-pub(crate) use SSE2 as BASELINE;
-#[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
-pub(crate) use portable::Portable as BASELINE;
 
 /// A level that a kernel may use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

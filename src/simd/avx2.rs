@@ -5,25 +5,10 @@ use core::arch::x86_64::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
-use super::lanes::SET_THEN_CLEAR;
+use super::Avx2;
+use super::lanes::{Lanes8, SET_THEN_CLEAR, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
-use super::{Avx2, Lanes8};
-
-// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token
-// proves that the processor has them.
-macro_rules! lanes {
-    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
-        $(
-            #[inline(always)]
-            fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: `self` proves that the processor has the instructions. Loads and stores go to whole arrays,
-                // and require no alignment.
-                unsafe { $body }
-            }
-        )*
-    };
-}
 
 type F64 = [__m256d; 2];
 type I64 = [__m256i; 2];
@@ -102,7 +87,7 @@ impl Lanes8 for Avx2 {
     /// −1 in the set lanes, 0 in the others.
     type Mask = __m256i;
 
-    lanes! {
+    intrinsics! {
         fn load_f64(from: &[f64; 8]) -> F64 { [_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from.as_ptr().add(4))] }
         fn splat_f64(value: f64) -> F64 { [_mm256_set1_pd(value); 2] }
         fn store_f64(from: F64, to: &mut [f64; 8]) {

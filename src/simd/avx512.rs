@@ -5,24 +5,10 @@ use core::arch::x86_64::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
+use super::Avx512;
+use super::lanes::{Lanes8, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
-use super::{Avx512, Lanes8};
-
-// Every method inlines into a function that is compiled for the level. Its intrinsics are safe to run, since the token
-// proves that the processor has them.
-macro_rules! lanes {
-    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
-        $(
-            #[inline(always)]
-            fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: `self` proves that the processor has the instructions. Loads and stores go to whole arrays,
-                // and require no alignment.
-                unsafe { $body }
-            }
-        )*
-    };
-}
 
 impl Lanes8 for Avx512 {
     type F64 = __m512d;
@@ -30,7 +16,7 @@ impl Lanes8 for Avx512 {
     type I64 = __m512i;
     type Mask = __mmask8;
 
-    lanes! {
+    intrinsics! {
         fn load_f64(from: &[f64; 8]) -> __m512d { _mm512_loadu_pd(from.as_ptr()) }
         fn splat_f64(value: f64) -> __m512d { _mm512_set1_pd(value) }
         fn store_f64(from: __m512d, to: &mut [f64; 8]) { _mm512_storeu_pd(to.as_mut_ptr(), from) }

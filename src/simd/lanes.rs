@@ -3,6 +3,34 @@
 //! A token that implements [`Lanes8`] proves that the processor has its level. Each operation works lane by lane. Lanes
 //! 0 to 7 are in the order of the arrays they are loaded from.
 
+/// Methods that are inlined, one to a line where they fit.
+macro_rules! inlined {
+    ($(fn $name:ident($self:ident $(, $argument:tt: $type:ty)*) $(-> $result:ty)? $body:block)*) => {
+        $(
+            #[inline(always)]
+            fn $name($self $(, $argument: $type)*) $(-> $result)? $body
+        )*
+    };
+}
+pub(super) use inlined;
+
+/// [`inlined!`] for the intrinsics of a level, whose token is `self`.
+#[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
+macro_rules! intrinsics {
+    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
+        $(
+            #[inline(always)]
+            fn $name(self, $($argument: $type),*) $(-> $result)? {
+                // SAFETY: `self` proves that the processor has the instructions. Loads and stores go to whole arrays,
+                // and require no alignment.
+                unsafe { $body }
+            }
+        )*
+    };
+}
+#[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
+pub(super) use intrinsics;
+
 /// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
 ///
 /// All methods are inlined into a function that is compiled for the level: see `compiled_for_each_level!`.
@@ -129,9 +157,23 @@ pub(crate) trait Lanes8: Copy {
     /// The mask with these bits.
     fn mask_from_bits(self, bits: u8) -> Self::Mask;
     /// Packs the lanes whose mask is set to the front, in order; what follows them is arbitrary.
-    fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]);
+    #[inline(always)]
+    fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]) {
+        let mut lanes = [[0; 8]; N];
+        for (i, lanes) in lanes.iter_mut().enumerate() {
+            self.store_i32(from[i], lanes);
+        }
+        compress(self.to_bitmask(mask), &lanes, to, i32::cast_unsigned);
+    }
     /// [`compress_i32`](Self::compress_i32) for 64-bit lanes.
-    fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]);
+    #[inline(always)]
+    fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]) {
+        let mut lanes = [[0; 8]; N];
+        for (i, lanes) in lanes.iter_mut().enumerate() {
+            self.store_i64(from[i], lanes);
+        }
+        compress(self.to_bitmask(mask), &lanes, to, |lane| lane);
+    }
 
     /// Tests the depths of four pixels, of which only the first `count` are compared with their
     /// cells. Returns a byte for each, the first lowest: 0 if its depth is greater than the cell,
@@ -146,6 +188,20 @@ pub(crate) trait Lanes8: Copy {
     #[inline(always)]
     fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         test_depths(cells, depths, count, keeps)
+    }
+}
+
+/// Compresses lane by lane, for levels without such an instruction.
+#[inline(always)]
+fn compress<T: Copy, U, const N: usize>(bits: u32, from: &[[T; 8]; N], mut to: [&mut [U; 8]; N], cast: fn(T) -> U) {
+    let (mut count, mut lane) = (0, 0);
+    while lane < 8 {
+        for (i, to) in to.iter_mut().enumerate() {
+            // At most seven come before it.
+            to[count % 8] = cast(from[i][lane]);
+        }
+        count += (bits >> lane & 1) as usize;
+        lane += 1;
     }
 }
 

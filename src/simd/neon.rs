@@ -5,6 +5,7 @@ use core::arch::aarch64::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
+use super::lanes::intrinsics;
 #[cfg(feature = "alloc")]
 use super::wide128::Singles128;
 use super::wide128::Vector128;
@@ -13,23 +14,11 @@ use super::wide128::Vector128;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neon;
 
-macro_rules! vectors {
-    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
-        $(
-            #[inline(always)]
-            fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the target has NEON. Loads and stores go to whole arrays, and require no alignment.
-                unsafe { $body }
-            }
-        )*
-    };
-}
-
 impl Vector128 for Neon {
     type F = float64x2_t;
     type I = int32x4_t;
 
-    vectors! {
+    intrinsics! {
         fn load_f64(from: &[f64; 2]) -> float64x2_t { vld1q_f64(from.as_ptr()) }
         fn splat_f64(value: f64) -> float64x2_t { vdupq_n_f64(value) }
         fn store_f64(from: float64x2_t, to: &mut [f64; 2]) { vst1q_f64(to.as_mut_ptr(), from) }
@@ -101,7 +90,7 @@ impl Vector128 for Neon {
 impl Singles128 for Neon {
     type S = float32x4_t;
 
-    vectors! {
+    intrinsics! {
         fn splat_f32(value: f32) -> float32x4_t { vdupq_n_f32(value) }
         fn vectors(from: &[Vec3; 4]) -> [float32x4_t; 3] {
             const { assert!(size_of::<Vec3>() == 12) };

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::lanes::inlined;
 use super::{Lanes8, Portable};
 use crate::fixed::{ROUND_MAGIC, whole_part};
 use crate::lanes::each;
@@ -54,87 +55,45 @@ pub(crate) trait F32Lanes8: Lanes8 {
 impl F32Lanes8 for Portable {
     type F32 = [f32; 8];
 
-    #[inline(always)]
-    fn splat_f32(self, value: f32) -> [f32; 8] {
-        [value; 8]
-    }
-    #[inline(always)]
-    fn vectors(self, from: &[Vec3; 8]) -> [[f32; 8]; 3] {
-        [each!(i => from[i].x), each!(i => from[i].y), each!(i => from[i].z)]
-    }
-    #[inline(always)]
-    fn add_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => a[i] + b[i])
-    }
-    #[inline(always)]
-    fn sub_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => a[i] - b[i])
-    }
-    #[inline(always)]
-    fn mul_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => a[i] * b[i])
-    }
-    #[inline(always)]
-    fn div_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => a[i] / b[i])
-    }
-    #[inline(always)]
-    fn nearest_f32(self, from: [f32; 8]) -> [i32; 8] {
-        // The low bits.
-        each!(i => (f64::from(from[i]) + ROUND_MAGIC).to_bits() as i32)
-    }
-    #[inline(always)]
-    fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => if a[i] > b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn min_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each!(i => if a[i] < b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn is_at_least(self, a: [f32; 8], b: [f32; 8]) -> [i32; 8] {
-        each!(i => -i32::from(a[i] >= b[i]))
-    }
-    #[inline(always)]
-    fn bits_of_f32(self, from: [f32; 8]) -> [i32; 8] {
-        each!(i => from[i].to_bits().cast_signed())
-    }
-    #[inline(always)]
-    fn widen(self, from: [f32; 8]) -> [f64; 8] {
-        each!(i => f64::from(from[i]))
-    }
-    #[inline(always)]
-    fn narrow(self, from: [f64; 8]) -> [f32; 8] {
-        each!(i => from[i] as f32)
-    }
-    #[inline(always)]
-    fn whole(self, from: [f64; 8]) -> [i32; 8] {
-        each!(i => whole_part(from[i]))
-    }
-    #[inline(always)]
-    fn load_f32(self, from: &[f32; 8]) -> [f32; 8] {
-        *from
-    }
-    #[inline(always)]
-    fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
-        // Both give the same number. The compiler vectorises the first.
-        #[cfg(feature = "std")]
-        return each!(i => of[i].sqrt());
-        #[cfg(not(feature = "std"))]
-        return each!(i => libm::sqrt(of[i]));
-    }
-    #[inline(always)]
-    fn if_less(self, a: [f64; 8], b: [f64; 8], value: [f64; 8]) -> [f64; 8] {
-        each!(i => if a[i] < b[i] { value[i] } else { 0.0 })
-    }
-    #[inline(always)]
-    fn is_zero(self, values: [f64; 8]) -> bool {
-        let (mut bits, mut i) = (0, 0);
-        while i < 8 {
-            bits |= values[i].to_bits();
-            i += 1;
+    inlined! {
+        fn splat_f32(self, value: f32) -> [f32; 8] { [value; 8] }
+        fn vectors(self, from: &[Vec3; 8]) -> [[f32; 8]; 3] {
+            [each!(i => from[i].x), each!(i => from[i].y), each!(i => from[i].z)]
         }
-        bits == 0
+        fn add_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => a[i] + b[i]) }
+        fn sub_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => a[i] - b[i]) }
+        fn mul_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => a[i] * b[i]) }
+        fn div_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => a[i] / b[i]) }
+        fn nearest_f32(self, from: [f32; 8]) -> [i32; 8] {
+            // The low bits.
+            each!(i => (f64::from(from[i]) + ROUND_MAGIC).to_bits() as i32)
+        }
+        fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => if a[i] > b[i] { a[i] } else { b[i] }) }
+        fn min_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] { each!(i => if a[i] < b[i] { a[i] } else { b[i] }) }
+        fn is_at_least(self, a: [f32; 8], b: [f32; 8]) -> [i32; 8] { each!(i => -i32::from(a[i] >= b[i])) }
+        fn bits_of_f32(self, from: [f32; 8]) -> [i32; 8] { each!(i => from[i].to_bits().cast_signed()) }
+        fn widen(self, from: [f32; 8]) -> [f64; 8] { each!(i => f64::from(from[i])) }
+        fn narrow(self, from: [f64; 8]) -> [f32; 8] { each!(i => from[i] as f32) }
+        fn whole(self, from: [f64; 8]) -> [i32; 8] { each!(i => whole_part(from[i])) }
+        fn load_f32(self, from: &[f32; 8]) -> [f32; 8] { *from }
+        fn sqrt(self, of: [f64; 8]) -> [f64; 8] {
+            // Both give the same number. The compiler vectorises the first.
+            #[cfg(feature = "std")]
+            return each!(i => of[i].sqrt());
+            #[cfg(not(feature = "std"))]
+            return each!(i => libm::sqrt(of[i]));
+        }
+        fn if_less(self, a: [f64; 8], b: [f64; 8], value: [f64; 8]) -> [f64; 8] {
+            each!(i => if a[i] < b[i] { value[i] } else { 0.0 })
+        }
+        fn is_zero(self, values: [f64; 8]) -> bool {
+            let (mut bits, mut i) = (0, 0);
+            while i < 8 {
+                bits |= values[i].to_bits();
+                i += 1;
+            }
+            bits == 0
+        }
     }
 }
 
@@ -159,7 +118,7 @@ macro_rules! singles_of_256_bits {
     ($($rest:tt)*) => {
         type F32 = __m256;
 
-        lanes! {
+        intrinsics! {
             fn splat_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
             fn vectors(from: &[Vec3; 8]) -> [__m256; 3] {
                 const { assert!(size_of::<Vec3>() == 12) };

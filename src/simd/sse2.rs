@@ -5,6 +5,7 @@ use core::arch::x86_64::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
+use super::lanes::intrinsics;
 #[cfg(feature = "alloc")]
 use super::wide128::Singles128;
 use super::wide128::Vector128;
@@ -13,23 +14,11 @@ use super::wide128::Vector128;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sse2;
 
-macro_rules! vectors {
-    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
-        $(
-            #[inline(always)]
-            fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: every x86-64 has SSE2. Loads and stores go to whole arrays, and require no alignment.
-                unsafe { $body }
-            }
-        )*
-    };
-}
-
 impl Vector128 for Sse2 {
     type F = __m128d;
     type I = __m128i;
 
-    vectors! {
+    intrinsics! {
         fn load_f64(from: &[f64; 2]) -> __m128d { _mm_loadu_pd(from.as_ptr()) }
         fn splat_f64(value: f64) -> __m128d { _mm_set1_pd(value) }
         fn store_f64(from: __m128d, to: &mut [f64; 2]) { _mm_storeu_pd(to.as_mut_ptr(), from) }
@@ -98,7 +87,7 @@ impl Vector128 for Sse2 {
 impl Singles128 for Sse2 {
     type S = __m128;
 
-    vectors! {
+    intrinsics! {
         fn splat_f32(value: f32) -> __m128 { _mm_set1_ps(value) }
         fn vectors(from: &[Vec3; 4]) -> [__m128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };

@@ -5,6 +5,7 @@ use core::arch::wasm32::*;
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
+use super::lanes::intrinsics;
 #[cfg(feature = "alloc")]
 use super::wide128::Singles128;
 use super::wide128::Vector128;
@@ -13,24 +14,12 @@ use super::wide128::Vector128;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simd128;
 
-macro_rules! vectors {
-    ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
-        $(
-            #[inline(always)]
-            #[allow(unused_unsafe, reason = "loads and stores alone are unsafe")]
-            fn $name(self, $($argument: $type),*) $(-> $result)? {
-                // SAFETY: the target has simd128. Loads and stores go to whole arrays, and require no alignment.
-                unsafe { $body }
-            }
-        )*
-    };
-}
-
+#[allow(unused_unsafe, reason = "loads and stores alone are unsafe")]
 impl Vector128 for Simd128 {
     type F = v128;
     type I = v128;
 
-    vectors! {
+    intrinsics! {
         fn load_f64(from: &[f64; 2]) -> v128 { v128_load(from.as_ptr().cast()) }
         fn splat_f64(value: f64) -> v128 { f64x2_splat(value) }
         fn store_f64(from: v128, to: &mut [f64; 2]) { v128_store(to.as_mut_ptr().cast(), from) }
@@ -84,10 +73,11 @@ impl Vector128 for Simd128 {
 }
 
 #[cfg(feature = "alloc")]
+#[allow(unused_unsafe, reason = "loads and stores alone are unsafe")]
 impl Singles128 for Simd128 {
     type S = v128;
 
-    vectors! {
+    intrinsics! {
         fn splat_f32(value: f32) -> v128 { f32x4_splat(value) }
         fn vectors(from: &[Vec3; 4]) -> [v128; 3] {
             const { assert!(size_of::<Vec3>() == 12) };
