@@ -21,7 +21,6 @@ pub(crate) fn json(number: u32, stats: &Stats) -> Value {
         "redrawn": stats.redrawn,
         "kept_objects": stats.kept,
         "decided_objects": stats.decided,
-        "allocated_bytes": stats.allocated,
         "vertices": stats.vertices,
         "lit": stats.lit,
         "faces": stats.faces,

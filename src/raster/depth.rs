@@ -131,11 +131,6 @@ impl DepthMemory {
         Self { cells: alloc::vec::Vec::new(), shape: (0, 0..0), base: 0, drawn: Rect::NOWHERE }
     }
 
-    /// The memory that it has allocated, in bytes.
-    pub(crate) fn capacity(&self) -> usize {
-        self.cells.capacity() * size_of::<u32>()
-    }
-
     /// The depth buffer of the next frame, as if cleared. Nothing may be drawn outside `within`, and no depth may be 0
     /// or above 2³⁰, unless `within` is [`Rect::EVERYWHERE`].
     pub(super) fn next(&mut self, frame: &Frame<'_>, within: Rect) -> Option<DepthBuffer<'_>> {

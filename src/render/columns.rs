@@ -66,18 +66,6 @@ impl VertexColumns {
         let lit = LitColumn::Points(geometry.normals, geometry.positions);
         Triangles { columns: self.columns(lit), indices: geometry.triangles, by_corner: None }
     }
-
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        let Self { at, depth, shade, texture, fog, channels, slope } = self;
-        at.capacity() * size_of::<ScreenPos>()
-            + depth.capacity() * size_of::<u32>()
-            + shade.capacity() * size_of::<[U8F8; 2]>()
-            + texture.capacity() * size_of::<[i32; 2]>()
-            + fog.capacity() * size_of::<U8F8>()
-            + channels.capacity() * size_of::<[[U8F8; 3]; 2]>()
-            + slope.capacity() * size_of::<[U8F8; 2]>()
-    }
 }
 
 /// Triangles whose vertices are not a mesh's: parts of clipped faces, faces with curved shades, and
@@ -190,13 +178,5 @@ impl AddedTriangles {
     pub(super) fn clear(&mut self) {
         self.kept = (0, 0);
         self.drop_waiting();
-    }
-
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.vertices.bytes()
-            + self.lit.capacity() * size_of::<[f32; 6]>()
-            + self.indices.capacity() * size_of::<[u32; 3]>()
-            + self.faces.capacity() * size_of::<u32>()
     }
 }

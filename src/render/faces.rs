@@ -38,13 +38,6 @@ pub(super) struct FacePoints {
     centres: Vec<Vec3>,
 }
 
-impl FacePoints {
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        (self.normals.capacity() + self.centres.capacity()) * size_of::<Vec3>()
-    }
-}
-
 /// One object in one frame: what its faces are drawn from.
 pub(super) struct Faces<'a> {
     pub(super) shading: Shading,

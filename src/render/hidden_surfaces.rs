@@ -40,21 +40,6 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.depths.capacity()
-            + self.effects.bytes()
-            + self.pick.bytes()
-            + self.integer.bytes()
-            + (self.faces.capacity() + self.transparent.capacity()) * size_of::<DeferredFace>()
-            + self.far_to_near.capacity() * size_of::<(u64, usize)>()
-            + self.triangles.capacity() * size_of::<([Vertex; 3], Interpolation)>()
-            + self.lists.bytes()
-            + self.counts.capacity() * size_of::<Shares>()
-    }
-}
-
-impl Scratch {
     /// Passes every face to `visit` with its object, in runs of one look: object by object, each in the order of its
     /// faces.
     pub(super) fn each_run(

@@ -150,24 +150,7 @@ pub(super) struct IntegerScratch {
     beams: Vec<Beam>,
 }
 
-impl IntegerScratch {
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.lit.capacity() * size_of::<LitVertex>() + self.beams.capacity() * size_of::<Beam>()
-    }
-}
-
 impl IntegerPath {
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        let vectors = |mesh: &Converted| mesh.positions.capacity() + mesh.normals.capacity();
-        self.meshes.capacity() * size_of::<Converted>()
-            + self.meshes.iter().map(vectors).sum::<usize>() * size_of::<Vector>()
-            + self.objects.capacity() * size_of::<Prepared>()
-            + self.paints.capacity() * size_of::<Paint>()
-            + self.suns.capacity() * size_of::<Sun>()
-    }
-
     /// Converts a scene with finite numbers. A scene that passes can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();

@@ -253,7 +253,6 @@ impl Renderer {
     /// 16.16 together with the others. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
-        let before = self.bytes();
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
         // Nothing was decided for a scene without objects.
         if self.cache.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
@@ -272,7 +271,6 @@ impl Renderer {
         let mut frame = Frame::from(&mut *vga);
         frame.clear(scene.background);
         self.fill(scene, &mut stats, frame);
-        stats.allocated = self.bytes().saturating_sub(before) as u64;
         self.last = Some((vga.stamp(), stats));
         Ok(stats)
     }
@@ -328,14 +326,12 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let screen = Screen { width: frame.width(), height: frame.height(), pixel_aspect };
         let rows = frame.rows();
-        let before = self.bytes();
         let (mut stats, _) = self.prepare(scene, screen, None, rows.end - rows.start == frame.height())?;
         self.last = None;
         if clears {
             frame.clear(scene.background);
         }
         self.fill(scene, &mut stats, frame);
-        stats.allocated = self.bytes().saturating_sub(before) as u64;
         Ok(stats)
     }
 
@@ -471,16 +467,6 @@ impl Renderer {
     /// Returns whether the last frame may be left as it is if nothing has changed.
     fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
-    }
-
-    /// The renderer's size in bytes.
-    fn bytes(&self) -> usize {
-        let Cache { views, states, tables, integer, .. } = &self.cache;
-        views.capacity() * size_of::<ObjectView>()
-            + states.iter().map(ObjectState::bytes).sum::<usize>()
-            + tables.bytes()
-            + integer.bytes()
-            + self.scratch.bytes()
     }
 }
 

@@ -539,20 +539,6 @@ impl ObjectState {
         let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
         FaceCounts { drawn, not_drawn }
     }
-
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.columns.bytes()
-            + self.paints.capacity() * size_of::<SurfaceMaterial>()
-            + self.texture_sizes.capacity() * size_of::<Option<[u32; 2]>>()
-            + self.lamps.capacity() * size_of::<LampBeam>()
-            + self.tessellated.bytes()
-            + self.points.as_ref().map_or(0, |(_, points)| points.capacity() * 4)
-            + self.face_points.as_ref().map_or(0, |(_, points)| points.bytes())
-            + self.normal_tables.len() * Lut64K::BYTES
-            + self.beams.capacity() * size_of::<Beam>()
-            + self.budget.bytes()
-    }
 }
 
 /// Geometry that is drawn for an object: its mesh, or the result of splitting it.

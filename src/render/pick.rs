@@ -110,15 +110,6 @@ pub(super) struct PickScratch {
     pub(super) added: AddedTriangles,
 }
 
-impl PickScratch {
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.flat.capacity() * size_of::<[U8F8; 3]>()
-            + self.runs.capacity() * size_of::<(usize, Look)>()
-            + self.added.bytes()
-    }
-}
-
 /// Collects picks, and draws them when there are enough.
 pub(super) struct Picker<'a> {
     /// `None` if all faces are wanted.

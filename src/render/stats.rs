@@ -29,8 +29,6 @@ pub struct Stats {
     pub kept: u64,
     /// Objects whose faces were drawn as an error budget decided.
     pub decided: u64,
-    /// Bytes allocated for this frame.
-    pub allocated: u64,
     /// Vertices transformed.
     pub vertices: u64,
     /// Vertices lit; for flat shading faces, except those already found to cover no pixel.
@@ -100,7 +98,6 @@ impl Stats {
             redrawn: true,
             kept: 0,
             decided: 0,
-            allocated: 0,
             vertices: 0,
             lit: 0,
             faces: 0,
@@ -115,7 +112,7 @@ impl Stats {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shading, max_error, vertex_path, kernel, hidden_surfaces, redrawn, kept, allocated, .. } = self;
+        let Self { shading, max_error, vertex_path, kernel, hidden_surfaces, redrawn, kept, .. } = self;
         let Self { vertices, lit, faces, clipped, culled, drawn, raster, .. } = self;
         let accuracy = max_error.map_or(Accuracy::Shading(*shading), Accuracy::WithinError);
         write!(f, "{accuracy}")?;
@@ -141,7 +138,6 @@ impl fmt::Display for Stats {
             (u64::from(raster.blended), "blended"),
             (u64::from(raster.dithered), "dithered"),
             (*kept, "objects kept"),
-            (*allocated, "bytes allocated"),
         ];
         for (count, what) in counts.into_iter().filter(|(count, _)| *count > 0) {
             write!(f, ", {count} {what}")?;

@@ -173,18 +173,6 @@ impl Tables {
     pub(super) fn blend(&self, blend: Blend) -> Option<&[u8; 65_536]> {
         self.blends.iter().find(|(of, _)| *of == blend).map(|(_, table)| table.as_array())
     }
-
-    /// Size of all tables in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        let tables = usize::from(self.fog.is_some())
-            + self.shades.len()
-            + 3 * self.channels.len()
-            + self.blends.len()
-            + usize::from(self.neutral_shades.is_some())
-            + usize::from(self.neutral_fog.is_some());
-        let levels: usize = self.mipmaps.iter().map(|mipmap| mipmap.made.bytes()).sum();
-        levels + tables * Lut64K::BYTES + if self.nearest.is_some() { InverseColormap::BYTES } else { 0 }
-    }
 }
 
 /// Adds what was computed for an image, and drops what belongs to textures that are gone.

@@ -123,22 +123,6 @@ impl Tessellated {
         &self.twins
     }
 
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.positions.capacity() * size_of::<Vec3>()
-            + self.normals.capacity() * size_of::<Vec3>()
-            + self.texcoords.capacity() * size_of::<Vec2>()
-            + (self.vertex_surfaces.capacity() + self.triangle_surfaces.capacity()) * 2
-            + self.triangles.capacity() * size_of::<[u32; 3]>()
-            + self.points.capacity() * 4
-            + self.twins.capacity() * 8
-            + self.straight.capacity()
-            + self.known.light.capacity() * size_of::<(f64, f64)>()
-            + self.known.angles.capacity() * size_of::<f64>()
-            + self.halved.bytes()
-            + self.middles.bytes()
-    }
-
     /// The edge between two vertices, regardless of its direction and of which vertices at its two points are given.
     fn edge(&self, a: u32, b: u32) -> (u32, u32) {
         let (a, b) = (self.points[a as usize], self.points[b as usize]);

@@ -93,12 +93,6 @@ impl Mipmap {
         }
         self.colors.into_iter().zip(weights).collect()
     }
-
-    /// The number of bytes that it takes in addition to its texture.
-    #[must_use]
-    pub(crate) fn bytes(&self) -> usize {
-        self.texels.capacity() + size_of::<Self>()
-    }
 }
 
 /// The mean colour of every texel of the levels from 1 up, and the number of level-0 texels that it represents.

@@ -130,22 +130,9 @@ impl Buffers {
             shades.resize(ROOM, 0);
         }
     }
-
-    /// Size in bytes.
-    fn bytes(&self) -> usize {
-        let Self { bytes, other, channels, shades } = self;
-        let bytes = bytes.capacity() + other.capacity() + channels.iter().map(Vec::capacity).sum::<usize>();
-        let shades = shades.iter().map(Vec::capacity).sum::<usize>();
-        bytes + shades * size_of::<u16>()
-    }
 }
 
 impl EffectScratch {
-    /// Size in bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.lists.capacity() * size_of::<(SpanList, Columns)>() + self.buffers.bytes()
-    }
-
     /// Allocates the memory, 100 kB, the first time.
     #[inline]
     fn make_room(&mut self) {

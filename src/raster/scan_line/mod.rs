@@ -72,11 +72,6 @@ pub struct Lists {
 
 #[cfg(feature = "alloc")]
 impl Lists {
-    /// Size in bytes.
-    pub(crate) fn bytes(&self) -> usize {
-        self.list.capacity() * size_of::<u64>() + self.pairs.capacity() * size_of::<EdgePair>()
-    }
-
     /// Reserves memory for this number of faces. Unused memory is not touched.
     pub(crate) fn reserve(&mut self, faces: usize) {
         self.list.reserve((faces * Scratch::LIST_EACH).saturating_sub(self.list.len()));

@@ -96,9 +96,4 @@ impl Clusters {
         let extent = positions.iter().fold(0.0, |most: f32, at| most.max(at.abs().max_element()));
         Self { facets, chunks, extent }
     }
-
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.facets.capacity() * size_of::<Facet>() + self.chunks.capacity() * size_of::<Chunk>()
-    }
 }

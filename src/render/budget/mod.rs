@@ -82,11 +82,6 @@ impl Budget {
     fn spare(&self, rounding: f32) -> f32 {
         (self.allowed - rounding) / 255.0
     }
-
-    /// Its size in bytes.
-    pub(super) fn bytes(&self) -> usize {
-        self.clusters.bytes()
-    }
 }
 
 /// Returns whether no light and no material takes light away.
