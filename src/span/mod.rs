@@ -118,96 +118,49 @@ pub struct Kernel {
     fill: Fill,
 }
 
-/// A row of the table of kernels.
-struct Listed {
-    name: &'static str,
-    /// The level it draws with and its function; `None` where the machine or the build lacks it.
-    find: fn() -> Option<Found>,
-}
-
 /// Level that a kernel draws with, and its function.
 type Found = (Level, Fill);
 
-impl Listed {
-    fn kernel(&self) -> Option<Kernel> {
-        (self.find)().map(|(level, fill)| Kernel { name: self.name, level, fill })
-    }
+/// A kernel's name, and what finds it: `None` where the machine or the build lacks it.
+type Listed = (&'static str, fn() -> Option<Found>);
+
+/// A function that finds a kernel where its condition holds.
+macro_rules! found {
+    ($($condition:meta => $found:expr),*) => {
+        || {
+            $(#[cfg($condition)]
+            return $found;)*
+            #[cfg(not(any($($condition),*)))]
+            None
+        }
+    };
 }
 
-/// Every kernel, portable first.
+/// Every kernel, portable first. Those of `simd` are in order of speed, the fastest last.
 static LISTED: [Listed; KERNELS] = [
-    Listed { name: "portable", find: || Some((Level::Portable, portable::fill)) },
-    Listed { name: "asm", find: find_asm },
-    Listed { name: "asm-unrolled", find: find_asm_unrolled },
-    Listed { name: "simd", find: find_simd },
-    Listed { name: "simd-arrays", find: find_arrays },
-    Listed { name: "simd-sse2", find: find_sse2 },
-    Listed { name: "simd-neon", find: find_neon },
-    Listed { name: "simd-wasm", find: find_wasm },
-    Listed { name: "simd-avx2", find: find_avx2 },
-    Listed { name: "simd-avx512", find: find_avx512 },
+    ("portable", || Some((Level::Portable, portable::fill))),
+    ("asm", found!(asm_x86_64 => Some((Level::X86_64, x86::fill)), asm_i686 => Some((Level::I686, x86::fill)))),
+    ("asm-unrolled", found!(asm_x86_64 => Some((Level::X86_64, x86::fill_unrolled)))),
+    ("simd", find_simd),
+    ("simd-arrays", found!(feature = "simd" => Some((Level::Arrays, simd::arrays::fill)))),
+    ("simd-sse2", found!(simd_x86_64 => Some((Level::Sse2, simd::sse2::fill)))),
+    ("simd-neon", found!(simd_neon => Some((Level::Neon, simd::neon::fill)))),
+    ("simd-wasm", found!(simd_wasm => Some((Level::Wasm, simd::wasm::fill)))),
+    ("simd-avx2", found!(simd_x86_64 => Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::sse2::fill as Fill)))),
+    (
+        "simd-avx512",
+        found!(simd_x86_64 => Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::sse2::fill as Fill))),
+    ),
 ];
 
-fn find_asm() -> Option<Found> {
-    #[cfg(asm_x86_64)]
-    return Some((Level::X86_64, x86::fill));
-    #[cfg(asm_i686)]
-    return Some((Level::I686, x86::fill));
-    #[cfg(not(any(asm_x86_64, asm_i686)))]
-    return None;
-}
-
-fn find_asm_unrolled() -> Option<Found> {
-    #[cfg(asm_x86_64)]
-    return Some((Level::X86_64, x86::fill_unrolled));
-    #[cfg(not(asm_x86_64))]
-    return None;
-}
-
+/// The fastest level.
 fn find_simd() -> Option<Found> {
-    [find_avx512, find_avx2, find_sse2, find_neon, find_wasm, find_arrays].iter().find_map(|find| find())
+    let levels = LISTED.iter().rev().take_while(|(name, _)| *name != "simd");
+    levels.copied().find_map(|(_, find)| find())
 }
 
-fn find_arrays() -> Option<Found> {
-    #[cfg(feature = "simd")]
-    return Some((Level::Arrays, simd::arrays::fill));
-    #[cfg(not(feature = "simd"))]
-    return None;
-}
-
-fn find_sse2() -> Option<Found> {
-    #[cfg(simd_x86_64)]
-    return Some((Level::Sse2, simd::sse2::fill));
-    #[cfg(not(simd_x86_64))]
-    return None;
-}
-
-fn find_neon() -> Option<Found> {
-    #[cfg(simd_neon)]
-    return Some((Level::Neon, simd::neon::fill));
-    #[cfg(not(simd_neon))]
-    return None;
-}
-
-fn find_wasm() -> Option<Found> {
-    #[cfg(simd_wasm)]
-    return Some((Level::Wasm, simd::wasm::fill));
-    #[cfg(not(simd_wasm))]
-    return None;
-}
-
-fn find_avx2() -> Option<Found> {
-    #[cfg(simd_x86_64)]
-    return Avx2::find().map(|avx2| (Level::Avx2(avx2), simd::sse2::fill as Fill));
-    #[cfg(not(simd_x86_64))]
-    return None;
-}
-
-fn find_avx512() -> Option<Found> {
-    #[cfg(simd_x86_64)]
-    return Avx512::find().map(|avx512| (Level::Avx512(avx512), simd::sse2::fill as Fill));
-    #[cfg(not(simd_x86_64))]
-    return None;
+fn kernel((name, find): Listed) -> Option<Kernel> {
+    find().map(|(level, fill)| Kernel { name, level, fill })
 }
 
 impl Kernel {
@@ -218,7 +171,7 @@ impl Kernel {
     ///
     /// `simd` is one of the `simd-…` levels under the name that programs ask for.
     pub fn available() -> impl Iterator<Item = Self> + Clone {
-        LISTED.iter().filter_map(Listed::kernel)
+        LISTED.iter().copied().filter_map(kernel)
     }
 
     /// The kernel's name in the table, such as `simd`.
@@ -430,10 +383,9 @@ impl FromStr for Kernel {
     type Err = UnknownName;
 
     fn from_str(name: &str) -> Result<Self, UnknownName> {
-        let listed = LISTED.iter().find(|listed| listed.name == name);
-        listed.and_then(Listed::kernel).ok_or_else(|| {
-            let here = LISTED.each_ref().map(|listed| listed.kernel().map(Kernel::name));
-            UnknownName::kernel(listed.map(|listed| listed.name), here)
+        let listed = LISTED.iter().copied().find(|(listed, _)| *listed == name);
+        listed.and_then(kernel).ok_or_else(|| {
+            UnknownName::kernel(listed.map(|(name, _)| name), LISTED.map(|listed| kernel(listed).map(Kernel::name)))
         })
     }
 }
