@@ -58,6 +58,7 @@ mod paint;
 pub(crate) mod pick;
 pub(crate) mod reference;
 mod rows;
+#[cfg(feature = "alloc")]
 pub(crate) mod scan_line;
 mod setup;
 #[cfg(feature = "alloc")]

@@ -264,8 +264,7 @@ fn scan_line(
         (vertices, if face.look.effects { Interpolation::default() } else { face.look.interpolation() })
     }));
     let Painter { pipelines, raster, scratch, .. } = painter;
-    // There is room for all.
-    let drawn = raster.scan_line_with(triangles, lists.scratch(faces.len()), |i, row, pixels, kernel, drawn| {
+    raster.scan_line_with(triangles, lists, |i, row, pixels, kernel, drawn| {
         let face = &faces[i];
         let Look { surface, shading, effects, .. } = face.look;
         if !effects {
@@ -278,6 +277,5 @@ fn scan_line(
             DrawStats::default()
         });
         true
-    });
-    drawn.unwrap_or_default()
+    })
 }

@@ -5,7 +5,7 @@ use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::U8F8;
-use mode13h::internals::raster::scan_line::{EdgePair, Lists, Scratch, ScratchError};
+use mode13h::internals::raster::scan_line::Lists;
 use mode13h::raster::{DepthBuffer, DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
@@ -51,7 +51,7 @@ impl Sheet {
     }
 
     fn scan_line(self, lists: &mut Lists, faces: &[Face]) -> (Vec<u8>, DrawStats) {
-        self.draw(|mut raster| raster.scan_line(faces, lists.scratch(faces.len())).expect("room enough"))
+        self.draw(|mut raster| raster.scan_line(faces, lists))
     }
 }
 
@@ -164,21 +164,6 @@ fn d2_soups() {
 #[ignore = "the long run: 300,000 soups"]
 fn d2_long_soups() {
     soups(Tried::new("d2_long_soups", 300_000));
-}
-
-#[test]
-fn too_little_memory_is_refused_before_anything_is_drawn() {
-    let face = ([vertex(0, 0, 0, 9), vertex(999, 0, 0, 9), vertex(0, 999, 0, 9)], Interpolation::Flat(1));
-    let faces = [face; 4];
-    for (list, pairs, room) in [(12, 3, 3), (11, 4, 3), (0, 9, 0)] {
-        let (mut list, mut pairs) = (vec![0; list], vec![EdgePair::default(); pairs]);
-        let (bytes, _) = Sheet::new(8, 8).draw(|mut raster| {
-            let refused = raster.scan_line(&faces, Scratch::new(&mut list, &mut pairs));
-            assert_eq!(refused, Err(ScratchError { faces: 4, room }));
-            DrawStats::default()
-        });
-        assert!(bytes.iter().all(|byte| *byte == Sheet::EMPTY));
-    }
 }
 
 /// Frames that share a depth memory are those drawn with cleared depths, whatever was drawn before them, one by one and

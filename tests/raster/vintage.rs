@@ -197,7 +197,7 @@ fn by_scan_line_its_shades_are_on_exact_cover() {
         let corners = triangle(&mut random, width.into(), height.into());
         let mut bytes = vec![EMPTY; (width * height) as usize];
         let mut raster = Raster::new(Frame::new(&mut bytes, width, height, width as usize).expect("legal"));
-        raster.scan_line(&[(corners, VINTAGE)], lists.scratch(1)).expect("room enough");
+        raster.scan_line(&[(corners, VINTAGE)], &mut lists);
         let mut expected = vec![EMPTY; (width * height) as usize];
         let shades = oracle::Shades::of_vertices(&corners, VINTAGE);
         for covered in oracle::pixels(&corners, Interpolation::Flat(0), width as i32, height as i32) {

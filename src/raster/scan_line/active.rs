@@ -9,7 +9,7 @@ use crate::raster::reference::depth::DepthPlane;
 use crate::raster::vertex::Vertex;
 
 /// A face whose rows are being walked: the two edges that cross the current row. Opaque; the caller lends a slice of
-/// them ([`Scratch`](super::Scratch)).
+/// them ([`Lists`](super::Lists)).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgePair {
     triangle: SortedTriangle,

@@ -33,7 +33,7 @@
 mod active;
 mod nearest;
 
-use core::fmt;
+use alloc::vec::Vec;
 
 pub use self::active::EdgePair;
 use super::depth::Cell;
@@ -44,67 +44,29 @@ use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::span::Kernel;
 
-/// The memory of the scan-line method, lent by the caller. Its contents between two frames do not matter.
-#[derive(Debug)]
-pub struct Scratch<'a> {
-    list: &'a mut [u64],
-    pairs: &'a mut [EdgePair],
-}
-
-impl<'a> Scratch<'a> {
-    /// List entries per face: one each among the coming, the active and the open.
-    pub const LIST_EACH: usize = 3;
-
-    /// Takes memory for n faces: `list` is at least [`LIST_EACH`](Self::LIST_EACH)·n long, and `pairs` at least n.
-    #[must_use]
-    pub fn new(list: &'a mut [u64], pairs: &'a mut [EdgePair]) -> Self {
-        Self { list, pairs }
-    }
-}
-
-/// Memory of the scan-line method that grows as needed.
-#[cfg(feature = "alloc")]
+/// The memory of the scan-line method, which grows as needed. Its contents between two frames do not matter.
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
-    list: alloc::vec::Vec<u64>,
-    pairs: alloc::vec::Vec<EdgePair>,
+    /// The faces that are coming, those that are active, and those that are open.
+    keys: [Vec<u64>; 3],
+    pairs: Vec<EdgePair>,
 }
 
-#[cfg(feature = "alloc")]
 impl Lists {
     /// Reserves memory for this number of faces. Unused memory is not touched.
     pub(crate) fn reserve(&mut self, faces: usize) {
-        self.list.reserve((faces * Scratch::LIST_EACH).saturating_sub(self.list.len()));
-        self.pairs.reserve(faces.saturating_sub(self.pairs.len()));
+        let Self { keys, pairs } = self;
+        keys.iter_mut().for_each(|keys| keys.reserve(faces.saturating_sub(keys.len())));
+        pairs.reserve(faces.saturating_sub(pairs.len()));
     }
 
-    /// Memory for this many faces.
-    pub fn scratch(&mut self, faces: usize) -> Scratch<'_> {
-        let least = |length: usize, needed: usize| length.max(needed);
-        self.list.resize(least(self.list.len(), faces.saturating_mul(Scratch::LIST_EACH)), 0);
-        self.pairs.resize(least(self.pairs.len(), faces), EdgePair::default());
-        Scratch::new(&mut self.list, &mut self.pairs)
+    /// Makes room for this number of faces.
+    fn make_room(&mut self, faces: usize) {
+        let Self { keys, pairs } = self;
+        keys.iter_mut().for_each(|keys| keys.resize(keys.len().max(faces), 0));
+        pairs.resize(pairs.len().max(faces), EdgePair::default());
     }
 }
-
-/// There is less memory than the faces need.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct ScratchError {
-    /// Faces to be drawn.
-    pub faces: usize,
-    /// Faces that fit into the memory.
-    pub room: usize,
-}
-
-impl fmt::Display for ScratchError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "scan-line memory for {} faces given for a frame of {}", self.room, self.faces)
-    }
-}
-
-crate::errors::debug_as_display!(ScratchError);
-
-impl core::error::Error for ScratchError {}
 
 /// A sort key: a row or a column in the upper bits, an index in the lower.
 ///
@@ -151,23 +113,14 @@ impl<D: Cell> Raster<'_, D> {
     ///     ([at(4, 0, 900)?, at(4, 4, 900)?, at(0, 0, 100)?], Interpolation::Flat(2)), // through the first
     /// ];
     /// let mut bytes = [0; 4 * 4];
-    /// let mut list = [0; 2 * scan_line::Scratch::LIST_EACH];
-    /// let mut pairs = [scan_line::EdgePair::default(); 2];
     /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 4, 4)?);
-    /// let drawn = raster.scan_line(&faces, scan_line::Scratch::new(&mut list, &mut pairs))?;
+    /// let drawn = raster.scan_line(&faces, &mut scan_line::Lists::default());
     /// assert_eq!(bytes, [1, 1, 2, 2, 1, 1, 2, 2, 1, 0, 2, 2, 0, 0, 0, 2]);
     /// assert_eq!((drawn.covered, drawn.pixels), (16, 12));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    ///
-    /// # Errors
-    /// `scratch` is too small for this many faces. Nothing is drawn then.
-    fn scan_line(
-        &mut self,
-        faces: &[([Vertex; 3], Interpolation)],
-        scratch: Scratch<'_>,
-    ) -> Result<DrawStats, ScratchError> {
-        self.scan_line_with(faces, scratch, |_, _, _, _, _| false)
+    fn scan_line(&mut self, faces: &[([Vertex; 3], Interpolation)], lists: &mut Lists) -> DrawStats {
+        self.scan_line_with(faces, lists, |_, _, _, _, _| false)
     }
     }
 
@@ -175,23 +128,14 @@ impl<D: Cell> Raster<'_, D> {
     ///
     /// `paint` is given a face's index in `faces`, a row of it, the frame's whole row, the kernel and the counts. It
     /// returns whether it painted; if not, the face is painted with its own shading.
-    ///
-    /// # Errors
-    /// Those of [`scan_line`](Self::scan_line).
     pub(crate) fn scan_line_with(
         &mut self,
         faces: &[([Vertex; 3], Interpolation)],
-        scratch: Scratch<'_>,
+        lists: &mut Lists,
         mut paint: impl FnMut(usize, &Row, &mut [u8], Kernel, &mut DrawStats) -> bool,
-    ) -> Result<DrawStats, ScratchError> {
-        let count = faces.len();
-        let Scratch { list, pairs } = scratch;
-        let room = pairs.len().min(list.len() / Scratch::LIST_EACH);
-        if room < count {
-            return Err(ScratchError { faces: count, room });
-        }
-        let (coming, rest) = list.split_at_mut(count);
-        let (active, open) = rest.split_at_mut(count);
+    ) -> DrawStats {
+        lists.make_room(faces.len());
+        let Lists { keys: [coming, active, open], pairs } = lists;
         let mut begun = 0;
         for (number, (vertices, _)) in faces.iter().enumerate() {
             if let Some(rows) = SortedTriangle::new(vertices).extent(self.clip) {
@@ -211,7 +155,7 @@ impl<D: Cell> Raster<'_, D> {
             sweep.row(self, &mut list, open, y, &mut paint);
             list.down();
         }
-        Ok(sweep.drawn)
+        sweep.drawn
     }
 }
 
