@@ -81,43 +81,27 @@ fn channels<const N: usize>(intensity: f32, colors: [f32; 3]) -> [f64; N] {
 }
 
 impl Lights<'_> {
-    /// Sums all light on one channel, not yet clamped, for the side that the points' normals, of
-    /// any length, point out of.
-    pub(crate) fn front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        self.one::<false>(answer, points, kernel)
-    }
-
-    /// Sums all light on one channel for unit normals, which are used unchanged. Otherwise like
-    /// [`front_of_one_channel`](Self::front_of_one_channel).
-    pub(crate) fn unit_front_of_one_channel(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
-        self.one::<true>(answer, points, kernel)
-    }
-
-    /// Sums all light on three channels: red, green, blue. Otherwise like
-    /// [`front_of_one_channel`](Self::front_of_one_channel).
-    pub(crate) fn front_of_three_channels(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
-        self.three::<false>(answer, points, kernel)
-    }
-
-    /// Sums all light on three channels for unit normals, which are used unchanged. Otherwise like
-    /// [`front_of_three_channels`](Self::front_of_three_channels).
-    pub(crate) fn unit_front_of_three_channels(
+    /// Sums all light on one channel, not yet clamped, for the side that the points' normals point out of. They may have
+    /// any length, unless they are `UNIT` normals, which are used unchanged.
+    pub(crate) fn front_of_one_channel<const UNIT: bool>(
         &self,
         answer: &Reflectance,
         points: &Points,
         kernel: Kernel,
-    ) -> [Wides; 3] {
-        self.three::<true>(answer, points, kernel)
-    }
-
-    fn one<const UNIT: bool>(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> Wides {
+    ) -> Wides {
         let (level, shines) = (kernel.simd_level(), answer.shines());
         let sum = if shines { shiny_one::<UNIT> } else { matt_one::<UNIT> };
         let [lanes] = sum(level, self, answer, points);
         lanes
     }
 
-    fn three<const UNIT: bool>(&self, answer: &Reflectance, points: &Points, kernel: Kernel) -> [Wides; 3] {
+    /// [`front_of_one_channel`](Self::front_of_one_channel) for three channels: red, green, blue.
+    pub(crate) fn front_of_three_channels<const UNIT: bool>(
+        &self,
+        answer: &Reflectance,
+        points: &Points,
+        kernel: Kernel,
+    ) -> [Wides; 3] {
         let (level, shines) = (kernel.simd_level(), answer.shines());
         let sum = if shines { shiny_three::<UNIT> } else { matt_three::<UNIT> };
         sum(level, self, answer, points)
@@ -383,8 +367,8 @@ mod tests {
                     points[axis + 3][lane] = position[axis];
                 }
             }
-            let one = lights.front_of_one_channel(&answer, &points, kernel);
-            let three = lights.front_of_three_channels(&answer, &points, kernel);
+            let one = lights.front_of_one_channel::<false>(&answer, &points, kernel);
+            let three = lights.front_of_three_channels::<false>(&answer, &points, kernel);
             let mut unit_points = points;
             for (lane, (normal, _)) in ends.iter().enumerate() {
                 let unit = normals::unit((*normal).into()).unwrap_or(Vec3::ZERO).to_array();
@@ -393,8 +377,8 @@ mod tests {
             let mut turned = unit_points;
             turned[..3].iter_mut().flatten().for_each(|c| *c = -*c);
             let sides = [unit_points, turned].map(|points| {
-                let one = lights.unit_front_of_one_channel(&answer, &points, kernel);
-                (one, lights.unit_front_of_three_channels(&answer, &points, kernel))
+                let one = lights.front_of_one_channel::<true>(&answer, &points, kernel);
+                (one, lights.front_of_three_channels::<true>(&answer, &points, kernel))
             });
             for (lane, (normal, position)) in ends.into_iter().enumerate() {
                 let (normal, position) = (normals::unit(normal.into()).unwrap_or(Vec3::ZERO), Vec3::from(position));

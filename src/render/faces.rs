@@ -239,7 +239,7 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, p
             };
             let paint = &faces.paints[usize::from(surface)];
             let points = &points[k % (CHUNK / LANES)];
-            let light = faces.lights.unit_front_of_one_channel(&paint.answer, points, kernel);
+            let light = faces.lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
             faces.put(paint, s.low_words(shade_of_intensities(s, paint, s.load_f64(&light))), flat);
         }
     }

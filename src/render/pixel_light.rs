@@ -21,7 +21,7 @@ pub(super) struct PixelLight<'a> {
 impl Lighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
-        let intensities = self.lights.front_of_one_channel(&self.paint.answer, points, self.kernel);
+        let intensities = self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel);
         let shades = self.paint.shade_of_eight(&intensities);
         if self.paint.response.is_some() {
             return each!(lane => self.paint.respond(shades[lane]).to_bits());
@@ -31,7 +31,7 @@ impl Lighting for PixelLight<'_> {
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let channels = self.lights.front_of_three_channels(&self.paint.answer, points, self.kernel);
+        let channels = self.lights.front_of_three_channels::<false>(&self.paint.answer, points, self.kernel);
         let channels = SurfaceMaterial::channels_of_eight(&channels);
         if self.paint.response.is_some() {
             let answered = |shade: U8F8| self.paint.respond_on_channel(shade).to_bits();

@@ -241,10 +241,10 @@ impl Faces<'_> {
     fn front(&self, face: &OnScreen<'_>, weights: &Weights, turned: bool) -> [Lanes<f32>; 3] {
         let points = face.points(weights, turned);
         if self.channels {
-            let [r, g, b] = self.lights.front_of_three_channels(face.answer, &points, self.kernel);
+            let [r, g, b] = self.lights.front_of_three_channels::<false>(face.answer, &points, self.kernel);
             [narrow(&r), narrow(&g), narrow(&b)]
         } else {
-            let one = self.lights.front_of_one_channel(face.answer, &points, self.kernel);
+            let one = self.lights.front_of_one_channel::<false>(face.answer, &points, self.kernel);
             [narrow(&one), [0.0; LANES], [0.0; LANES]]
         }
     }

@@ -100,12 +100,12 @@ pub(super) fn light_all(
     each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
         let lit = &mut vertices.shade[eight];
-        let fronts = lights.unit_front_of_one_channel(&paint.answer, points, kernel);
+        let fronts = lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
         for ([shade, _], front) in lit.iter_mut().zip(paint.shade_of_eight(&fronts)) {
             *shade = front;
         }
         if both {
-            let backs = lights.unit_front_of_one_channel(&paint.answer, &from_behind(points), kernel);
+            let backs = lights.front_of_one_channel::<true>(&paint.answer, &from_behind(points), kernel);
             for ([_, shade], back) in lit.iter_mut().zip(paint.shade_of_eight(&backs)) {
                 *shade = back;
             }
@@ -125,13 +125,13 @@ pub(super) fn light_channels(
     each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
         let channels = &mut channels[eight];
-        let fronts = lights.unit_front_of_three_channels(&paint.answer, points, kernel);
+        let fronts = lights.front_of_three_channels::<true>(&paint.answer, points, kernel);
         let [red, green, blue] = SurfaceMaterial::channels_of_eight(&fronts);
         for (lane, [front, _]) in channels.iter_mut().enumerate() {
             *front = [red[lane], green[lane], blue[lane]];
         }
         if both {
-            let backs = lights.unit_front_of_three_channels(&paint.answer, &from_behind(points), kernel);
+            let backs = lights.front_of_three_channels::<true>(&paint.answer, &from_behind(points), kernel);
             let [red, green, blue] = SurfaceMaterial::channels_of_eight(&backs);
             for (lane, [_, back]) in channels.iter_mut().enumerate() {
                 *back = [red[lane], green[lane], blue[lane]];
