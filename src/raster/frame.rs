@@ -149,7 +149,6 @@ impl<'a> Frame<'a> {
     }
 
     /// The pixels from column `x` of row `y` to the end, or `None` if the frame does not hold the row.
-    #[cfg(feature = "alloc")]
     #[inline]
     pub(super) fn starting_at(&mut self, x: usize, y: u32) -> Option<&mut [u8]> {
         let start = self.offset_of(y)?.checked_add(x)?;

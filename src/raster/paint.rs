@@ -330,12 +330,17 @@ impl<D: Cell> Tested<'_, D> {
 /// clip rectangle changes no byte.
 #[inline]
 pub(super) fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Range<usize>, u16)) {
-    let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
     if !reseeded {
-        let start = shade.start(row.origin, row.y);
-        return span(row.range(), advance(start, row.x0 - row.origin));
+        return span(row.range(), linear_start(row, shade));
     }
+    let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
     pieces(row, |seed, x, end| span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed)));
+}
+
+/// The shade at the first pixel drawn of a row that is not reseeded: its exact start lies at the row's origin.
+#[inline]
+pub(super) fn linear_start(row: &Row, shade: &ShadePlane) -> u16 {
+    shade.start(row.origin, row.y).wrapping_add(shade.step().wrapping_mul((row.x0 - row.origin) as u16))
 }
 
 /// Splits the drawn part of a row every 64 pixels from its origin. `piece` gets the column of each split, or of the

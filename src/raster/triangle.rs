@@ -6,12 +6,13 @@ use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
-use super::paint::RowShader;
+use super::paint::{RowShader, linear_start};
 use super::reference::cover::{Row, SortedTriangle};
 use super::reference::depth::DepthPlane;
+use super::reference::shade::{RESEED, ShadePlane};
 use super::vertex::Vertex;
 use super::vintage::VintageTriangle;
-use crate::fixed::HAS_F64;
+use crate::fixed::{HAS_F64, IS_COMPACT};
 use crate::span::Kernel;
 
 /// Draws triangles into a frame: inside a clip rectangle, with an optional depth buffer, and with a choice of span
@@ -77,6 +78,16 @@ impl<'a> Raster<'a> {
 /// 1,320 and 690 ns.)
 const TALL: i64 = 32 << 8;
 
+/// The simplest shading that gives the same bytes: rows of up to 64 pixels are not reseeded.
+#[inline]
+fn simplest(vertices: &[Vertex; 3], interpolation: Interpolation) -> Interpolation {
+    let [a, b, c] = vertices.each_ref().map(|vertex| vertex.x().to_bits());
+    match interpolation {
+        Interpolation::GouraudReseeded if a.max(b).max(c) - a.min(b).min(c) <= RESEED << 8 => Interpolation::Gouraud,
+        interpolation => interpolation,
+    }
+}
+
 impl<'a, D: Cell> Raster<'a, D> {
     /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as
     /// without it.
@@ -123,9 +134,22 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// Draws a triangle row by row, following the definition.
     #[inline]
     pub(super) fn triangle_by_rows(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
-        let triangle = SortedTriangle::new(vertices);
+        let (triangle, interpolation) = (SortedTriangle::new(vertices), simplest(vertices, interpolation));
         if !interpolation.has_exact_cover() {
             return self.draw_vintage(&triangle);
+        }
+        if !IS_COMPACT && self.depth.is_none() {
+            let mut plane = None;
+            match interpolation {
+                Interpolation::Gouraud => {
+                    return self.fill_rows(&triangle, |row| {
+                        let plane = plane.get_or_insert_with(|| ShadePlane::new(&triangle));
+                        (linear_start(row, plane), plane.step())
+                    });
+                }
+                Interpolation::Flat(index) => return self.fill_rows(&triangle, |_| (u16::from(index) << 8, 0)),
+                _ => {}
+            }
         }
         let mut drawn = DrawStats::default();
         // Created for the first row: half of the triangles of a detailed model cover no pixel.
@@ -147,6 +171,25 @@ impl<'a, D: Cell> Raster<'a, D> {
             paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
         };
         triangle.rows(width, clip, draw);
+        drawn
+    }
+
+    /// Fills the rows of a triangle without a depth test, each from the shade and the step that `shades` gives it. Few
+    /// enough values for registers, and no branch on the length of a row: a fifth faster than with [`RowShader`].
+    #[inline(always)]
+    fn fill_rows(&mut self, triangle: &SortedTriangle, mut shades: impl FnMut(&Row) -> (u16, u16)) -> DrawStats {
+        let (mut drawn, kernel) = (DrawStats::default(), self.kernel);
+        let (width, clip) = (self.frame.width(), self.clip);
+        triangle.rows(width, clip, |row| {
+            let length = row.range().len();
+            let Some(pixels) = self.frame.starting_at(row.range().start, row.y as u32) else { return };
+            drawn.spans += 1;
+            // At most 4,096.
+            drawn.pixels += length as u32;
+            let (shade, step) = shades(&row);
+            kernel.fill_first(length, pixels, shade, step);
+        });
+        drawn.covered = drawn.pixels;
         drawn
     }
 

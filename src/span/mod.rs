@@ -200,6 +200,22 @@ impl Kernel {
         }
     }
 
+    /// [`fill`](Self::fill) for the first `length` pixels of a row that has at least as many. The rest does not change.
+    #[inline]
+    pub(crate) fn fill_first(self, length: usize, row: &mut [u8], shade: u16, step: u16) {
+        // Usually short, with an unpredictable length: trailing bytes are rewritten unchanged, by code that is inlined.
+        #[cfg(simd_x86_64)]
+        if length <= 16
+            && matches!(self.level, Level::Sse2 | Level::Avx2(_))
+            && let Some(row) = row.first_chunk_mut()
+        {
+            return simd::sse2::fill_first(length, row, shade, step);
+        }
+        if let Some(row) = row.get_mut(..length) {
+            self.fill(row, shade, step);
+        }
+    }
+
     /// Fills every span, in order, as [`fill`](Self::fill) does.
     #[inline]
     fn fill_spans(self, pixels: &mut [u8], spans: &list::SpanList) {

@@ -151,6 +151,20 @@ pub(super) mod sse2 {
         unsafe { vectors(row, shade, step) }
     }
 
+    /// Fills the first `length` pixels of sixteen, and rewrites the others unchanged.
+    #[inline(always)]
+    pub(crate) fn fill_first(length: usize, row: &mut [u8; 16], shade: u16, step: u16) {
+        static STAYS: [[u8; 16]; 2] = [[0; 16], [u8::MAX; 16]];
+        // SAFETY: x86-64 includes SSE2. The mask is sixteen of 32 bytes, from byte 16 or an earlier one on; the others
+        // are sixteen bytes. No load or store requires alignment.
+        unsafe {
+            let stays = _mm_loadu_si128(STAYS.as_ptr().cast::<u8>().add(16 - length.min(16)).cast());
+            let before = _mm_and_si128(stays, _mm_loadu_si128(row.as_ptr().cast()));
+            let bytes = _mm_andnot_si128(stays, Block::new(shade, step).bytes());
+            _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_or_si128(before, bytes));
+        }
+    }
+
     /// Fills every span of a list.
     pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
         // SAFETY: x86-64 includes SSE2.

@@ -6,6 +6,7 @@ use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::raster::reference::cover::SortedTriangle;
 use mode13h::internals::raster::reference::depth::DepthPlane;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, RasterError, Rect, Vertex};
+use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
@@ -526,6 +527,60 @@ fn c5_perspective_correct_shades() {
 #[ignore = "the long run: 300,000 triangles"]
 fn c5_long_perspective_correct_shades() {
     perspective_correct_shades(Tried::new("c5_long_perspective_correct_shades", 300_000));
+}
+
+/// With and without a depth test, which are different loops, every kernel gives the same bytes: of rows just short enough
+/// not to be reseeded, and just too long, in part outside the clip rectangle.
+#[test]
+fn a_depth_buffer_changes_no_byte_of_one_triangle() {
+    let (width, height) = (96_u32, 24_u32);
+    let mut tried = Tried::new("a_depth_buffer_changes_no_byte_of_one_triangle", 30_000);
+    let mut random = Random::named("with and without depth");
+    let mut reseeded = 0;
+    for number in 0..30_000 {
+        let (left, breadth) = (random.within(-2_000, 9_000), random.one_of(&[700, 16_100, 16_384, 16_385, 16_600]));
+        // A trapezoid's half: its longest row is as long as it is wide.
+        let tall = random.one_of(&[300, 2_000, 6_000]);
+        let top = random.within(-1_000, 5_000);
+        let mut corner = |x: i64, y: i64| vertex(left + x, top + y, random.within(0, 0xFF00), 1);
+        let vertices = [corner(0, 0), corner(breadth, 0), corner(breadth / 2, tall)];
+        let [x0, y0] = [random.within(0, 40) as u32, random.within(0, 4) as u32];
+        let clip = Rect { x0, y0, x1: width - random.within(0, 30) as u32, y1: height };
+        let interpolation =
+            random.one_of(&[Interpolation::Gouraud, Interpolation::GouraudReseeded, Interpolation::Flat(7)]);
+        let kernels: Vec<Kernel> = Kernel::available().collect();
+        let kernel = kernels[number % kernels.len()];
+        let draw = |depths: Option<&mut [u32]>| {
+            let mut bytes = vec![0; (width * height) as usize];
+            let frame = Frame::new(&mut bytes, width, height, width as usize).expect("legal");
+            let drawn = match depths {
+                None => Raster::new(frame).with_clip(clip).with_kernel(kernel).triangle(&vertices, interpolation),
+                Some(depths) => {
+                    let depth = DepthBuffer::new(depths, &frame).expect("long enough");
+                    let raster = Raster::new(frame).with_clip(clip).with_kernel(kernel);
+                    raster.with_depth(depth).triangle(&vertices, interpolation)
+                }
+            };
+            (bytes, [drawn.spans, drawn.covered, drawn.pixels])
+        };
+        let (plain, tested) = (draw(None), draw(Some(&mut vec![0; (width * height) as usize])));
+        assert!(plain == tested, "{kernel}, {interpolation:?}: {vertices:?} in {clip:?}");
+        tried.add(1);
+        if breadth < 16_000 || interpolation != Interpolation::GouraudReseeded {
+            continue;
+        }
+        // By the definition, some rows are reseeded and others are not.
+        let mut expected = vec![0; (width * height) as usize];
+        for pixel in oracle::pixels(&vertices, interpolation, width as i32, height as i32) {
+            let (x, y) = (pixel.x as u32, pixel.y as u32);
+            if (clip.x0..clip.x1).contains(&x) && y >= clip.y0 {
+                expected[(y * width + x) as usize] = pixel.byte;
+            }
+        }
+        assert!(plain.0 == expected, "{kernel}, {interpolation:?}: {vertices:?} in {clip:?}");
+        reseeded += u32::from(breadth > 16_384);
+    }
+    assert!(reseeded > 1_000, "{reseeded}");
 }
 
 /// Lists of all lengths around a batch's, with shadings that a batch takes and others.
