@@ -17,7 +17,7 @@ use mode13h::internals::span::float::fill_float;
 use mode13h::internals::span::hyperbolic::fill_quotients;
 use mode13h::internals::span::lit::interpolate;
 use mode13h::internals::span::lookup;
-use mode13h::internals::span::texture::{Texels, fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::internals::span::texture::{Texels, fill_affine, fill_perspective};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 use std::hint::black_box;
@@ -56,7 +56,7 @@ type Float = fn(&mut [u8], i32, [f32; 2], [f32; 2], [f32; 2]);
 
 /// Loops by name; a portable one comes before its optimized form. Each is called through its address, which is hidden
 /// from the compiler, so that none is inlined and specialized for these arguments, and `nm -S` shows its size.
-const LOOPS: [(&str, Draw); 16] = [
+const LOOPS: [(&str, Draw); 15] = [
     ("span", |m, start, n| Kernel::default().fill(&mut m.row[start..start + n], 0x1234, 0x56)),
     ("16.16", |m, start, n| black_box(fill_16_16 as Fixed16)(&mut m.row[start..start + n], 0x12_3456, 0x5678)),
     ("dither portable", |m, start, n| dither(fill_dithered_portable, m, start, n)),
@@ -65,7 +65,6 @@ const LOOPS: [(&str, Draw); 16] = [
         let fill = black_box(fill_affine as Affine);
         fill(&mut m.row[start..start + n], texels(&m.texture), 0x12_3456, 0x34_5678, 0xC000, 0x5432);
     }),
-    ("perspective portable", |m, start, n| perspective(fill_perspective_portable, m, start, n)),
     ("perspective", |m, start, n| perspective(fill_perspective, m, start, n)),
     ("lookup", |m, start, n| {
         black_box(lookup as Lookup)(&mut m.row[start..start + n], &m.channels[0][start..start + n], &m.table);

@@ -39,7 +39,7 @@ pub mod span {
         /// Perspective-correct shades in integers.
         hyperbolic
         /// A list of spans.
-        list
+        listed
         /// Normals and positions for Phong shading.
         lit
         /// Rows of texels.

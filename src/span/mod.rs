@@ -36,11 +36,11 @@
 // | `hyperbolic::fill_quotients` | perspective-correct shades |
 // | `float::fill_float` | the same in f32 |
 // | `dither::fill_dithered` | the span with ordered dither |
-// | `texture::fill_affine`, `texture::fill_perspective` | rows of texels |
+// | `texture` | rows of texels |
 // | `lookup` | shades of texels, fog, transparency, Phong's table: one byte from two |
 // | `channels::mix_cube`, `channels::mix_nearest` | red, green and blue to an index, with dither |
 // | `depth::fill_nearer`, `depth::copy_nearer`, `depth::copy_nearer_keep_depth` | with a depth test |
-// | `list::fill`, `list::fill_where_nearer` | a list of spans, as in batches |
+// | `list` | a list of spans, as in batches |
 // | `lit::interpolate` | writes no pixels: normals and positions for Phong shading |
 // | `curve::curve` | writes no pixels: shades on a parabola |
 
@@ -62,6 +62,8 @@ pub(crate) mod dither;
 pub(crate) mod float;
 pub(crate) mod hyperbolic;
 pub(crate) mod list;
+#[cfg(feature = "internals")]
+pub(crate) mod listed;
 pub(crate) mod lit;
 pub(crate) mod lookup;
 mod portable;

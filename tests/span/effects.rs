@@ -10,10 +10,10 @@ use mode13h::internals::span::dither::{DitherPattern, ThresholdRow, fill_dithere
 use mode13h::internals::span::fixed16::fill_16_16;
 use mode13h::internals::span::float::fill_float;
 use mode13h::internals::span::hyperbolic::fill_quotients;
-use mode13h::internals::span::list;
+use mode13h::internals::span::listed;
 use mode13h::internals::span::lit::interpolate;
 use mode13h::internals::span::lookup;
-use mode13h::internals::span::texture::{Texels, TexelsError, fill_affine, fill_perspective_portable};
+use mode13h::internals::span::texture::{Texels, TexelsError, fill_affine};
 use mode13h::palette::Rgb;
 use mode13h::palette::cube;
 use mode13h::span::Kernel;
@@ -280,7 +280,7 @@ fn wrong_perspective_texels_are_caught() {
         fill_by(floor, row, t, n, dn, d, dd);
     };
     assert_caught("one correction of an estimate toward zero", check_perspective(full(), corrected));
-    let affine: Fill = |row, t, n, dn, d, _| fill_perspective_portable(row, t, n, dn, d, 0);
+    let affine: Fill = |row, t, n, dn, d, _| fill_by(i128::div_euclid, row, t, n, dn, d, 0);
     assert_caught("the divisor does not change", check_perspective(full(), affine));
 }
 
@@ -419,19 +419,19 @@ fn wrong_depth_tests_are_caught() {
 #[test]
 fn wrong_lists_are_caught() {
     let kernel = Kernel::default();
-    let last = |pixels: &mut [u8], spans: &[list::Listed]| {
-        list::fill(kernel, pixels, &spans[..spans.len().min(128)]);
+    let last = |pixels: &mut [u8], spans: &[listed::Listed]| {
+        listed::fill(kernel, pixels, &spans[..spans.len().min(128)]);
     };
     assert_caught("no more spans than a list has room for", check_list(full(), last));
-    let turned = |pixels: &mut [u8], spans: &[list::Listed]| {
+    let turned = |pixels: &mut [u8], spans: &[listed::Listed]| {
         let turned: Vec<_> = spans.iter().rev().copied().collect();
-        list::fill(kernel, pixels, &turned);
+        listed::fill(kernel, pixels, &turned);
     };
     assert_caught("the last span first", check_list(full(), turned));
-    let pitch = |pixels: &mut [u8], cells: &mut [u16], spans: &[list::Listed], depths: &[list::ListedDepths]| {
+    let pitch = |pixels: &mut [u8], cells: &mut [u16], spans: &[listed::Listed], depths: &[listed::ListedDepths]| {
         let depths: Vec<_> =
-            spans.iter().zip(depths).map(|(span, depths)| list::ListedDepths { at: span.at, ..*depths }).collect();
-        list::fill_where_nearer(kernel, pixels, cells, spans, &depths)
+            spans.iter().zip(depths).map(|(span, depths)| listed::ListedDepths { at: span.at, ..*depths }).collect();
+        listed::fill_where_nearer(kernel, pixels, cells, spans, &depths)
     };
     assert_caught("the pixels' pitch for the cells", check_list_nearer(full(), pitch));
 }

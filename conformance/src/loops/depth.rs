@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Debug;
 
 use mode13h::internals::span::depth::Cell;
-use mode13h::internals::span::list::{Listed, ListedDepths};
+use mode13h::internals::span::listed::{Listed, ListedDepths};
 
 use super::canvas::{any_u16, bytes, on_every_shape, other_row};
 use super::spans::naive_span;

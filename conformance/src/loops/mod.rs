@@ -37,10 +37,10 @@ use mode13h::internals::span::dither::{fill_dithered, fill_dithered_portable};
 use mode13h::internals::span::fixed16::fill_16_16;
 use mode13h::internals::span::float::fill_float;
 use mode13h::internals::span::hyperbolic::fill_quotients;
-use mode13h::internals::span::list;
+use mode13h::internals::span::listed;
 use mode13h::internals::span::lit::{self, interpolate};
 use mode13h::internals::span::lookup;
-use mode13h::internals::span::texture::{fill_affine, fill_perspective, fill_perspective_portable};
+use mode13h::internals::span::texture::{fill_affine, fill_perspective};
 use mode13h::span::Kernel;
 
 use crate::Random;
@@ -105,14 +105,13 @@ impl fmt::Display for Outcome {
 }
 
 /// Loops that do not depend on the kernel, in both forms: the specification, and the one this build draws with.
-const LOOPS: [(&str, Check); 17] = [
+const LOOPS: [(&str, Check); 16] = [
     ("fill_16_16", |cases| spans::check_16_16(cases, fill_16_16)),
     ("fill_quotients", |cases| spans::check_quotients(cases, fill_quotients)),
     ("fill_float", |cases| spans::check_float(cases, fill_float)),
     ("fill_dithered_portable", |cases| spans::check_dithered(cases, fill_dithered_portable)),
     ("fill_dithered", |cases| spans::check_dithered(cases, fill_dithered)),
     ("fill_affine", |cases| texels::check_affine(cases, fill_affine)),
-    ("fill_perspective_portable", |cases| texels::check_perspective(cases, fill_perspective_portable)),
     ("fill_perspective", |cases| texels::check_perspective(cases, fill_perspective)),
     ("lookup", |cases| texels::check_lookup(cases, lookup)),
     ("mix_cube_portable", |cases| channels::check_cube(cases, mix_cube_portable)),
@@ -147,9 +146,9 @@ const BY_KERNEL: [(&str, CheckKernel); 11] = [
     ("copy_where_nearer, u32, depths stay", copy::<u32, false>),
     ("copy_where_nearer, u16, depths are kept", copy::<u16, true>),
     ("copy_where_nearer, u16, depths stay", copy::<u16, false>),
-    ("list::fill", |cases, kernel| depth::check_list(cases, |pixels, spans| list::fill(kernel, pixels, spans))),
-    ("list::fill_where_nearer, u32", list_nearer::<u32>),
-    ("list::fill_where_nearer, u16", list_nearer::<u16>),
+    ("listed::fill", |cases, kernel| depth::check_list(cases, |pixels, spans| listed::fill(kernel, pixels, spans))),
+    ("listed::fill_where_nearer, u32", list_nearer::<u32>),
+    ("listed::fill_where_nearer, u16", list_nearer::<u16>),
     ("interpolate_at", |cases, kernel| {
         light::check_interpolate_at(cases, |places, a, da, d, dd| lit::interpolate_at(kernel, places, a, da, d, dd))
     }),
@@ -171,7 +170,7 @@ fn copy<D: depth::NaiveCell, const KEEPS: bool>(cases: Cases, kernel: Kernel) ->
 
 fn list_nearer<D: depth::NaiveCell>(cases: Cases, kernel: Kernel) -> Checked {
     depth::check_list_nearer::<D>(cases, |pixels, cells, spans, depths| {
-        list::fill_where_nearer(kernel, pixels, cells, spans, depths)
+        listed::fill_where_nearer(kernel, pixels, cells, spans, depths)
     })
 }
 

@@ -10,7 +10,7 @@
 //! | loop | u and v |
 //! |---|---|
 //! | [`fill_affine`] | change by the same amount from each pixel to the next |
-//! | [`fill_perspective`] | the floor of a quotient at every pixel: exact |
+//! | `fill_perspective` | the floor of a quotient at every pixel: exact |
 
 #[cfg(feature = "alloc")]
 mod along;
@@ -26,10 +26,10 @@ pub(crate) use self::along::{
     AffineAlong, FOUR, FirstPlace, LevelTexels, PlaceLanes, PlacesAlong, affine_pair, show_along, show_block,
     show_masked, show_pair,
 };
+#[cfg(feature = "internals")]
+pub use self::perspective::fill_perspective;
 #[cfg(feature = "alloc")]
 pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along, singles_pair};
-#[cfg(feature = "alloc")]
-pub use self::perspective::{fill_perspective, fill_perspective_portable};
 #[cfg(feature = "alloc")]
 pub(crate) use self::tint::{Blended, Fogged, Painted, PairValues, SpanValues, Tint, Untextured};
 

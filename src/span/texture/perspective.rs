@@ -6,7 +6,7 @@ use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8};
 
-/// Fills `row` with texels in exact perspective, with the fastest loop of this build.
+/// Fills `row` with texels in exact perspective, as the raster's loops do at the lowest level.
 ///
 /// ```text
 /// u_k = floor((numerators[0] + k·steps[0]) / (d + k·dd))        v_k the same with numerators[1], steps[1]
@@ -14,7 +14,14 @@ use crate::simd::{BASELINE, F32Lanes8, Lanes8};
 ///
 /// in exact arithmetic, modulo 2³²; negative coordinates wrap like others. Along the row every divisor is positive
 /// (anything less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶, as the raster ensures.
-#[inline(never)]
+///
+/// The bound of [`Quotients`] holds, with ε = 2⁻⁵³, the error of one rounding:
+///
+/// 1. Over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N
+///    and D are at the piece's ends, and |k·dn| ≤ 2N.
+/// 2. In the numerator n + k·dn in f64, n is rounded (εN), dn is (2εN for k of them), their product is (2εN), and the
+///    sum is (εN). So it is off by 6εN, and the divisor by 6εD in the same way.
+#[cfg(feature = "internals")]
 pub fn fill_perspective(
     row: &mut [u8],
     texels: Texels<'_>,
@@ -23,55 +30,10 @@ pub fn fill_perspective(
     d: i128,
     dd: i128,
 ) {
-    // Starting the estimate costs as much as two pixels.
-    if HAS_F64 && row.len() > 2 {
-        fill_perspective_estimated(row, texels, numerators, steps, d, dd);
-    } else {
-        fill_perspective_portable(row, texels, numerators, steps, d, dd);
-    }
-}
-
-/// The specification of [`fill_perspective`].
-pub fn fill_perspective_portable(
-    row: &mut [u8],
-    texels: Texels<'_>,
-    numerators: [i128; 2],
-    steps: [i128; 2],
-    d: i128,
-    dd: i128,
-) {
-    let ([mut u, mut v], mut d) = (numerators, d);
-    for pixel in row {
-        *pixel = texels.bytes[exact_place(texels, [u, v], d)];
-        // The sum after the last pixel may be anything.
-        (u, v, d) = (u.wrapping_add(steps[0]), v.wrapping_add(steps[1]), d.wrapping_add(dd));
-    }
-}
-
-/// The index of the texel at a pixel, exact; its coordinates are numerators over this divisor, at least 1.
-#[inline]
-fn exact_place(texels: Texels<'_>, [u, v]: [i128; 2], divisor: i128) -> usize {
-    let divisor = divisor.max(1);
     // Modulo 2³²: the mask keeps fewer bits.
-    texels.place(floor_of_wide(u, divisor) as u32, floor_of_wide(v, divisor) as u32)
-}
-
-/// Fills `row` like [`fill_perspective`], with quotients in f64, and exact ones where these cannot decide.
-///
-/// The bound of [`Quotients`] holds, with ε = 2⁻⁵³, the error of one rounding:
-///
-/// 1. Over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N
-///    and D are at the piece's ends, and |k·dn| ≤ 2N.
-/// 2. In the numerator n + k·dn in f64, n is rounded (εN), dn is (2εN for k of them), their product is (2εN), and the
-///    sum is (εN). So it is off by 6εN, and the divisor by 6εD in the same way.
-fn fill_perspective_estimated(
-    row: &mut [u8],
-    texels: Texels<'_>,
-    numerators: [i128; 2],
-    steps: [i128; 2],
-    d: i128,
-    dd: i128,
-) {
+    let exact_place = |[u, v]: [i128; 2], divisor: i128| {
+        texels.place(floor_of_wide(u, divisor.max(1)) as u32, floor_of_wide(v, divisor.max(1)) as u32)
+    };
     let ([u, v], [du, dv]) = (numerators, steps);
     // At most a row of a frame.
     let advanced = |from: i128, step: i128, pixels: usize| from.wrapping_add(step.wrapping_mul(pixels as i128));
@@ -85,7 +47,7 @@ fn fill_perspective_estimated(
             for (place, k) in eight.iter_mut().zip(first..n) {
                 let [u, v, d] = [advanced(u, du, k), advanced(v, dv, k), advanced(d, dd, k)];
                 // Below 65,536.
-                *place = exact_place(texels, [u, v], d) as i32;
+                *place = exact_place([u, v], d) as i32;
             }
         };
         let places = perspective_along(PlaceLanes::of_level(BASELINE, (texels, 0)), sums, (0, n), exact);

@@ -10,7 +10,7 @@ use mode13h::internals::span::channels;
 use mode13h::internals::span::curve::curve;
 use mode13h::internals::span::depth::Cell;
 use mode13h::internals::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
-use mode13h::internals::span::list::{self, Listed, ListedDepths};
+use mode13h::internals::span::listed::{self, Listed, ListedDepths};
 use mode13h::mesh::Mesh;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::render::Renderer;
@@ -80,7 +80,7 @@ fn s7_lists_keep_the_rules() {
     ) -> (Box<[u8]>, Vec<D>) {
         let (spans, depths) = (own(spans), own(depths));
         let (mut bytes, mut cells) = (own(&vec![3; pixels]), vec![D::of_depth(1 << 30); pixels]);
-        let written = list::fill_where_nearer(kernel, &mut bytes, &mut cells, &spans, &depths);
+        let written = listed::fill_where_nearer(kernel, &mut bytes, &mut cells, &spans, &depths);
         assert!(written as usize <= spans.iter().map(|span| span.length as usize).sum());
         (bytes, cells)
     }
@@ -90,7 +90,7 @@ fn s7_lists_keep_the_rules() {
         let pixels = pixels as usize;
         try_kernels("a list", &mut random, &mut tried, |kernel| {
             let (mut bytes, spans) = (own(&vec![3; pixels]), own(&list.0));
-            list::fill(kernel, &mut bytes, &spans);
+            listed::fill(kernel, &mut bytes, &spans);
             bytes
         });
         try_kernels("a list with depths", &mut random, &mut tried, |kernel| nearer::<u32>(kernel, pixels, &list));
