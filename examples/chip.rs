@@ -7,8 +7,8 @@ use std::io::{self, Write};
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
-    average_normals,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    View, average_normals,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let paints = [Paint { ambient: bits(15), diffuse: bits(85), ramp: Ramp::WHOLE }];
     let angles = [BinaryAngle::default(), BinaryAngle::from_degrees(30), BinaryAngle::default()];
     let object = Object { mesh, placement: Placement { angles, ..Placement::default() }, paints: &paints };
-    let (mut lit, mut beams) = ([LitVertex::default(); 5], [Beam::default(); 1]);
+    let (mut lit, mut beams) = ([LitVertex::default(); 5], [ObjectSun::default(); 1]);
     let stage = VertexStage::new(&view, object, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams)?;
 
     let mut out = io::stdout().lock();

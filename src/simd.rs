@@ -2,7 +2,7 @@
 //! that takes one needs no other proof.
 //!
 //! The span kernels use the intrinsics of a level. Everything else is written once, over [`Lanes8`] or plain arrays of
-//! eight lanes, and compiled for each level by `compiled_for_each_level!` or `at_best_level!`.
+//! eight lanes, and compiled for each level by `compiled_for_each_level!`.
 
 #![cfg_attr(simd_x86_64, expect(unsafe_code, reason = "code for processors found only when the program runs"))]
 
@@ -193,41 +193,15 @@ impl Avx512 {
     }
 }
 
-/// A function that is also compiled for AVX2; its kernel argument selects the version.
-///
-/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }`. Functions that
-/// the body calls must be inlined. (It takes a body rather than a closure: a closure of 3,000
-/// instructions was not inlined, so it was only compiled for the baseline.)
-macro_rules! at_best_level {
-    ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
-        ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {
-        $(#[$attribute])*
-        #[cfg_attr(
-            simd_x86_64,
-            expect(unsafe_code, reason = "code for processors found only when the program runs")
-        )]
-        $visibility fn $name<$($parameters)*>($kernel: $kind, $($argument: $type),*) $(-> $result)? {
-            #[cfg(simd_x86_64)]
-            if $kernel.avx2().is_some() {
-                #[target_feature(enable = "avx2")]
-                fn avx2<$($parameters)*>($($argument: $type),*) $(-> $result)? {
-                    $body
-                }
-                // SAFETY: the token proves that the processor has AVX2.
-                return unsafe { avx2::<$($names)*>($($argument),*) };
-            }
-            let _ = $kernel;
-            $body
-        }
-    };
-}
-pub(crate) use at_best_level;
-
 /// Functions, one for each level, that call one generic over [`Lanes8`], which is inlined and so compiled for each
 /// level.
 ///
 /// `fn name[parameters][their names](arguments) -> result = generic;` defines a function whose first argument is the
 /// level.
+///
+/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }` is compiled for AVX2 and for every
+/// processor only. Functions that the body calls must be inlined. (It takes a body rather than a closure: a closure of
+/// 3,000 instructions was not inlined, so it was only compiled for every processor.)
 macro_rules! compiled_for_each_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {
@@ -259,6 +233,27 @@ macro_rules! compiled_for_each_level {
             }
             let _ = level;
             $generic::<_, $($names)*>(crate::simd::BASELINE, $($argument),*)
+        }
+    };
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
+        ($kernel:ident: $kind:ty, $($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? { $body:expr }) => {
+        $(#[$attribute])*
+        #[cfg_attr(
+            simd_x86_64,
+            expect(unsafe_code, reason = "code for processors found only when the program runs")
+        )]
+        $visibility fn $name<$($parameters)*>($kernel: $kind, $($argument: $type),*) $(-> $result)? {
+            #[cfg(simd_x86_64)]
+            if let Some(crate::simd::Avx2 { .. }) = $kernel.avx2() {
+                #[target_feature(enable = "avx2")]
+                fn avx2<$($parameters)*>($($argument: $type),*) $(-> $result)? {
+                    $body
+                }
+                // SAFETY: the token proves that the processor has AVX2.
+                return unsafe { avx2::<$($names)*>($($argument),*) };
+            }
+            let _ = $kernel;
+            $body
         }
     };
 }

@@ -25,15 +25,15 @@ impl Sun {
     /// The max number of suns in a scene: that many of the greatest intensity add up to less than 2⁶⁰.
     pub const MAX_COUNT: usize = 4096;
 
-    pub(super) fn beam(&self, view: &ObjectView) -> Result<Beam, IntegerError> {
+    pub(super) fn beam(&self, view: &ObjectView) -> Result<ObjectSun, IntegerError> {
         let world = unit(widen(self.direction).map(i128::from), SINE_BITS).ok_or(IntegerError::Light)?;
-        Ok(Beam { towards: view.direction_in_object(world), intensity: self.intensity })
+        Ok(ObjectSun { towards: view.direction_in_object(world), intensity: self.intensity })
     }
 }
 
 /// Storage for a sun transformed into an object's space.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Beam {
+pub struct ObjectSun {
     /// The unit direction towards the light, in the object's own space.
     towards: Vector,
     intensity: I16F16,
@@ -53,7 +53,7 @@ pub struct Paint {
 impl Paint {
     /// The shades of both sides: first that of the side that the unit `normal` points out of.
     #[inline]
-    pub(super) fn shades(&self, beams: &[Beam], normal: Vector) -> (U8F8, U8F8) {
+    pub(super) fn shades(&self, beams: &[ObjectSun], normal: Vector) -> (U8F8, U8F8) {
         let normal = widen(normal);
         // With 32 fractional bits.
         let (mut front, mut back) = (0_i64, 0_i64);

@@ -62,7 +62,7 @@ mod view;
 use core::fmt;
 
 pub use angle::BinaryAngle;
-pub use light::{Beam, Paint, Sun};
+pub use light::{ObjectSun, Paint, Sun};
 pub use mesh::{FixedMesh, average_normals, face_normal};
 pub use mesh::{FixedMeshParts, Index};
 pub use stage::{Faces, LitVertex, Object, VertexStage};

@@ -2,7 +2,7 @@
 
 use super::IntegerError;
 use super::clip::{Corner, clip};
-use super::light::{Beam, Paint, Sun};
+use super::light::{ObjectSun, Paint, Sun};
 use super::mesh::{FixedMesh, Index, face_normal};
 use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
@@ -52,7 +52,7 @@ pub struct VertexStage<'a, I: Index = u16> {
     shading: Shading,
     object: Object<'a, I>,
     view: ObjectView,
-    beams: &'a [Beam],
+    beams: &'a [ObjectSun],
     lit: &'a [LitVertex],
 }
 
@@ -70,7 +70,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         suns: &[Sun],
         shading: Shading,
         lit: &'a mut [LitVertex],
-        beams: &'a mut [Beam],
+        beams: &'a mut [ObjectSun],
     ) -> Result<Self, IntegerError> {
         let Object { mesh, placement, paints } = &object;
         if suns.len() > Sun::MAX_COUNT {

@@ -10,7 +10,7 @@ use crate::mesh::wide::{Wide, dot, sub, widen};
 
 /// A sun transformed into an object's space.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Beam {
+pub(crate) struct SunBeam {
     /// The unit direction towards the light.
     pub(crate) towards: Vec3,
     /// The intensity on one channel.
@@ -76,7 +76,7 @@ pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
 /// All light that reaches an object.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lights<'a> {
-    pub(crate) suns: &'a [Beam],
+    pub(crate) suns: &'a [SunBeam],
     pub(crate) lamps: &'a [LampBeam],
     /// The eye's position, in the object's own space.
     pub(crate) eye: Wide,
@@ -112,7 +112,7 @@ impl Reflectance {
 /// The sum is taken in f64, in the order of the lights, where even a thousand lights of `f32::MAX`
 /// stay finite, whatever their signs.
 #[inline]
-pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[Beam], normal: Vec3) -> (f64, f64) {
+pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[SunBeam], normal: Vec3) -> (f64, f64) {
     let (mut front, mut back) = (0.0, 0.0);
     for sun in suns {
         let cosine = normal.dot(sun.towards);
@@ -160,7 +160,7 @@ impl Lights<'_> {
     /// and highlights, the results are those of [`both_sides`].
     #[inline(never)]
     pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
-        let of_sun = |sun: &Beam| [f64::from(sun.intensity)];
+        let of_sun = |sun: &SunBeam| [f64::from(sun.intensity)];
         let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
         let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
         let of_side = |side: Side<1>| {
@@ -173,7 +173,7 @@ impl Lights<'_> {
     /// Sums all light on three channels: red, green, blue. Otherwise like [`one_channel`](Self::one_channel).
     #[inline(never)]
     pub(crate) fn three_channels(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
-        let of_sun = |sun: &Beam| three(sun.channels, f64::from);
+        let of_sun = |sun: &SunBeam| three(sun.channels, f64::from);
         let of_lamp = |lamp: &LampBeam| three(lamp.channels, f64::from);
         let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
         let of_side = |side: Side<3>| {
@@ -190,7 +190,7 @@ impl Lights<'_> {
         answer: &Reflectance,
         position: Vec3,
         normal: Vec3,
-        of_sun: impl Fn(&Beam) -> [f64; N],
+        of_sun: impl Fn(&SunBeam) -> [f64; N],
         of_lamp: impl Fn(&LampBeam) -> [f64; N],
     ) -> [Side<N>; 2] {
         if answer.shines() {
@@ -207,7 +207,7 @@ impl Lights<'_> {
         answer: &Reflectance,
         position: Vec3,
         normal: Vec3,
-        of_sun: impl Fn(&Beam) -> [f64; N],
+        of_sun: impl Fn(&SunBeam) -> [f64; N],
         of_lamp: impl Fn(&LampBeam) -> [f64; N],
     ) -> [Side<N>; 2] {
         let (mut front, mut back) = (Side::DARK, Side::DARK);

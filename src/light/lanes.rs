@@ -291,7 +291,7 @@ fn unit<L: F32Lanes8>(l: L, vectors: &Vectors<L>) -> Vectors<L> {
 mod tests {
     use super::*;
     use crate::Angle;
-    use crate::light::{Beam, Cone, LampBeam};
+    use crate::light::{Cone, LampBeam, SunBeam};
     use crate::mesh::normals;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -305,8 +305,8 @@ mod tests {
         ]
     }
 
-    fn sun() -> impl Strategy<Value = Beam> {
-        (vector(), -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0)).prop_map(|(v, intensity, channels)| Beam {
+    fn sun() -> impl Strategy<Value = SunBeam> {
+        (vector(), -1.0_f32..2.0, prop::array::uniform3(0.0_f32..1.0)).prop_map(|(v, intensity, channels)| SunBeam {
             towards: normals::unit(Vec3::from(v)).unwrap_or(Vec3::Z),
             intensity,
             channels,

@@ -29,7 +29,7 @@ mod power;
 mod response;
 mod source;
 
-pub(crate) use intensity::{Beam, ConeBeam, LampBeam, Lights, Reflectance, both_sides, lamp_reaches};
+pub(crate) use intensity::{ConeBeam, LampBeam, Lights, Reflectance, SunBeam, both_sides, lamp_reaches};
 pub use material::{Blend, Material, RampChoice};
 pub use response::LightResponse;
 pub use source::{Cone, Light};

@@ -114,7 +114,7 @@ pub struct Attributes {
     pub channels: [U8F8; 3],
     /// The column and the row in the table of [`ShadeSource::NormalTable`](super::effects::ShadeSource::NormalTable), each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// Input of [`Lighting`](super::effects::Lighting): a normal and a position.
+    /// Input of [`PixelLighting`](super::effects::PixelLighting): a normal and a position.
     ///
     /// For [`ShadeSource::Curved`](super::effects::ShadeSource::Curved) these are the shade at the corner, or its three
     /// channels, and then the shade or channels at the midpoint (on the screen) of the opposite edge. They are in 8.8

@@ -14,7 +14,7 @@ use super::reference::fixed16::ShadePlane16;
 use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::{RESEED, ShadePlane};
-use super::vintage::{Ramp, VintageTriangle};
+use super::vintage::{RowRamp, VintageTriangle};
 use crate::fixed::IS_SMALL;
 #[cfg(feature = "alloc")]
 use crate::lanes::{LANES, each};
@@ -37,7 +37,7 @@ pub(super) enum RowShader {
     },
     Vintage(VintageTriangle),
     /// The vintage shades of one row.
-    Ramp(Ramp),
+    Ramp(RowRamp),
     Fixed16(ShadePlane16),
     Hyperbolic(HyperbolicPlane),
     #[cfg(feature = "alloc")]

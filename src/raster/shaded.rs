@@ -86,7 +86,7 @@ struct Steps8 {
 const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
 
 /// Triangles whose spans may be listed.
-struct Listed<'a> {
+struct ShadedFaces<'a> {
     triangles: &'a Triangles<'a>,
     picks: Picks<'a>,
     layout: FrameLayout,
@@ -94,7 +94,7 @@ struct Listed<'a> {
     batches: Batches,
 }
 
-impl Listed<'_> {
+impl ShadedFaces<'_> {
     fn triangle(&self, face: usize) -> SortedTriangle {
         SortedTriangle::new(&self.triangles.vertices(&self.picks, self.batches.first + face))
     }
@@ -110,7 +110,7 @@ impl Listed<'_> {
 /// Triangles, the planes of eight of them, and the steps of those whose spans are listed.
 pub(super) struct Shaded8<'a> {
     kind: Kind,
-    listed: Listed<'a>,
+    listed: ShadedFaces<'a>,
     starts: SpanStarts<2>,
     bytes: SpanBytes,
     /// 16.16: 255·h, and A.
@@ -129,7 +129,7 @@ impl<'a> Shaded8<'a> {
         let steps = Steps8 { sums: [floats; 2], fixed16: ints, least: ints, greatest: ints };
         Self {
             kind,
-            listed: Listed { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
+            listed: ShadedFaces { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
             starts: SpanStarts::NONE,
             bytes: SpanBytes::NONE,
             fraction: floats,
@@ -435,7 +435,7 @@ type Bytes = [u8; SpanBytes::LENGTH];
 trait Stage {
     /// The bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if it cannot decide
     /// all of them.
-    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
+    fn fill<S: Lanes8>(&self, s: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
 }
 
 /// The blocks of eight that hold this many bytes.
@@ -448,7 +448,7 @@ struct Hyperbolic;
 
 impl Stage for Hyperbolic {
     #[inline(always)]
-    fn fill<S: Lanes8>(&self, s: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
+    fn fill<S: Lanes8>(&self, s: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
         let (batch, lane) = Batches::of_face(span.face);
         let [dn, dd] = &all.steps[batch].sums;
         let (dn, dd) = (dn[lane], dd[lane]);
@@ -478,7 +478,7 @@ impl Stage for Hyperbolic {
 /// The bytes of a perspective-correct span in exact arithmetic.
 #[cold]
 #[inline(never)]
-fn exact_bytes(all: &Listed<'_>, span: &Fill, offset: u32, bytes: &mut Bytes) {
+fn exact_bytes(all: &ShadedFaces<'_>, span: &Fill, offset: u32, bytes: &mut Bytes) {
     let triangle = all.triangle(span.face);
     let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
     let FrameLayout { first_row, pitch, .. } = all.layout;
@@ -493,7 +493,7 @@ struct Float;
 #[cfg(feature = "alloc")]
 impl Stage for Float {
     #[inline(always)]
-    fn fill<S: Lanes8>(&self, _: S, all: &Listed<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
+    fn fill<S: Lanes8>(&self, _: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
         let (batch, lane) = Batches::of_face(span.face);
         let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[batch];
         let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));

@@ -126,7 +126,7 @@ impl VintageTriangle {
     /// Calls `row` for every row with a pixel inside `clip`, from the top down, with its shades. `frame_width` is the
     /// whole frame's; `clip` lies inside the frame.
     #[inline]
-    pub(super) fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row, Ramp)) {
+    pub(super) fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row, RowRamp)) {
         // A clip rectangle lies inside a frame of at most 4,096 pixels a side.
         let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
         let (first, end) = (self.long.y.max(clip.y0 as i32), self.end.min(clip.y1 as i32));
@@ -154,28 +154,28 @@ impl VintageTriangle {
 
     /// The shades of row `y`, or of the nearest existing row.
     #[inline]
-    pub(super) fn ramp(&self, y: i32) -> Ramp {
+    pub(super) fn ramp(&self, y: i32) -> RowRamp {
         if self.doubled_area == 0 {
-            return Ramp { x0: 0, x1: 0, shade: self.long.shade as u16, step: 0 };
+            return RowRamp { x0: 0, x1: 0, shade: self.long.shade as u16, step: 0 };
         }
         let y = y.clamp(self.long.y, self.end - 1);
         self.between(&self.long.at(y), &self.short[usize::from(y >= self.split)].at(y))
     }
 
     #[inline]
-    fn between(&self, long: &Edge, short: &Edge) -> Ramp {
+    fn between(&self, long: &Edge, short: &Edge) -> RowRamp {
         let (left, right) = if self.doubled_area > 0 { (long, short) } else { (short, long) };
         // `sar`: toward minus infinity.
         let (x0, x1) = (left.x >> 16, right.x >> 16);
         let step = if x0 < x1 { (right.shade - left.shade) / (x1 - x0) } else { 0 };
         // A shade is 0 to 0xFF00; a step is stored modulo 2¹⁶, as in BX.
-        Ramp { x0, x1, shade: left.shade as u16, step: step as u16 }
+        RowRamp { x0, x1, shade: left.shade as u16, step: step as u16 }
     }
 }
 
 /// The shades of a row.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ramp {
+pub(super) struct RowRamp {
     /// Ax: the first pixel.
     pub(super) x0: i32,
     /// Bx: the one after the last; if it is not after `x0` there are no pixels, and the step is 0.
@@ -186,7 +186,7 @@ pub(super) struct Ramp {
     pub(super) step: u16,
 }
 
-impl Ramp {
+impl RowRamp {
     /// Calls `span` with the columns, the first shade and the step of each span within `columns`: the row's pixels, and
     /// those before and after, which get the shade of the nearest.
     #[inline]

@@ -269,7 +269,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::light::{Beam, Blend, LampBeam, Reflectance};
+    use crate::light::{Blend, LampBeam, Reflectance, SunBeam};
     use crate::mesh::shapes;
     use crate::palette::Ramp;
     use crate::scene::{Camera, Object};
@@ -310,8 +310,8 @@ mod tests {
             };
             let triangle_surfaces: Vec<u16> = points.iter().map(|&(.., second)| u16::from(is_mixed && second)).collect();
             let triangles = vec![[0; 3]; points.len()];
-            let suns: Vec<Beam> =
-                suns.into_iter().map(|(towards, intensity)| Beam { towards, intensity, channels: [0.0; 3] }).collect();
+            let suns: Vec<SunBeam> =
+                suns.into_iter().map(|(towards, intensity)| SunBeam { towards, intensity, channels: [0.0; 3] }).collect();
             let lamp = |(position, intensity): (Vec3, f32)| LampBeam {
                 position: position.to_array().map(f64::from),
                 cone: None,

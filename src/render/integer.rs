@@ -12,7 +12,7 @@ use super::stats::Stats;
 use super::{RenderError, Screen};
 use crate::fixed::I16F16;
 use crate::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, Paint, Placement, Sun, Vector,
+    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector,
     VertexStage, View,
 };
 use crate::light::{Light, Material};
@@ -147,7 +147,7 @@ pub(super) struct IntegerPath {
 #[derive(Debug, Default)]
 pub(super) struct IntegerScratch {
     lit: Vec<LitVertex>,
-    beams: Vec<Beam>,
+    beams: Vec<ObjectSun>,
 }
 
 impl IntegerPath {
@@ -264,7 +264,7 @@ impl IntegerPath {
         let mesh = fixed_mesh(&self.meshes, prepared, object);
         let IntegerScratch { lit, beams } = scratch;
         lit.resize(mesh.vertices().max(lit.len()), LitVertex::default());
-        beams.resize(self.suns.len(), Beam::default());
+        beams.resize(self.suns.len(), ObjectSun::default());
         let fixed_object =
             Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and there is room for everything.

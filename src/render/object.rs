@@ -16,7 +16,7 @@ use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex;
 use crate::fixed::U8F8;
-use crate::light::{Beam, ConeBeam, LampBeam, Light, Lights, Material};
+use crate::light::{ConeBeam, LampBeam, Light, Lights, Material, SunBeam};
 use crate::mesh::Mesh;
 use crate::mesh::wide::widen;
 use crate::palette::{Lut64K, Palette};
@@ -34,7 +34,7 @@ use crate::view::{ObjectView, View};
 struct VertexInputs {
     mesh: Shared<Mesh>,
     view: ObjectView,
-    suns: Vec<Beam>,
+    suns: Vec<SunBeam>,
     lamps: Vec<LampBeam>,
     materials: Vec<Material>,
     ambient: f32,
@@ -103,10 +103,10 @@ fn replace_all<T: PartialEq>(list: &mut Vec<T>, new: impl Iterator<Item = T>) ->
 }
 
 /// A sun in the object space of `view`.
-fn sun(light: &Light, view: &ObjectView) -> Option<Beam> {
+fn sun(light: &Light, view: &ObjectView) -> Option<SunBeam> {
     let Light::Sun { direction, intensity, color } = *light else { return None };
     let towards = view.direction_in_object(direction)?;
-    Some(Beam { towards, intensity: light.brightness(), channels: color.map(|c| c * intensity) })
+    Some(SunBeam { towards, intensity: light.brightness(), channels: color.map(|c| c * intensity) })
 }
 
 /// A lamp in the object space of `view`.
@@ -161,9 +161,9 @@ pub(super) struct ObjectState {
     /// Where each face is lit, if faces are lit, and the mesh of these faces; `None` for parts of split faces.
     face_points: Option<(Option<Shared<Mesh>>, FacePoints)>,
     /// One for each surface, with its inputs.
-    normal_tables: Vec<(Vec<Beam>, SurfaceMaterial, Lut64K)>,
+    normal_tables: Vec<(Vec<SunBeam>, SurfaceMaterial, Lut64K)>,
     /// Lights that the vertices would be computed from now.
-    beams: Vec<Beam>,
+    beams: Vec<SunBeam>,
     /// Data for a budget's decisions, and the faces that got each shading when the object was last drawn.
     budget: Budget,
     has_budget: bool,
@@ -438,7 +438,7 @@ impl ObjectState {
                 }
             };
             let towards = view.direction_to_eye(towards)?;
-            Some(Beam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
+            Some(SunBeam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
         }));
         self.normal_tables.truncate(self.paints.len());
         for (i, paint) in self.paints.iter().enumerate() {

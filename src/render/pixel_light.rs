@@ -5,7 +5,7 @@ use crate::fixed::U8F8;
 use crate::lanes::{LANES, Lanes, Points, each, three};
 use crate::light::Lights;
 use crate::palette::Lut64K;
-use crate::raster::effects::Lighting;
+use crate::raster::effects::PixelLighting;
 use crate::span::Kernel;
 
 /// One surface of an object, lit pixel by pixel in object space.
@@ -18,7 +18,7 @@ pub(super) struct PixelLight<'a> {
     pub(super) kernel: Kernel,
 }
 
-impl Lighting for PixelLight<'_> {
+impl PixelLighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
         let intensities = self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel);

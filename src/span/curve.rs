@@ -1,9 +1,9 @@
 //! Shades that are quadratic along a row. This pass writes no pixel.
 
 use super::Kernel;
-use crate::simd::at_best_level;
+use crate::simd::compiled_for_each_level;
 
-at_best_level! {
+compiled_for_each_level! {
     /// Shades in 8.8 on a parabola, clamped between two limits of at most 0xFF00:
     ///
     /// ```text

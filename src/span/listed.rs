@@ -8,7 +8,7 @@ use crate::simd::Portable;
 
 /// A span and its position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Listed {
+pub struct ListedSpan {
     /// The offset of its first pixel.
     pub at: u32,
     /// Pixels.
@@ -31,7 +31,7 @@ pub struct ListedDepths {
 }
 
 /// Draws spans in order, as batches do with this kernel, if they lie inside the pixels.
-pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[Listed]) {
+pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[ListedSpan]) {
     let mut list = SpanList::new((pixels.len(), 0), (0, 0));
     let target = &mut Target { pixels, cells: None, kernel };
     for eight in spans.chunks(LANES) {
@@ -49,7 +49,7 @@ pub fn fill_where_nearer<D: Cell>(
     kernel: Kernel,
     pixels: &mut [u8],
     cells: &mut [D],
-    spans: &[Listed],
+    spans: &[ListedSpan],
     depths: &[ListedDepths],
 ) -> u32 {
     // With one pitch, or with two, so that cells have offsets of their own.
@@ -71,7 +71,7 @@ pub fn fill_where_nearer<D: Cell>(
     list.counts().2
 }
 
-fn lanes(spans: &[Listed]) -> Spans8<Portable, ()> {
+fn lanes(spans: &[ListedSpan]) -> Spans8<Portable, ()> {
     let mut eight: Spans8<Portable, ()> =
         Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], paint: [0; LANES], z: [0; LANES], columns: () };
     for (i, span) in spans.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::Kernel;
 use crate::lanes::{LANES, Lanes, Points, each};
-use crate::simd::at_best_level;
+use crate::simd::compiled_for_each_level;
 
 /// Six numbers at each of eight pixels of a row, from pixel `first` on, each the quotient of two that change
 /// linearly along it:
@@ -29,7 +29,7 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
     interpolate_inlined(&places, a, da, d, dd)
 }
 
-at_best_level! {
+compiled_for_each_level! {
     /// Six numbers at each of any eight pixels of a row, given by their indices; see [`interpolate`].
     #[inline]
     #[must_use]
@@ -56,7 +56,7 @@ fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64,
 /// The numerators of six numbers at each of eight pixels, and their denominators.
 pub type Numerators = [Lanes<f64>; 7];
 
-at_best_level! {
+compiled_for_each_level! {
     /// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of
     /// different rows.
     #[inline]
@@ -80,7 +80,7 @@ fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
     numerators
 }
 
-at_best_level! {
+compiled_for_each_level! {
     /// The quotients of [`numerators`].
     #[inline]
     #[must_use]

@@ -124,7 +124,7 @@ pub struct Kernel {
 type Found = (Level, Fill);
 
 /// A kernel's name, and what finds it: `None` where the machine or the build lacks it.
-type Listed = (&'static str, fn() -> Option<Found>);
+type Entry = (&'static str, fn() -> Option<Found>);
 
 /// A function that finds a kernel where its condition holds.
 macro_rules! found {
@@ -139,7 +139,7 @@ macro_rules! found {
 }
 
 /// Every kernel, portable first. Those of `simd` are in order of speed, the fastest last.
-static LISTED: [Listed; KERNELS] = [
+static LISTED: [Entry; KERNELS] = [
     ("portable", || Some((Level::Portable, portable::fill))),
     ("asm", found!(asm_x86_64 => Some((Level::X86_64, x86::fill)), asm_i686 => Some((Level::I686, x86::fill)))),
     ("asm-unrolled", found!(asm_x86_64 => Some((Level::X86_64, x86::fill_unrolled)))),
@@ -161,7 +161,7 @@ fn find_simd() -> Option<Found> {
     levels.copied().find_map(|(_, find)| find())
 }
 
-fn kernel((name, find): Listed) -> Option<Kernel> {
+fn kernel((name, find): Entry) -> Option<Kernel> {
     find().map(|(level, fill)| Kernel { name, level, fill })
 }
 

@@ -6,7 +6,7 @@ use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::lanes::{Lanes, Points};
 use mode13h::internals::raster::effects::{
-    Attributes, EffectBatch, Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
+    Attributes, EffectBatch, Limits, Mix, PixelLighting, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
 };
 use mode13h::internals::span::channels::{mix_cube_portable, mix_nearest};
 use mode13h::internals::span::depth::Cell;
@@ -111,7 +111,7 @@ impl Sum {
     }
 }
 
-impl Lighting for Sum {
+impl PixelLighting for Sum {
     fn shades(&self, points: &Points) -> Lanes<u16> {
         core::array::from_fn(|lane| Self::of([0, 1, 2].map(|i| points[i][lane])))
     }
@@ -126,7 +126,7 @@ impl Lighting for Sum {
 #[derive(Debug)]
 struct TooBright;
 
-impl Lighting for TooBright {
+impl PixelLighting for TooBright {
     fn shades(&self, points: &Points) -> Lanes<u16> {
         core::array::from_fn(|lane| !(points[0][lane].to_bits() as u16 & 0xFF))
     }

@@ -419,16 +419,19 @@ fn wrong_depth_tests_are_caught() {
 #[test]
 fn wrong_lists_are_caught() {
     let kernel = Kernel::default();
-    let last = |pixels: &mut [u8], spans: &[listed::Listed]| {
+    let last = |pixels: &mut [u8], spans: &[listed::ListedSpan]| {
         listed::fill(kernel, pixels, &spans[..spans.len().min(128)]);
     };
     assert_caught("no more spans than a list has room for", check_list(full(), last));
-    let turned = |pixels: &mut [u8], spans: &[listed::Listed]| {
+    let turned = |pixels: &mut [u8], spans: &[listed::ListedSpan]| {
         let turned: Vec<_> = spans.iter().rev().copied().collect();
         listed::fill(kernel, pixels, &turned);
     };
     assert_caught("the last span first", check_list(full(), turned));
-    let pitch = |pixels: &mut [u8], cells: &mut [u16], spans: &[listed::Listed], depths: &[listed::ListedDepths]| {
+    let pitch = |pixels: &mut [u8],
+                 cells: &mut [u16],
+                 spans: &[listed::ListedSpan],
+                 depths: &[listed::ListedDepths]| {
         let depths: Vec<_> =
             spans.iter().zip(depths).map(|(span, depths)| listed::ListedDepths { at: span.at, ..*depths }).collect();
         listed::fill_where_nearer(kernel, pixels, cells, spans, &depths)

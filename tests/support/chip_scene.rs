@@ -3,8 +3,8 @@
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
-    average_normals,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    View, average_normals,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
@@ -76,9 +76,9 @@ pub(crate) fn draw(degrees: i32, mut band: impl FnMut(usize, &[u8])) -> Option<(
     };
     let cube = Object { mesh: cube, placement: turned, paints: &red };
     let floor = Object { mesh: floor, placement: Placement::default(), paints: &blue };
-    let (mut lit, mut beams) = ([LitVertex::default(); 8], [Beam::default(); 1]);
+    let (mut lit, mut beams) = ([LitVertex::default(); 8], [ObjectSun::default(); 1]);
     let cube = VertexStage::new(&view, cube, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams).ok()?;
-    let (mut lit, mut beams) = ([LitVertex::default(); 4], [Beam::default(); 1]);
+    let (mut lit, mut beams) = ([LitVertex::default(); 4], [ObjectSun::default(); 1]);
     let floor = VertexStage::new(&view, floor, &suns, Shading::Flat, &mut lit, &mut beams).ok()?;
 
     let (mut pixels, mut depths) = ([0; WIDTH * BAND], [0_u32; WIDTH * BAND]);

@@ -20,7 +20,8 @@ use alloc::vec::Vec;
 use core::array::from_fn;
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    Beam, BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, Paint, Placement, Sun, Vector, VertexStage, View,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    View,
 };
 use mode13h::palette::Ramp;
 use mode13h::raster::{DepthBuffer, Frame, Raster};
@@ -166,7 +167,7 @@ pub(crate) struct Player<'a> {
     kernel: Kernel,
     meshes: Vec<FixedMesh<'a>>,
     lit: Vec<LitVertex>,
-    beams: Vec<Beam>,
+    beams: Vec<ObjectSun>,
     suns: Vec<Sun>,
     paints: Vec<Paint>,
     depths: Vec<u32>,
@@ -196,7 +197,7 @@ impl<'a> Player<'a> {
         for _ in 0..suns {
             self.suns.push(Sun { direction: input.vector()?, intensity: input.fixed()? });
         }
-        self.beams.resize(suns, Beam::default());
+        self.beams.resize(suns, ObjectSun::default());
 
         let mut frame = Frame::new(pixels, 320, 200, 320).ok()?;
         frame.clear(background);

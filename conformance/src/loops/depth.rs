@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::fmt::Debug;
 
 use mode13h::internals::span::depth::Cell;
-use mode13h::internals::span::listed::{Listed, ListedDepths};
+use mode13h::internals::span::listed::{ListedDepths, ListedSpan};
 
 use super::canvas::{any_u16, bytes, on_every_shape, other_row};
 use super::spans::naive_span;
@@ -175,7 +175,7 @@ impl Frame {
     /// A span in one row, or one that extends to the very end of the frame or a few pixels beyond. Returned with the
     /// offset of its first cell: that of the first pixel if both pitches are equal, otherwise occasionally beyond the
     /// end.
-    fn span(&self, random: &mut Random) -> (Listed, u32) {
+    fn span(&self, random: &mut Random) -> (ListedSpan, u32) {
         let length = random.within(0, self.width);
         let (x, y) = match random.below(8) {
             0 => (self.width - length, self.height - 1),
@@ -189,14 +189,14 @@ impl Frame {
         } else {
             0
         };
-        (Listed { at: at(self.pitch), length: length as u32, shade, step }, at(self.cells_pitch) + beyond)
+        (ListedSpan { at: at(self.pitch), length: length as u32, shade, step }, at(self.cells_pitch) + beyond)
     }
 }
 
 /// Calls `one` with a frame, its pixels and up to twelve spans (rarely more), each with the offset of its first cell.
 fn on_every_list(
     cases: Cases,
-    mut one: impl FnMut(&mut Random, &Frame, Vec<u8>, &[Listed], &[u32]) -> Result<(), String>,
+    mut one: impl FnMut(&mut Random, &Frame, Vec<u8>, &[ListedSpan], &[u32]) -> Result<(), String>,
 ) -> Checked {
     let mut random = cases.random("lists of spans");
     let count = cases.of(2_000, 20_000);
@@ -204,7 +204,7 @@ fn on_every_list(
         let frame = Frame::any(&mut random);
         // Rarely more than a list has room for.
         let spans = random.one_of(&[12, 12, 12, 12, 12, 12, 12, 150]);
-        let (spans, cells): (Vec<Listed>, Vec<u32>) =
+        let (spans, cells): (Vec<ListedSpan>, Vec<u32>) =
             (0..random.within(0, spans)).map(|_| frame.span(&mut random)).unzip();
         let pixels = bytes(&mut random, frame.length(frame.pitch));
         one(&mut random, &frame, pixels, &spans, &cells).map_err(|wrong| format!("list {list}: {spans:?}: {wrong}"))?;
@@ -231,7 +231,7 @@ fn place(at: u32, length: u32, all: usize) -> Option<core::ops::Range<usize>> {
 ///
 /// # Errors
 /// The first wrong list.
-pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[Listed])) -> Checked {
+pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[ListedSpan])) -> Checked {
     on_every_list(cases, |_, _, mut pixels, spans, _| {
         let mut after = pixels.clone();
         for span in spans {
@@ -250,7 +250,7 @@ pub fn check_list(cases: Cases, mut fill: impl FnMut(&mut [u8], &[Listed])) -> C
 /// The first wrong list.
 pub fn check_list_nearer<D: NaiveCell>(
     cases: Cases,
-    mut fill: impl FnMut(&mut [u8], &mut [D], &[Listed], &[ListedDepths]) -> u32,
+    mut fill: impl FnMut(&mut [u8], &mut [D], &[ListedSpan], &[ListedDepths]) -> u32,
 ) -> Checked {
     on_every_list(cases, |random, frame, mut pixels, spans, offsets| {
         // Includes equal depths, where the one drawn first stays.

@@ -9,7 +9,7 @@ use core::fmt;
 use mode13h::internals::DrawnTriangle;
 use mode13h::internals::lanes::{LANES, Lanes, Points};
 use mode13h::internals::raster::effects::{
-    Attributes, Lighting, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
+    Attributes, Mix, PixelLighting, PixelPipeline, SampleSpacing, ShadeSource, TextureStage,
 };
 use mode13h::internals::span::dither::Thresholds;
 use mode13h::internals::span::texture::{Levels, Texels};
@@ -126,7 +126,7 @@ impl<F> fmt::Debug for LightBy<F> {
     }
 }
 
-impl<F: Fn(&Points, bool) -> [Lanes<u16>; 3]> Lighting for LightBy<F> {
+impl<F: Fn(&Points, bool) -> [Lanes<u16>; 3]> PixelLighting for LightBy<F> {
     fn shades(&self, points: &Points) -> Lanes<u16> {
         (self.0)(points, false)[0]
     }
@@ -137,7 +137,7 @@ impl<F: Fn(&Points, bool) -> [Lanes<u16>; 3]> Lighting for LightBy<F> {
 }
 
 /// Records every light query.
-fn noted<'a>(light: &'a dyn Lighting, all: &'a RefCell<Vec<Query>>) -> impl Lighting + 'a {
+fn noted<'a>(light: &'a dyn PixelLighting, all: &'a RefCell<Vec<Query>>) -> impl PixelLighting + 'a {
     LightBy(move |points: &Points, in_color| {
         let shades = if in_color { light.channels(points) } else { [light.shades(points); 3] };
         all.borrow_mut().push((*points, shades));

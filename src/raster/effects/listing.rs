@@ -330,7 +330,7 @@ enum WalkedTexture {
 }
 
 /// The spans of a list as the stages see them: their marks, and the planes of their faces.
-pub(super) struct Listed<'a> {
+pub(super) struct ListedFaces<'a> {
     pub(super) faces: Faces<'a>,
     wanted: Wanted,
     pub(super) planes: &'a mut [FacePlanes8; Batches::COUNT],
@@ -344,7 +344,7 @@ pub(super) struct Listed<'a> {
     pub(super) direct: Option<Direct<'a>>,
 }
 
-impl Listed<'_> {
+impl ListedFaces<'_> {
     /// The mapping and the last level of an image with levels.
     #[cfg(test)]
     pub(super) fn levels(&self) -> Option<(Option<Mapping>, u32)> {
@@ -399,7 +399,7 @@ impl Listed<'_> {
 
 /// Spans with effects: the set-up of their faces, and the stages they pass through.
 pub(in crate::raster) struct EffectSpans<'a, const MAPPED: u8 = { mapped::ANY }> {
-    pub(super) listed: Listed<'a>,
+    pub(super) listed: ListedFaces<'a>,
     pipeline: &'a PixelPipeline<'a>,
     buffers: &'a mut Buffers,
 }
@@ -415,7 +415,7 @@ impl<'a> EffectSpans<'a> {
         let wanted = Wanted::by(pipeline);
         let direct = Direct::of(pipeline);
         let (batches, walked) = (Batches::NONE, None);
-        let listed = Listed { faces, wanted, planes, batches, numbers, coordinates, sums, walked, direct };
+        let listed = ListedFaces { faces, wanted, planes, batches, numbers, coordinates, sums, walked, direct };
         Self { listed, pipeline, buffers }
     }
 
@@ -548,7 +548,7 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        let Listed { faces, wanted, planes, batches, .. } = &mut self.listed;
+        let ListedFaces { faces, wanted, planes, batches, .. } = &mut self.listed;
         let faces = *faces;
         let Faces { triangles, picks } = faces;
         let first = batches.first_pick();

@@ -1,7 +1,7 @@
 //! Per-pixel lighting: at every pixel, or at some pixels of a row with shades interpolated linearly between them.
 
 use super::listing::FaceCorners;
-use super::pipeline::{Lighting, SampleSpacing};
+use super::pipeline::{PixelLighting, SampleSpacing};
 use super::spans::{LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
@@ -19,14 +19,14 @@ pub(super) trait Lit<const N: usize> {
     fn at(&self, points: &Points) -> [Lanes<u16>; N];
 }
 
-impl Lit<1> for &dyn Lighting {
+impl Lit<1> for &dyn PixelLighting {
     #[inline]
     fn at(&self, points: &Points) -> [Lanes<u16>; 1] {
         [self.shades(points)]
     }
 }
 
-impl Lit<3> for &dyn Lighting {
+impl Lit<3> for &dyn PixelLighting {
     #[inline]
     fn at(&self, points: &Points) -> [Lanes<u16>; 3] {
         self.channels(points)

@@ -75,8 +75,8 @@ mod texture;
 use alloc::vec::Vec;
 
 pub use self::batch::{EffectBatch, EffectFace};
-use self::listing::{Columns, EffectSpans, Faces, Listed, mapped};
-pub use self::pipeline::{Lighting, Limits, Mix, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
+use self::listing::{Columns, EffectSpans, Faces, ListedFaces, mapped};
+pub use self::pipeline::{Limits, Mix, PixelLighting, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
@@ -90,7 +90,7 @@ use super::triangle::Raster;
 use crate::fixed::{HAS_F64, IS_COMPACT};
 pub use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
-use crate::simd::{Lanes8, Level, at_best_level, compiled_for_each_level};
+use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
 use crate::span::depth_test::copy_span;
 use crate::span::list::{SpanList, Target};
@@ -183,7 +183,7 @@ fn count(pipeline: &PixelPipeline<'_>, pixels: u32, drawn: &mut DrawStats) {
 /// Draws the spans of a list. Returns the number of nearer pixels.
 #[inline(never)]
 fn draw_listed(
-    listed: &Listed<'_>,
+    listed: &ListedFaces<'_>,
     list: &SpanList,
     pipeline: &PixelPipeline<'_>,
     buffers: &mut Buffers,
@@ -234,7 +234,7 @@ fn write(
     }
 }
 
-at_best_level! {
+compiled_for_each_level! {
     /// Writes spans without a depth test.
     #[inline(never)]
     fn write_all[][](

@@ -10,7 +10,7 @@ use crate::span::texture::{Levels, Texels};
 use crate::texture::Texture;
 
 /// Per-pixel lighting.
-pub trait Lighting: core::fmt::Debug {
+pub trait PixelLighting: core::fmt::Debug {
     /// The shade in 8.8, 0 to 0xFF00, at each point (normal and position, perspective-correct, the normal of any
     /// length). Points beyond the end of a row may be anything; their results are not used.
     fn shades(&self, points: &Points) -> Lanes<u16>;
@@ -31,13 +31,13 @@ pub enum ShadeSource<'a> {
     /// [`Attributes::slope`](super::Attributes::slope), linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at every pixel.
-    Lit(&'a dyn Lighting),
+    Lit(&'a dyn PixelLighting),
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at some pixels of a
     /// row; shades are linear in between.
     ///
     /// The lit pixels are the row's first inside the frame, its last, and those at equal distances
     /// in between.
-    LitEvery(SampleSpacing, &'a dyn Lighting),
+    LitEvery(SampleSpacing, &'a dyn PixelLighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): at the corners
     /// and at the midpoints of the edges. Clamped to these limits, one pair for each channel; a single shade uses the
     /// first.

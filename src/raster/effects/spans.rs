@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::listing::{FaceCorners, Listed, Mark};
+use super::listing::{FaceCorners, ListedFaces, Mark};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
@@ -11,7 +11,7 @@ use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::shade::RESEED;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
-use crate::simd::at_best_level;
+use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::SpanList;
@@ -26,7 +26,7 @@ pub(super) const ROOM: usize = PIXELS + LANES;
 
 /// Spans that pass through the stages together; their pixels are concatenated.
 pub(super) struct Spans<'a> {
-    listed: &'a Listed<'a>,
+    listed: &'a ListedFaces<'a>,
     list: &'a SpanList,
     /// Index of the first in the list.
     first: usize,
@@ -92,7 +92,7 @@ impl Span {
 impl<'a> Spans<'a> {
     /// Takes as many spans from index `first` on as can pass through the stages together.
     #[inline]
-    pub(super) fn of(listed: &'a Listed<'_>, list: &'a SpanList, first: usize, offsets: &'a mut Offsets) -> Self {
+    pub(super) fn of(listed: &'a ListedFaces<'_>, list: &'a SpanList, first: usize, offsets: &'a mut Offsets) -> Self {
         let (mut count, mut end) = (0, 0);
         offsets[0] = 0;
         for k in first..list.count() {
@@ -110,7 +110,7 @@ impl<'a> Spans<'a> {
 
     /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
     #[inline]
-    pub(super) fn all(listed: &'a Listed<'_>, list: &'a SpanList) -> Self {
+    pub(super) fn all(listed: &'a ListedFaces<'_>, list: &'a SpanList) -> Self {
         Self { listed, list, first: 0, count: list.count(), pixels: &NO_OFFSETS }
     }
 
@@ -335,7 +335,7 @@ impl Shaded {
     }
 }
 
-at_best_level! {
+compiled_for_each_level! {
     #[inline(never)]
     fn fill_linear_at_best[][](
         level: Kernel,

@@ -7,7 +7,7 @@
 use super::ranges::{HUGE, Patches, Sight, greater, lesser, square_root};
 use crate::lanes::{LANES, Lanes, each};
 use crate::light::{ConeBeam, Lights, Reflectance};
-use crate::simd::at_best_level;
+use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
 /// Largest turn of a direction, in radians: larger ones are clamped to it.
@@ -404,7 +404,7 @@ impl Incident<'_> {
     }
 }
 
-at_best_level! {
+compiled_for_each_level! {
     /// Calls [`interpolation_error`] compiled for the kernel's processor; the results are the same.
     #[inline(never)]
     pub(super) fn error_at_best[const WHOLE: bool, P: Patches][WHOLE, P](

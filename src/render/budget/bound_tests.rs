@@ -13,7 +13,7 @@ use super::clusters::{Clusters, radius};
 use super::ranges::{EightFaces, ZERO};
 use crate::Angle;
 use crate::lanes::LANES;
-use crate::light::{Beam, Cone, ConeBeam, LampBeam, Lights, Reflectance};
+use crate::light::{Cone, ConeBeam, LampBeam, Lights, Reflectance, SunBeam};
 use crate::mesh::normals::unit;
 use crate::mesh::wide::widen;
 use crate::random::Random;
@@ -64,7 +64,7 @@ struct Case {
     triangles: Vec<[u32; 3]>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    suns: Vec<Beam>,
+    suns: Vec<SunBeam>,
     lamps: Vec<LampBeam>,
     eye: [f64; 3],
     answer: Reflectance,
@@ -99,7 +99,7 @@ impl Case {
             if random.chance(0.5) {
                 let about = if random.chance(0.6) { mirrored(positions[0]) } else { random.direction() };
                 let towards = unit(about + random.vector() * random.log(0.01, 2.0) as f32).unwrap_or(Vec3::Z);
-                suns.push(Beam { towards, intensity: intensity(random), channels: random.colors() });
+                suns.push(SunBeam { towards, intensity: intensity(random), channels: random.colors() });
             } else {
                 let at = on(random);
                 let towards = if random.chance(0.5) { mirrored(at) } else { Vec3::Z + random.vector() };

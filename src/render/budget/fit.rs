@@ -20,7 +20,7 @@ use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Limits, SampleSpacing};
 use crate::render::faces::{Face, Faces};
 use crate::render::paint::SurfaceMaterial;
-use crate::simd::at_best_level;
+use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
 /// Least number of pixels for each point of the finer grids that makes them worthwhile. (The spheres of `phong` within
@@ -171,7 +171,7 @@ impl Quadratic {
     }
 }
 
-at_best_level! {
+compiled_for_each_level! {
     fn off_at_best[][](kernel: Kernel, curve: &Quadratic, weights: &Weights, values: &Lanes<f32>) -> f32 {
         curve.off(weights, values)
     }

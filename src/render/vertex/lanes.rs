@@ -250,7 +250,7 @@ mod tests {
     use super::super::{light_suns, project_inside, project_tested};
     use super::*;
     use crate::fixed::U8F8;
-    use crate::light::{Beam, Blend, Reflectance};
+    use crate::light::{Blend, Reflectance, SunBeam};
     use crate::mesh::Mesh;
     use crate::palette::Ramp;
     use crate::scene::{Camera, Object};
@@ -352,8 +352,8 @@ mod tests {
             paints in prop::array::uniform2(paint()),
             suns in prop::collection::vec((vector(), -0.5_f32..2.0), 0..4),
         ) {
-            let suns: Vec<Beam> =
-                suns.into_iter().map(|(towards, intensity)| Beam { towards, intensity, channels: [0.0; 3] }).collect();
+            let suns: Vec<SunBeam> =
+                suns.into_iter().map(|(towards, intensity)| SunBeam { towards, intensity, channels: [0.0; 3] }).collect();
             let lights = Lights { suns: &suns, lamps: &[], eye: [0.0; 3] };
             // Usually whole eights of the first.
             let vertex_surfaces: Vec<u16> = (0..normals.len()).map(|i| u16::from(surfaces[i / 8] == i % 8)).collect();

@@ -208,7 +208,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
     let size = _mm512_set1_epi64(pixels.len() as i64);
     let pixels = pixels.as_mut_ptr();
     let magic = _mm512_set1_pd(ROUND_MAGIC);
-    let (ramp, lowest) = (Ramp::new(triangle.step), opaque(&LOWEST));
+    let (ramp, lowest) = (Ramp64::new(triangle.step), opaque(&LOWEST));
     let mut numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
     let j = _mm512_setr_pd(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0);
     let LargeTriangle { long, upper, lower, shade, .. } = *triangle;
@@ -292,7 +292,7 @@ fn large(pixels: &mut [u8], triangle: &LargeTriangle) -> (u32, u32) {
 
 /// 64 pixels from shade 0 on.
 #[derive(Clone, Copy)]
-struct Ramp {
+struct Ramp64 {
     steps: __m512i,
     even: __m512i,
     odd: __m512i,
@@ -303,7 +303,7 @@ struct Ramp {
     even_bytes_of_half: __mmask32,
 }
 
-impl Ramp {
+impl Ramp64 {
     #[inline]
     #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
     fn new(step: u16) -> Self {

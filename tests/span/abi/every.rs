@@ -10,7 +10,7 @@ use mode13h::internals::span::channels;
 use mode13h::internals::span::curve::curve;
 use mode13h::internals::span::depth::Cell;
 use mode13h::internals::span::dither::{DitherPattern, fill_dithered, fill_dithered_portable};
-use mode13h::internals::span::listed::{self, Listed, ListedDepths};
+use mode13h::internals::span::listed::{self, ListedDepths, ListedSpan};
 use mode13h::mesh::Mesh;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::render::Renderer;
@@ -52,7 +52,7 @@ fn own<T: Clone>(numbers: &[T]) -> Box<[T]> {
 
 /// Spans within this many pixels, including the first and last pixels; in half of the lists each has the offset of its
 /// cells.
-fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
+fn spans(random: &mut Random, pixels: i64) -> (Vec<ListedSpan>, Vec<ListedDepths>) {
     let (count, is_shared) = (random.within(1, 40), random.below(2) == 0);
     (0..count)
         .map(|_| {
@@ -61,7 +61,7 @@ fn spans(random: &mut Random, pixels: i64) -> (Vec<Listed>, Vec<ListedDepths>) {
             let any = random.within(0, pixels - length);
             let at = random.one_of(&[0, any, pixels - length]) as u32;
             let bits = random.next_u64();
-            let span = Listed { at, length: length as u32, shade: bits as u16, step: (bits >> 16) as u16 };
+            let span = ListedSpan { at, length: length as u32, shade: bits as u16, step: (bits >> 16) as u16 };
             let z = random.within(0, i64::from(u32::MAX)) << 24;
             let dz = random.within(-(1 << 30), 1 << 30);
             (span, ListedDepths { z, dz, at: if is_shared { at } else { any as u32 } })
@@ -76,7 +76,7 @@ fn s7_lists_keep_the_rules() {
     fn nearer<D: Cell>(
         kernel: Kernel,
         pixels: usize,
-        (spans, depths): &(Vec<Listed>, Vec<ListedDepths>),
+        (spans, depths): &(Vec<ListedSpan>, Vec<ListedDepths>),
     ) -> (Box<[u8]>, Vec<D>) {
         let (spans, depths) = (own(spans), own(depths));
         let (mut bytes, mut cells) = (own(&vec![3; pixels]), vec![D::of_depth(1 << 30); pixels]);
