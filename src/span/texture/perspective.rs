@@ -15,7 +15,7 @@ use crate::simd::{BASELINE, F32Lanes8, Lanes8};
 /// in exact arithmetic, modulo 2³²; negative coordinates wrap like others. Along the row every divisor is positive
 /// (anything less counts as 1), every quotient within ±2³² and every value within ±2¹²⁶, as the raster ensures.
 ///
-/// The bound of [`Quotients`] holds, with ε = 2⁻⁵³, the error of one rounding:
+/// The bound of `Quotients` holds, with ε = 2⁻⁵³, the error of one rounding:
 ///
 /// 1. Over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N
 ///    and D are at the piece's ends, and |k·dn| ≤ 2N.
