@@ -17,7 +17,7 @@
  * memcpy, memmove, memset and memcmp alone; the build that chooses the best code for the processor when it runs is made with
  * Rust's standard library, and links libc. Threads may draw at the same time into different frames (or bands of one frame),
  * each with a context of its own. On a PC a call needs up to 52 kB of stack, and 76 kB with effects; on a 386 20 kB, and
- * 64 kB.
+ * 64 kB. As WebAssembly it needs 96 kB, more than linkers give: -z stack-size=131072.
  *
  * ERRORS. Functions that return int return M13_OK or a code below 0; m13_message has its words. A call that returns a code
  * has written nothing, with one exception: M13_VERTEX says that some triangles were left out, and the others drawn. A null
