@@ -199,9 +199,9 @@ impl Avx512 {
 /// `fn name[parameters][their names](arguments) -> result = generic;` defines a function whose first argument is the
 /// level.
 ///
-/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }` is compiled for AVX2 and for every
-/// processor only. Functions that the body calls must be inlined. (It takes a body rather than a closure: a closure of
-/// 3,000 instructions was not inlined, so it was only compiled for every processor.)
+/// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }` is compiled only for AVX2 and for
+/// the target's baseline. Functions that the body calls must be inlined. (It takes a body rather than a closure: one of
+/// 3,000 instructions was not inlined, and so compiled for the baseline alone.)
 macro_rules! compiled_for_each_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {
