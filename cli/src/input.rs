@@ -236,7 +236,7 @@ fn of_file(name: String, loaded: model_file::Loaded) -> Model {
 
 /// Prints a line on standard error.
 fn warn(warning: impl Display) {
-    eprintln!("mode13h: {}", on_one_line(&warning.to_string()));
+    output::note(on_one_line(&warning.to_string()));
 }
 
 /// The model in a file or the shape with a name. Warnings go to standard error, a line each.

@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("mode13h: {failure}");
+            output::note(&failure);
             failure.exit_code()
         }
     }

@@ -1,5 +1,6 @@
 //! Output of the program: standard output, pictures, and how Ctrl-C ends it.
 
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -43,6 +44,13 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
+/// Prints a line to standard error, after the program's name. Nobody may read it: a pipe that has been closed, or a full
+/// disk, must not end the program.
+pub(crate) fn note(line: impl Display) {
+    // At once, so that lines of several threads do not mix.
+    let _ = io::stderr().write_all(format!("mode13h: {line}\n").as_bytes());
+}
+
 /// Makes Ctrl-C, and other signals to end, wait for the files that are being written: each is then whole under its
 /// name, or removed if it takes long, and no temporary file is left behind.
 pub(crate) fn finish_files_when_interrupted() {
@@ -52,7 +60,7 @@ pub(crate) fn finish_files_when_interrupted() {
         let _no_long = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
         // No file is started from here on, and those already started are waited for. The locks are never released.
         let _none = WRITING.write().unwrap_or_else(PoisonError::into_inner);
-        eprintln!("mode13h: interrupted");
+        note("interrupted");
         // 128 + SIGINT, as in shells.
         std::process::exit(130);
     };

@@ -179,7 +179,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats, timed));
         } else if options.stats {
             let timed = timed.map(|timed| timed.to_string()).unwrap_or_default();
-            progress.suspend(|| eprintln!("mode13h: frame {number}: {stats}{timed}"));
+            progress.suspend(|| output::note(format_args!("frame {number}: {stats}{timed}")));
         }
         Ok(())
     };
@@ -466,7 +466,7 @@ impl Run {
         if late > 0 {
             let which =
                 if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
-            eprintln!("mode13h: {which} longer than {max_time} ms even at the largest error allowed");
+            output::note(format_args!("{which} longer than {max_time} ms even at the largest error allowed"));
         }
         Ok(run)
     }

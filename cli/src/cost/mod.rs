@@ -135,7 +135,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
     if !output::is_quiet() {
-        eprintln!("mode13h: comparing {compared} with the reference, then timing for {times}");
+        output::note(format_args!("comparing {compared} with the reference, then timing for {times}"));
     }
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
@@ -146,7 +146,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let warnings = cost::warnings(&study);
     for warning in &warnings {
-        eprintln!("mode13h: {}", on_one_line(warning));
+        output::note(on_one_line(warning));
     }
     let as_json = as_json(&study, &warnings)?;
     let (written, result) = match &directory {
@@ -209,7 +209,7 @@ impl Progress {
                 let threads = std::thread::available_parallelism().map_or(1.0, |threads| threads.get() as f64);
                 let seconds = (self.begun.elapsed().as_secs_f64() / (share * threads)).ceil().max(1.0);
                 if !output::is_quiet() {
-                    self.bar.suspend(|| eprintln!("mode13h: the comparison takes about {seconds} s"));
+                    self.bar.suspend(|| output::note(format_args!("the comparison takes about {seconds} s")));
                 }
             }
             self.bar.set_message(match step {

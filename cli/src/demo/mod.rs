@@ -320,7 +320,7 @@ impl Demo {
             Err(failure) if count == 1 && !is_again => return Err(failure),
             Err(failure) => {
                 if scenes.wrong.as_ref() != Some(&failure) {
-                    eprintln!("mode13h: {failure}");
+                    output::note(&failure);
                 }
                 show.notice = None;
                 scenes.wrong = Some(failure);
@@ -365,7 +365,7 @@ impl Demo {
             self.draw()?;
             let path = output::numbered_picture(&self.show.screen)?;
             let of = if count == 1 { String::new() } else { format!(" of {}", inputs.name(at)) };
-            eprintln!("mode13h: {no_display}; saved one frame{of} as {}", path.display());
+            output::note(format_args!("{no_display}; saved one frame{of} as {}", path.display()));
         }
         match worst {
             Some(worst) => Err(worst.saying(format!("{failed} of {count} inputs could not be drawn"))),
@@ -431,7 +431,7 @@ impl Demo {
             Ok(path) => format!("saved {}", path.display()),
             Err(error) => error.to_string(),
         };
-        eprintln!("mode13h: {notice}");
+        output::note(&notice);
         self.show.notice = Some((notice, self.show.seconds + SAVED));
     }
 

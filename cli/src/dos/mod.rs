@@ -96,11 +96,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     renderer.kernel = kernel;
     renderer.settings.accuracy = shading.map(Into::into);
     if let Some(losses) = losses(&mut stage, &renderer)? {
-        eprintln!("mode13h: {losses}");
+        output::note(losses);
     }
     let ignored = drawing.ignored_by_dos();
     if !ignored.is_empty() {
-        eprintln!("mode13h: ignored, because the program computes in 16.16: {}", ignored.join(", "));
+        output::note(format_args!("ignored, because the program computes in 16.16: {}", ignored.join(", ")));
     }
     let (film, vertices) = film_of(&mut stage, &mut renderer, *frames)?;
     let packed = pack(&film);

@@ -14,6 +14,7 @@ use mode13h_lab::cost::calibrate;
 use super::{Drawing, shades, shading_of};
 use crate::failure::Failure;
 use crate::host::clock;
+use crate::output;
 
 /// How faces are shaded. The scene decides what is not said here, and the library what the scene leaves open.
 #[derive(Args, Clone)]
@@ -97,8 +98,8 @@ impl ShadingOptions {
         calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock())?;
         let accuracy = pace.accuracy();
         match pace.fits() {
-            true => eprintln!("mode13h: {accuracy}, the smallest error that fits in {max_time} ms"),
-            false => eprintln!("mode13h: {accuracy}, which takes more than {max_time} ms"),
+            true => output::note(format_args!("{accuracy}, the smallest error that fits in {max_time} ms")),
+            false => output::note(format_args!("{accuracy}, which takes more than {max_time} ms")),
         }
         renderer.settings.accuracy = Some(accuracy);
         Ok(())

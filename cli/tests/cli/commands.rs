@@ -230,6 +230,18 @@ fn assert_old_one_is_whole(name: &str, blocks: usize) {
     assert_eq!(folder.names(), [name]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn what_standard_error_does_not_take_ends_nothing() {
+    let folder = Folder::new();
+    for (words, code) in [("render torus -o %d.png --frames 3 --stats", 0), ("list nothing", 2)] {
+        let full = fs::File::options().write(true).open("/dev/full").expect("opened");
+        let status = folder.program(words).stderr(full).status().expect("started");
+        assert_eq!(status.code(), Some(code), "{words}");
+    }
+    assert_eq!(folder.names(), ["0.png", "1.png", "2.png"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn f4_an_interrupted_row_is_made_of_whole_pictures() {
