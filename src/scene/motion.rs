@@ -80,9 +80,10 @@ impl Path {
     /// The point at a time in seconds; the starting point if the period is not above 0 or the time is not finite.
     #[must_use]
     pub fn at(&self, seconds: f64) -> Vec3 {
+        let (Self::Line { period, .. } | Self::Circle { period, .. }) = *self;
+        let part = if period > 0.0 { part(seconds, period) } else { 0.0 };
         match *self {
-            Self::Line { from, to, period, back } => {
-                let part = part(seconds, period);
+            Self::Line { from, to, back, .. } => {
                 let part = match back {
                     true if part > 0.5 => 2.0 - 2.0 * part,
                     true => 2.0 * part,
@@ -91,8 +92,8 @@ impl Path {
                 let between = |a: f32, b: f32| (f64::from(a) * (1.0 - part) + f64::from(b) * part) as f32;
                 Vec3::new(between(from.x, to.x), between(from.y, to.y), between(from.z, to.z))
             }
-            Self::Circle { centre, from, towards, period } => {
-                let (sine, cosine) = libm::sincos(part(seconds, period) * TAU);
+            Self::Circle { centre, from, towards, .. } => {
+                let (sine, cosine) = libm::sincos(part * TAU);
                 let along =
                     |c: f32, a: f32, b: f32| (f64::from(c) + f64::from(a) * cosine + f64::from(b) * sine) as f32;
                 Vec3::new(

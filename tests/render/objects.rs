@@ -146,6 +146,17 @@ fn ids_outlive_removals_and_name_nothing_afterwards() {
     assert!(scene.lights().is_empty() && scene.light_ids().is_empty());
 }
 
+#[test]
+fn a_path_whose_period_is_not_above_0_stays_where_it_begins() {
+    for period in [-2.0, -0.0, 0.0, f64::NAN, f64::INFINITY] {
+        let line = Path::Line { from: Vec3::X, to: Vec3::Y, period, back: true };
+        let circle = Path::Circle { centre: Vec3::ZERO, from: Vec3::X, towards: Vec3::Y, period };
+        for seconds in [0.0, 0.5, -0.5, f64::INFINITY] {
+            assert_eq!((line.at(seconds), circle.at(seconds)), (Vec3::X, Vec3::X), "{seconds} s of {period}");
+        }
+    }
+}
+
 /// A step at half the light: anything darker than 127 becomes black, anything lighter than 128 white. A byte is the
 /// nearest to its shade, so nothing is said about the two in between.
 #[test]
