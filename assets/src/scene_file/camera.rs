@@ -17,13 +17,13 @@ pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept
     let field_of_view =
         degrees.map_or(Camera::FIELD_OF_VIEW, |degrees| Angle::from_radians(f64::from(degrees.0.to_radians())));
     let up = own.and_then(|own| own.up.as_ref());
-    if let Some(up) = up.filter(|up| up.get_ref().vec3() == Vec3::ZERO) {
-        return Err(Fault::value(up.span(), "a direction must not be zero"));
+    let from = own.and_then(|own| own.from.as_ref());
+    if let Some(zero) = [up, from].into_iter().flatten().find(|direction| direction.get_ref().vec3() == Vec3::ZERO) {
+        return Err(Fault::value(zero.span(), "a direction must not be zero"));
     }
     let up = up.map_or(Vec3::Y, |up| up.get_ref().vec3());
     let target = own.and_then(|own| own.target.as_ref()).map(|target| target.vec3());
     let eye = own.and_then(|own| own.eye.as_ref());
-    let from = own.and_then(|own| own.from.as_ref());
     let mut camera = match (eye, from) {
         (Some(_), Some(from)) => {
             return Err(Fault::value(from.span(), "not allowed with an `eye`, which says where the camera is"));

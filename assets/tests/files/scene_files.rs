@@ -299,6 +299,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
         ),
         (cube("camera = { eye = [0, 0, 0] }"), "2:10: `camera`: the camera looks at its own position"),
         (cube("camera = { up = [0, 0, 0] }"), "2:17: `camera.up`: a direction must not be zero"),
+        (cube("camera = { from = [0, 0, 0] }"), "2:19: `camera.from`: a direction must not be zero"),
         (object("position = [3e38, 0, 0]\nscale = 3e38"), "the objects reach too far to be framed; give the camera"),
         // Not TOML.
         (list("name = \n"), "1:8: not TOML: "),
