@@ -30,7 +30,9 @@ pub(super) fn camera(layout: Option<&Spanned<CameraLayout>>, everything: &[Swept
         }
         (Some(eye), None) => {
             let (eye, target) = (eye.vec3(), target.unwrap_or(Vec3::ZERO));
-            Camera { eye, target, up, field_of_view, near: Camera::near_for(eye.distance(target)) }
+            // The square of a distance of 10²⁰ is beyond f32.
+            let distance = eye.distance(target).min(f32::MAX);
+            Camera { eye, target, up, field_of_view, near: Camera::near_for(distance) }
         }
         (None, from) => {
             let direction = from.map_or(Vec3::Z, |from| from.get_ref().vec3());

@@ -9,9 +9,11 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, RampChoice};
 use mode13h::palette::{Ramp, Rgb, builtin};
+use mode13h::render::Renderer;
 use mode13h::scene::{Motion, Moving, PaletteAnimation, Path, Scene, UpAxis};
 use mode13h::settings::Accuracy;
 use mode13h::settings::{DitherPattern, HiddenSurfaces, Mapping, Shading};
+use mode13h::vga::Vga;
 use mode13h_assets::SceneExt;
 use mode13h_assets::scene_file::{self, LONGEST, Loaded, Place, SceneError, SceneErrorKind};
 
@@ -579,6 +581,14 @@ fn what_is_left_out_has_a_default() {
         |p: &Vec3| p.y / ((scene.camera.eye.z - p.z) * (scene.camera.field_of_view.to_radians() as f32 / 2.0).tan());
     let highest = torus.mesh().positions().iter().map(reach).fold(0.0, f32::max);
     assert!((highest - 0.9).abs() < 1e-5, "{highest}");
+}
+
+#[test]
+fn a_camera_very_far_away_can_be_drawn() {
+    for eye in ["[0, 0, 1e19]", "[1e38, 0, 5]", "[-3e38, 3e38, 3e38]"] {
+        let scene = scene(&format!("objects = [{{ shape = 'cube' }}]\ncamera.eye = {eye}"));
+        assert!(Renderer::new().draw(&scene, &mut Vga::new()).is_ok(), "{eye}");
+    }
 }
 
 #[test]
