@@ -102,6 +102,8 @@ impl ShadingOptions {
             false => output::note(format_args!("{accuracy}, which takes more than {max_time} ms")),
         }
         renderer.settings.accuracy = Some(accuracy);
+        // One without the vertices of the frames that were timed, so that the next frame is its first.
+        *renderer = renderer.with_same_settings();
         Ok(())
     }
 }

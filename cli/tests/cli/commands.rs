@@ -1511,6 +1511,18 @@ fn explain_names_material_and_line() {
 
 /// A row in characters, as JSON and as a chart.
 #[test]
+fn a_pixel_is_explained_alike_by_a_time_and_by_the_error_that_fits() {
+    let folder = Folder::new();
+    let explained = |limit: &str| {
+        let output = folder.run(&format!("explain torus --pixel 160,60 --json {limit}"));
+        assert!(output.status.success(), "{limit}");
+        String::from_utf8(output.stdout).expect("text")
+    };
+    // The least error fits, which is half a shade.
+    assert_eq!(explained("--max-time 100000"), explained("--max-error 0.5"));
+}
+
+#[test]
 fn explain_draws_a_row() {
     let folder = Folder::new();
     let text = folder.printed("explain cone --row 120");
