@@ -1,7 +1,5 @@
 //! Probes a renderer pixel by pixel: which face is shown, and its shade before texture, fog, dither and blending.
 
-use core::fmt;
-
 use crate::truth::{Face, Shown};
 use mode13h::internals;
 use mode13h::light::{Blend, Material, RampChoice};
@@ -159,28 +157,19 @@ impl Probe {
 }
 
 /// Error of a probe.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProbeError {
     /// The scene cannot be drawn.
+    #[error(transparent)]
     Scene(RenderError),
     /// No frame has the screen's size.
+    #[error(transparent)]
     Screen(RasterError),
     /// An object has too many surfaces for its triangles to be numbered.
+    #[error("triangles of {0} surfaces cannot be numbered")]
     Surfaces(usize),
 }
-
-impl fmt::Display for ProbeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Scene(error) => error.fmt(f),
-            Self::Screen(error) => error.fmt(f),
-            Self::Surfaces(count) => write!(f, "triangles of {count} surfaces cannot be numbered"),
-        }
-    }
-}
-
-impl core::error::Error for ProbeError {}
 
 /// A scene's meshes with their triangles numbered from 1 through all objects; 0 is the background. Cached while the
 /// meshes stay the same.

@@ -38,8 +38,6 @@ mod span_text;
 mod text;
 mod trace;
 
-use core::fmt;
-
 use crate::cost::ProbeError;
 use crate::truth::TruthError;
 pub use face::{Edge, EdgeKind, FaceHere};
@@ -53,10 +51,11 @@ pub use row::{Column, Row, row};
 pub use trace::Fate;
 
 /// Error of explaining a pixel or a row.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExplainError {
     /// The pixel lies outside the frame.
+    #[error("there is no pixel ({x}, {y}) in a frame of {width} x {height}, counted from 0")]
     OutsidePixel {
         /// Its column.
         x: u32,
@@ -68,6 +67,7 @@ pub enum ExplainError {
         height: u32,
     },
     /// The row lies outside the frame.
+    #[error("there is no row {y} in a frame of {height} rows, counted from 0")]
     OutsideRow {
         /// The row.
         y: u32,
@@ -75,33 +75,18 @@ pub enum ExplainError {
         height: u32,
     },
     /// There is no frame of this size.
+    #[error("a frame's sides must be 1 to {} pixels", Frame::MAX_SIDE)]
     Screen,
     /// The scene cannot be drawn.
+    #[error(transparent)]
     Scene(RenderError),
     /// The truth cannot be drawn.
+    #[error(transparent)]
     Truth(TruthError),
     /// The pixels shown cannot be identified.
+    #[error(transparent)]
     Probe(ProbeError),
 }
-
-impl fmt::Display for ExplainError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OutsidePixel { x, y, width, height } => {
-                write!(f, "there is no pixel ({x}, {y}) in a frame of {width} x {height}, counted from 0")
-            }
-            Self::OutsideRow { y, height } => {
-                write!(f, "there is no row {y} in a frame of {height} rows, counted from 0")
-            }
-            Self::Screen => write!(f, "a frame's sides must be 1 to {} pixels", Frame::MAX_SIDE),
-            Self::Scene(error) => error.fmt(f),
-            Self::Truth(error) => error.fmt(f),
-            Self::Probe(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for ExplainError {}
 
 /// Checks that there is a frame of this size.
 fn check(screen: Screen) -> Result<(), ExplainError> {

@@ -25,7 +25,6 @@
 //! shades of its edge's ends. Start and step along the row are rounded back toward where the shades come from, as in
 //! [`shade`](mode13h::internals::raster::reference::shade), so every sum lies between the two crossings' shades.
 
-use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 
@@ -49,12 +48,14 @@ pub struct TableRow {
 }
 
 /// Reason why a polygon was not drawn.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PolygonError {
     /// It turns both ways, or goes around more than once, so a row might cross it four times.
+    #[error("the polygon is not convex")]
     NotConvex,
     /// The table has too few rows.
+    #[error("a table of {given} rows given where {needed} are needed")]
     Table {
         /// Rows given.
         given: usize,
@@ -63,17 +64,8 @@ pub enum PolygonError {
     },
     /// The table interpolates shades in 8.8, linearly along edges and rows; it supports only flat,
     /// [`Gouraud`](Interpolation::Gouraud) and [`GouraudReseeded`](Interpolation::GouraudReseeded).
+    #[error("a table of rows cannot shade as {0:?}")]
     Interpolation(Interpolation),
-}
-
-impl fmt::Display for PolygonError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotConvex => f.write_str("the polygon is not convex"),
-            Self::Interpolation(interpolation) => write!(f, "a table of rows cannot shade as {interpolation:?}"),
-            Self::Table { given, needed } => write!(f, "a table of {given} rows given where {needed} are needed"),
-        }
-    }
 }
 
 impl fmt::Debug for PolygonError {
@@ -81,8 +73,6 @@ impl fmt::Debug for PolygonError {
         fmt::Display::fmt(self, f)
     }
 }
-
-impl Error for PolygonError {}
 
 /// A vertex in 1/256 pixel.
 fn point(vertex: &Vertex) -> (i32, i32) {

@@ -102,12 +102,14 @@ impl Standard {
 }
 
 /// Error in a scene.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TruthError {
     /// The camera, with what is wrong.
+    #[error("camera: {0}")]
     Camera(&'static str),
     /// An object, by its index in the scene.
+    #[error("object {index}: {what}")]
     Object {
         /// The index in [`Scene::objects`].
         index: usize,
@@ -115,6 +117,7 @@ pub enum TruthError {
         what: &'static str,
     },
     /// A light, by its index in the scene.
+    #[error("light {index}: {what}")]
     Light {
         /// The index in [`Scene::lights`].
         index: usize,
@@ -122,24 +125,12 @@ pub enum TruthError {
         what: &'static str,
     },
     /// The scene's ambient light is not finite.
+    #[error("the ambient light must be finite")]
     Ambient,
     /// The screen, with what is wrong.
+    #[error("screen: {0}")]
     Screen(&'static str),
 }
-
-impl fmt::Display for TruthError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Camera(what) => write!(f, "camera: {what}"),
-            Self::Object { index, what } => write!(f, "object {index}: {what}"),
-            Self::Light { index, what } => write!(f, "light {index}: {what}"),
-            Self::Ambient => f.write_str("the ambient light must be finite"),
-            Self::Screen(what) => write!(f, "screen: {what}"),
-        }
-    }
-}
-
-impl core::error::Error for TruthError {}
 
 /// A triangle of a scene.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
