@@ -163,14 +163,6 @@ fn standard_input() -> io::Result<&'static [u8]> {
     Ok(BYTES.get().map(Vec::as_slice).unwrap_or_default())
 }
 
-/// Opens a file that a scene or a model on a stream names. Only ordinary files are accepted.
-fn ordinary(path: &Path) -> io::Result<Box<dyn BufRead>> {
-    match path.metadata()?.is_file() {
-        true => Ok(Box::new(BufReader::new(File::open(path)?))),
-        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
-    }
-}
-
 /// Name of an INPUT, whether it can be loaded or not.
 pub(crate) fn name_of(words: &OsStr) -> String {
     if words == "-" || words == "/dev/stdin" {
@@ -193,7 +185,7 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         let mut text = Vec::new();
         let failed = |error| Failure::file(format!("{}: {error}", path.display()));
         bytes.by_ref().take(LONGEST_SCENE).read_to_end(&mut text).map_err(failed)?;
-        Scene::from_toml_bytes(&text, &path, ordinary)
+        Scene::from_toml_bytes(&text, &path, model_file::open_named)
     } else if let Some(stream) = stream {
         return model_of(stream, options).map(|model| Input::Model(Box::new(model)));
     } else if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
@@ -218,11 +210,7 @@ const LONGEST_SCENE: u64 = 1 << 25;
 
 /// The model of a stream. Warnings go to standard error, a line each.
 fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
-    let library = |path: &Path| {
-        let mut bytes = Vec::new();
-        ordinary(path)?.read_to_end(&mut bytes).map(|_| bytes)
-    };
-    let loaded = model_file::parse(stream.bytes, &stream.path, library, options)?;
+    let loaded = model_file::parse(stream.bytes, &stream.path, model_file::read_named, options)?;
     Ok(of_file(name_of(stream.path.as_os_str()), loaded))
 }
 
@@ -275,7 +263,7 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
 /// The format of a file by its contents; `None` if it is in none, or cannot be read.
 fn format_of_contents(path: &Path) -> Option<Format> {
     let mut bytes = Vec::new();
-    model_file::unpacked(ordinary(path).ok()?).ok()?.read_to_end(&mut bytes).ok()?;
+    model_file::unpacked(model_file::open_named(path).ok()?).ok()?.read_to_end(&mut bytes).ok()?;
     Format::of_bytes(&bytes)
 }
 

@@ -184,7 +184,7 @@ pub fn load_with(
         return Err(ModelFileError::of_file(path, ModelFileErrorKind::Directory));
     }
     let file = BufReader::with_capacity(1 << 16, Counted::new(file, metadata.len(), progress));
-    let (mut loaded, mut warnings) = read(file, path, ordinary_file, options)?;
+    let (mut loaded, mut warnings) = read(file, path, read_named, options)?;
     loaded.files.insert(0, path.to_owned());
     for surface in loaded.mesh.surfaces_mut() {
         let is_missing = |texture: &mut String| !loaded.textures.contains_key(texture) && !Path::new(texture).is_file();
@@ -232,12 +232,24 @@ fn outside(mesh: &Mesh, textures: &Embedded) -> Vec<PathBuf> {
     named.filter(|name| !textures.contains_key(*name)).map(PathBuf::from).collect()
 }
 
-/// Reads a file that a model names. Only regular files are accepted: it might name a device that never ends.
-pub(crate) fn ordinary_file(path: &Path) -> io::Result<Vec<u8>> {
+/// Opens a file that a model or a scene names. Only regular files are accepted: it might name a device that never ends.
+///
+/// # Errors
+/// Those of the system, and a path to anything but a regular file.
+pub fn open_named(path: &Path) -> io::Result<Box<dyn BufRead>> {
     match fs::metadata(path)?.is_file() {
-        true => fs::read(path),
+        true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
         false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
     }
+}
+
+/// Reads a file like [`open_named`].
+///
+/// # Errors
+/// Those of [`open_named`], and of reading.
+pub fn read_named(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_named(path)?.read_to_end(&mut bytes).map(|_| bytes)
 }
 
 /// Unpacks the bytes if they begin like a gzip file, otherwise passes them through.

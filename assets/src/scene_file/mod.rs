@@ -47,8 +47,8 @@ mod place;
 mod shape;
 mod value;
 
-use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Read};
+use std::fs::File;
+use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -56,6 +56,7 @@ use toml::de::Deserializer;
 
 use crate::look::Look;
 use crate::model::Playback;
+use crate::model_file::open_named;
 use build::Builder;
 use error::{Fault, not_a_scene, not_toml};
 pub use error::{SceneError, SceneErrorKind};
@@ -100,17 +101,9 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded, SceneError> {
             SceneErrorKind::Read(error)
         })
     })?;
-    let mut loaded = parse_bytes(&bytes, path, open)?;
+    let mut loaded = parse_bytes(&bytes, path, open_named)?;
     loaded.files.push(path.to_owned());
     Ok(loaded)
-}
-
-/// Opens a file that a scene names. Only regular files are accepted: a scene might name a device that never ends.
-fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
-    match fs::metadata(path)?.is_file() {
-        true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
-        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file")),
-    }
 }
 
 /// Makes a scene from the text of a file.
