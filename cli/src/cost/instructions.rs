@@ -7,9 +7,8 @@
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs, process};
+use std::{env, fs};
 
 use mode13h::plan::Effect;
 use mode13h::render::Renderer;
@@ -76,12 +75,12 @@ fn shading_is_done(shading: &Shading) {
 
 /// Counts the instructions of every shading by running this program again with its own arguments.
 pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
-    let directory = Temporary::new()?;
+    let directory = tempfile::Builder::new().prefix("mode13h-").tempdir()?;
     let program = env::current_exe()?;
     let out = Command::new("valgrind")
         .args(["--tool=callgrind", "--quiet", "--collect-atstart=no"])
         .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])
-        .arg(format!("--callgrind-out-file={}", directory.0.join("counts").display()))
+        .arg(format!("--callgrind-out-file={}", directory.path().join("counts").display()))
         .arg(program)
         .args(env::args_os().skip(1))
         .arg("--counted")
@@ -98,7 +97,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
     let mut of = BTreeMap::new();
     for (shading, number) in shadings.iter().zip(1..) {
         // Numbered from 1.
-        let path = directory.0.join(format!("counts.{number}"));
+        let path = directory.path().join(format!("counts.{number}"));
         let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
         let all = all
             .ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of its symbols?"))?;
@@ -111,25 +110,6 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
 fn sum(text: &str) -> Option<u64> {
     let of = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok());
     of("totals:").or_else(|| of("summary:")).filter(|sum| *sum > 0)
-}
-
-/// A directory that is removed when it is dropped.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new() -> Result<Temporary, Failure> {
-        let path = env::temp_dir().join(format!("mode13h-{}", process::id()));
-        fs::create_dir(&path).map_err(|error| Failure::file(format!("{}: {error}", path.display())))?;
-        Ok(Temporary(path))
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let directory: &Path = &self.0;
-        // Files left in the temporary directory do no harm.
-        let _ = fs::remove_dir_all(directory);
-    }
 }
 
 #[cfg(test)]
