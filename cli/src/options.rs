@@ -4,6 +4,7 @@ mod shading;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -377,21 +378,20 @@ pub(crate) fn axis() -> impl TypedValueParser<Value = UpAxis> {
     one_of([UpAxis::Y, UpAxis::Z], |axis| if axis == UpAxis::Y { "y" } else { "z" })
 }
 
-/// A number on the command line.
+/// A number on the command line that passes a test; `what` says in the error, after "not a number", which ones do.
+pub(crate) fn number<N: FromStr>(words: &str, what: &str, passes: impl Fn(&N) -> bool) -> Result<N, String> {
+    words.parse().ok().filter(passes).ok_or_else(|| format!("not a number{what}"))
+}
+
+/// A finite number on the command line.
 pub(crate) fn finite(words: &str) -> Result<f64, String> {
-    match words.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("not a number".to_string()),
-    }
+    number(words, "", |number: &f64| number.is_finite())
 }
 
 /// Factor of enlargement, on the command line.
 fn factor(words: &str) -> Result<f64, String> {
-    match words.parse::<f64>() {
-        // Beyond these a camera's f32 shows nothing.
-        Ok(number) if (1e-3..=1e3).contains(&number) => Ok(number),
-        _ => Err("not a number from 0.001 to 1000".to_string()),
-    }
+    // Beyond these a camera's f32 shows nothing.
+    number(words, " from 0.001 to 1000", |factor| (1e-3..=1e3).contains(factor))
 }
 
 /// A camera's position and its target, on the command line.
@@ -433,18 +433,13 @@ fn background(words: &str) -> Result<Background, String> {
 
 /// An angle between faces on the command line, in degrees.
 pub(crate) fn crease(words: &str) -> Result<Angle, String> {
-    match words.parse::<f32>() {
-        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(Angle::from_degrees(degrees.into())),
-        _ => Err("not a number of degrees from 0 to 180".to_string()),
-    }
+    let degrees = number(words, " of degrees from 0 to 180", |degrees: &f32| (0.0..=180.0).contains(degrees))?;
+    Ok(Angle::from_degrees(degrees.into()))
 }
 
 /// A number of shades on the command line.
 pub(crate) fn shades(words: &str) -> Result<f32, String> {
-    match words.parse::<f32>() {
-        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-        _ => Err("not a number of shades above 0".to_string()),
-    }
+    number(words, " of shades above 0", |shades: &f32| shades.is_finite() && *shades > 0.0)
 }
 
 fn long_help_on_names(what: &str, names: &[&str]) -> String {

@@ -25,7 +25,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::host::clock;
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite, one_of};
+use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite, number, one_of};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
@@ -138,10 +138,7 @@ fn size(words: &str) -> Result<(u32, u32), String> {
 }
 
 fn rate(words: &str) -> Result<f64, String> {
-    match finite(words) {
-        Ok(number) if number > 0.0 && number <= 1e6 => Ok(number),
-        _ => Err("not a number above 0 and up to 1000000".to_string()),
-    }
+    number(words, " above 0 and up to 1000000", |rate| *rate > 0.0 && *rate <= 1e6)
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {

@@ -17,7 +17,7 @@ use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 use serde::Serialize;
 
 use crate::failure::{Failure, on_one_line};
-use crate::options::{Drawing, Quiet, finite, shading_of};
+use crate::options::{Drawing, Quiet, number, shading_of};
 use crate::turntable::Turntable;
 use crate::{host, input, output};
 
@@ -90,10 +90,7 @@ fn long_help_on_shadings() -> String {
 
 /// A time on the command line.
 fn seconds(words: &str) -> Result<f64, String> {
-    match finite(words) {
-        Ok(seconds) if seconds >= 0.0 => Ok(seconds),
-        _ => Err("not a number of seconds, 0 or more".to_string()),
-    }
+    number(words, " of seconds, 0 or more", |seconds: &f64| seconds.is_finite() && *seconds >= 0.0)
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {

@@ -11,7 +11,7 @@ use mode13h::vga::Vga;
 use mode13h_assets::scene_file::GOURAUD;
 use mode13h_lab::cost::calibrate;
 
-use super::{Drawing, shades, shading_of};
+use super::{Drawing, number, shades, shading_of};
 use crate::failure::Failure;
 use crate::host::clock;
 use crate::output;
@@ -43,10 +43,7 @@ pub(crate) struct ShadingOptions {
 
 /// A time for a frame on the command line.
 fn milliseconds(words: &str) -> Result<f32, String> {
-    match words.parse::<f32>() {
-        Ok(number) if number > 0.0 && duration(number).is_some() => Ok(number),
-        _ => Err("not a number of milliseconds above 0".to_string()),
-    }
+    number(words, " of milliseconds above 0", |time| *time > 0.0 && duration(*time).is_some())
 }
 
 /// Milliseconds as a duration; `None` if they are negative or too many for one.
