@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::support::workspace;
+
 /// The groups of cases, and the number of cases in each.
 const GROUPS: [(char, u32); 9] =
     [('S', 7), ('R', 14), ('C', 5), ('N', 9), ('T', 3), ('D', 4), ('P', 5), ('E', 1), ('F', 5)];
@@ -183,20 +185,11 @@ fn faults(list: &str, functions: &[Function]) -> Vec<String> {
     faults
 }
 
-/// The functions in all Rust files below a directory of the project, except this file, whose samples do not count.
-fn read_sources(directory: &str, functions: &mut Vec<Function>) {
-    let entries = fs::read_dir(crate::support::workspace::root().join(directory)).expect(directory);
-    let mut names: Vec<_> = entries.map(|entry| entry.expect(directory).file_name()).collect();
-    names.sort();
-    for name in names {
-        let path = format!("{directory}/{}", name.to_str().expect("a name in Unicode"));
-        let absolute = crate::support::workspace::root().join(&path);
-        if absolute.is_dir() {
-            read_sources(&path, functions);
-        } else if path.ends_with(".rs") && path != "tests/render/hard_cases.rs" {
-            functions.extend(self::functions(&path, &fs::read_to_string(&absolute).expect(&path)));
-        }
-    }
+/// The functions in [`SOURCES`], except those in this file, whose samples do not count.
+fn all_functions() -> Vec<Function> {
+    let files = SOURCES.into_iter().flat_map(workspace::sources);
+    let files = files.filter(|(path, _)| path != "tests/render/hard_cases.rs");
+    files.flat_map(|(path, text)| functions(&path, &text)).collect()
 }
 
 /// For every case the tests in the sources, in backticks, ready to paste into its row.
@@ -231,12 +224,9 @@ fn reported_by_case() -> String {
 
 #[test]
 fn every_hard_case_has_tests_that_report() {
-    let list = crate::support::workspace::root().join("tests/HARD_CASES.md");
+    let list = workspace::root().join("tests/HARD_CASES.md");
     let list = fs::read_to_string(list).expect("tests/HARD_CASES.md");
-    let mut functions = Vec::new();
-    for directory in SOURCES {
-        read_sources(directory, &mut functions);
-    }
+    let functions = all_functions();
     let faults = faults(&list, &functions);
     if !faults.is_empty() {
         println!("The tests that there are:\n\n{}", tests_by_case(&functions));
@@ -253,14 +243,11 @@ fn every_hard_case_has_tests_that_report() {
 /// The table of the long run in docs/measurements.md names existing tests.
 #[test]
 fn every_long_test_is_in_the_measurements() {
-    let document = crate::support::workspace::root().join("docs/measurements.md");
+    let document = workspace::root().join("docs/measurements.md");
     let document = fs::read_to_string(document).expect("docs/measurements.md");
     let table = document.split("<!-- tried -->").nth(1).and_then(|rest| rest.split("<!-- /tried -->").next());
     let table = table.expect("a table between two marks");
-    let mut functions = Vec::new();
-    for directory in SOURCES {
-        read_sources(directory, &mut functions);
-    }
+    let functions = all_functions();
     let long = functions.iter().filter(|function| function.is_test && function.name.split('_').nth(1) == Some("long"));
     let mut names: Vec<_> = long.map(|function| function.name.as_str()).collect();
     names.sort_unstable();

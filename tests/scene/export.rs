@@ -3,9 +3,9 @@
 
 use std::fs;
 use std::io::{self, Cursor, Write};
-use std::path::Path;
 
 use crate::support::tried::Tried;
+use crate::support::workspace::names_in;
 use mode13h::export::{
     self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Png, Scale, write_atomically,
 };
@@ -58,15 +58,6 @@ fn patterned() -> Vga {
         *byte = (i * 7 + i / 320 * 13) as u8;
     }
     vga
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").file_name().into_string().expect("a name"))
-        .collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -38,24 +38,12 @@ fn errors_print_what_they_display() {
 /// Every error of the library does so, through the one macro.
 #[test]
 fn every_error_prints_what_it_displays() {
-    let mut folders = ["src", "assets/src"].map(|folder| workspace::root().join(folder)).to_vec();
     let mut errors = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            if path.extension().is_none_or(|extension| extension != "rs") {
-                continue;
-            }
-            let text = std::fs::read_to_string(&path).expect("text");
-            for (_, rest) in text.match_indices("Error for ").map(|(at, start)| text.split_at(at + start.len())) {
-                let name = rest.split(|c: char| !c.is_alphanumeric()).next().expect("a name");
-                assert!(text.contains(&format!("debug_as_display!({name});")), "{}: {name}", path.display());
-                errors += 1;
-            }
+    for (path, text) in ["src", "assets/src"].into_iter().flat_map(workspace::sources) {
+        for (_, rest) in text.match_indices("Error for ").map(|(at, start)| text.split_at(at + start.len())) {
+            let name = rest.split(|c: char| !c.is_alphanumeric()).next().expect("a name");
+            assert!(text.contains(&format!("debug_as_display!({name});")), "{path}: {name}");
+            errors += 1;
         }
     }
     assert!(errors >= 18, "{errors}");

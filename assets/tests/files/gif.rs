@@ -17,8 +17,8 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 
 use crate::support::film::{Image, decode};
-use crate::support::names_in;
 use crate::support::tried::Tried;
+use crate::support::workspace::names_in;
 
 // The oracle
 

@@ -9,9 +9,9 @@ use mode13h::palette::{BIOS, Palette, Ramp, Rgb, builtin, cube, dac6_to_8, to_da
 use mode13h_assets::palette_file::{self, FORMATS, Format, LoadErrorKind, PaletteError, PaletteErrorKind, Place};
 use proptest::prelude::*;
 
-use crate::support::names_in;
 use crate::support::property::property;
 use crate::support::tried::Tried;
+use crate::support::workspace::names_in;
 
 fn format(name: &str) -> &'static Format {
     Format::by_name(name).unwrap()

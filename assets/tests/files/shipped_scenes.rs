@@ -15,8 +15,8 @@ use mode13h_assets::auto_palette;
 use mode13h_assets::scene_file::Loaded;
 use mode13h_assets::shipped::{self, Shipped};
 
-use crate::support::names_in;
 use crate::support::tried::Tried;
+use crate::support::workspace::names_in;
 
 fn scene(name: &str) -> Scene {
     load(&name.parse().unwrap_or_else(|error| panic!("{name}: {error}")))

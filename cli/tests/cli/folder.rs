@@ -10,6 +10,7 @@ use mode13h::palette::Rgb;
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub(crate) use crate::support::workspace::names_in;
 use crate::support::workspace::root;
 
 /// A folder that is removed in the end.
@@ -149,15 +150,6 @@ pub(crate) fn signalled(child: Child, signal: &str) -> Output {
     let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("started");
     assert!(killed.success());
     child.wait_with_output().expect("waited")
-}
-
-/// The names in a folder, sorted.
-pub(crate) fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 /// Size, colour type and density of a picture: pixels per unit, across and down.

@@ -236,27 +236,14 @@ fn documents_name_the_keys_of_the_window() {
     let help = help.split("Keys in the window:\n").nth(1).expect("keys");
     assert_eq!(documented, keys_of(help), "docs/program.md and --help");
     // What the program asks for.
-    let sources = crate::support::workspace::root().join("cli/src");
     let mut asked = BTreeSet::new();
-    let mut folders = vec![sources];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            if path.extension().is_none_or(|extension| extension != "rs") {
-                continue;
-            }
-            let text = std::fs::read_to_string(&path).expect("text");
-            // Its tests ask for others.
-            let text = text.split("#[cfg(test)]").next().expect("a program");
-            for (at, start) in text.match_indices("Key::") {
-                let name: String = text[at + start.len()..].chars().take_while(char::is_ascii_alphanumeric).collect();
-                if name.len() == 1 {
-                    asked.insert(name);
-                }
+    for (_, text) in crate::support::workspace::sources("cli/src") {
+        // Its tests ask for others.
+        let text = text.split("#[cfg(test)]").next().expect("a program");
+        for (at, start) in text.match_indices("Key::") {
+            let name: String = text[at + start.len()..].chars().take_while(char::is_ascii_alphanumeric).collect();
+            if name.len() == 1 {
+                asked.insert(name);
             }
         }
     }
