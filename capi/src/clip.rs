@@ -24,7 +24,7 @@ fn distance<D: Door, K: Kept>(plane: usize, corner: &Wide<D::Wide, K>, near: Opt
     let zero = D::Wide::default();
     let distance = match (plane, near) {
         (0, None) => zero,
-        (0, Some(near)) => D::minus(corner.w, near),
+        (0, Some(near)) => corner.w - near,
         (1 | 2, _) => D::distance(corner.w, corner.x, plane == 1),
         _ => D::distance(corner.w, corner.y, plane == 3),
     };

@@ -1,5 +1,7 @@
 //! Conversion of the caller's vertices to the rasterizer's: in floats, or in 16.16 without floats.
 
+use core::ops::{Add, Mul, Neg, Sub};
+
 use mode13h::fixed::{I16F16, I24F8, U8F8};
 use mode13h::raster::Vertex;
 
@@ -107,7 +109,14 @@ pub(crate) trait Door {
     /// A number in memory.
     type Raw: Copy + Default;
     /// A number wide enough for clipping.
-    type Wide: Copy + PartialOrd + Default;
+    type Wide: Copy
+        + PartialOrd
+        + Default
+        + From<i32>
+        + Add<Output = Self::Wide>
+        + Sub<Output = Self::Wide>
+        + Mul<Output = Self::Wide>
+        + Neg<Output = Self::Wide>;
 
     /// The near plane of a mesh, which must be above 0.
     fn near(mesh: &Mesh) -> Outcome<Self::Wide>;
@@ -122,11 +131,15 @@ pub(crate) trait Door {
     /// Values as attributes.
     fn attributes(values: &Values<Self::Wide>) -> Attributes;
     /// The distance of a point from a plane of the guard band: `LIMIT·w ± c`.
-    fn distance(w: Self::Wide, c: Self::Wide, positive: bool) -> Self::Wide;
-    /// The difference of two numbers.
-    fn minus(a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn distance(w: Self::Wide, c: Self::Wide, positive: bool) -> Self::Wide {
+        let limit = Self::at_limit(w, true);
+        if positive { limit + c } else { limit - c }
+    }
     /// `LIMIT·w`, or its negative.
-    fn at_limit(w: Self::Wide, positive: bool) -> Self::Wide;
+    fn at_limit(w: Self::Wide, positive: bool) -> Self::Wide {
+        let limit = Self::Wide::from(LIMIT) * w;
+        if positive { limit } else { -limit }
+    }
     /// The point between `a`, inside, and `b`, outside, whose distances from a plane are `inside` and `outside`. With
     /// `by`, values are linear on the screen: it has `b`'s w and the point's.
     fn between(
@@ -209,20 +222,6 @@ impl Door for Floats {
         }
     }
 
-    fn distance(w: f64, c: f64, positive: bool) -> f64 {
-        let limit = f64::from(LIMIT) * w;
-        if positive { limit + c } else { limit - c }
-    }
-
-    fn minus(a: f64, b: f64) -> f64 {
-        a - b
-    }
-
-    fn at_limit(w: f64, positive: bool) -> f64 {
-        let limit = f64::from(LIMIT) * w;
-        if positive { limit } else { -limit }
-    }
-
     /// The mean of both, each weighted with the other's distance, so that no digits are lost between numbers of the
     /// same sign.
     fn between(a: f64, b: f64, inside: f64, outside: f64, by: Option<[f64; 2]>) -> f64 {
@@ -286,20 +285,6 @@ impl Door for Fixed {
             fog: byte_of_fixed(values.fog),
             slope: values.slope.map(byte_of_fixed),
         }
-    }
-
-    fn distance(w: i64, c: i64, positive: bool) -> i64 {
-        let limit = i64::from(LIMIT) * w;
-        if positive { limit + c } else { limit - c }
-    }
-
-    fn minus(a: i64, b: i64) -> i64 {
-        a - b
-    }
-
-    fn at_limit(w: i64, positive: bool) -> i64 {
-        let limit = i64::from(LIMIT) * w;
-        if positive { limit } else { -limit }
     }
 
     /// Rounded to the nearest, halves upward. Numbers are below 2⁴⁵ (12 bits of the limit, 32 of w and a sign),
