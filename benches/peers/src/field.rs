@@ -5,7 +5,7 @@ use mode13h::span::Kernel;
 use crate::allegro::{Allegro, Fixed, Float};
 use crate::candidate::{Candidate, Triangle};
 use crate::drawing::{Drawing, Material};
-use crate::ours::{Batches, Effects, OneByOne};
+use crate::ours::{Effects, Plain};
 use crate::retrofire::Retrofire;
 
 /// Our kernels that the machine supports; one column each.
@@ -32,7 +32,7 @@ pub fn all<'a>(
         if drawing.has_texture() {
             all.push(Box::new(Effects::new(triangles, drawing, material, kernel)));
         } else {
-            all.push(Box::new(Batches::new(triangles, drawing, kernel)));
+            all.push(Box::new(Plain::batches(triangles, drawing, kernel)));
         }
     }
     let fastest = kernels.last().copied().unwrap_or_default();
@@ -41,7 +41,7 @@ pub fn all<'a>(
     }
     // One triangle per call, with the slowest and with the fastest kernel.
     for &kernel in kernels.first().into_iter().chain(kernels.last()).filter(|_| !drawing.has_texture()) {
-        all.push(Box::new(OneByOne::new(triangles, drawing, kernel)));
+        all.push(Box::new(Plain::one_by_one(triangles, drawing, kernel)));
     }
     all
 }

@@ -56,21 +56,26 @@ fn shaded(triangles: &[Triangle], drawing: Drawing) -> Vec<([Vertex; 3], Interpo
     triangles.iter().map(of).collect()
 }
 
-/// The raster, one triangle per call.
-pub struct OneByOne {
+/// The raster: one triangle per call, or one list per call. Packing the batches of a list is timed, too.
+pub struct Plain {
     triangles: Vec<([Vertex; 3], Interpolation)>,
     target: Target,
+    is_list: bool,
 }
 
-impl OneByOne {
-    pub fn new(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
-        Self { triangles: shaded(triangles, drawing), target: Target::new(drawing, kernel) }
+impl Plain {
+    pub fn one_by_one(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
+        Self { triangles: shaded(triangles, drawing), target: Target::new(drawing, kernel), is_list: false }
+    }
+
+    pub fn batches(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
+        Self { is_list: true, ..Self::one_by_one(triangles, drawing, kernel) }
     }
 }
 
-impl Candidate for OneByOne {
+impl Candidate for Plain {
     fn name(&self) -> String {
-        format!("one by one, {}", self.target.kernel)
+        format!("{}, {}", if self.is_list { "batches" } else { "one by one" }, self.target.kernel)
     }
 
     fn is_ours(&self) -> bool {
@@ -83,44 +88,14 @@ impl Candidate for OneByOne {
 
     fn draw(&mut self) {
         let mut raster = self.target.raster();
-        for (vertices, interpolation) in &self.triangles {
-            raster.triangle(vertices, *interpolation);
+        let triangles = self.triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation));
+        if self.is_list {
+            raster.triangles(triangles);
+        } else {
+            for (vertices, interpolation) in triangles {
+                raster.triangle(vertices, interpolation);
+            }
         }
-    }
-
-    fn read(&mut self, bytes: &mut [u8]) {
-        self.target.read(bytes);
-    }
-}
-
-/// The raster, one list per call. Packing the batches is timed, too.
-pub struct Batches {
-    triangles: Vec<([Vertex; 3], Interpolation)>,
-    target: Target,
-}
-
-impl Batches {
-    pub fn new(triangles: &[Triangle], drawing: Drawing, kernel: Kernel) -> Self {
-        Self { triangles: shaded(triangles, drawing), target: Target::new(drawing, kernel) }
-    }
-}
-
-impl Candidate for Batches {
-    fn name(&self) -> String {
-        format!("batches, {}", self.target.kernel)
-    }
-
-    fn is_ours(&self) -> bool {
-        true
-    }
-
-    fn clear(&mut self, index: u8) {
-        self.target.bytes.fill(index);
-    }
-
-    fn draw(&mut self) {
-        let list = self.triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation));
-        self.target.raster().triangles(list);
     }
 
     fn read(&mut self, bytes: &mut [u8]) {
