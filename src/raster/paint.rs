@@ -14,7 +14,7 @@ use super::reference::fixed16::ShadePlane16;
 use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::{RESEED, ShadePlane};
-use super::vintage::{RowRamp, VintageTriangle};
+use super::vintage::VintageTriangle;
 use crate::fixed::IS_SMALL;
 #[cfg(feature = "alloc")]
 use crate::lanes::{LANES, each};
@@ -36,8 +36,6 @@ pub(super) enum RowShader {
         reseeded: bool,
     },
     Vintage(VintageTriangle),
-    /// The vintage shades of one row.
-    Ramp(RowRamp),
     Fixed16(ShadePlane16),
     Hyperbolic(HyperbolicPlane),
     #[cfg(feature = "alloc")]
@@ -85,71 +83,25 @@ impl RowShader {
         }
     }
 
-    /// Paints `row` into `pixels`, which is the frame's whole row.
+    /// Paints the drawn pixels of `row`.
     #[inline]
-    pub(super) fn row(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
+    pub(super) fn row(&self, row: &Row, to: &mut impl RowTarget) {
         match self {
-            Self::Flat(index) => span(pixels, row.range(), drawn, |pixels| pixels.fill(*index)),
-            Self::Linear { plane, reseeded } => starts(row, plane, *reseeded, |range, start| {
-                span(pixels, range, drawn, |pixels| kernel.fill(pixels, start, plane.step()));
-            }),
-            _ => self.row_of_another_kind(row, pixels, kernel, drawn),
+            Self::Flat(index) => to.linear(row.range(), u16::from(*index) << 8, 0),
+            Self::Linear { plane, reseeded } => {
+                starts(row, plane, *reseeded, |range, start| to.linear(range, start, plane.step()));
+            }
+            _ => self.row_of_another_kind(row, to),
         }
     }
 
     #[inline(never)]
-    fn row_of_another_kind(&self, row: &Row, pixels: &mut [u8], kernel: Kernel, drawn: &mut DrawStats) {
+    fn row_of_another_kind(&self, row: &Row, to: &mut impl RowTarget) {
         match self {
             Self::Vintage(triangle) if !IS_SMALL => {
-                Self::Ramp(triangle.ramp(row.y)).row_of_another_kind(row, pixels, kernel, drawn)
+                triangle.ramp(row.y).spans(row.x0..row.x1, |range, shade, step| to.linear(range, shade, step));
             }
-            Self::Ramp(ramp) if !IS_SMALL => ramp.spans(row.x0..row.x1, |range, shade, step| {
-                span(pixels, range, drawn, |pixels| kernel.fill(pixels, shade, step));
-            }),
-            _ => pieces(row, |_, x, end| {
-                span(pixels, x as usize..end as usize, drawn, |pixels| self.fill(row, x, pixels));
-            }),
-        }
-    }
-
-    /// Paints `row` where it is nearer than `depths`, which is the depth buffer's whole row.
-    #[inline]
-    pub(super) fn row_where_nearer<D: Cell>(
-        &self,
-        row: &Row,
-        pixels: &mut [u8],
-        depths: &mut [D],
-        plane: &DepthPlane,
-        drawn: &mut DrawStats,
-    ) {
-        let mut tested = Tested { row: row.y, pixels, depths, plane, drawn };
-        match self {
-            Self::Flat(index) => tested.span(row.range(), |pixels, depths, z, dz| {
-                depth::fill_nearer(pixels, depths, u16::from(*index) << 8, 0, z, dz)
-            }),
-            Self::Linear { plane: shade, reseeded } => starts(row, shade, *reseeded, |range, start| {
-                tested.linear_span(range, start, shade.step());
-            }),
-            _ => self.row_of_another_kind_where_nearer(row, &mut tested),
-        }
-    }
-
-    #[inline(never)]
-    fn row_of_another_kind_where_nearer<D: Cell>(&self, row: &Row, tested: &mut Tested<'_, D>) {
-        match self {
-            Self::Vintage(triangle) if !IS_SMALL => {
-                Self::Ramp(triangle.ramp(row.y)).row_of_another_kind_where_nearer(row, tested);
-            }
-            Self::Ramp(ramp) if !IS_SMALL => {
-                ramp.spans(row.x0..row.x1, |range, shade, step| tested.linear_span(range, shade, step));
-            }
-            _ => pieces(row, |_, x, end| {
-                let mut bytes = [0; RESEED as usize];
-                let bytes = &mut bytes[..(end - x) as usize];
-                self.fill(row, x, bytes);
-                let range = x as usize..end as usize;
-                tested.span(range, |pixels, depths, z, dz| depth::copy_nearer(pixels, depths, bytes, z, dz));
-            }),
+            _ => pieces(row, |_, x, end| to.piece(x as usize..end as usize, |pixels| self.fill(row, x, pixels))),
         }
     }
 
@@ -166,7 +118,7 @@ impl RowShader {
             }
             Self::Flat(index) => pixels.fill(*index),
             // Their rows are split where they are reseeded.
-            Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) => {}
+            Self::Linear { .. } | Self::Vintage(_) => {}
             #[cfg(feature = "alloc")]
             Self::Float(_) => {}
         }
@@ -187,22 +139,14 @@ impl RowShader {
         };
         match (self, dither) {
             (Self::Linear { plane, reseeded }, _) => {
-                let start = if *reseeded {
-                    plane.start(x, row.y)
-                } else {
-                    // Columns are below 4,096; the sum is modulo 2¹⁶.
-                    let steps = (x - row.origin) as u16;
-                    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
-                };
-                linear(piece, column, start, plane.step(), 128);
-            }
-            (Self::Vintage(triangle), _) if !IS_SMALL => {
-                Self::Ramp(triangle.ramp(row.y)).piece(row, x, piece, dither, kernel)
+                linear(piece, column, start_at(plane, row, x, *reseeded), plane.step(), 128);
             }
             // At most 64 pixels.
-            (Self::Ramp(ramp), _) if !IS_SMALL => ramp.spans(x..x + piece.len() as i32, |range, shade, step| {
-                linear(&mut piece[range.start - column..range.end - column], range.start, shade, step, 0);
-            }),
+            (Self::Vintage(triangle), _) if !IS_SMALL => {
+                triangle.ramp(row.y).spans(x..x + piece.len() as i32, |range, shade, step| {
+                    linear(&mut piece[range.start - column..range.end - column], range.start, shade, step, 0);
+                });
+            }
             (_, None) | (Self::Flat(_), _) => self.fill(row, x, piece),
             (_, Some(thresholds)) => {
                 let mut shades = [0; RESEED as usize];
@@ -238,7 +182,7 @@ impl RowShader {
                     *shade = (float::quotient(x - at.start + i as i32, at.n, at.d, at.range) * 256.0) as u16;
                 }
             }
-            Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Ramp(_) | Self::Float(_) => {}
+            Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Float(_) => {}
         }
     }
 }
@@ -283,27 +227,50 @@ fn fixed16_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
     plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
 }
 
-/// Passes the pixels of a span to its loop, and counts them.
-#[inline]
-fn span(pixels: &mut [u8], range: Range<usize>, drawn: &mut DrawStats, fill: impl FnOnce(&mut [u8])) {
-    if let Some(pixels) = pixels.get_mut(range) {
-        drawn.spans += 1;
-        // At most 4,096.
-        drawn.pixels += pixels.len() as u32;
-        fill(pixels);
+/// Destination of a row's pixels, which counts them.
+pub(super) trait RowTarget {
+    /// Writes a span of shades in 8.8.
+    fn linear(&mut self, range: Range<usize>, shade: u16, step: u16);
+
+    /// Writes a span of at most 64 pixels, which `fill` computes.
+    fn piece(&mut self, range: Range<usize>, fill: impl FnOnce(&mut [u8]));
+}
+
+/// The whole row of a frame.
+pub(super) struct InRow<'a> {
+    pub(super) pixels: &'a mut [u8],
+    pub(super) kernel: Kernel,
+    pub(super) drawn: &'a mut DrawStats,
+}
+
+impl RowTarget for InRow<'_> {
+    #[inline]
+    fn linear(&mut self, range: Range<usize>, shade: u16, step: u16) {
+        let kernel = self.kernel;
+        self.piece(range, |pixels| kernel.fill(pixels, shade, step));
+    }
+
+    #[inline]
+    fn piece(&mut self, range: Range<usize>, fill: impl FnOnce(&mut [u8])) {
+        if let Some(pixels) = self.pixels.get_mut(range) {
+            self.drawn.spans += 1;
+            // At most 4,096.
+            self.drawn.pixels += pixels.len() as u32;
+            fill(pixels);
+        }
     }
 }
 
-/// A row with a depth test.
-struct Tested<'a, D> {
-    row: i32,
-    pixels: &'a mut [u8],
-    depths: &'a mut [D],
-    plane: &'a DepthPlane,
-    drawn: &'a mut DrawStats,
+/// The whole row of a frame and of its depth buffer, written where the plane is nearer.
+pub(super) struct WhereNearer<'a, D> {
+    pub(super) row: i32,
+    pub(super) pixels: &'a mut [u8],
+    pub(super) depths: &'a mut [D],
+    pub(super) plane: &'a DepthPlane,
+    pub(super) drawn: &'a mut DrawStats,
 }
 
-impl<D: Cell> Tested<'_, D> {
+impl<D: Cell> WhereNearer<'_, D> {
     /// Passes the pixels and depths of a span to its loop, which returns the number of pixels written.
     #[inline]
     fn span(&mut self, range: Range<usize>, fill: impl FnOnce(&mut [u8], &mut [D], i64, i64) -> u32) {
@@ -317,11 +284,20 @@ impl<D: Cell> Tested<'_, D> {
             self.drawn.pixels += fill(pixels, depths, z, self.plane.step());
         }
     }
+}
 
-    /// A span of shades in 8.8.
+impl<D: Cell> RowTarget for WhereNearer<'_, D> {
     #[inline]
-    fn linear_span(&mut self, range: Range<usize>, shade: u16, step: u16) {
+    fn linear(&mut self, range: Range<usize>, shade: u16, step: u16) {
         self.span(range, |pixels, depths, z, dz| depth::fill_nearer(pixels, depths, shade, step, z, dz));
+    }
+
+    #[inline]
+    fn piece(&mut self, range: Range<usize>, fill: impl FnOnce(&mut [u8])) {
+        let mut bytes = [0; RESEED as usize];
+        let Some(bytes) = bytes.get_mut(..range.len()) else { return };
+        fill(bytes);
+        self.span(range, |pixels, depths, z, dz| depth::copy_nearer(pixels, depths, bytes, z, dz));
     }
 }
 
@@ -337,16 +313,26 @@ pub(super) fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: im
     pieces(row, |seed, x, end| span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed)));
 }
 
-/// The shade at the first pixel drawn of a row that is not reseeded: its exact start lies at the row's origin.
+/// The shade at the first pixel drawn of a row that is not reseeded.
 #[inline]
 pub(super) fn linear_start(row: &Row, shade: &ShadePlane) -> u16 {
-    shade.start(row.origin, row.y).wrapping_add(shade.step().wrapping_mul((row.x0 - row.origin) as u16))
+    start_at(shade, row, row.x0, false)
+}
+
+/// The shade at column `x` of a row: exact if it is reseeded there, otherwise continued from the row's origin.
+#[inline]
+pub(super) fn start_at(shade: &ShadePlane, row: &Row, x: i32, reseeded: bool) -> u16 {
+    if reseeded {
+        return shade.start(x, row.y);
+    }
+    // Columns are below 4,096; the sum is modulo 2¹⁶.
+    shade.start(row.origin, row.y).wrapping_add(shade.step().wrapping_mul((x - row.origin) as u16))
 }
 
 /// Splits the drawn part of a row every 64 pixels from its origin. `piece` gets the column of each split, or of the
 /// origin, and the columns between which its pixels are drawn.
 #[inline]
-fn pieces(row: &Row, mut piece: impl FnMut(i32, i32, i32)) {
+pub(super) fn pieces(row: &Row, mut piece: impl FnMut(i32, i32, i32)) {
     let mut seed = row.origin + (row.x0 - row.origin) / RESEED * RESEED;
     let mut x = row.x0;
     while x < row.x1 {
@@ -374,15 +360,16 @@ mod tests {
         });
         let triangle = SortedTriangle::new(&vertices);
         let depths = DepthPlane::new(&triangle);
-        let ramp = RowShader::Ramp(VintageTriangle::new(&triangle, triangle.shades()).ramp(7));
         let paints = Interpolation::INTERPOLATED.iter().map(|interpolation| RowShader::new(&triangle, *interpolation));
-        for paint in paints.chain([RowShader::Flat(9), ramp]) {
+        for paint in paints.chain([RowShader::Flat(9)]) {
             let mut rows = 0;
             triangle.rows(WIDTH, Rect { x0: 0, y0: 0, x1: WIDTH, y1: 20 }, |row| {
                 let (mut bytes, mut nearer, mut cells) = ([3; 200], [3; 200], [0_u32; 200]);
                 let (mut drawn, mut tested) = (DrawStats::default(), DrawStats::default());
-                paint.row(&row, &mut bytes, Kernel::PORTABLE, &mut drawn);
-                paint.row_where_nearer(&row, &mut nearer, &mut cells, &depths, &mut tested);
+                let (kernel, plane) = (Kernel::PORTABLE, &depths);
+                paint.row(&row, &mut InRow { pixels: &mut bytes, kernel, drawn: &mut drawn });
+                let (pixels, depths) = (&mut nearer[..], &mut cells[..]);
+                paint.row(&row, &mut WhereNearer { row: row.y, pixels, depths, plane, drawn: &mut tested });
                 assert_eq!(nearer, bytes, "{row:?} of {paint:?}");
                 assert_eq!((tested.pixels, drawn.pixels), (row.range().len() as u32, row.range().len() as u32));
                 rows += 1;

@@ -190,7 +190,7 @@ pub fn row_of(
     let clip = Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
     let mut found = None;
     if interpolation == Some(Interpolation::GouraudVintage) {
-        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, _| found = Some(row));
+        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, &mut |row| found = Some(row));
     } else {
         triangle.rows(width, clip, |row| found = Some(row));
     }

@@ -6,7 +6,7 @@ use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::{Frame, Rect};
 use super::interpolation::Interpolation;
-use super::paint::{RowShader, linear_start};
+use super::paint::{InRow, RowShader, WhereNearer, linear_start};
 use super::reference::cover::{Row, SortedTriangle};
 use super::reference::depth::DepthPlane;
 use super::reference::shade::{RESEED, ShadePlane};
@@ -135,9 +135,6 @@ impl<'a, D: Cell> Raster<'a, D> {
     #[inline]
     pub(super) fn triangle_by_rows(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         let (triangle, interpolation) = (SortedTriangle::new(vertices), simplest(vertices, interpolation));
-        if !interpolation.has_exact_cover() {
-            return self.draw_vintage(&triangle);
-        }
         if !IS_COMPACT && self.depth.is_none() {
             let mut plane = None;
             match interpolation {
@@ -155,22 +152,26 @@ impl<'a, D: Cell> Raster<'a, D> {
         // Created for the first row: half of the triangles of a detailed model cover no pixel.
         let (mut paint, mut plane) = (None, None);
         let (width, clip) = (self.frame.width(), self.clip);
-        let draw = |row: Row| {
+        let mut draw = |row: Row| {
             drawn.covered += (row.x1 - row.x0) as u32;
-            let y = row.y as u32;
+            let (y, kernel, drawn) = (row.y as u32, self.kernel, &mut drawn);
             let Some(pixels) = self.frame.row_mut(y) else { return };
             let paint = paint.get_or_insert_with(|| RowShader::new(&triangle, interpolation));
             // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-            let Some(depth) = depth else {
-                return paint.row(&row, pixels, self.kernel, &mut drawn);
-            };
+            let Some(depth) = depth else { return paint.row(&row, &mut InRow { pixels, kernel, drawn }) };
             let base = depth.base;
             let Some(depths) = depth.row_mut(y) else { return };
             let plane = plane.get_or_insert_with(|| DepthPlane::new(&triangle).raised_by(base));
-            paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
+            paint.row(&row, &mut WhereNearer { row: row.y, pixels, depths, plane, drawn });
         };
-        triangle.rows(width, clip, draw);
+        if interpolation.has_exact_cover() {
+            triangle.rows(width, clip, draw);
+        } else if triangle.doubled_area != 0 {
+            // As the sources print them. Depths are those of the triangle's plane, also beyond its edges, where they may
+            // wrap.
+            VintageTriangle::new(&triangle, triangle.shades()).rows(width, clip, &mut draw);
+        }
         drawn
     }
 
@@ -190,32 +191,6 @@ impl<'a, D: Cell> Raster<'a, D> {
             kernel.fill_first(length, pixels, shade, step);
         });
         drawn.covered = drawn.pixels;
-        drawn
-    }
-
-    /// Draws a triangle with rows and shades as the sources print them. Depths are those of the triangle's plane, also
-    /// beyond its edges, where they may wrap.
-    #[inline(never)]
-    fn draw_vintage(&mut self, triangle: &SortedTriangle) -> DrawStats {
-        let mut drawn = DrawStats::default();
-        if triangle.doubled_area == 0 {
-            return drawn;
-        }
-        let mut plane = None;
-        let (width, clip) = (self.frame.width(), self.clip);
-        VintageTriangle::new(triangle, triangle.shades()).rows(width, clip, |row, ramp| {
-            drawn.covered += (row.x1 - row.x0) as u32;
-            let y = row.y as u32;
-            let Some(pixels) = self.frame.row_mut(y) else { return };
-            let paint = RowShader::Ramp(ramp);
-            let Some(depth) = &mut self.depth else {
-                return paint.row(&row, pixels, self.kernel, &mut drawn);
-            };
-            let base = depth.base;
-            let Some(depths) = depth.row_mut(y) else { return };
-            let plane = plane.get_or_insert_with(|| DepthPlane::new(triangle).raised_by(base));
-            paint.row_where_nearer(&row, pixels, depths, plane, &mut drawn);
-        });
         drawn
     }
 }

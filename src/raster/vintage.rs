@@ -123,10 +123,10 @@ impl VintageTriangle {
         }
     }
 
-    /// Calls `row` for every row with a pixel inside `clip`, from the top down, with its shades. `frame_width` is the
-    /// whole frame's; `clip` lies inside the frame.
-    #[inline]
-    pub(super) fn rows(&self, frame_width: u32, clip: Rect, mut row: impl FnMut(Row, RowRamp)) {
+    /// Calls `row` for every row with a pixel inside `clip`, from the top down. `frame_width` is the whole
+    /// frame's; `clip` lies inside the frame.
+    #[inline(never)]
+    pub(super) fn rows(&self, frame_width: u32, clip: Rect, row: &mut dyn FnMut(Row)) {
         // A clip rectangle lies inside a frame of at most 4,096 pixels a side.
         let (clip_x0, clip_x1, width) = (clip.x0 as i32, clip.x1 as i32, frame_width as i32);
         let (first, end) = (self.long.y.max(clip.y0 as i32), self.end.min(clip.y1 as i32));
@@ -144,7 +144,7 @@ impl VintageTriangle {
                 let (origin, x_end) = (ramp.x0.max(0), ramp.x1.min(width));
                 let (x0, x1) = (origin.max(clip_x0), x_end.min(clip_x1));
                 if x0 < x1 {
-                    row(Row { y: long.y, origin, x0, x1, last: x_end - 1 }, ramp);
+                    row(Row { y: long.y, origin, x0, x1, last: x_end - 1 });
                 }
                 long.down();
                 short.down();

@@ -17,6 +17,7 @@ use crate::lanes::{LANES, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
 use crate::raster::interpolation::Interpolation;
+use crate::raster::paint::{pieces, start_at};
 use crate::raster::pick::{Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
@@ -470,26 +471,14 @@ impl<'a> EffectSpans<'a> {
 
     /// Adds the drawn part of a row of the face being walked; `target` has the pixels and cells.
     pub(super) fn add_row(&mut self, row: &Row, list: &mut SpanList, target: &mut Target<'_>) {
-        let mut number = (row.x0 - row.origin) / RESEED;
-        let mut x = row.x0;
-        while x < row.x1 {
-            let seed = row.origin + number * RESEED;
-            let end = row.x1.min(seed + RESEED);
+        pieces(row, |seed, x, end| {
             if !list.has_room(1) {
                 self.draw_spans(list, target);
             }
             let Some(WalkedFace { shade, depth, values, texture, .. }) = &self.listed.walked else { return };
             let reseeds = self.listed.wanted.reseeds;
             let value = |plane: &ShadePlane, reseeds: bool| {
-                let start = match reseeds {
-                    true => plane.start(seed, row.y),
-                    // Columns are below 4,096; the sum is modulo 2¹⁶.
-                    false => {
-                        let steps = (seed - row.origin) as u16;
-                        plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul(steps))
-                    }
-                };
-                u32::from(start) | u32::from(plane.step()) << 16
+                u32::from(start_at(plane, row, seed, reseeds)) | u32::from(plane.step()) << 16
             };
             let paint = value(shade, reseeds);
             let mut of_slots = [0; Value::MAX_COUNT];
@@ -501,6 +490,7 @@ impl<'a> EffectSpans<'a> {
             let z = depth.fixed_at(x, row.y);
             let at = [x as usize; 2];
             if let Some(k) = list.push(at, (end - x) as usize, paint, [z << 8, depth.step() << 8]) {
+                let number = (seed - row.origin) / RESEED;
                 let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);
@@ -518,9 +508,7 @@ impl<'a> EffectSpans<'a> {
                     None => {}
                 }
             }
-            number += 1;
-            x = end;
-        }
+        });
     }
 }
 

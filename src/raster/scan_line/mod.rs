@@ -39,6 +39,7 @@ pub use self::active::EdgePair;
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;
+use super::paint::InRow;
 use super::reference::cover::{Row, SortedTriangle};
 use super::triangle::Raster;
 use super::vertex::Vertex;
@@ -262,7 +263,7 @@ impl Sweep {
         let pair = list.pair_mut(slot);
         let row = Row { y, x0, x1, ..pair.row };
         if !paint(pair.order, &row, pixels, raster.kernel, &mut self.drawn) {
-            pair.paint().row(&row, pixels, raster.kernel, &mut self.drawn);
+            pair.paint().row(&row, &mut InRow { pixels, kernel: raster.kernel, drawn: &mut self.drawn });
         }
     }
 }
