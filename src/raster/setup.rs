@@ -460,7 +460,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::pick::{MAX_COLUMNS, MAX_ROWS};
+    use super::super::reference::cover::SortedTriangle;
+    use super::super::vertex::Vertex;
     use super::*;
+    use crate::fixed::{I24F8, U8F8};
     use crate::raster::columns::ScreenPos;
     use crate::simd::compiled_for_each_level;
     use crate::span::Kernel;
@@ -509,7 +512,10 @@ mod tests {
                         prop_assert_eq!(setup.rows[lane], 0);
                         continue;
                     }
-                    let plane = DepthPlane::of_corners(*corners).raised_by(depth_base);
+                    let vertices = corners.map(|(x, y, depth)| {
+                        Vertex::of_projected(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth)
+                    });
+                    let plane = DepthPlane::new(&SortedTriangle::new(&vertices)).raised_by(depth_base);
                     let (column, row) = (setup.column[lane], setup.row[lane]);
                     prop_assert_eq!(setup.cell[lane], (row - 3) * width as i32 + column);
                     for j in 0..=MAX_ROWS {

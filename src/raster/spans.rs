@@ -33,7 +33,7 @@ use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, IS_COMPACT};
-use crate::lanes::{LANES, three};
+use crate::lanes::LANES;
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
@@ -47,12 +47,8 @@ pub(super) struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    fn depth_plane(&self, pick: Pick) -> DepthPlane {
-        let columns = &self.triangles.columns;
-        DepthPlane::of_corners(three(self.triangles.corners(pick), |i| {
-            let at = columns.at[i];
-            (at.x(), at.y(), columns.depth[i])
-        }))
+    fn depth_plane(&self, k: usize) -> DepthPlane {
+        DepthPlane::new(&SortedTriangle::new(&self.triangles.vertices(&self.picks, k)))
     }
 
     /// The most pieces of a row of a large triangle.
@@ -329,7 +325,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                 continue;
             }
             if DEPTHS {
-                setup.put_depth_plane(i, &of.depth_plane(pick).raised_by(layout.depth_base));
+                setup.put_depth_plane(i, &of.depth_plane(number * LANES + i).raised_by(layout.depth_base));
             }
             shades.set_up_large(i, &setup);
             let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);

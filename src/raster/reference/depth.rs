@@ -48,34 +48,6 @@ impl DepthPlane {
         Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
     }
 
-    /// The plane through three corners (x, y, depth) in any order, without branching on that order.
-    #[inline]
-    pub(in crate::raster) fn of_corners(corners: [(i32, i32, u32); 3]) -> Self {
-        let [(x0, y0, d0), (x1, y1, d1), (x2, y2, d2)] =
-            three(corners, |(x, y, depth)| (i64::from(x), i64::from(y), i64::from(depth)));
-        let (dx1, dy1, dx2, dy2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
-        let signed = dx1 * dy2 - dx2 * dy1;
-        // −1 to negate a number, 0 not to.
-        let turned = signed >> 63;
-        let area = Divisor::new((signed ^ turned) - turned);
-        let gx = (d1 - d0) * dy2 - (d2 - d0) * dy1;
-        let gy = (d2 - d0) * dx1 - (d1 - d0) * dx2;
-        let (gx, gy) = (gradient((gx ^ turned) - turned, &area), gradient((gy ^ turned) - turned, &area));
-        // The first by (y, x), as one number: x is within ±2²⁰.
-        let key = |x: i64, y: i64| (y << 32) + x;
-        let (mut first, mut depth) = (key(x0, y0), d0);
-        for (x, y, d) in [(x1, y1, d1), (x2, y2, d2)] {
-            let is_before = key(x, y) < first;
-            first = if is_before { key(x, y) } else { first };
-            depth = if is_before { d } else { depth };
-        }
-        let x = i64::from(first as i32);
-        let y = (first - x) >> 32;
-        let origin =
-            ((depth << 24) + (1 << 23)).wrapping_add(gx.wrapping_mul(128 - x)).wrapping_add(gy.wrapping_mul(128 - y));
-        Self { origin, per_column: gx.wrapping_mul(256), per_row: gy.wrapping_mul(256) }
-    }
-
     /// The plane with `base` added to its depths, modulo 2³².
     #[must_use]
     #[inline]
