@@ -1,9 +1,12 @@
 //! The first stages of a span: shades from their source, with an image, or mixed from three channels.
 
+use alloc::vec::Vec;
+
 use super::Buffers;
 use super::curve::CurvePlane;
 use super::listing::FaceCorners;
-use super::pipeline::{Mix, PixelPipeline, ShadeSource};
+use super::lit::Lit;
+use super::pipeline::{Mix, PixelLighting, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
@@ -15,97 +18,76 @@ use crate::span::{Kernel, lookup, lookup_row};
 impl Spans<'_> {
     /// The bytes of all spans before fog and blending.
     pub(super) fn shade(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let n = self.pixels();
-        let Some(stage) = pipeline.texture() else {
-            match pipeline.channels() {
-                None => self.shade_bytes(buffers, pipeline, kernel),
-                Some(mix) => {
-                    self.shade_channels(buffers, pipeline, kernel);
-                    self.mix(buffers, mix, pipeline.dither());
-                }
-            }
-            return;
-        };
-        let mix = pipeline.channels();
+        let (n, mix) = (self.pixels(), pipeline.channels());
+        let Buffers { bytes, other, channels, shades } = &mut *buffers;
         match mix {
-            Some(_) => self.shade_channels(buffers, pipeline, kernel),
-            None => self.shade_bytes(buffers, pipeline, kernel),
+            None => {
+                let [shades, ..] = shades;
+                self.shade_each((&mut [bytes], &mut [shades], other), pipeline, kernel);
+            }
+            Some(_) => {
+                let (mut channels, mut shades) = (channels.each_mut(), shades.each_mut());
+                self.shade_each((&mut channels, &mut shades, other), pipeline, kernel);
+            }
         }
-        let Buffers { bytes, other, channels, .. } = &mut *buffers;
-        self.texels(stage, other, kernel);
-        let Some(mix) = mix else { return lookup_row(&mut bytes[..n], other, stage.tables[0]) };
-        for (channel, table) in channels.iter_mut().zip(stage.tables) {
-            lookup_row(&mut channel[..n], other, table);
+        if let Some(stage) = pipeline.texture() {
+            self.texels(stage, other, kernel);
+            if mix.is_none() {
+                return lookup_row(&mut bytes[..n], other, stage.tables[0]);
+            }
+            for (channel, table) in channels.iter_mut().zip(stage.tables) {
+                lookup_row(&mut channel[..n], other, table);
+            }
         }
-        self.mix(buffers, mix, pipeline.dither());
-    }
-
-    /// The bytes of pixels with a single shade.
-    #[inline(never)]
-    fn shade_bytes(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let Buffers { bytes, other, shades: [shades, ..], .. } = buffers;
-        match pipeline.source() {
-            ShadeSource::Shaded(interpolation) => {
-                self.fill(Shaded { value: None, interpolation, dither: pipeline.dither() }, bytes, kernel);
-            }
-            ShadeSource::NormalTable(table) => {
-                for (i, out) in [&mut *bytes, other].into_iter().enumerate() {
-                    self.fill(Shaded::linear(Value::Slope(i)), out, kernel);
-                }
-                lookup(&mut bytes[..self.pixels()], other, table);
-            }
-            ShadeSource::Lit(light) => {
-                self.light_each::<1>(kernel, &light, [shades]);
-                self.round(shades, pipeline.dither(), bytes);
-            }
-            ShadeSource::LitEvery(spacing, light) => {
-                let thresholds = pipeline.dither().unwrap_or(Thresholds::HALVES);
-                self.light_some::<1>(kernel, (spacing, &light), thresholds, [bytes]);
-            }
-            ShadeSource::Curved(limits) => {
-                let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 1);
-                self.each(shades, plane, |plane, span, shades| {
-                    plane.fill((span.x, span.y), 0, shades, kernel);
-                });
-                self.round(shades, pipeline.dither(), bytes);
-            }
+        if let Some(mix) = mix {
+            self.mix(buffers, mix, pipeline.dither());
         }
     }
 
-    /// The bytes of pixels with three channels.
+    /// The bytes of one shade, or of three channels, which are dithered when they are mixed.
     #[inline(never)]
-    fn shade_channels(&self, buffers: &mut Buffers, pipeline: &PixelPipeline<'_>, kernel: Kernel) {
-        let Buffers { channels, shades, .. } = buffers;
-        let mut bytes = channels.each_mut().map(|channel| &mut channel[..]);
-        let mut shades = shades.each_mut().map(|shades| &mut shades[..]);
+    fn shade_each<const N: usize>(
+        &self,
+        (bytes, shades, other): (&mut [&mut Vec<u8>; N], &mut [&mut Vec<u16>; N], &mut [u8]),
+        pipeline: &PixelPipeline<'_>,
+        kernel: Kernel,
+    ) where
+        for<'l> &'l dyn PixelLighting: Lit<N>,
+    {
+        let has_channels = N > 1;
+        let dither = pipeline.dither().filter(|_| !has_channels);
+        let channel = |i: usize| has_channels.then_some(Value::Channel(i));
         match pipeline.source() {
-            // A table of normals gives one shade; there is none for channels.
-            ShadeSource::Shaded(_) | ShadeSource::NormalTable(_) => {
-                let interpolation = match pipeline.source() {
+            ShadeSource::NormalTable(table) if !has_channels => {
+                self.fill(Shaded::linear(Value::Slope(0)), bytes[0], kernel);
+                self.fill(Shaded::linear(Value::Slope(1)), other, kernel);
+                return lookup(&mut bytes[0][..self.pixels()], other, table);
+            }
+            // The table gives one shade; there is none for channels.
+            source @ (ShadeSource::Shaded(_) | ShadeSource::NormalTable(_)) => {
+                let interpolation = match source {
                     ShadeSource::Shaded(interpolation) => interpolation,
                     _ => Interpolation::default(),
                 };
                 for (i, bytes) in bytes.iter_mut().enumerate() {
-                    let value = Some(Value::Channel(i));
-                    self.fill(Shaded { value, interpolation, dither: None }, bytes, kernel);
+                    self.fill(Shaded { value: channel(i), interpolation, dither }, bytes, kernel);
                 }
                 return;
             }
             ShadeSource::LitEvery(spacing, light) => {
-                return self.light_some::<3>(kernel, (spacing, &light), Thresholds::HALVES, bytes);
+                let bytes = bytes.each_mut().map(|of| &mut of[..]);
+                return self.light_some(kernel, (spacing, &light), dither.unwrap_or(Thresholds::HALVES), bytes);
             }
-            ShadeSource::Lit(light) => self.light_each::<3>(kernel, &light, shades.each_mut().map(|of| &mut **of)),
+            ShadeSource::Lit(light) => self.light_each(kernel, &light, shades.each_mut().map(|of| &mut of[..])),
             ShadeSource::Curved(limits) => {
                 for (i, shades) in shades.iter_mut().enumerate() {
-                    let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, 3);
-                    self.each(shades, plane, |plane, span, shades| {
-                        plane.fill((span.x, span.y), i, shades, kernel);
-                    });
+                    let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, N);
+                    self.each(shades, plane, |plane, span, shades| plane.fill((span.x, span.y), i, shades, kernel));
                 }
             }
         }
         for (shades, bytes) in shades.iter().zip(bytes) {
-            self.round(shades, None, bytes);
+            self.round(shades, dither, bytes);
         }
     }
 
