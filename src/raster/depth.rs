@@ -132,7 +132,9 @@ impl DepthMemory {
     }
 
     /// The depth buffer of the next frame, as if cleared. Nothing may be drawn outside `within`, and no depth may be 0
-    /// or above 2³⁰, unless `within` is [`Rect::EVERYWHERE`].
+    /// or above 2³⁰, unless `within` is [`Rect::EVERYWHERE`]. Called once a frame, and not inlined, so that
+    /// `.ci/off_is_free` sees it.
+    #[inline(never)]
     pub(super) fn next(&mut self, frame: &Frame<'_>, within: Rect) -> Option<DepthBuffer<'_>> {
         let shape = (frame.width(), frame.rows());
         let is_bounded = within != Rect::EVERYWHERE;

@@ -44,11 +44,9 @@ use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{Lanes8, compiled_for_each_level};
-use crate::span::depth::{Cells, copy_nearer};
-use crate::span::depth_test::copy_span;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float;
-use crate::span::list::{DepthSteps, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
+use crate::span::list::{DepthSteps, Span, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -222,46 +220,28 @@ impl<'a> Shaded8<'a> {
     }
 
     #[inline(always)]
-    fn draw_by<S: Lanes8>(
-        &mut self,
-        s: S,
-        stage: &impl Stage,
-        list: &mut SpanList,
-        Target { pixels, cells, kernel }: &mut Target<'_>,
-    ) {
+    fn draw_by<S: Lanes8>(&mut self, s: S, stage: &impl Stage, list: &mut SpanList, target: &mut Target<'_>) {
         let (count, mut first, mut nearer) = (list.count(), 0, 0);
         while first < count {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
-                let ((length, paint), starts) = (list.fill_of(k), self.starts.of(k));
+                let (Span { at, length, paint }, starts) = (list.span(k), self.starts.of(k));
                 // The face in the lower half, the first pixel in the upper.
                 let fill = Fill {
                     face: (paint & 0xFFFF) as usize,
                     #[cfg(feature = "alloc")]
                     first: paint.cast_signed() >> 16,
                     starts,
-                    length: length.min(SpanBytes::LENGTH),
+                    length: (length as usize).min(SpanBytes::LENGTH),
                 };
                 let bytes = self.bytes.of_mut(k - first);
                 if !stage.fill(s, &self.listed, &fill, bytes) {
-                    exact_bytes(&self.listed, &fill, list.offset(k), bytes);
+                    exact_bytes(&self.listed, &fill, at, bytes);
                 }
             }
             for k in first..end {
-                let (length, bytes) = (list.fill_of(k).0, self.bytes.of(k - first));
-                let (at, (cell, depths)) = (list.offset(k) as usize, list.depth_at(k));
-                let row = pixels.get_mut(at..).unwrap_or_default();
-                match cells {
-                    None => kernel.copy(length, row, bytes),
-                    Some(Cells::U32(cells)) => {
-                        let cells = cells.get_mut(cell..).unwrap_or_default();
-                        nearer += copy_span(s, (row, cells), (bytes, length), true, depths);
-                    }
-                    Some(Cells::U16(cells)) => {
-                        let ([z, dz], cells) = (depths, cells.get_mut(cell..).unwrap_or_default());
-                        nearer += copy_nearer(row, cells, &bytes[..length.min(bytes.len())], z >> 8, dz >> 8);
-                    }
-                }
+                let (Span { at, length, .. }, depth) = (list.span(k), list.depth(k));
+                nearer += target.write(s, (at, depth), (self.bytes.of(k - first), length as usize), true);
             }
             first = end;
         }

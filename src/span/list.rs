@@ -8,7 +8,8 @@
 //! spans that do not lie inside the pixels, are dropped by compression, so no branch depends on how many there are.
 
 use super::Kernel;
-use super::depth::{Cell, Cells, fill_nearer};
+use super::depth::{Cell, Cells, copy_nearer, copy_nearer_keep_depth, fill_nearer};
+use super::depth_test::copy_span;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
 
@@ -266,13 +267,6 @@ impl SpanList {
         self.count.min(CAPACITY)
     }
 
-    /// The length of span `k`, which is below [`count`](Self::count), and its shade with the step in the upper half.
-    #[inline(always)]
-    pub(crate) fn fill_of(&self, k: usize) -> (usize, u32) {
-        let k = k.min(CAPACITY);
-        (self.length[k] as usize, self.paint[k])
-    }
-
     /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it lies
     /// inside and there is room. Returns its index.
     pub(crate) fn push(
@@ -295,20 +289,6 @@ impl SpanList {
         Some(k)
     }
 
-    /// The offset of the first cell of span `k`, its depth, and the change per pixel, both with the integer part in the
-    /// upper half.
-    #[inline(always)]
-    pub(crate) fn depth_at(&self, k: usize) -> (usize, [i64; 2]) {
-        let k = k.min(CAPACITY);
-        (self.cell()[k] as usize, [self.z[k], self.dz[k]])
-    }
-
-    /// The offset of the first pixel of span `k`.
-    #[inline(always)]
-    pub(crate) fn offset(&self, k: usize) -> u32 {
-        self.at[k.min(CAPACITY)]
-    }
-
     /// Empties the list after its spans have been drawn, which wrote `nearer` pixels.
     pub(crate) fn clear(&mut self, nearer: u32) {
         // As in `draw_by`.
@@ -329,49 +309,25 @@ impl SpanList {
         cells.len() >= self.cells as usize
     }
 
-    /// At most `CAPACITY`.
-    #[cfg(simd_x86_64)]
+    /// Span `k`, which is below [`count`](Self::count).
     #[inline(always)]
-    pub(super) fn len(&self) -> usize {
-        self.count.min(CAPACITY)
+    pub(crate) fn span(&self, k: usize) -> Span {
+        let k = k.min(CAPACITY);
+        Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
+    }
+
+    /// The depth of span `k`, which is below [`count`](Self::count).
+    #[inline(always)]
+    pub(crate) fn depth(&self, k: usize) -> SpanDepth {
+        let k = k.min(CAPACITY);
+        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
+        SpanDepth { cell: cell[k], z: self.z[k], dz: self.dz[k] }
     }
 
     /// The spans, in order.
     #[inline(always)]
     pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
-        let Self { at, length, paint, count, .. } = self;
-        (0..(*count).min(CAPACITY)).map(|k| Span { at: at[k], length: length[k], paint: paint[k] })
-    }
-
-    /// Offsets of the spans' first cells.
-    #[inline(always)]
-    fn cell(&self) -> &Numbers {
-        if self.cells_are_pixels() { &self.at } else { &self.cell }
-    }
-
-    /// The spans, in order, with their depths.
-    #[inline(always)]
-    pub(super) fn tested_spans(&self) -> impl Iterator<Item = (Span, SpanDepth)> {
-        let (Self { at, length, paint, z, dz, count, .. }, cell) = (self, self.cell());
-        (0..(*count).min(CAPACITY)).map(|k| {
-            (Span { at: at[k], length: length[k], paint: paint[k] }, SpanDepth { cell: cell[k], z: z[k], dz: dz[k] })
-        })
-    }
-
-    /// Span `k`, which is below `len`.
-    #[cfg(simd_x86_64)]
-    #[inline(always)]
-    pub(super) fn span(&self, k: usize) -> Span {
-        let k = k.min(CAPACITY);
-        Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
-    }
-
-    /// The depth of span `k`, which is below `len`.
-    #[cfg(simd_x86_64)]
-    #[inline(always)]
-    pub(super) fn depth(&self, k: usize) -> SpanDepth {
-        let k = k.min(CAPACITY);
-        SpanDepth { cell: self.cell()[k], z: self.z[k], dz: self.dz[k] }
+        (0..self.count()).map(|k| self.span(k))
     }
 
     /// Fills each span with this function.
@@ -405,7 +361,8 @@ impl SpanList {
         mut fill: impl FnMut(usize, u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
     ) -> u32 {
         let mut written = 0;
-        for (k, (Span { at, length, paint }, SpanDepth { cell, z, dz })) in self.tested_spans().enumerate() {
+        for k in 0..self.count() {
+            let (Span { at, length, paint }, SpanDepth { cell, z, dz }) = (self.span(k), self.depth(k));
             // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
@@ -527,23 +484,53 @@ pub(crate) struct Target<'a> {
     pub(crate) kernel: Kernel,
 }
 
+impl Target<'_> {
+    /// Writes the first `length` bytes, at most 64, to the pixels from `at` on, if there are cells only where they are
+    /// nearer, and with `keeps` their depths to the cells. Returns the number of nearer pixels.
+    #[inline(always)]
+    pub(crate) fn write<S: Lanes8>(
+        &mut self,
+        s: S,
+        (at, SpanDepth { cell, z, dz }): (u32, SpanDepth),
+        (bytes, length): (&[u8], usize),
+        keeps: bool,
+    ) -> u32 {
+        let (row, cell) = (self.pixels.get_mut(at as usize..).unwrap_or_default(), cell as usize);
+        match &mut self.cells {
+            None => self.kernel.copy(length, row, bytes),
+            Some(Cells::U32(cells)) => {
+                let cells = cells.get_mut(cell..).unwrap_or_default();
+                return copy_span(s, (row, cells), (bytes, length), keeps, [z, dz]);
+            }
+            Some(Cells::U16(cells)) => {
+                let (bytes, cells) = (&bytes[..length.min(bytes.len())], cells.get_mut(cell..).unwrap_or_default());
+                return match keeps {
+                    true => copy_nearer(row, cells, bytes, z >> 8, dz >> 8),
+                    false => copy_nearer_keep_depth(row, cells, bytes, z >> 8, dz >> 8),
+                };
+            }
+        }
+        0
+    }
+}
+
 /// A span of a list.
 #[derive(Clone, Copy)]
-pub(super) struct Span {
+pub(crate) struct Span {
     /// The offset of its first pixel.
-    pub(super) at: u32,
-    pub(super) length: u32,
+    pub(crate) at: u32,
+    pub(crate) length: u32,
     /// The shade, with the step in the upper half.
-    pub(super) paint: u32,
+    pub(crate) paint: u32,
 }
 
 /// The depth of a span, with the integer part in the upper half, modulo 2⁶⁴.
 #[derive(Clone, Copy)]
-pub(super) struct SpanDepth {
+pub(crate) struct SpanDepth {
     /// The offset of its first cell.
-    pub(super) cell: u32,
-    pub(super) z: i64,
-    pub(super) dz: i64,
+    pub(crate) cell: u32,
+    pub(crate) z: i64,
+    pub(crate) dz: i64,
 }
 
 /// Eight elements from this index on.

@@ -347,16 +347,6 @@ impl Kernel {
         self.level
     }
 
-    /// Returns whether its vectors hold eight 32-bit numbers.
-    #[cfg(feature = "alloc")]
-    #[inline]
-    pub(crate) fn has_wide_lanes(self) -> bool {
-        #[cfg(simd_x86_64)]
-        return self.avx2().is_some();
-        #[cfg(not(simd_x86_64))]
-        return false;
-    }
-
     /// The proof that the processor has AVX2, if this kernel may use it.
     #[cfg(simd_x86_64)]
     #[inline]

@@ -6,6 +6,7 @@ use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{F32Lanes8, Lanes8};
 use crate::span::depth_test::{Masks, test_block, test_span};
+use crate::span::list::SpanDepth;
 use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.
@@ -153,8 +154,8 @@ impl Destination for Masked<'_> {
         let Some(row) = self.pixels.get_mut(at..) else { return };
         let (mut cells, mut depths) = (None, [0; 2]);
         if let Some(all) = &mut self.cells {
-            let (cell, [z, dz]) = spans.depth(i);
-            let Some(of_span) = all.get_mut(cell + before as usize..) else { return };
+            let SpanDepth { cell, z, dz } = spans.depth(i);
+            let Some(of_span) = all.get_mut((cell + before) as usize..) else { return };
             (cells, depths) = (Some(of_span), [z.wrapping_add(dz.wrapping_mul(before.into())), dz]);
         }
         // Most spans are a single block, whose mask needs no memory.

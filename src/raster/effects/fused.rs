@@ -62,8 +62,6 @@ impl Direct<'_> {
     #[inline(never)]
     fn show_fogged(self, spans: &Spans<'_>, fog: &[u8; 65_536], to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
         match self {
-            // With narrow vectors, stages are 3 % faster.
-            Self::Shades if !kernel.has_wide_lanes() => return None,
             Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
             Self::Texture { image, tint: DirectTint::None, .. } => {
                 show_texture(spans, image, Fogged((), fog), to, kernel)

@@ -91,9 +91,7 @@ use crate::fixed::{HAS_F64, IS_COMPACT};
 pub use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
-use crate::span::depth::{Cells, copy_nearer, copy_nearer_keep_depth};
-use crate::span::depth_test::copy_span;
-use crate::span::list::{SpanList, Target};
+use crate::span::list::{Span, SpanList, Target};
 pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
 
@@ -199,7 +197,8 @@ fn draw_listed(
     while first < list.count() {
         let spans = Spans::of(listed, list, first, &mut offsets);
         run_stages(&spans, pipeline, buffers, target.kernel);
-        nearer += write(&spans, pipeline, &mut buffers.bytes, target);
+        let (level, bytes) = (target.kernel.simd_level(), (&mut buffers.bytes[..], pipeline.blend()));
+        nearer += write(level, &spans, bytes, target, pipeline.keeps_depth);
         first += spans.count();
     }
     nearer
@@ -216,118 +215,37 @@ fn run_stages(spans: &Spans<'_>, pipeline: &PixelPipeline<'_>, buffers: &mut Buf
     }
 }
 
-/// Writes spans, entirely or where they are nearer. Returns the number of nearer pixels.
-fn write(
-    spans: &Spans<'_>,
-    pipeline: &PixelPipeline<'_>,
-    bytes: &mut [u8],
-    Target { pixels, cells, kernel }: &mut Target<'_>,
-) -> u32 {
-    let (level, blend, keeps) = (kernel.simd_level(), pipeline.blend(), pipeline.keeps_depth);
-    match cells {
-        Some(Cells::U32(cells)) if kernel.has_wide_lanes() => {
-            write_nearer(level, spans, (bytes, blend), (pixels, cells), keeps)
-        }
-        Some(Cells::U32(cells)) => write_nearer_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
-        Some(Cells::U16(cells)) => write_nearer_one_by_one(spans, (bytes, blend), (pixels, cells), keeps),
-        None => write_all(*kernel, *kernel, spans, (bytes, blend), pixels),
-    }
-}
-
 compiled_for_each_level! {
-    /// Writes spans without a depth test.
+    /// Writes spans, blended if there is a table; if there are cells, only where they are nearer. Returns the number of
+    /// nearer pixels.
     #[inline(never)]
-    fn write_all[][](
-        level: Kernel,
-        kernel: Kernel,
+    fn write[][](
         spans: &Spans<'_>,
         bytes: (&mut [u8], Option<&[u8; 65_536]>),
-        pixels: &mut [u8],
-    ) -> u32 {
-        write_all_by(kernel, spans, bytes, pixels)
-    }
-}
-
-#[inline(always)]
-fn write_all_by(
-    kernel: Kernel,
-    spans: &Spans<'_>,
-    (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
-    pixels: &mut [u8],
-) -> u32 {
-    for i in 0..spans.count() {
-        if let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) {
-            kernel.copy(spans.drawn(i).2, row, bytes);
-        }
-    }
-    0
-}
-
-compiled_for_each_level! {
-    /// Writes spans where they are nearer, and stores their depths if the pipeline keeps them.
-    #[inline(never)]
-    fn write_nearer[][](
-        spans: &Spans<'_>,
-        bytes: (&mut [u8], Option<&[u8; 65_536]>),
-        target: (&mut [u8], &mut [u32]),
+        target: &mut Target<'_>,
         keeps: bool,
-    ) -> u32 = write_nearer_by;
+    ) -> u32 = write_by;
 }
 
 #[inline(always)]
-fn write_nearer_by<S: Lanes8>(
+fn write_by<S: Lanes8>(
     s: S,
     spans: &Spans<'_>,
     (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
-    (pixels, cells): (&mut [u8], &mut [u32]),
+    target: &mut Target<'_>,
     keeps: bool,
 ) -> u32 {
     let mut nearer = 0;
     for i in 0..spans.count() {
-        let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) else { continue };
-        let ((cell, depths), length) = (spans.depth(i), spans.drawn(i).2);
-        nearer += copy_span(s, (row, cells.get_mut(cell..).unwrap_or_default()), (bytes, length), keeps, depths);
+        let (first, Span { at, length, .. }) = spans.drawn(i);
+        let bytes = &mut bytes[first..];
+        if let (Some(table), Some(row)) = (blend, target.pixels.get(at as usize..)) {
+            let n = bytes.len().min(length as usize);
+            lookup_row(&mut bytes[..n], row, table);
+        }
+        nearer += target.write(s, (at, spans.depth(i)), (bytes, length as usize), keeps);
     }
     nearer
-}
-
-/// [`write_nearer`] pixel by pixel, for depth buffers of 16 bits and for levels where vectors gain nothing.
-#[inline(never)]
-fn write_nearer_one_by_one<D: Cell>(
-    spans: &Spans<'_>,
-    (bytes, blend): (&mut [u8], Option<&[u8; 65_536]>),
-    (pixels, cells): (&mut [u8], &mut [D]),
-    keeps: bool,
-) -> u32 {
-    let mut nearer = 0;
-    for i in 0..spans.count() {
-        let Some((row, bytes)) = mixed(spans, i, (bytes, blend), pixels) else { continue };
-        let (cell, [z, dz]) = spans.depth(i);
-        let Some(cells) = cells.get_mut(cell..) else { continue };
-        let (bytes, z, dz) = (&bytes[..spans.drawn(i).2], z >> 8, dz >> 8);
-        nearer += match keeps {
-            true => copy_nearer(row, cells, bytes, z, dz),
-            false => copy_nearer_keep_depth(row, cells, bytes, z, dz),
-        };
-    }
-    nearer
-}
-
-/// The frame from the first drawn pixel of span `i` on, and the span's bytes, blended if there is a table.
-#[inline(always)]
-fn mixed<'a>(
-    spans: &Spans<'_>,
-    i: usize,
-    (bytes, blend): (&'a mut [u8], Option<&[u8; 65_536]>),
-    pixels: &'a mut [u8],
-) -> Option<(&'a mut [u8], &'a [u8])> {
-    let (first, at, length) = spans.drawn(i);
-    let (row, bytes) = (pixels.get_mut(at..)?, &mut bytes[first..]);
-    if let Some(table) = blend {
-        let n = length.min(bytes.len());
-        lookup_row(&mut bytes[..n], row, table);
-    }
-    Some((row, bytes))
 }
 
 compiled_for_each_level! {

@@ -105,7 +105,7 @@ impl Shades8 for Recorder<'_> {
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
                     singles: spans.fits_singles(i).then(|| spans.singles(i)),
-                    depth: spans.depth(i).1.map(|z| z >> 8),
+                    depth: [spans.depth(i).z, spans.depth(i).dz].map(|z| z >> 8),
                     levels: listed.levels().map_or_else(Vec::new, |(mapping, last)| levels(&spans, i, mapping, last)),
                     single_level: match listed.levels() {
                         None | Some((Some(Mapping::Affine), _)) => None,

@@ -14,7 +14,7 @@ use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
-use crate::span::list::SpanList;
+use crate::span::list::{self, SpanDepth, SpanList};
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
 
 /// The most pixels of a span.
@@ -97,7 +97,7 @@ impl<'a> Spans<'a> {
         offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
-            end += list.fill_of(k).0 as u32 + listed.mark(k).skipped();
+            end += list.span(k).length + listed.mark(k).skipped();
             if end as usize > PIXELS {
                 break;
             }
@@ -131,7 +131,7 @@ impl<'a> Spans<'a> {
         let mark = self.listed.mark(self.first + i);
         let (planes, lane) = self.listed.planes(mark.face());
         let [column, row] = mark.place();
-        let len = self.list.fill_of(self.first + i).0 + mark.skipped() as usize;
+        let len = (self.list.span(self.first + i).length + mark.skipped()) as usize;
         let first = self.pixels[i] as usize;
         Span { mark, x: planes.column[lane] + column, y: planes.row[lane] + row, first, len }
     }
@@ -175,7 +175,7 @@ impl<'a> Spans<'a> {
     /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn paint(&self, i: usize) -> u32 {
-        self.list.fill_of(self.first + i).1
+        self.list.span(self.first + i).paint
     }
 
     /// The linear values of span `i` that this tint reads.
@@ -299,23 +299,21 @@ impl<'a> Spans<'a> {
     #[inline(always)]
     pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
-        (self.list.offset(k) as usize, self.list.fill_of(k).0, self.listed.mark(k).skipped())
+        let span = self.list.span(k);
+        (span.at as usize, span.length as usize, self.listed.mark(k).skipped())
     }
 
-    /// Where the drawn pixels of span `i` are among those of all spans, where they lie in the frame, and how many there
-    /// are.
+    /// Where the drawn pixels of span `i` are among those of all spans, and the span.
     #[inline(always)]
-    pub(super) fn drawn(&self, i: usize) -> (usize, usize, usize) {
+    pub(super) fn drawn(&self, i: usize) -> (usize, list::Span) {
         let k = self.first + i;
-        let (first, skipped) = (self.pixels[i] as usize, self.listed.mark(k).skipped() as usize);
-        (first + skipped, self.list.offset(k) as usize, self.list.fill_of(k).0)
+        ((self.pixels[i] + self.listed.mark(k).skipped()) as usize, self.list.span(k))
     }
 
-    /// Where the first drawn pixel of span `i` lies in the depth buffer, its depth, and the change per pixel, both with
-    /// the integer part in the upper half.
+    /// The depth of the first drawn pixel of span `i`.
     #[inline(always)]
-    pub(super) fn depth(&self, i: usize) -> (usize, [i64; 2]) {
-        self.list.depth_at(self.first + i)
+    pub(super) fn depth(&self, i: usize) -> SpanDepth {
+        self.list.depth(self.first + i)
     }
 }
 

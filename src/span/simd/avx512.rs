@@ -132,7 +132,7 @@ pub(crate) fn fill_spans(_: Avx512, pixels: &mut [u8], spans: &SpanList) {
 unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     // SAFETY: 16 bytes; the load requires no alignment.
     let numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
-    for k in 0..spans.len() {
+    for k in 0..spans.count() {
         let Span { at, length, paint } = spans.span(k);
         // The shade in the lower half, the step in the upper.
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
@@ -361,7 +361,7 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
     let even_numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
     let odd_bytes = _mm_set1_epi16(0xFF00_u16.cast_signed());
     let mut nearer = 0;
-    for k in 0..spans.len() {
+    for k in 0..spans.count() {
         let (Span { at, length, paint }, SpanDepth { cell, z, dz }) = (spans.span(k), spans.depth(k));
         // SAFETY: by the caller's promise.
         let (mut row, mut cell) = unsafe { (pixels.add(at as usize), cells.add(cell as usize)) };

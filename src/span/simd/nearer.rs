@@ -71,7 +71,7 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usi
     // Pixels of all iterations, and per lane those that were not written, as a negative count. Sums are modulo 2³².
     let mut turned = 0_u32;
     let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());
-    let (mut number, count) = (0, spans.len());
+    let (mut number, count) = (0, spans.count());
     while number < count {
         // Spans are usually short: a loop of their own has registers for all its values.
         while number < count {
