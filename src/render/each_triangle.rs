@@ -1,11 +1,10 @@
 //! Every triangle of a frame with everything the raster would get, for the laboratory.
 
-use super::pick::Look;
-use super::pipelines::PipelineKey;
+use super::pipelines::Pipelines;
 use super::{RenderError, Renderer, Screen, Stats};
 use crate::palette::Ramp;
 use crate::raster::effects::{Attributes, PixelPipeline};
-use crate::raster::{DrawStats, Interpolation, Vertex};
+use crate::raster::{Interpolation, Vertex};
 use crate::scene::Scene;
 
 /// A triangle to be drawn.
@@ -49,29 +48,24 @@ impl Renderer {
     ) -> Result<Stats, RenderError> {
         let (mut stats, _) = self.prepare(scene, screen, None, true)?;
         self.last = None;
-        let is_integer = self.cache.plan.is_integer;
-        let kernel = self.kernel;
-        let Self { cache, scratch, .. } = self;
-        let pipelines = cache.pipelines(scene, kernel);
+        let Self { cache, scratch, kernel, .. } = self;
+        let pipelines = Pipelines { scene, cache, kernel: *kernel };
         scratch.each_run(scene, cache, &mut stats, &mut |object, run| {
-            let Look { surface, shading, effects, transparent, .. } = run.look;
-            let surfaces = cache.states[object].triangle_surfaces(&scene.objects()[object]);
+            let state = &cache.states[object];
+            let surfaces = state.triangle_surfaces(&scene.objects()[object]);
             for k in 0..run.picks.picks.len() {
                 let (vertices, interpolation) = run.vertices(k);
-                let face = (!is_integer).then(|| run.face(k));
-                let ramp = face.and_then(|face| pipelines.ramp(object, *surfaces.get(face)?));
+                let face = (!cache.plan.is_integer).then(|| run.face(k));
+                let ramp = face.map(|face| state.paints()[usize::from(surfaces[face])].ramp);
                 let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
-                if !effects {
+                if !run.look.effects {
                     visit(&plain);
                     continue;
                 }
-                let attributes = &run.attributes(k);
-                pipelines.with(PipelineKey { object, surface, shading }, |pipeline| {
-                    visit(&DrawnTriangle {
-                        effects: Some(DrawnEffects { attributes, transparent, pipeline }),
-                        ..plain
-                    });
-                    DrawStats::default()
+                let (attributes, transparent) = (&run.attributes(k), run.look.transparent);
+                pipelines.with(object, run.look, |pipeline| {
+                    let effects = Some(DrawnEffects { attributes, transparent, pipeline });
+                    visit(&DrawnTriangle { effects, ..plain });
                 });
             }
         });

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::integer::IntegerScratch;
 use super::pick::{Culler, Look, PickScratch, Picker, Run};
-use super::pipelines::{PipelineKey, Pipelines};
+use super::pipelines::Pipelines;
 use super::stats::Shares;
 use super::{Cache, HiddenSurfaces, Renderer, Stats};
 use crate::fixed::U8F8;
@@ -102,11 +102,8 @@ impl Painter<'_, '_> {
         if !look.effects {
             return self.raster.picks(triangles, picks, look.interpolation(), self.spans);
         }
-        let Look { surface, shading, .. } = look;
         let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);
-        self.pipelines.with(PipelineKey { object, surface, shading }, |pipeline| {
-            raster.picks_with_effects(triangles, picks, pipeline, scratch)
-        })
+        self.pipelines.with(object, look, |pipeline| raster.picks_with_effects(triangles, picks, pipeline, scratch))
     }
 
     /// Draws faces far to near.
@@ -182,7 +179,7 @@ impl Renderer {
             }
         }
         let culler = Some(Culler { clip: raster.clip(), kernel: *kernel });
-        let pipelines = cache.pipelines(scene, *kernel);
+        let pipelines = Pipelines { scene, cache, kernel: *kernel };
         let mut painter = Painter { pipelines, raster: &mut raster, spans, scratch: effects };
         let mut drawn = DrawStats::default();
         let path = (culler, deferred);
@@ -266,15 +263,13 @@ fn scan_line(
     let Painter { pipelines, raster, scratch, .. } = painter;
     raster.scan_line_with(triangles, lists, |i, row, pixels, kernel, drawn| {
         let face = &faces[i];
-        let Look { surface, shading, effects, .. } = face.look;
-        if !effects {
+        if !face.look.effects {
             return false;
         }
         let triangles = face.triangles(scene, cache, added);
         let picks = Picks { picks: &[face.pick], flat: if face.has_flat { &[face.flat] } else { &[] } };
-        pipelines.with(PipelineKey { object: face.object as usize, surface, shading }, |pipeline| {
+        pipelines.with(face.object as usize, face.look, |pipeline| {
             scratch.paint_row((&triangles, picks, 0), pipeline, row, pixels, kernel, drawn);
-            DrawStats::default()
         });
         true
     })

@@ -46,7 +46,6 @@ use alloc::vec::Vec;
 use self::hidden_surfaces::Scratch;
 use self::integer::IntegerPath;
 use self::object::ObjectState;
-use self::pipelines::Pipelines;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
 use crate::plan::{self, Change, Effect, FaceCounts, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
@@ -64,12 +63,10 @@ pub use pace::Pace;
 pub use stats::{Shares, Stats};
 
 /// Inputs of the last frame drawn, besides its objects.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Debug, Default)]
 struct Drawing {
-    screen: Screen,
-    background: u8,
-    hidden_surfaces: HiddenSurfaces,
-    settings: Settings,
+    /// With the entry of the background; `None` before the first frame.
+    made_for: Option<(Screen, u8, HiddenSurfaces, Settings)>,
     order: Vec<usize>,
     /// The palette: tables are computed from it, and ramps are ranges of it.
     palette: Option<Palette>,
@@ -84,15 +81,10 @@ struct Cache {
     tables: Tables,
     plan: Plan,
     integer: IntegerPath,
-    drawing: Option<Drawing>,
+    drawing: Drawing,
 }
 
 impl Cache {
-    /// Pixel pipelines of all surfaces.
-    fn pipelines<'a>(&'a self, scene: &'a Scene, kernel: Kernel) -> Pipelines<'a> {
-        Pipelines { scene, plan: &self.plan, states: &self.states, tables: &self.tables, kernel }
-    }
-
     /// The triangles of an object, if its vertices were computed.
     fn triangles<'a>(&'a self, scene: &'a Scene, object: usize) -> Option<Triangles<'a>> {
         let of_scene = scene.objects().get(object)?;
@@ -119,7 +111,7 @@ impl Cache {
 /// renderer.settings.mapping = Some(Mapping::Perspective);
 /// renderer.settings.accuracy = Some(Accuracy::WithinError(2.0));
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Renderer {
     /// How to draw; the scene's own settings apply where this is `None`.
     pub settings: Settings,
@@ -137,14 +129,7 @@ impl Renderer {
     /// A renderer with the default shading and the fastest kernel.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            settings: Settings::default(),
-            kernel: Kernel::default(),
-            overrides: Overrides::default(),
-            cache: Cache::default(),
-            scratch: Scratch::default(),
-            last: None,
-        }
+        Self::default()
     }
 
     /// A new renderer with the same settings, which draws the same bytes, for another thread.
@@ -347,15 +332,12 @@ impl Renderer {
         screen: Screen,
         mut triangle: impl FnMut(&[Vertex; 3], Interpolation),
     ) -> Result<Stats, RenderError> {
-        let (mut stats, _) = self.prepare(scene, screen, None, true)?;
-        self.last = None;
-        self.scratch.each_run(scene, &self.cache, &mut stats, &mut |_, run| {
-            for k in 0..run.picks.picks.len() {
-                let (vertices, interpolation) = run.vertices(k);
-                triangle(&vertices, if run.look.effects { Interpolation::default() } else { interpolation });
-            }
-        });
-        Ok(stats)
+        self.each_triangle(scene, screen, &mut |drawn| {
+            triangle(
+                drawn.vertices,
+                if drawn.effects.is_some() { Interpolation::default() } else { drawn.interpolation },
+            );
+        })
     }
 
     /// Makes the plan and the vertices of a frame, and draws nothing. For measuring their cost.
@@ -380,21 +362,14 @@ impl Renderer {
         }
         let settings = self.decide(scene, &view, whole);
 
-        let drawing = (screen, scene.background, self.cache.plan.hidden_surfaces(), settings);
+        let made_for = Some((screen, scene.background, self.cache.plan.hidden_surfaces(), settings));
         let palette = scene.palette.as_ref().or(shown);
-        let same = self.cache.drawing.as_ref().is_some_and(|last| {
-            (last.screen, last.background, last.hidden_surfaces, last.settings) == drawing
-                && last.order == self.cache.plan.order
-                && last.palette.as_ref() == palette
-        });
-        let mut changed = !same;
-        if !same {
-            let (screen, background, hidden_surfaces, settings) = drawing;
+        let (last, order) = (&mut self.cache.drawing, &self.cache.plan.order);
+        let mut changed = last.made_for != made_for || last.order != *order || last.palette.as_ref() != palette;
+        if changed {
+            (last.made_for, last.palette) = (made_for, palette.cloned());
             // The existing list is reused.
-            let mut order = self.cache.drawing.take().map_or_else(Vec::new, |last| last.order);
-            order.clone_from(&self.cache.plan.order);
-            let palette = palette.cloned();
-            self.cache.drawing = Some(Drawing { screen, background, hidden_surfaces, settings, order, palette });
+            last.order.clone_from(order);
         }
 
         let mut stats = Stats::new(&settings, self.kernel, self.cache.plan.hidden_surfaces());
@@ -467,11 +442,5 @@ impl Renderer {
     /// Returns whether the last frame may be left as it is if nothing has changed.
     fn keeps_frames(&self) -> bool {
         self.overrides.get(Effect::Transform) != Some(true)
-    }
-}
-
-impl Default for Renderer {
-    fn default() -> Self {
-        Self::new()
     }
 }

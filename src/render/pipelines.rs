@@ -1,17 +1,19 @@
 //! Pixel pipelines of surfaces, assembled from the plan, the material and the tables.
 
+use super::Cache;
 use super::budget::limits;
 use super::object::ObjectState;
 use super::paint::SurfaceMaterial;
+use super::pick::Look;
 use super::pixel_light::PixelLight;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
-use crate::palette::{Palette, Ramp};
+use crate::palette::Palette;
 use crate::plan::FaceShading;
 use crate::plan::stages::Dither;
 use crate::plan::{ObjectPlan, Plan};
+use crate::raster::Interpolation;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureStage};
-use crate::raster::{DrawStats, Interpolation};
 use crate::scene::Scene;
 use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
@@ -56,14 +58,8 @@ pub(super) fn ensure_tables(
         }
         for (material, paint) in object.materials.iter().zip(state.paints()) {
             let image = image(plan, material, paint);
-            if let Some(image) = image {
-                tables.ensure_levels(image);
-            }
-            match image {
-                Some(image) if channels => tables.ensure_channels(image),
-                Some(image) => tables.ensure_shades(Some(image)),
-                None if plan.stages().neutral_image => tables.ensure_shades(None),
-                None => {}
+            if image.is_some() || plan.stages().neutral_image {
+                tables.ensure_shades(image, channels);
             }
             if paint.blend != Blend::Opaque || plan.stages().neutral_blend {
                 tables.ensure_blend(paint.blend);
@@ -72,77 +68,46 @@ pub(super) fn ensure_tables(
     }
 }
 
-/// The surface and the shading that a pixel pipeline is for.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct PipelineKey {
-    pub(super) object: usize,
-    pub(super) surface: u16,
-    pub(super) shading: FaceShading,
-}
-
 /// The pixel pipelines of a frame's surfaces.
 #[derive(Clone, Copy)]
 pub(super) struct Pipelines<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) plan: &'a Plan,
-    pub(super) states: &'a [ObjectState],
-    pub(super) tables: &'a Tables,
+    pub(super) cache: &'a Cache,
     pub(super) kernel: Kernel,
 }
 
 impl Pipelines<'_> {
-    fn paint(&self, object: usize, surface: u16) -> Option<&SurfaceMaterial> {
-        self.states.get(object)?.paints().get(usize::from(surface))
-    }
-
-    /// The palette entries of a surface's shades.
-    pub(super) fn ramp(&self, object: usize, surface: u16) -> Option<Ramp> {
-        self.paint(object, surface).map(|paint| paint.ramp)
-    }
-
-    /// Passes the pixel pipeline of an object's surface to `draw`. A surface that does not exist is not drawn.
-    pub(super) fn with(
+    /// Passes the pixel pipeline of faces of an object to `draw`.
+    pub(super) fn with<T>(
         &self,
-        PipelineKey { object, surface, shading }: PipelineKey,
-        draw: impl FnOnce(&PixelPipeline<'_>) -> DrawStats,
-    ) -> DrawStats {
-        let (Some(plan), Some(state), Some(paint)) =
-            (self.plan.objects().get(object), self.states.get(object), self.paint(object, surface))
-        else {
-            return DrawStats::default();
-        };
-        let Some(material) = self.scene.objects().get(object).and_then(|o| o.materials.get(usize::from(surface)))
-        else {
-            return DrawStats::default();
-        };
+        object: usize,
+        Look { surface, shading, .. }: Look,
+        draw: impl FnOnce(&PixelPipeline<'_>) -> T,
+    ) -> T {
+        let Cache { plan, states, tables, .. } = self.cache;
+        let (plan, state) = (&plan.objects[object], &states[object]);
+        let material = &self.scene.objects()[object].materials[usize::from(surface)];
+        let paint = &state.paints()[usize::from(surface)];
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.stages().dither;
-        let channels = plan.stages().has_channels().then(|| self.tables.mix(dither != Dither::None));
+        let channels = plan.stages().has_channels().then(|| tables.mix(dither != Dither::None));
         let image = image(plan, material, paint);
-        let texture_look = match image {
-            Some(image) => {
-                let texture = image.texture;
-                let texels = Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok();
-                let tables =
-                    if channels.is_some() { self.tables.channels(image) } else { self.tables.shades(Some(image)) };
-                texels.zip(tables).map(|(texels, tables)| {
-                    let mapping = if paint.texture_size.is_some() { plan.stages().mapping } else { Mapping::Affine };
-                    TextureStage { texels, levels: self.tables.levels(image), mapping, tables }
-                })
+        let texels = match image {
+            Some(Image { texture, .. }) => {
+                Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok()
             }
-            None if plan.stages().neutral_image && channels.is_none() => {
-                let texels = Texels::new(&ONE_TEXEL, 0, 0).ok();
-                texels.zip(self.tables.shades(None)).map(|(texels, tables)| TextureStage {
-                    texels,
-                    levels: None,
-                    mapping: Mapping::Affine,
-                    tables,
-                })
-            }
+            None if plan.stages().neutral_image && channels.is_none() => Texels::new(&ONE_TEXEL, 0, 0).ok(),
             None => None,
         };
+        let texture =
+            texels.zip(tables.shades(image, channels.is_some())).map(|(texels, tables_of_image)| TextureStage {
+                texels,
+                levels: image.and_then(|image| tables.levels(image)),
+                mapping: if paint.texture_size.is_some() { plan.stages().mapping } else { Mapping::Affine },
+                tables: tables_of_image,
+            });
         let blends = paint.blend != Blend::Opaque || plan.stages().neutral_blend;
-        let look = PixelPipeline {
+        draw(&PixelPipeline {
             source: source(plan, shading, channels.is_some(), state.normal_table(surface), &light),
             channels,
             dither: match dither {
@@ -153,12 +118,11 @@ impl Pipelines<'_> {
                 Dither::By(pattern) => Some(pattern.thresholds()),
                 Dither::None => None,
             },
-            texture: texture_look,
-            fog: if plan.stages().has_fog() { self.tables.fog(self.scene.fog.map(|fog| fog.color)) } else { None },
-            blend: if blends { self.tables.blend(paint.blend) } else { None },
+            texture,
+            fog: if plan.stages().has_fog() { tables.fog() } else { None },
+            blend: if blends { tables.blend(paint.blend) } else { None },
             keeps_depth: paint.blend == Blend::Opaque,
-        };
-        draw(&look)
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 //! another of its inputs has changed. Those of an image that nobody holds any more are dropped when
 //! another image needs a table.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::mem;
 
@@ -33,17 +34,16 @@ struct Made<T> {
 #[derive(Debug, Default)]
 pub(super) struct Tables {
     palette: Option<Palette>,
-    fog: Option<(Rgb, Lut64K)>,
+    fog: Option<(Option<Rgb>, Lut64K)>,
     nearest: Option<InverseColormap>,
     /// Valid for every palette.
     mipmaps: Vec<Made<Mipmap>>,
-    shades: Vec<Made<Lut64K>>,
-    channels: Vec<Made<[Lut64K; 3]>>,
+    /// The row is a shade, the column a texel, the entry the lit texel's index; then the same for each of three
+    /// channels, where the entry is the lit texel's channel.
+    shades: [Vec<Made<Vec<Lut64K>>>; 2],
     blends: Vec<(Blend, Lut64K)>,
     /// Each entry is its row: an image that changes no shade.
     neutral_shades: Option<Lut64K>,
-    /// Each entry is its column: fog that hides nothing.
-    neutral_fog: Option<Lut64K>,
     /// The channel that is shown instead of the mix of the three.
     pub(super) only_channel: Option<usize>,
 }
@@ -62,22 +62,19 @@ impl Tables {
         self.palette.as_ref().unwrap_or(&crate::palette::BIOS)
     }
 
-    /// Creates a table of fog in this colour, if there is none; for `None`, one that changes nothing.
+    /// Creates a table of fog in this colour, if there is none; for `None`, one that hides nothing.
     pub(super) fn ensure_fog(&mut self, color: Option<Rgb>) {
-        match color {
-            None if self.neutral_fog.is_none() => self.neutral_fog = Some(Lut64K::from_fn(|_, index| index)),
-            Some(color) if self.fog.as_ref().is_none_or(|(of, _)| *of != color) => {
-                self.fog = Some((color, Lut64K::fog(self.palette(), color)));
-            }
-            _ => {}
+        if self.fog.as_ref().is_none_or(|(of, _)| *of != color) {
+            let table = match color {
+                None => Lut64K::from_fn(|_, index| index),
+                Some(color) => Lut64K::fog(self.palette(), color),
+            };
+            self.fog = Some((color, table));
         }
     }
 
-    pub(super) fn fog(&self, color: Option<Rgb>) -> Option<&[u8; 65_536]> {
-        match color {
-            None => self.neutral_fog.as_ref().map(Lut64K::as_array),
-            Some(_) => self.fog.as_ref().map(|(_, table)| table.as_array()),
-        }
+    pub(super) fn fog(&self) -> Option<&[u8; 65_536]> {
+        self.fog.as_ref().map(|(_, table)| table.as_array())
     }
 
     pub(super) fn ensure_mix(&mut self) {
@@ -97,65 +94,50 @@ impl Tables {
         }
     }
 
-    /// Computes the smaller copies of an image that has them.
-    pub(super) fn ensure_levels(&mut self, image: Image<'_>) {
-        if image.has_levels && self.mipmap(image).is_none() {
-            add(&mut self.mipmaps, image, Mipmap::new(image.texture));
-        }
-    }
-
-    fn mipmap(&self, image: Image<'_>) -> Option<&Mipmap> {
-        find(&self.mipmaps, image)
-    }
-
     /// The smaller copies of an image that has some.
     pub(super) fn levels(&self, image: Image<'_>) -> Option<Levels<'_>> {
-        self.mipmap(image).map(Mipmap::levels)
+        find(&self.mipmaps, image).map(Mipmap::levels)
     }
 
-    /// The colours of an image, including those of its smaller copies.
-    fn colors<'a>(&'a self, image: Image<'a>) -> &'a [Rgb; 256] {
-        self.mipmap(image).map_or(image.texture.colors(), Mipmap::colors)
-    }
-
-    pub(super) fn ensure_shades(&mut self, image: Option<Image<'_>>) {
-        match image {
-            None if self.neutral_shades.is_none() => self.neutral_shades = Some(Lut64K::from_fn(|shade, _| shade)),
-            Some(image) if find(&self.shades, image).is_none() => {
-                let table = Lut64K::shades(self.palette(), self.colors(image));
-                add(&mut self.shades, image, table);
-            }
-            _ => {}
-        }
-    }
-
-    pub(super) fn shades(&self, image: Option<Image<'_>>) -> Option<[&[u8; 65_536]; 3]> {
-        let table = match image {
-            None => self.neutral_shades.as_ref(),
-            Some(image) => find(&self.shades, image),
+    /// Computes the tables of an image, and its smaller copies if it has them; for `None`, a table that changes nothing.
+    pub(super) fn ensure_shades(&mut self, image: Option<Image<'_>>, in_channels: bool) {
+        let Some(image) = image else {
+            self.neutral_shades.get_or_insert_with(|| Lut64K::from_fn(|shade, _| shade));
+            return;
         };
-        table.map(|table| [table.as_array(); 3])
-    }
-
-    /// Computes the tables of channels of an image: the row is a channel's shade, the column a texel, the entry the lit
-    /// texel's channel.
-    pub(super) fn ensure_channels(&mut self, image: Image<'_>) {
-        if find(&self.channels, image).is_none() {
-            let colors = self.colors(image);
-            let lit = |channel: fn(Rgb) -> u8| {
-                Lut64K::from_fn(|shade, texel| {
-                    let full = u32::from(channel(colors[usize::from(texel)]));
-                    // At most 255.
-                    ((full * u32::from(shade) + 127) / 255) as u8
-                })
-            };
-            let tables = [lit(|c| c.r), lit(|c| c.g), lit(|c| c.b)];
-            add(&mut self.channels, image, tables);
+        if find(&self.shades[usize::from(in_channels)], image).is_some() {
+            return;
         }
+        if image.has_levels && find(&self.mipmaps, image).is_none() {
+            add(&mut self.mipmaps, image, Mipmap::new(image.texture));
+        }
+        // Including those of the smaller copies.
+        let colors = find(&self.mipmaps, image).map_or(image.texture.colors(), Mipmap::colors);
+        let lit = |channel: fn(Rgb) -> u8| {
+            Lut64K::from_fn(|shade, texel| {
+                let full = u32::from(channel(colors[usize::from(texel)]));
+                // At most 255.
+                ((full * u32::from(shade) + 127) / 255) as u8
+            })
+        };
+        let tables = match in_channels {
+            true => vec![lit(|c| c.r), lit(|c| c.g), lit(|c| c.b)],
+            false => vec![Lut64K::shades(self.palette(), colors)],
+        };
+        add(&mut self.shades[usize::from(in_channels)], image, tables);
     }
 
-    pub(super) fn channels(&self, image: Image<'_>) -> Option<[&[u8; 65_536]; 3]> {
-        find(&self.channels, image).map(|tables| tables.each_ref().map(Lut64K::as_array))
+    /// The table of an image for each channel; all are the same without channels.
+    pub(super) fn shades(&self, image: Option<Image<'_>>, in_channels: bool) -> Option<[&[u8; 65_536]; 3]> {
+        let tables = match image {
+            None => self.neutral_shades.as_slice(),
+            Some(image) => find(&self.shades[usize::from(in_channels)], image)?,
+        };
+        match tables {
+            [one] => Some([one.as_array(); 3]),
+            [red, green, blue] => Some([red, green, blue].map(Lut64K::as_array)),
+            _ => None,
+        }
     }
 
     pub(super) fn ensure_blend(&mut self, blend: Blend) {
