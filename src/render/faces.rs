@@ -89,8 +89,7 @@ impl<'a> Faces<'a> {
         let paint = &self.paints[usize::from(face.surface)];
         if self.channels {
             let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-            let channels = SurfaceMaterial::channels(if face.back_facing { back } else { front });
-            return three(channels, |channel| paint.respond_on_channel(channel));
+            return three(if face.back_facing { back } else { front }, |channel| paint.respond(paint.shade(channel)));
         }
         let (front, back) = if self.full {
             self.lights.one_channel(&paint.answer, centre, normal)

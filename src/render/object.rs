@@ -283,9 +283,9 @@ impl ObjectState {
         stats.vertices += count as u64;
         self.columns.begin(count);
         if plan.stages().clips() {
-            vertex::project_tested(&source.view, &geometry, kernel, &mut self.columns);
+            vertex::project_tested(&source.view, geometry.positions, kernel, &mut self.columns);
         } else {
-            vertex::project_inside(&source.view, &geometry, kernel, &mut self.columns);
+            vertex::project_inside(&source.view, geometry.positions, kernel, &mut self.columns);
         }
         if !self.has_effects() {
             return;

@@ -1,7 +1,7 @@
 //! A material in its scene, with everything that its shades are computed from.
 
 use crate::fixed::U8F8;
-use crate::lanes::{each, three};
+use crate::lanes::each;
 use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
 use crate::plan::stages::{LitAt, Stages};
@@ -11,7 +11,7 @@ use crate::texture::Texture;
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
     pub(super) answer: Reflectance,
-    /// Range of one channel's shades: the material's entries; all 256 for an image or channels.
+    /// Range of its shades: the material's entries; all 256 for an image, or for a channel.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
     pub(super) texture_size: Option<[u32; 2]>,
@@ -56,19 +56,13 @@ impl SurfaceMaterial {
         }
     }
 
-    /// A shade after the material's own response to light.
+    /// A shade, or a channel, after the material's own response to light.
     #[inline]
     pub(super) fn respond(&self, shade: U8F8) -> U8F8 {
         self.response.as_ref().map_or(shade, |response| answered(response, shade, self.ramp))
     }
 
-    /// One channel after the material's own response to light.
-    #[inline]
-    pub(super) fn respond_on_channel(&self, channel: U8F8) -> U8F8 {
-        self.response.as_ref().map_or(channel, |response| answered(response, channel, Ramp::WHOLE))
-    }
-
-    /// The shade of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite,
+    /// The shade, or the channel, of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite,
     /// which clamps to 1 too.
     #[inline]
     pub(super) fn shade(&self, intensity: f64) -> U8F8 {
@@ -81,26 +75,9 @@ impl SurfaceMaterial {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), self.ramp.first(), self.ramp.entries())
     }
 
-    /// One channel of eight intensities.
-    #[inline(always)]
-    fn channel_of_eight(intensities: &[f64; 8]) -> [U8F8; 8] {
-        U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), 0, Ramp::WHOLE.entries())
-    }
-
-    /// Three channels of eight intensities each.
-    #[inline(always)]
-    pub(super) fn channels_of_eight([red, green, blue]: &[[f64; 8]; 3]) -> [[U8F8; 8]; 3] {
-        [Self::channel_of_eight(red), Self::channel_of_eight(green), Self::channel_of_eight(blue)]
-    }
-
     /// The shade in ambient light only.
     pub(super) fn constant(&self) -> U8F8 {
         self.shade(self.answer.ambient)
-    }
-
-    /// The channels of three intensities, each 0 to 255.
-    pub(super) fn channels(intensities: [f64; 3]) -> [U8F8; 3] {
-        three(intensities, |intensity| U8F8::from_intensity(intensity as f32, 0, Ramp::WHOLE.entries()))
     }
 }
 

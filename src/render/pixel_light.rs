@@ -18,26 +18,28 @@ pub(super) struct PixelLight<'a> {
     pub(super) kernel: Kernel,
 }
 
-impl PixelLighting for PixelLight<'_> {
-    #[inline(never)]
-    fn shades(&self, points: &Points) -> Lanes<u16> {
-        let intensities = self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel);
-        let shades = self.paint.shade_of_eight(&intensities);
+impl PixelLight<'_> {
+    /// The shades, or one of the channels, of eight intensities.
+    #[inline(always)]
+    fn shown(&self, intensities: &Lanes<f64>) -> Lanes<u16> {
+        let shades = self.paint.shade_of_eight(intensities);
         if self.paint.response.is_some() {
             return each!(lane => self.paint.respond(shades[lane]).to_bits());
         }
         each!(lane => shades[lane].to_bits())
     }
+}
+
+impl PixelLighting for PixelLight<'_> {
+    #[inline(never)]
+    fn shades(&self, points: &Points) -> Lanes<u16> {
+        self.shown(&self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel))
+    }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let channels = self.lights.front_of_three_channels::<false>(&self.paint.answer, points, self.kernel);
-        let channels = SurfaceMaterial::channels_of_eight(&channels);
-        if self.paint.response.is_some() {
-            let answered = |shade: U8F8| self.paint.respond_on_channel(shade).to_bits();
-            return three(channels, |channel| each!(lane => answered(channel[lane])));
-        }
-        three(channels, |channel| each!(lane => channel[lane].to_bits()))
+        three(channels.each_ref(), |intensities| self.shown(intensities))
     }
 }
 

@@ -358,8 +358,7 @@ fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
 pub(in crate::render) fn limits(paint: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
     if channels {
         let Reflectance { ambient, color, .. } = paint.answer;
-        let least = SurfaceMaterial::channels(color.map(|channel| ambient * channel));
-        return least.map(|least| Limits { least, most: U8F8::MAX_VERTEX });
+        return color.map(|channel| Limits { least: paint.shade(ambient * channel), most: U8F8::MAX_VERTEX });
     }
     // A ramp ends at entry 255 at most.
     let last = u16::from(paint.ramp.first()) + paint.ramp.entries().saturating_sub(1);

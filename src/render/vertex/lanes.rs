@@ -308,8 +308,8 @@ mod tests {
         })
     }
 
-    fn geometry<'a>(positions: &'a [Vec3], normals: &'a [Vec3], vertex_surfaces: &'a [u16]) -> Geometry<'a> {
-        Geometry { positions, normals, texcoords: None, vertex_surfaces, triangles: &[], triangle_surfaces: &[] }
+    fn geometry<'a>(normals: &'a [Vec3], vertex_surfaces: &'a [u16]) -> Geometry<'a> {
+        Geometry { positions: &[], normals, texcoords: None, vertex_surfaces, triangles: &[], triangle_surfaces: &[] }
     }
 
     proptest! {
@@ -321,11 +321,10 @@ mod tests {
             view in view(),
             positions in prop::collection::vec(vector(), 0..40),
         ) {
-            let geometry = geometry(&positions, &[], &[]);
             for kernel in kernels() {
                 let mut vertices = VertexColumns::default();
                 vertices.begin(positions.len());
-                project_tested(&view, &geometry, kernel, &mut vertices);
+                project_tested(&view, &positions, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
                     let alone = view.project(position);
                     let mark = match view.homogeneous(position).w >= f64::from(view.near()) {
@@ -335,7 +334,7 @@ mod tests {
                     prop_assert_eq!(vertices.at[i], alone.map_or(mark, |v| ScreenPos::of(&v)), "{:?}", position);
                     prop_assert_eq!(vertices.depth[i], alone.unwrap_or_default().depth(), "{:?}", position);
                 }
-                project_inside(&view, &geometry, kernel, &mut vertices);
+                project_inside(&view, &positions, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
                     prop_assert!(!vertices.at[i].needs_clipping());
                     let alone = view.project_inside(position);
@@ -357,7 +356,7 @@ mod tests {
             let lights = Lights { suns: &suns, lamps: &[], eye: [0.0; 3] };
             // Usually whole eights of the first.
             let vertex_surfaces: Vec<u16> = (0..normals.len()).map(|i| u16::from(surfaces[i / 8] == i % 8)).collect();
-            let geometry = geometry(&[], &normals, &vertex_surfaces);
+            let geometry = geometry(&normals, &vertex_surfaces);
             for kernel in kernels() {
                 for both in [true, false] {
                     let mut vertices = VertexColumns::default();

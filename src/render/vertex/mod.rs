@@ -9,7 +9,7 @@ use super::columns::{ScreenPos, VertexColumns};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, Points, each};
+use crate::lanes::{LANES, Points, three};
 use crate::light::Lights;
 use crate::palette::Ramp;
 use crate::scene::Fog;
@@ -27,21 +27,21 @@ pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], verti
         let paint = &paints[usize::from(surface)];
         vertices.shade[i] = vertices.shade[i].map(|shade| paint.respond(shade));
         if let Some(sides) = vertices.channels.get_mut(i) {
-            *sides = sides.map(|channels| channels.map(|channel| paint.respond_on_channel(channel)));
+            *sides = sides.map(|channels| channels.map(|channel| paint.respond(channel)));
         }
     }
 }
 
 /// Projects every vertex, none of which can need clipping.
 #[inline(never)]
-pub(super) fn project_inside(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
-    project::<false>(view, geometry.positions, kernel, vertices);
+pub(super) fn project_inside(view: &ObjectView, positions: &[Vec3], kernel: Kernel, vertices: &mut VertexColumns) {
+    project::<false>(view, positions, kernel, vertices);
 }
 
 /// Projects every vertex, and marks those that need clipping.
 #[inline(never)]
-pub(super) fn project_tested(view: &ObjectView, geometry: &Geometry<'_>, kernel: Kernel, vertices: &mut VertexColumns) {
-    project::<true>(view, geometry.positions, kernel, vertices);
+pub(super) fn project_tested(view: &ObjectView, positions: &[Vec3], kernel: Kernel, vertices: &mut VertexColumns) {
+    project::<true>(view, positions, kernel, vertices);
 }
 
 #[inline(always)]
@@ -99,15 +99,10 @@ pub(super) fn light_all(
 ) {
     each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
-        let lit = &mut vertices.shade[eight];
-        let fronts = lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
-        for ([shade, _], front) in lit.iter_mut().zip(paint.shade_of_eight(&fronts)) {
-            *shade = front;
-        }
-        if both {
-            let backs = lights.front_of_one_channel::<true>(&paint.answer, &from_behind(points), kernel);
-            for ([_, shade], back) in lit.iter_mut().zip(paint.shade_of_eight(&backs)) {
-                *shade = back;
+        for side in 0..=usize::from(both) {
+            let intensities = lights.front_of_one_channel::<true>(&paint.answer, &from_side(points, side), kernel);
+            for (shades, shade) in vertices.shade[eight.clone()].iter_mut().zip(paint.shade_of_eight(&intensities)) {
+                shades[side] = shade;
             }
         }
     });
@@ -124,17 +119,11 @@ pub(super) fn light_channels(
 ) {
     each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
-        let channels = &mut channels[eight];
-        let fronts = lights.front_of_three_channels::<true>(&paint.answer, points, kernel);
-        let [red, green, blue] = SurfaceMaterial::channels_of_eight(&fronts);
-        for (lane, [front, _]) in channels.iter_mut().enumerate() {
-            *front = [red[lane], green[lane], blue[lane]];
-        }
-        if both {
-            let backs = lights.front_of_three_channels::<true>(&paint.answer, &from_behind(points), kernel);
-            let [red, green, blue] = SurfaceMaterial::channels_of_eight(&backs);
-            for (lane, [_, back]) in channels.iter_mut().enumerate() {
-                *back = [red[lane], green[lane], blue[lane]];
+        for side in 0..=usize::from(both) {
+            let intensities = lights.front_of_three_channels::<true>(&paint.answer, &from_side(points, side), kernel);
+            let [red, green, blue] = three(intensities.each_ref(), |channel| paint.shade_of_eight(channel));
+            for (lane, channels) in channels[eight.clone()].iter_mut().enumerate() {
+                channels[side] = [red[lane], green[lane], blue[lane]];
             }
         }
     });
@@ -159,10 +148,13 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
     }
 }
 
-/// Points with their normals reversed.
-fn from_behind(points: &Points) -> Points {
-    let [x, y, z, ..] = points;
-    [each!(lane => -x[lane]), each!(lane => -y[lane]), each!(lane => -z[lane]), points[3], points[4], points[5]]
+/// Points as seen from their front, 0, or from their back, 1, where their normals are reversed.
+fn from_side(points: &Points, side: usize) -> Points {
+    let mut seen = *points;
+    if side == 1 {
+        seen[..3].as_flattened_mut().iter_mut().for_each(|c| *c = -*c);
+    }
+    seen
 }
 
 /// Texture coordinates in texels, for surfaces that have an image.
