@@ -13,6 +13,7 @@
 //! - a highlight at the distance h from what it mirrors: cos^s, which bends by at most s/h²;
 //! - normals that turn along the edge, as on a round object: found by lighting the middle.
 
+use alloc::borrow::ToOwned;
 use alloc::vec::Vec;
 use core::mem;
 
@@ -46,22 +47,15 @@ pub(super) struct Tessellated {
     twins: Vec<u64>,
     /// True for each triangle whose edges have been examined and found straight enough.
     straight: Vec<bool>,
-    /// The light of each vertex, and how far each light is from the direction that it mirrors.
-    known: Known,
+    /// Intensities of front and back at the vertices, computed once for each.
+    light: Vec<(f64, f64)>,
+    /// At each vertex, the angle between the eye and the mirrored light for each sun and each lamp, if any surface has a
+    /// highlight.
+    angles: Vec<f64>,
     /// The edges to be split, by their points, with the index of the new point.
     halved: EdgeMap,
     /// Midpoint vertices by their two end vertices: at a crease each side has its own.
     middles: EdgeMap,
-}
-
-/// Light at the vertices, computed once for each.
-#[derive(Debug, Default)]
-struct Known {
-    /// Intensities of front and back.
-    light: Vec<(f64, f64)>,
-    /// The angle between the eye and the mirrored light for each sun and each lamp, if any surface
-    /// has a highlight.
-    angles: Vec<f64>,
 }
 
 impl Tessellated {
@@ -76,26 +70,18 @@ impl Tessellated {
         paints: &[SurfaceMaterial],
         tolerance: f32,
     ) {
-        self.positions.clear();
-        self.positions.extend_from_slice(geometry.positions);
-        self.normals.clear();
-        self.normals.extend_from_slice(geometry.normals);
-        self.texcoords.clear();
-        self.texcoords.extend_from_slice(geometry.texcoords.unwrap_or(&[]));
-        self.vertex_surfaces.clear();
-        self.vertex_surfaces.extend_from_slice(geometry.vertex_surfaces);
-        self.triangles.clear();
-        self.triangles.extend_from_slice(geometry.triangles);
-        self.triangle_surfaces.clear();
-        self.triangle_surfaces.extend_from_slice(geometry.triangle_surfaces);
-        self.points.clear();
-        self.points.extend_from_slice(points);
-        self.twins.clear();
-        self.twins.extend_from_slice(twins);
+        geometry.positions.clone_into(&mut self.positions);
+        geometry.normals.clone_into(&mut self.normals);
+        geometry.texcoords.unwrap_or(&[]).clone_into(&mut self.texcoords);
+        geometry.vertex_surfaces.clone_into(&mut self.vertex_surfaces);
+        geometry.triangles.clone_into(&mut self.triangles);
+        geometry.triangle_surfaces.clone_into(&mut self.triangle_surfaces);
+        points.clone_into(&mut self.points);
+        twins.clone_into(&mut self.twins);
         self.straight.clear();
         self.straight.resize(self.triangles.len(), false);
-        self.known.light.clear();
-        self.known.angles.clear();
+        self.light.clear();
+        self.angles.clear();
         let has_highlights = paints.iter().any(|paint| paint.answer.specular != 0.0);
         let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0, has_highlights };
         for _ in 0..DEPTH {
@@ -176,36 +162,29 @@ impl Tessellated {
                 }))
             };
             let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            let mut parts: [Option<[u32; 3]>; 4] = [None; 4];
-            match (ab, bc, ca) {
+            let parts: &[[u32; 3]] = match (ab, bc, ca) {
                 (None, None, None) => {
                     self.straight[i] = true;
                     continue;
                 }
-                (Some(ab), Some(bc), Some(ca)) => {
-                    parts = [Some([a, ab, ca]), Some([ab, b, bc]), Some([ca, bc, c]), Some([ab, bc, ca])];
+                (Some(ab), Some(bc), Some(ca)) => &[[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
+                (Some(m), None, None) => &one(a, b, c, m),
+                (None, Some(m), None) => &one(b, c, a, m),
+                (None, None, Some(m)) => &one(c, a, b, m),
+                (Some(ab), Some(bc), None) => &two(a, b, c, ab, bc),
+                (None, Some(bc), Some(ca)) => &two(b, c, a, bc, ca),
+                (Some(ab), None, Some(ca)) => &two(c, a, b, ca, ab),
+            };
+            (self.triangles[i], self.straight[i]) = (parts[0], false);
+            for &part in &parts[1..] {
+                if !self.twins.is_empty() {
+                    let new = self.triangles.len();
+                    self.twins.resize((new + 1).div_ceil(64), 0);
+                    self.twins[new / 64] |= (self.twins[i / 64] >> (i % 64) & 1) << (new % 64);
                 }
-                (Some(m), None, None) => parts[..2].copy_from_slice(&one(a, b, c, m)),
-                (None, Some(m), None) => parts[..2].copy_from_slice(&one(b, c, a, m)),
-                (None, None, Some(m)) => parts[..2].copy_from_slice(&one(c, a, b, m)),
-                (Some(ab), Some(bc), None) => parts[..3].copy_from_slice(&two(a, b, c, ab, bc)),
-                (None, Some(bc), Some(ca)) => parts[..3].copy_from_slice(&two(b, c, a, bc, ca)),
-                (Some(ab), None, Some(ca)) => parts[..3].copy_from_slice(&two(c, a, b, ca, ab)),
-            }
-            for (k, part) in parts.into_iter().flatten().enumerate() {
-                if k == 0 {
-                    self.triangles[i] = part;
-                    self.straight[i] = false;
-                } else {
-                    if !self.twins.is_empty() {
-                        let new = self.triangles.len();
-                        self.twins.resize((new + 1).div_ceil(64), 0);
-                        self.twins[new / 64] |= (self.twins[i / 64] >> (i % 64) & 1) << (new % 64);
-                    }
-                    self.triangles.push(part);
-                    self.straight.push(false);
-                    self.triangle_surfaces.push(surface);
-                }
+                self.triangles.push(part);
+                self.straight.push(false);
+                self.triangle_surfaces.push(surface);
             }
         }
         self.middles = middles;
@@ -213,12 +192,12 @@ impl Tessellated {
 
     /// Lights the new vertices.
     fn light(&mut self, bend: &Bend<'_>) {
-        for vertex in self.known.light.len()..self.positions.len() {
+        for vertex in self.light.len()..self.positions.len() {
             let (position, normal) = (self.positions[vertex], self.normals[vertex]);
             let paint = &bend.paints[usize::from(self.vertex_surfaces[vertex])];
-            self.known.light.push(bend.lights.one_channel(&paint.answer, position, normal));
+            self.light.push(bend.lights.one_channel(&paint.answer, position, normal));
             if bend.has_highlights {
-                self.known.angles.extend(bend.angles(position, normal));
+                self.angles.extend(bend.angles(position, normal));
             }
         }
     }
@@ -240,13 +219,13 @@ impl Tessellated {
 }
 
 /// The triangle a, b, c with a vertex m on the edge a–b.
-fn one(a: u32, b: u32, c: u32, m: u32) -> [Option<[u32; 3]>; 2] {
-    [Some([a, m, c]), Some([m, b, c])]
+fn one(a: u32, b: u32, c: u32, m: u32) -> [[u32; 3]; 2] {
+    [[a, m, c], [m, b, c]]
 }
 
 /// The triangle a, b, c with vertices on the edges a–b and b–c.
-fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [Option<[u32; 3]>; 3] {
-    [Some([a, ab, c]), Some([ab, b, bc]), Some([ab, bc, c])]
+fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [[u32; 3]; 3] {
+    [[a, ab, c], [ab, b, bc], [ab, bc, c]]
 }
 
 /// Decides how much light bends along an edge.
@@ -288,9 +267,8 @@ impl Bend<'_> {
         }
         // Normals that turn.
         let middle = unit(na + nb).unwrap_or(na);
-        let light = |position: Vec3, normal: Vec3| self.lights.one_channel(&paint.answer, position, normal);
-        let ((fa, ba), (fb, bb)) = (mesh.known.light[a], mesh.known.light[b]);
-        let (fm, bm) = light(pa * 0.5 + pb * 0.5, middle);
+        let ((fa, ba), (fb, bb)) = (mesh.light[a], mesh.light[b]);
+        let (fm, bm) = self.lights.one_channel(&paint.answer, pa * 0.5 + pb * 0.5, middle);
         let off = |a: f64, b: f64, m: f64| {
             let shown = |i: f64| i.clamp(0.0, 1.0);
             ((shown(a) + shown(b)) / 2.0 - shown(m)).abs()
@@ -316,7 +294,7 @@ impl Bend<'_> {
         let ends = edge.map(|vertex| widen(mesh.positions[vertex]));
         let normals = edge.map(|vertex| mesh.normals[vertex]);
         let count = self.lights.suns.len() + self.lights.lamps.len();
-        let angles = |light: usize| edge.map(|vertex| mesh.known.angles[vertex * count + light]);
+        let angles = |light: usize| edge.map(|vertex| mesh.angles[vertex * count + light]);
         let eye = to_segment(self.lights.eye, ends);
         let shininess = paint.answer.shininess.max(1.0);
         // Twice the turn of its normals.
