@@ -39,7 +39,6 @@ struct Converted {
     exponent: i32,
     /// Bound on the vertices' distance from the pivot, in 1/65,536 of the mesh's own unit.
     radius: u64,
-    in_use: bool,
 }
 
 impl Converted {
@@ -70,7 +69,6 @@ impl Converted {
             positions,
             exponent: -exponent,
             radius,
-            in_use: true,
         }
     }
 
@@ -135,9 +133,8 @@ struct Prepared {
 #[derive(Debug, Default)]
 pub(super) struct IntegerPath {
     meshes: Vec<Converted>,
-    view: Option<View>,
-    /// Inputs of the view.
-    camera: Option<(Camera, [I16F16; 2])>,
+    /// The view, and what it was made from: the camera and the focal lengths.
+    view: Option<(View, Camera, [I16F16; 2])>,
     objects: Vec<Prepared>,
     paints: Vec<Paint>,
     suns: Vec<Sun>,
@@ -220,15 +217,13 @@ impl IntegerPath {
             let of_object = |error: IntegerError| RenderError::of_object(scene, index, error.what());
             view.check(&self.objects[index].placement, &mesh).map_err(of_object)?;
         }
-        self.view = Some(view);
-        self.camera = Some((camera, [fx, fy]));
+        self.view = Some((view, camera, [fx, fy]));
         Ok(())
     }
 
     /// Finds the objects' meshes among those converted; converts new ones, and drops those that are no longer used.
     fn convert(&mut self, objects: &[scene::Object]) {
-        self.meshes.iter_mut().for_each(|mesh| mesh.in_use = objects.iter().any(|object| mesh.is_of(object)));
-        self.meshes.retain(|mesh| mesh.in_use);
+        self.meshes.retain(|mesh| objects.iter().any(|object| mesh.is_of(object)));
         self.objects.clear();
         for object in objects {
             let converted = self.meshes.iter().position(|mesh| mesh.is_of(object)).unwrap_or_else(|| {
@@ -241,7 +236,7 @@ impl IntegerPath {
 
     /// The prepared scene as numbers, without its objects: camera, focal lengths, suns.
     pub(super) fn frame(&self) -> Option<(Camera, [I16F16; 2], &[Sun])> {
-        self.camera.map(|(camera, focal)| (camera, focal, &*self.suns))
+        self.view.as_ref().map(|&(_, camera, focal)| (camera, focal, &*self.suns))
     }
 
     /// An object of the prepared scene as numbers.
@@ -260,18 +255,16 @@ impl IntegerPath {
         scratch: &mut IntegerScratch,
         triangle: &mut dyn FnMut(&[Vertex; 3], Interpolation),
     ) {
-        let (Some(view), Some(prepared)) = (&self.view, self.objects.get(index)) else { return };
-        let mesh = fixed_mesh(&self.meshes, prepared, object);
+        let (Some((view, ..)), Some(fixed_object)) = (&self.view, self.object(index, object)) else { return };
         let IntegerScratch { lit, beams } = scratch;
-        lit.resize(mesh.vertices().max(lit.len()), LitVertex::default());
+        let vertices = fixed_object.mesh.vertices();
+        lit.resize(vertices.max(lit.len()), LitVertex::default());
         beams.resize(self.suns.len(), ObjectSun::default());
-        let fixed_object =
-            Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] };
         // `prepare` has checked the object, and there is room for everything.
         let Ok(stage) = VertexStage::new(view, fixed_object, &self.suns, shading, lit, beams) else {
             return;
         };
-        let vertices = mesh.vertices() as u64;
+        let vertices = vertices as u64;
         let faces = stage.faces(triangle);
         stats.vertices += vertices;
         stats.lit += if shading == Shading::Flat { faces.lit } else { vertices };
