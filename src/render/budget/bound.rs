@@ -98,7 +98,7 @@ impl Lobe {
     }
 }
 
-/// One light's fall-off on a patch, along the patch's radius.
+/// One light's fall-off on a patch with distance or with the angle to a cone's axis, along the patch's radius.
 #[derive(Clone, Copy, Debug)]
 struct FallOff {
     most: f32,
@@ -132,22 +132,10 @@ impl FallOff {
             turn: lesser(turn, GREATEST_TURN),
         }
     }
-}
 
-/// A spot light's share on a patch, along the patch's radius.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    most: f32,
-    least: f32,
-    /// Greatest first and second derivatives.
-    first: f32,
-    second: f32,
-}
-
-impl Share {
-    /// Lemma 12, from the cosine's range at the corners and the turn of the direction.
+    /// A spot light's share by Lemma 12, from the cosine's range at the corners and the turn of the direction.
     #[inline(always)]
-    fn new(cone: &ConeBeam, (most, least): (f32, f32), turn: f32) -> Self {
+    fn of_cone(cone: &ConeBeam, (most, least): (f32, f32), turn: f32) -> Self {
         let (inner, inverse_width) = (cone.inner as f32, cone.inverse_width as f32);
         let curved = 0.5 * BEND * turn * turn;
         let (most, least) = (lesser(most + curved, 1.0), greater(least - curved, -1.0));
@@ -169,14 +157,13 @@ impl Share {
             least: share(low),
             first: lesser(slope * sine * turn, HUGE),
             second: lesser((bend * sine * sine + slope * BEND) * turn * turn, HUGE),
+            turn,
         }
     }
-}
 
-impl FallOff {
-    /// The fall-off times a share.
+    /// The fall-off times a spot light's share.
     #[inline(always)]
-    fn times(self, share: Share) -> Self {
+    fn times(self, share: Self) -> Self {
         Self {
             most: self.most * share.most,
             least: self.least * share.least,
@@ -471,7 +458,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
         if let Some(cone) = &lamp.cone {
             let [most, least] = patches.along(&sight.directions, narrow(cone.back));
             for lane in 0..LANES {
-                let share = Share::new(cone, (most[lane], least[lane]), falls[lane].turn);
+                let share = FallOff::of_cone(cone, (most[lane], least[lane]), falls[lane].turn);
                 falls[lane] = falls[lane].times(share);
                 let [above, below] = &mut weighted;
                 above[lane] *= if above[lane] > 0.0 { share.most } else { share.least };
