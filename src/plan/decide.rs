@@ -184,7 +184,6 @@ impl Rules<'_> {
                 true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
                 true => VertexStage::Make,
             },
-            nearest: self.reach.nearest,
             lighting: match is_on(Effect::Lighting) {
                 _ if channels => Lighting::Channels,
                 false => Lighting::None,

@@ -38,10 +38,10 @@ pub use stages::Choice;
 pub(crate) use decide::{Change, Inputs, decide, has_custom_response};
 pub(crate) use hidden::far_to_near;
 
-use self::stages::{Dither, Lamps, Lighting, LitAt, Stages, Switches, VertexStage};
+use self::stages::Stages;
 use crate::raster::Rect;
 use crate::scene::Scene;
-use crate::settings::{HiddenSurfaces, Mapping, Shading};
+use crate::settings::{HiddenSurfaces, Shading};
 
 /// The decision on an effect.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -91,21 +91,8 @@ impl Index<Effect> for ObjectPlan {
 impl ObjectPlan {
     /// A plan without any decisions, as for an object that is not drawn.
     fn new(shading: Shading) -> Self {
-        let stages = Stages {
-            switches: Switches::default(),
-            is_out_of_sight: false,
-            vertices: VertexStage::MakeAnew,
-            nearest: 0.0,
-            lighting: Lighting::None,
-            lit_at: LitAt::Vertices,
-            lamps: Lamps::None,
-            mapping: Mapping::Affine,
-            dither: Dither::None,
-            neutral_image: false,
-            neutral_blend: false,
-        };
         let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
-        Self { decisions, shading, max_error: None, stages }
+        Self { decisions, shading, max_error: None, stages: Stages::default() }
     }
 
     /// The stages that the object goes through.

@@ -44,7 +44,7 @@ impl Choice {
 }
 
 /// The work on an object's vertices.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum VertexStage {
     /// The last frame's vertices are reused.
     Keep,
@@ -52,13 +52,15 @@ pub(crate) enum VertexStage {
     Make,
     /// Vertices and everything cached with them are recomputed, because this was forced or because
     /// nothing is cached.
+    #[default]
     MakeAnew,
 }
 
 /// The light that contributes to shades.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Lighting {
     /// None: each surface has one shade.
+    #[default]
     None,
     /// Suns, and no highlights.
     Suns,
@@ -69,8 +71,9 @@ pub(crate) enum Lighting {
 }
 
 /// The points at which light is computed.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum LitAt {
+    #[default]
     Vertices,
     /// At the middle of each face.
     Faces,
@@ -79,8 +82,9 @@ pub(crate) enum LitAt {
 }
 
 /// The lamps that fall on an object.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Lamps {
+    #[default]
     None,
     InRange,
     /// All lamps, in range or not, because the effect was forced.
@@ -88,8 +92,9 @@ pub(crate) enum Lamps {
 }
 
 /// The dithering, in place of the constant half that is otherwise added to a shade.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Dither {
+    #[default]
     None,
     By(DitherPattern),
     /// Thresholds that change nothing, because the effect was forced.
@@ -108,7 +113,7 @@ macro_rules! switches {
 
         impl Switches {
             /// The stages of an object with these effects.
-            pub(super) fn of(is_on: impl Fn(Effect) -> bool) -> Self {
+            pub(crate) fn of(is_on: impl Fn(Effect) -> bool) -> Self {
                 Self { $($name: is_on(Effect::$first) $(|| is_on(Effect::$other))*,)+ }
             }
         }
@@ -158,15 +163,20 @@ switches! {
     needs_tables: Fog | RgbChannels | Texture | EnvironmentMap | Transparency;
 }
 
+impl Stages {
+    /// Returns whether faces are lit rather than vertices or pixels.
+    pub(crate) const fn lights_faces(&self) -> bool {
+        matches!(self.lit_at, LitAt::Faces)
+    }
+}
+
 /// The stages of one object.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct Stages {
-    pub(super) switches: Switches,
+    pub(crate) switches: Switches,
     /// Whether the object is not drawn, because it is out of sight.
     pub(crate) is_out_of_sight: bool,
     pub(crate) vertices: VertexStage,
-    /// The least distance of the object's bounds along the view.
-    pub(crate) nearest: f64,
     pub(crate) lighting: Lighting,
     pub(crate) lit_at: LitAt,
     pub(crate) lamps: Lamps,

@@ -90,21 +90,26 @@ impl AddedTriangles {
     /// Allocates memory for the most triangles that may be pending.
     pub(super) fn make_room(&mut self) {
         let most = 3 * Self::MAX_WAITING + Self::MAX_OF_FACE;
-        let Self { vertices, lit, indices, faces, .. } = self;
-        let VertexColumns { at, depth, shade, texture, fog, channels, slope } = vertices;
-        if at.capacity() >= most {
-            return;
+        let (vertices, triangles) = (self.vertices.at.len(), self.indices.len());
+        if self.vertices.at.capacity() < most {
+            self.resize(vertices + most, triangles + most);
+            self.resize(vertices, triangles);
         }
-        at.reserve(most);
-        depth.reserve(most);
-        shade.reserve(most);
-        texture.reserve(most);
-        fog.reserve(most);
-        channels.reserve(most);
-        slope.reserve(most);
-        lit.reserve(most);
-        indices.reserve(most);
-        faces.reserve(most);
+    }
+
+    /// Removes the last vertices and triangles down to these numbers, or adds some up to them.
+    fn resize(&mut self, vertices: usize, triangles: usize) {
+        let VertexColumns { at, depth, shade, texture, fog, channels, slope } = &mut self.vertices;
+        at.resize(vertices, ScreenPos::NEEDS_CLIPPING);
+        depth.resize(vertices, 0);
+        shade.resize(vertices, Default::default());
+        texture.resize(vertices, Default::default());
+        fog.resize(vertices, Default::default());
+        channels.resize(vertices, Default::default());
+        slope.resize(vertices, Default::default());
+        self.lit.resize(vertices, Default::default());
+        self.indices.resize(triangles, Default::default());
+        self.faces.resize(triangles, 0);
     }
 
     /// Adds a vertex, and returns its index.
@@ -161,17 +166,7 @@ impl AddedTriangles {
     /// Removes those that are not kept.
     pub(super) fn drop_waiting(&mut self) {
         let (vertices, triangles) = self.kept;
-        let VertexColumns { at, depth, shade, texture, fog, channels, slope } = &mut self.vertices;
-        at.truncate(vertices);
-        depth.truncate(vertices);
-        shade.truncate(vertices);
-        texture.truncate(vertices);
-        fog.truncate(vertices);
-        channels.truncate(vertices);
-        slope.truncate(vertices);
-        self.lit.truncate(vertices);
-        self.indices.truncate(triangles);
-        self.faces.truncate(triangles);
+        self.resize(vertices, triangles);
     }
 
     /// Removes all of them.

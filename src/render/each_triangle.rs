@@ -50,13 +50,13 @@ impl Renderer {
         self.last = None;
         let Self { cache, scratch, kernel, .. } = self;
         let pipelines = Pipelines { scene, cache, kernel: *kernel };
-        scratch.each_run(scene, cache, &mut stats, &mut |object, run| {
+        scratch.each_run(scene, cache, *kernel, &mut stats, &mut |object, run| {
             let state = &cache.states[object];
             let surfaces = state.triangle_surfaces(&scene.objects()[object]);
             for k in 0..run.picks.picks.len() {
                 let (vertices, interpolation) = run.vertices(k);
                 let face = (!cache.plan.is_integer).then(|| run.face(k));
-                let ramp = face.map(|face| state.paints()[usize::from(surfaces[face])].ramp);
+                let ramp = face.map(|face| state.paints[usize::from(surfaces[face])].ramp);
                 let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
                 if !run.look.effects {
                     visit(&plain);

@@ -12,6 +12,7 @@ use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, three};
 use crate::light::{Lights, both_sides};
 use crate::mesh::normals::face_normal;
+use crate::plan::stages::{Lighting, Stages};
 use crate::raster::columns::Triangles;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::settings::Shading;
@@ -39,8 +40,10 @@ pub(super) struct FacePoints {
 }
 
 /// One object in one frame: what its faces are drawn from.
+#[derive(Clone, Copy)]
 pub(super) struct Faces<'a> {
     pub(super) shading: Shading,
+    pub(super) stages: &'a Stages,
     pub(super) geometry: Geometry<'a>,
     pub(super) view: &'a ObjectView,
     pub(super) lights: Lights<'a>,
@@ -48,25 +51,11 @@ pub(super) struct Faces<'a> {
     pub(super) paints: &'a [SurfaceMaterial],
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
-    pub(super) face_points: Option<&'a FacePoints>,
-    /// True if back faces are culled.
-    pub(super) culls: bool,
+    pub(super) points: &'a FacePoints,
     /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if
     /// there are none. As a back face it is culled even where others show their backs: the other
     /// one has the same depth, and faces the eye.
     pub(super) twins: &'a [u64],
-    /// True if its shades vary; otherwise each surface has a single one.
-    pub(super) runs: bool,
-    /// True if there are lamps or highlights.
-    pub(super) full: bool,
-    /// True if faces rather than vertices are lit, each on one channel or on three.
-    pub(super) lit_by_face: bool,
-    pub(super) channels: bool,
-    /// True if texture coordinates are linear on the screen.
-    pub(super) affine: bool,
-    /// True if pixels may be lit individually.
-    pub(super) lights_pixels: bool,
-    /// Kernel for the light that decides a face's shading.
     pub(super) kernel: Kernel,
 }
 
@@ -76,22 +65,16 @@ impl<'a> Faces<'a> {
         self.columns.triangles(&self.geometry)
     }
 
-    /// The normals and the middles of faces, if faces are lit.
-    #[inline(always)]
-    fn face_points(&self) -> (&'a [Vec3], &'a [Vec3]) {
-        self.face_points.map_or((&[], &[]), |points| (&points.normals, &points.centres))
-    }
-
     /// The single shade of a face, or its three channels: at its middle, by its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
-        let (normals, centres) = self.face_points();
+        let FacePoints { normals, centres } = self.points;
         let (normal, centre) = (normals[face.index as usize], centres[face.index as usize]);
         let paint = &self.paints[usize::from(face.surface)];
-        if self.channels {
+        if self.stages.has_channels() {
             let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
             return three(if face.back_facing { back } else { front }, |channel| paint.respond(paint.shade(channel)));
         }
-        let (front, back) = if self.full {
+        let (front, back) = if self.stages.lighting == Lighting::All {
             self.lights.one_channel(&paint.answer, centre, normal)
         } else {
             both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
@@ -127,18 +110,17 @@ impl<'a> Faces<'a> {
         Some(first)
     }
 
-    /// The single shade of each picked face, or its three channels; with `CULLS` all of them show their fronts.
-    pub(super) fn shade_faces<const CULLS: bool>(&self, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-        if self.channels {
-            for (flat, &pick) in flat.iter_mut().zip(picks) {
-                *flat = self.flat(self.face(Pick(pick)));
-            }
-        } else if self.full {
-            light_faces_fully(kernel.simd_level(), self, kernel, picks, flat);
-        } else if CULLS {
-            light_faces::<false>(kernel.simd_level(), self, picks, flat);
+    /// The single shade of each picked face, or its three channels.
+    pub(super) fn shade_faces(&self, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+        let level = self.kernel.simd_level();
+        if self.stages.has_channels() {
+            self.shade_each(picks, flat);
+        } else if self.stages.lighting == Lighting::All {
+            light_faces_fully(level, self, picks, flat);
+        } else if self.stages.culls() {
+            light_faces::<false>(level, self, picks, flat);
         } else {
-            light_faces::<true>(kernel.simd_level(), self, picks, flat);
+            light_faces::<true>(level, self, picks, flat);
         }
     }
 
@@ -176,13 +158,12 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-    let (of_faces, _) = faces.face_points();
     let mut normals = [[Vec3::ZERO; LANES]; CHUNK / LANES];
     for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
         // All are gathered before the first is used: vector loads stall when their elements have just been stored one
         // by one.
         for (normal, &pick) in normals.as_flattened_mut().iter_mut().zip(picks) {
-            *normal = of_faces[Pick(pick).index()];
+            *normal = faces.points.normals[Pick(pick).index()];
         }
         for (k, (eight, flat)) in picks.chunks(LANES).zip(flat.chunks_mut(LANES)).enumerate() {
             let Some(surface) = faces.surface_of_all(eight) else {
@@ -207,15 +188,14 @@ compiled_for_each_level! {
     /// The shades of picked flat-shaded faces, each by its own normal and at its middle: all light, on one channel.
     fn light_faces_fully[][](
         faces: &Faces<'_>,
-        kernel: Kernel,
         picks: &[u32],
         flat: &mut [[U8F8; 3]],
     ) = light_faces_fully_by;
 }
 
 #[inline(always)]
-fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, picks: &[u32], flat: &mut [[U8F8; 3]]) {
-    let (normals, centres) = faces.face_points();
+fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) {
+    let FacePoints { normals, centres } = faces.points;
     let mut points: [Points; CHUNK / LANES] = [[[0.0; LANES]; 6]; CHUNK / LANES];
     for (picks, flat) in picks.chunks(CHUNK).zip(flat.chunks_mut(CHUNK)) {
         // As in `light_faces_by`.
@@ -238,7 +218,7 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, kernel: Kernel, p
             };
             let paint = &faces.paints[usize::from(surface)];
             let points = &points[k % (CHUNK / LANES)];
-            let light = faces.lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
+            let light = faces.lights.front_of_one_channel::<true>(&paint.answer, points, faces.kernel);
             faces.put(paint, s.low_words(shade_of_intensities(s, paint, s.load_f64(&light))), flat);
         }
     }
@@ -271,6 +251,8 @@ mod tests {
     use crate::light::{Blend, LampBeam, Reflectance, SunBeam};
     use crate::mesh::shapes;
     use crate::palette::Ramp;
+    use crate::plan::Effect;
+    use crate::plan::stages::{LitAt, Switches};
     use crate::scene::{Camera, Object};
     use crate::view::{Screen, View};
 
@@ -325,8 +307,11 @@ mod tests {
             let columns = VertexColumns::default();
             for full in [false, true] {
                 let lamps = if full { lamps.as_slice() } else { &[] };
-                let mut faces = Faces {
+                let mut stages = Stages { lit_at: LitAt::Faces, ..Stages::default() };
+                stages.lighting = if full { Lighting::All } else { Lighting::Suns };
+                let faces = Faces {
                     shading: Shading::Flat,
+                    stages: &stages,
                     geometry: Geometry {
                         positions: &[],
                         normals: &[],
@@ -339,19 +324,14 @@ mod tests {
                     lights: Lights { suns: &suns, lamps, eye: [0.3, 0.2, 5.0] },
                     paints: if is_mixed { &paints } else { &paints[..1] },
                     columns: &columns,
-                    face_points: Some(&face_points),
-                    culls: false,
+                    points: &face_points,
                     twins: &[],
-                    runs: false,
-                    full,
-                    lit_by_face: true,
-                    channels: false,
-                    affine: false,
-                    lights_pixels: false,
                     kernel: Kernel::PORTABLE,
                 };
                 for culls in [false, true] {
-                    faces.culls = culls;
+                    let switches = Switches::of(|effect| culls && effect == Effect::BackFaceCulling);
+                    let stages = Stages { switches, ..stages };
+                    let faces = Faces { stages: &stages, ..faces };
                     let picks: Vec<u32> = picks
                         .iter()
                         .map(|&(i, back)| (i % points.len()) as u32 | u32::from(back && !culls) << 31)
@@ -359,10 +339,7 @@ mod tests {
                     let alone: Vec<_> = picks.iter().map(|&pick| faces.flat(faces.face(Pick(pick)))).collect();
                     for kernel in Kernel::available() {
                         let mut flat = vec![[U8F8::default(); 3]; picks.len()];
-                        match culls {
-                            true => faces.shade_faces::<true>(kernel, &picks, &mut flat),
-                            false => faces.shade_faces::<false>(kernel, &picks, &mut flat),
-                        }
+                        Faces { kernel, ..faces }.shade_faces(&picks, &mut flat);
                         prop_assert_eq!(&flat, &alone);
                     }
                 }

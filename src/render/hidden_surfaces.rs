@@ -2,9 +2,10 @@
 //! row by row.
 
 use alloc::vec::Vec;
+use core::slice;
 
 use super::integer::IntegerScratch;
-use super::pick::{Culler, Look, PickScratch, Picker, Run};
+use super::pick::{Look, PickScratch, Picker, Run};
 use super::pipelines::Pipelines;
 use super::stats::Shares;
 use super::{Cache, HiddenSurfaces, Renderer, Stats};
@@ -15,8 +16,9 @@ use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::scan_line::Lists;
 use crate::raster::spans::SpanScratch;
-use crate::raster::{DepthMemory, DrawStats, Frame, Interpolation, Raster, Vertex};
+use crate::raster::{DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use crate::scene::Scene;
+use crate::span::Kernel;
 
 /// Memory for drawing, whose contents between two frames do not matter.
 #[derive(Debug, Default)]
@@ -46,11 +48,12 @@ impl Scratch {
         &mut self,
         scene: &Scene,
         cache: &Cache,
+        kernel: Kernel,
         stats: &mut Stats,
         visit: &mut dyn FnMut(usize, &Run<'_>),
     ) {
         let Self { pick, integer, counts, .. } = self;
-        each_run(scene, cache, (None, false), (integer, pick, counts), stats, visit);
+        each_run(scene, cache, (kernel, None), false, (integer, pick, counts), stats, visit);
         pick.added.clear();
     }
 }
@@ -62,24 +65,27 @@ pub(super) struct DeferredFace {
     /// A [`Pick`](crate::raster::pick::Pick).
     pick: u32,
     look: Look,
-    flat: [U8F8; 3],
-    has_flat: bool,
+    /// Its single shade, or its three channels, if faces are lit.
+    flat: Option<[U8F8; 3]>,
 }
 
 impl DeferredFace {
     /// The faces of a run.
     fn of<'a>(object: usize, run: &'a Run<'_>) -> impl Iterator<Item = Self> + 'a {
-        let has_flat = !run.picks.flat.is_empty();
         run.picks.picks.iter().enumerate().map(move |(k, &pick)| {
-            let flat = run.picks.flat.get(k).copied().unwrap_or_default();
             // Fewer than 2³² objects.
-            Self { object: object as u32, pick, look: run.look, flat, has_flat }
+            Self { object: object as u32, pick, look: run.look, flat: run.picks.flat.get(k).copied() }
         })
     }
 
     /// Returns whether it may be drawn in one run with another.
     fn goes_with(&self, other: &Self) -> bool {
-        (self.object, self.look, self.has_flat) == (other.object, other.look, other.has_flat)
+        (self.object, self.look, self.flat.is_some()) == (other.object, other.look, other.flat.is_some())
+    }
+
+    /// It alone.
+    fn picks(&self) -> Picks<'_> {
+        Picks { picks: slice::from_ref(&self.pick), flat: self.flat.as_slice() }
     }
 
     /// The triangles that include it.
@@ -125,9 +131,9 @@ impl Painter<'_, '_> {
             for part in run.chunks(CHUNK) {
                 let (mut picks, mut flat) = ([0; CHUNK], [[U8F8::default(); 3]; CHUNK]);
                 for (k, &(_, i)) in part.iter().enumerate() {
-                    (picks[k], flat[k]) = (faces[i].pick, faces[i].flat);
+                    (picks[k], flat[k]) = (faces[i].pick, faces[i].flat.unwrap_or_default());
                 }
-                let flat = if first.has_flat { &flat[..part.len()] } else { &[] };
+                let flat = if first.flat.is_some() { &flat[..part.len()] } else { &[] };
                 let picks = Picks { picks: &picks[..part.len()], flat };
                 drawn += self.draw(first.object as usize, first.look, &triangles, picks);
             }
@@ -140,23 +146,11 @@ impl Renderer {
     /// Draws the prepared frame over the contents of `frame`.
     pub(super) fn fill(&mut self, scene: &Scene, stats: &mut Stats, frame: Frame<'_>) {
         let Self { kernel, cache, scratch, .. } = self;
-        let Scratch {
-            depths,
-            spans,
-            effects,
-            pick,
-            integer,
-            faces,
-            transparent,
-            far_to_near,
-            triangles,
-            lists,
-            counts,
-        } = scratch;
+        let Scratch { faces, transparent, far_to_near, triangles, lists, .. } = scratch;
         let mut raster = Raster::new(frame).with_kernel(*kernel);
         let method = cache.plan.hidden_surfaces();
         if method == HiddenSurfaces::DepthBuffer {
-            raster = raster.with_depth_memory_within(depths, cache.plan.seen);
+            raster = raster.with_depth_memory_within(&mut scratch.depths, cache.plan.seen);
         }
         let deferred = match method {
             HiddenSurfaces::BackFaces | HiddenSurfaces::DepthBuffer => false,
@@ -178,12 +172,13 @@ impl Renderer {
                 lists.reserve(faces.capacity());
             }
         }
-        let culler = Some(Culler { clip: raster.clip(), kernel: *kernel });
+        let culling = (*kernel, Some(raster.clip()));
         let pipelines = Pipelines { scene, cache, kernel: *kernel };
+        let (spans, effects) = (&mut scratch.spans, &mut scratch.effects);
         let mut painter = Painter { pipelines, raster: &mut raster, spans, scratch: effects };
         let mut drawn = DrawStats::default();
-        let path = (culler, deferred);
-        each_run(scene, cache, path, (integer, pick, counts), stats, &mut |object, run| {
+        let memory = (&mut scratch.integer, &mut scratch.pick, &mut scratch.counts);
+        each_run(scene, cache, culling, deferred, memory, stats, &mut |object, run| {
             if run.look.transparent {
                 transparent.extend(DeferredFace::of(object, run));
             } else if deferred {
@@ -192,7 +187,7 @@ impl Renderer {
                 drawn += painter.draw(object, run.look, &run.triangles, run.picks);
             }
         });
-        let of = (scene, &*cache, pick.added.triangles());
+        let of = (scene, &*cache, scratch.pick.added.triangles());
         if method == HiddenSurfaces::ScanLine {
             drawn += scan_line(of, faces, (triangles, lists), &mut painter);
         } else if deferred {
@@ -201,7 +196,7 @@ impl Renderer {
         if !transparent.is_empty() {
             drawn += painter.draw_far_to_near(of, transparent, far_to_near);
         }
-        pick.added.clear();
+        scratch.pick.added.clear();
         stats.raster += drawn;
         // Faces of the 16.16 path are not counted one by one.
         stats.shares.complete(stats.shading.into(), stats.drawn);
@@ -213,7 +208,8 @@ impl Renderer {
 fn each_run(
     scene: &Scene,
     cache: &Cache,
-    (culler, keeps): (Option<Culler>, bool),
+    culling: (Kernel, Option<Rect>),
+    keeps: bool,
     (integer, pick, counts): (&mut IntegerScratch, &mut PickScratch, &mut Vec<Shares>),
     stats: &mut Stats,
     draw: &mut dyn FnMut(usize, &Run<'_>),
@@ -221,27 +217,21 @@ fn each_run(
     counts.clear();
     counts.resize(scene.objects().len(), Shares::default());
     pick.added.clear();
-    // Even if the objects that reach the near plane are out of sight yet, so that no later frame allocates memory.
-    if cache.plan.objects.iter().any(|plan| plan.stages().nearest <= f64::from(scene.camera.near)) {
-        pick.added.make_room();
-    }
+    // Even if no face needs it yet, so that no later frame allocates memory.
+    pick.added.make_room();
     for &object in &cache.plan.order {
         let (of_scene, plan) = (&scene.objects()[object], &cache.plan.objects[object]);
         let mut of_object = |run: &Run<'_>| draw(object, run);
         if cache.plan.is_integer {
-            let mut picker = Picker::new(culler, keeps, pick, &mut of_object);
-            picker.added().make_room();
+            let mut picker = Picker::new(culling, keeps, pick, &mut of_object);
             let shading = stats.shading;
             cache.integer.triangles(shading, (object, of_scene), stats, integer, &mut |vertices, interpolation| {
-                picker.push_vertices(vertices, interpolation, shading.into());
+                picker.push_vertices(vertices, interpolation, shading);
             });
-            picker.finish_vertices();
-        } else if let Some(faces) = cache.states[object].faces(of_scene, plan) {
-            let budget = cache.states[object].budget();
-            let mut picker = Picker::new(culler, keeps, pick, &mut of_object);
-            if budget.is_some() {
-                picker.added().make_room();
-            }
+            picker.finish_vertices(shading);
+        } else if let Some(faces) = cache.states[object].faces(of_scene, plan, culling.0) {
+            let budget = cache.states[object].budget(plan);
+            let mut picker = Picker::new(culling, keeps, pick, &mut of_object);
             counts[object] = faces.pick(budget, stats, &mut picker);
         }
     }
@@ -256,8 +246,7 @@ fn scan_line(
 ) -> DrawStats {
     triangles.clear();
     triangles.extend(faces.iter().map(|face| {
-        let picks = Picks { picks: &[face.pick], flat: if face.has_flat { &[face.flat] } else { &[] } };
-        let vertices = face.triangles(scene, cache, added).vertices(&picks, 0);
+        let vertices = face.triangles(scene, cache, added).vertices(&face.picks(), 0);
         (vertices, if face.look.effects { Interpolation::default() } else { face.look.interpolation() })
     }));
     let Painter { pipelines, raster, scratch, .. } = painter;
@@ -267,9 +256,8 @@ fn scan_line(
             return false;
         }
         let triangles = face.triangles(scene, cache, added);
-        let picks = Picks { picks: &[face.pick], flat: if face.has_flat { &[face.flat] } else { &[] } };
         pipelines.with(face.object as usize, face.look, |pipeline| {
-            scratch.paint_row((&triangles, picks, 0), pipeline, row, pixels, kernel, drawn);
+            scratch.paint_row((&triangles, face.picks(), 0), pipeline, row, pixels, kernel, drawn);
         });
         true
     })

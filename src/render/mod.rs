@@ -200,7 +200,7 @@ impl Renderer {
             return None;
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::has_custom_response(object))?;
-        let faces = self.cache.states.get(object)?.faces(object_in_scene, plan)?;
+        let faces = self.cache.states.get(object)?.faces(object_in_scene, plan, self.kernel)?;
         Some(faces.linear_error())
     }
 
@@ -389,9 +389,6 @@ impl Renderer {
             }
             if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {
                 changed = true;
-                if let Some(bits) = settings.vertex_bits {
-                    state.round_vertices(bits);
-                }
             } else {
                 stats.kept += 1;
             }

@@ -20,6 +20,7 @@ use crate::raster::cull::{CullMasks, PickList, cull, pick};
 use crate::raster::effects::Attributes;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::{Interpolation, Rect, Vertex};
+use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
 use crate::view::Homogeneous;
 
@@ -92,13 +93,6 @@ impl Run<'_> {
     }
 }
 
-/// Culling of triangles that cover no pixel: the drawn rectangle, and the level that decides.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Culler {
-    pub(super) clip: Rect,
-    pub(super) kernel: Kernel,
-}
-
 /// Memory for picking. It is allocated when first needed, and is large enough from then on.
 #[derive(Debug, Default)]
 pub(super) struct PickScratch {
@@ -112,36 +106,33 @@ pub(super) struct PickScratch {
 
 /// Collects picks, and draws them when there are enough.
 pub(super) struct Picker<'a> {
-    /// `None` if all faces are wanted.
-    culler: Option<Culler>,
+    kernel: Kernel,
+    /// The drawn rectangle, to which faces are culled; `None` if all are wanted.
+    clip: Option<Rect>,
     /// True if added triangles are kept until the frame is drawn.
     keeps: bool,
     scratch: &'a mut PickScratch,
-    /// The look of added triangles that are not yet culled, and the first of them.
-    pending: Option<(Look, usize)>,
     draw: &'a mut dyn FnMut(&Run<'_>),
 }
 
 impl<'a> Picker<'a> {
     pub(super) fn new(
-        culler: Option<Culler>,
+        (kernel, clip): (Kernel, Option<Rect>),
         keeps: bool,
         scratch: &'a mut PickScratch,
         draw: &'a mut dyn FnMut(&Run<'_>),
     ) -> Self {
         scratch.runs.reserve(ROOM);
         scratch.picks.clear();
-        Self { culler, keeps, scratch, pending: None, draw }
+        Self { kernel, clip, keeps, scratch, draw }
     }
 
     /// Culls up to 64 triangles. `exact_cover` is false if those that cover no pixel centre may draw something.
     fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
         // No pixel is covered.
         const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
-        let (level, clip) =
-            self.culler.map_or((Kernel::PORTABLE.simd_level(), NOWHERE), |c| (c.kernel.simd_level(), c.clip));
-        let masks = cull(level, at, triangles, clip, culls);
-        if self.culler.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
+        let masks = cull(self.kernel.simd_level(), at, triangles, self.clip.unwrap_or(NOWHERE), culls);
+        if self.clip.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
 
     /// Begins a run, if the look changes.
@@ -165,9 +156,8 @@ impl<'a> Picker<'a> {
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
         self.begin(look);
-        let level = self.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel).simd_level();
         // Below `Pick::MAX_COUNT`.
-        pick(level, &mut self.scratch.picks, first as u32, masks, chosen);
+        pick(self.kernel.simd_level(), &mut self.scratch.picks, first as u32, masks, chosen);
         self.end();
     }
 
@@ -196,39 +186,24 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds a triangle whose vertices are not a mesh's.
-    pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: FaceShading) {
-        let flat = match interpolation {
-            Interpolation::Flat(index) => Some(U8F8::from(index)),
-            _ => None,
-        };
-        let (effects, transparent, one_shade) = (false, false, flat.is_some());
-        let look = Look { surface: 0, shading, effects, transparent, one_shade, added: true };
-        let added = &self.scratch.added;
-        if self.pending.is_none_or(|(of, first)| of != look || added.len() - first >= CHUNK) {
-            self.push_pending();
-            self.pending = Some((look, self.scratch.added.len()));
-        }
+    /// Adds a triangle whose vertices are not a mesh's. All have one shading, until they are finished.
+    pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: Shading) {
         let added = &mut self.scratch.added;
-        let corners = three(vertices.each_ref(), |vertex| {
-            added.vertex(&flat.map_or(*vertex, |shade| vertex.with_shade(shade)), &Attributes::default())
+        let corners = three(vertices.each_ref(), |vertex| match interpolation {
+            Interpolation::Flat(index) => added.vertex(&vertex.with_shade(U8F8::from(index)), &Attributes::default()),
+            _ => added.vertex(vertex, &Attributes::default()),
         });
         added.triangle(corners, 0);
-    }
-
-    /// Picks the pending triangles whose vertices are not a mesh's.
-    fn push_pending(&mut self) {
-        if let Some((look, first)) = self.pending.take() {
-            self.push_added(look, first, None);
-            if self.is_full() {
-                self.finish(&Triangles::NONE);
-            }
+        if added.waiting() == CHUNK {
+            self.finish_vertices(shading);
         }
     }
 
     /// Draws the triangles whose vertices are not a mesh's.
-    pub(super) fn finish_vertices(&mut self) {
-        self.push_pending();
+    pub(super) fn finish_vertices(&mut self, shading: Shading) {
+        let (effects, transparent, one_shade) = (false, false, shading == Shading::Flat);
+        let look = Look { surface: 0, shading: shading.into(), effects, transparent, one_shade, added: true };
+        self.push_added(look, self.scratch.added.len() - self.scratch.added.waiting(), None);
         self.finish(&Triangles::NONE);
     }
 
@@ -272,18 +247,14 @@ impl Faces<'_> {
     /// Picks the faces to be drawn. Within a budget the shading of each is decided; returns the counts of these
     /// decisions.
     pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
-        stats.faces += self.geometry.triangles.len() as u64;
-        if self.lit_by_face {
+        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
+        let culls = self.stages.culls();
+        stats.faces += triangles.len() as u64;
+        if self.stages.lights_faces() {
             picker.scratch.flat.reserve(ROOM);
         }
-        if self.culls { self.each::<true>(budget, stats, picker) } else { self.each::<false>(budget, stats, picker) }
-    }
-
-    #[inline(never)]
-    fn each<const CULLS: bool>(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
-        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
         // Every shading that a budget chooses has exact coverage, and so has a single shade.
-        let has_one_shade = self.lit_by_face || !self.runs;
+        let has_one_shade = self.has_one_shade();
         let exact_cover = budget.is_some() || has_one_shade || self.shading.interpolation().has_exact_cover();
         let common = if budget.is_some() { LINEAR } else { self.shading.into() };
         let one_look = self.one_look(common, budget.is_some());
@@ -291,20 +262,20 @@ impl Faces<'_> {
         let (mut counts, before, mut linear) = (Shares::default(), stats.drawn, 0);
         for (chunk, triangles) in triangles.chunks(CHUNK).enumerate() {
             let first = chunk * CHUNK;
-            let masks = picker.cull(&self.columns.at, triangles, CULLS, exact_cover);
-            let mut left = self.drawn::<CULLS>(chunk, triangles.len(), &masks, stats);
+            let masks = picker.cull(&self.columns.at, triangles, culls, exact_cover);
+            let mut left = self.drawn(chunk, triangles.len(), &masks, stats);
             let unclipped = left & !masks.clipped;
             let classes =
-                budget.map(|budget| self.classify(budget, (first, if CULLS { 0 } else { masks.back }), unclipped));
+                budget.map(|budget| self.classify(budget, (first, if culls { 0 } else { masks.back }), unclipped));
             let of_common = classes.as_ref().map_or(unclipped, |classes| classes.linear);
             linear += u64::from(of_common.count_ones());
             if let Some(look) = one_look.filter(|_| of_common == left) {
                 picker.add(look, first, &masks, left);
-                self.make_space::<CULLS>(picker, stats);
+                self.make_space(picker, stats);
                 continue;
             }
             // The faces below are lit one by one, after all pending ones.
-            self.light_pending::<CULLS>(picker, stats);
+            self.light_pending(picker, stats);
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -314,7 +285,7 @@ impl Faces<'_> {
                     index: (first + at) as u32,
                     indices: triangles[at],
                     surface: triangle_surfaces[first + at],
-                    back_facing: !CULLS && is(masks.back),
+                    back_facing: !culls && is(masks.back),
                 };
                 if is(of_common) {
                     let look = self.look(face.surface, common, budget.is_some());
@@ -323,7 +294,7 @@ impl Faces<'_> {
                     continue;
                 }
                 if is(masks.clipped) {
-                    let culls = CULLS || is(self.twins_of(chunk));
+                    let culls = culls || is(self.twins_of(chunk));
                     let shading = self.clipped((culls, exact_cover), face, budget, stats, picker);
                     if let Some(shading) = shading.filter(|_| budget.is_some()) {
                         counts.add(shading, 1);
@@ -333,11 +304,11 @@ impl Faces<'_> {
                     let pick = masks.pick(at, first + at, face.back_facing);
                     counts.add(self.decided((face, pick), (budget, error), stats, picker), 1);
                 }
-                self.make_space::<CULLS>(picker, stats);
+                self.make_space(picker, stats);
             }
-            self.make_space::<CULLS>(picker, stats);
+            self.make_space(picker, stats);
         }
-        self.finish::<CULLS>(picker, stats);
+        self.finish(picker, stats);
         if budget.is_some() {
             stats.shares.add(LINEAR, linear);
             counts.add(LINEAR, linear);
@@ -356,14 +327,19 @@ impl Faces<'_> {
     /// The bits of faces to be drawn, among up to 64, including those that need clipping. A face that covers no pixel
     /// centre is left out, though it counts as drawn.
     #[inline]
-    fn drawn<const CULLS: bool>(&self, chunk: usize, count: usize, masks: &CullMasks, stats: &mut Stats) -> u64 {
-        let drawn = if CULLS { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
+    fn drawn(&self, chunk: usize, count: usize, masks: &CullMasks, stats: &mut Stats) -> u64 {
+        let drawn = if self.stages.culls() { masks.front } else { masks.front | (masks.back & !self.twins_of(chunk)) };
         let clipped = u64::from((masks.clipped | masks.too_near).count_ones());
         let drawn_here = u64::from(drawn.count_ones());
         stats.drawn += drawn_here;
         stats.clipped += clipped;
         stats.culled += count as u64 - drawn_here - clipped;
         (drawn & masks.covers) | masks.clipped
+    }
+
+    /// Returns whether each face has one shade, unless a budget or a stage for pixels gives it others.
+    fn has_one_shade(&self) -> bool {
+        self.stages.lights_faces() || !self.stages.interpolates()
     }
 
     /// The look of faces of a surface that are drawn with one shading.
@@ -376,7 +352,7 @@ impl Faces<'_> {
             shading,
             effects,
             transparent: material.blend != Blend::Opaque,
-            one_shade: !effects && !is_decided && (self.lit_by_face || !self.runs),
+            one_shade: !effects && !is_decided && self.has_one_shade(),
             added: false,
         }
     }
@@ -390,7 +366,7 @@ impl Faces<'_> {
     /// The single shade of a face, or its channels, if faces are lit.
     #[inline]
     fn lit_face(&self, face: Face, stats: &mut Stats) -> Option<[U8F8; 3]> {
-        if !self.lit_by_face {
+        if !self.stages.lights_faces() {
             return None;
         }
         stats.lit += 1;
@@ -399,37 +375,36 @@ impl Faces<'_> {
 
     /// Draws the pending picks if there is no room for more.
     #[inline]
-    fn make_space<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+    fn make_space(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         if picker.is_full() {
-            self.finish::<CULLS>(picker, stats);
+            self.finish(picker, stats);
         }
     }
 
     /// Draws the pending picks.
-    fn finish<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        self.light_pending::<CULLS>(picker, stats);
+    fn finish(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        self.light_pending(picker, stats);
         picker.finish(&self.triangles());
     }
 
     /// Lights the picked faces that are not lit yet, each as a whole, if faces are lit.
     #[inline]
-    fn light_pending<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        if self.lit_by_face {
-            self.light_faces::<CULLS>(picker, stats);
+    fn light_pending(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
+        if self.stages.lights_faces() {
+            self.light_faces(picker, stats);
         }
     }
 
     /// [`light_pending`](Self::light_pending), many at a time, so that few lanes are idle.
     #[inline(never)]
-    fn light_faces<const CULLS: bool>(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        let kernel = picker.culler.map_or(Kernel::PORTABLE, |culler| culler.kernel);
+    fn light_faces(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let PickScratch { picks, flat, .. } = &mut *picker.scratch;
         let first = flat.len();
         let picks = &picks.as_slice()[first..];
         stats.lit += picks.len() as u64;
         // Room has been reserved.
         flat.resize(first + picks.len(), Default::default());
-        self.shade_faces::<CULLS>(kernel, picks, &mut flat[first..]);
+        self.shade_faces(picks, &mut flat[first..]);
     }
 
     /// Picks a face that bounds alone do not prove linear on the screen. `error` is its bound, if
@@ -479,7 +454,7 @@ impl Faces<'_> {
         picker: &mut Picker<'_>,
     ) -> Option<FaceShading> {
         let at = three(face.indices, |i| self.view.homogeneous(self.geometry.positions[i as usize]));
-        if picker.culler.is_some() && exact_cover && self.view.is_off_screen(&at) {
+        if picker.clip.is_some() && exact_cover && self.view.is_off_screen(&at) {
             return None;
         }
         let face = Face { back_facing: !culls && is_turned_away(&at), ..face };
@@ -487,7 +462,6 @@ impl Faces<'_> {
             (budget.map_or(self.shading.into(), |budget| self.decide_clipped(budget, face)), stats.drawn);
         let look = self.look(face.surface, shading, budget.is_some());
         let flat = self.lit_face(face, stats);
-        picker.added().make_room();
         let first = picker.added().len();
         self.add_parts((face, at), (culls, shading), picker.added(), stats);
         picker.push_added(look, first, flat);
@@ -517,7 +491,8 @@ impl Faces<'_> {
                 attributes: self.attributes(face.indices[k], face.back_facing, shading.lights_pixels()),
             }
         };
-        let progressions = Progressions { interpolation: shading.interpolation(), affine: self.affine };
+        let progressions =
+            Progressions { interpolation: shading.interpolation(), affine: self.stages.mapping == Mapping::Affine };
         let Some((polygon, corners)) = clip(self.view, progressions, [corner(0), corner(1), corner(2)]) else {
             return;
         };

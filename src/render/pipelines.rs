@@ -56,7 +56,7 @@ pub(super) fn ensure_tables(
         if channels {
             tables.ensure_mix();
         }
-        for (material, paint) in object.materials.iter().zip(state.paints()) {
+        for (material, paint) in object.materials.iter().zip(&state.paints) {
             let image = image(plan, material, paint);
             if image.is_some() || plan.stages().neutral_image {
                 tables.ensure_shades(image, channels);
@@ -87,7 +87,7 @@ impl Pipelines<'_> {
         let Cache { plan, states, tables, .. } = self.cache;
         let (plan, state) = (&plan.objects[object], &states[object]);
         let material = &self.scene.objects()[object].materials[usize::from(surface)];
-        let paint = &state.paints()[usize::from(surface)];
+        let paint = &state.paints[usize::from(surface)];
         let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
         let dither = plan.stages().dither;
         let channels = plan.stages().has_channels().then(|| tables.mix(dither != Dither::None));

@@ -59,7 +59,7 @@ impl Faces<'_> {
         below: bool,
     ) -> Bounds {
         let answer = &self.paints[usize::from(surface)].answer;
-        let (extent, in_color) = (budget.clusters.extent, self.channels);
+        let (extent, in_color) = (budget.clusters.extent, self.stages.has_channels());
         let incident = Incident { lights: self.lights, answer, extent, in_color, below };
         error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
     }
@@ -186,14 +186,14 @@ impl Faces<'_> {
     pub(in crate::render) fn decide_clipped(&self, budget: &Budget, face: Face) -> FaceShading {
         let (faces, shapes) = self.eight(budget, face.index as usize, core::iter::once((0, face.back_facing)));
         let bounds = self.bounds::<true, _>(budget, (&faces, &shapes), face.surface, false);
-        if bounds.on_face[0] <= budget.spare(EXACT_ROUNDING) || !self.lights_pixels { FLOAT } else { PHONG }
+        if bounds.on_face[0] <= budget.spare(EXACT_ROUNDING) || !self.stages.lights_pixels() { FLOAT } else { PHONG }
     }
 
     /// Bounds the error of linear shades anywhere on the object, in shades, not counting rounding.
     #[inline(never)]
     pub(in crate::render) fn linear_error(&self) -> f64 {
         let budget = Budget { clusters: Clusters::new(&self.geometry), ..Budget::default() };
-        let sides: &[bool] = if self.culls { &[false] } else { &[false, true] };
+        let sides: &[bool] = if self.stages.culls() { &[false] } else { &[false, true] };
         let (mut first, mut most) = (0, 0.0_f32);
         let of_one_surface = self.geometry.triangle_surfaces.chunk_by(|a, b| a == b);
         for surfaces in of_one_surface.flat_map(|run| run.chunks(LANES)) {

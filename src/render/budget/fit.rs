@@ -240,7 +240,7 @@ impl Faces<'_> {
     #[inline]
     fn front(&self, face: &OnScreen<'_>, weights: &Weights, turned: bool) -> [Lanes<f32>; 3] {
         let points = face.points(weights, turned);
-        if self.channels {
+        if self.stages.has_channels() {
             let [r, g, b] = self.lights.front_of_three_channels::<false>(face.answer, &points, self.kernel);
             [narrow(&r), narrow(&g), narrow(&b)]
         } else {
@@ -257,7 +257,7 @@ impl Faces<'_> {
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
         let (ratio, (pixels, width)) = (near as f32 / far as f32, size_of(vertices));
         // If rounding uses up all that is allowed, nothing fits.
-        if far == 0 || pixels < WORTH_CURVE || !self.lights_pixels || spare <= 0.0 {
+        if far == 0 || pixels < WORTH_CURVE || !self.stages.lights_pixels() || spare <= 0.0 {
             return Fit::of(PHONG);
         }
         // The sizes of parts: four grids, then three spacings; the last is unused.
@@ -307,7 +307,7 @@ impl Faces<'_> {
         grids: &[(f32, &[Weights])],
         (spare, left): (f32, &Lanes<f32>),
     ) -> Option<Nodes> {
-        let channels = if self.channels { 3 } else { 1 };
+        let channels = if self.stages.has_channels() { 3 } else { 1 };
         let mut known = None;
         for (grid, (n, points)) in grids.iter().enumerate() {
             let is_worth = left[grid] > (1.0 - MODEL) * spare;

@@ -26,11 +26,8 @@ pub(super) use self::fit::{Fit, limits};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use crate::light::Lights;
-use crate::mesh::Mesh;
 use crate::plan::FaceShading;
 use crate::settings::Shading;
-use crate::shared::Shared;
-use crate::span::Kernel;
 
 /// Shadings of faces that are linear on the screen, of those that are linear on the face, and of those lit at every
 /// pixel.
@@ -49,11 +46,7 @@ const EXACT_ROUNDING: f32 = 0.5125;
 /// Error budget of an object: the data that its decisions are based on.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
-    /// The mesh of these clusters; `None` for a split mesh.
-    mesh: Option<Shared<Mesh>>,
     clusters: Clusters,
-    /// The kernel of the current frame.
-    pub(super) kernel: Option<Kernel>,
     /// In shades.
     allowed: f32,
     /// True if no light and no material takes light away.
@@ -61,19 +54,17 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Updates the budget to the object's current state. `mesh` is its mesh, if drawn unsplit.
+    /// Updates the budget to the object's current state, with its geometry if that has changed.
     #[inline(never)]
     pub(super) fn renew(
         &mut self,
-        (allowed, kernel): (f32, Kernel),
-        geometry: &Geometry<'_>,
-        mesh: Option<&Shared<Mesh>>,
-        (lights, paints): (&Lights<'_>, &[SurfaceMaterial]),
+        allowed: f32,
+        changed: Option<&Geometry<'_>>,
+        lights: &Lights<'_>,
+        paints: &[SurfaceMaterial],
     ) {
-        (self.allowed, self.kernel) = (allowed, Some(kernel));
-        self.adds = adds(lights, paints);
-        if !matches!((&self.mesh, mesh), (Some(known), Some(mesh)) if Shared::ptr_eq(known, mesh)) {
-            self.mesh = mesh.map(Shared::clone);
+        (self.allowed, self.adds) = (allowed, adds(lights, paints));
+        if let Some(geometry) = changed {
             self.clusters = Clusters::new(geometry);
         }
     }

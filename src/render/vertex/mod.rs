@@ -115,14 +115,14 @@ pub(super) fn light_channels(
     paints: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
-    channels: &mut [[[U8F8; 3]; 2]],
+    vertices: &mut VertexColumns,
 ) {
     each_eight(geometry, |eight, surface, points| {
         let paint = &paints[surface];
         for side in 0..=usize::from(both) {
             let intensities = lights.front_of_three_channels::<true>(&paint.answer, &from_side(points, side), kernel);
             let [red, green, blue] = three(intensities.each_ref(), |channel| paint.shade_of_eight(channel));
-            for (lane, channels) in channels[eight.clone()].iter_mut().enumerate() {
+            for (lane, channels) in vertices.channels[eight.clone()].iter_mut().enumerate() {
                 channels[side] = [red[lane], green[lane], blue[lane]];
             }
         }
