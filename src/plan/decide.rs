@@ -64,8 +64,8 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
         }
         let view = &inputs.views[place];
         let reach = view.reach(object.mesh().bounds());
-        let change = inputs.change.get(place).copied().unwrap_or(Change::New);
         let rules = Rules {
+            inputs,
             scene: inputs.scene,
             place,
             object,
@@ -73,19 +73,18 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             reach,
             // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
             is_out_of_sight: !is_integer && shading != Shading::GouraudVintage && reach.is_out_of_sight(view.near()),
-            change,
-            inputs,
+            change: inputs.change.get(place).copied().unwrap_or(Change::New),
+            lamps_in_range: lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count(),
             is_integer,
             max_error,
             shading: if max_error.is_some() && has_custom_response(object) { Shading::Phong } else { shading },
             way: (way, reason),
         };
         farthest = farthest.max(rules.reach.farthest);
-        let in_range = lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count();
         // Built in place, because it is large.
         plan.objects.push(ObjectPlan::new(rules.shading));
         if let Some(object) = plan.objects.last_mut() {
-            rules.all(in_range, object);
+            rules.all(object);
             if !object.stages.is_out_of_sight {
                 plan.seen = plan.seen.hull(rules.reach.seen);
             }
@@ -123,6 +122,7 @@ const fn in_integers(effect: Effect) -> bool {
 
 /// One object, and the facts that the rules use.
 struct Rules<'a> {
+    inputs: &'a Inputs<'a>,
     scene: &'a Scene,
     place: usize,
     object: &'a Object,
@@ -130,7 +130,7 @@ struct Rules<'a> {
     reach: ScreenBounds,
     is_out_of_sight: bool,
     change: Change,
-    inputs: &'a Inputs<'a>,
+    lamps_in_range: usize,
     /// Whether vertices are transformed in 16.16.
     is_integer: bool,
     /// The error budget, if there is one.
@@ -144,10 +144,10 @@ struct Rules<'a> {
 
 impl Rules<'_> {
     /// Decides on all effects of a new plan.
-    fn all(&self, lamps_in_range: usize, plan: &mut ObjectPlan) {
+    fn all(&self, plan: &mut ObjectPlan) {
         let mut overridden = [false; Effect::COUNT];
         for effect in Effect::ALL {
-            let mut decision = self.decision(effect, lamps_in_range, plan);
+            let mut decision = self.decision(effect, plan);
             if effect.is_left_out() {
                 plan.set(effect, Decision::off(Reason::LeftOut));
                 continue;
@@ -232,15 +232,15 @@ impl Rules<'_> {
     }
 
     /// Decides on an effect. `before`: the decisions so far, in the order of [`Effect::ALL`].
-    fn decision(&self, effect: Effect, lamps_in_range: usize, before: &ObjectPlan) -> Decision {
+    fn decision(&self, effect: Effect, before: &ObjectPlan) -> Decision {
         match effect {
             Effect::Transform => self.transform(),
             Effect::NearClipping => self.near_clipping(),
             Effect::ScreenClipping => self.screen_clipping(before),
             Effect::BackFaceCulling => self.back_face_culling(),
             Effect::HiddenSurfaces => self.hidden_surfaces(),
-            Effect::Lighting => self.lighting(lamps_in_range),
-            Effect::PositionalLights => self.positional_lights(lamps_in_range, before),
+            Effect::Lighting => self.lighting(),
+            Effect::PositionalLights => self.positional_lights(before),
             Effect::Specular => self.specular(before),
             Effect::Gouraud => self.gouraud(before),
             Effect::Fog => self.fog(),
@@ -308,59 +308,49 @@ impl Rules<'_> {
         Decision { on: way != HiddenSurfaces::BackFaces, choice: Choice::HiddenSurfaces(way), reason }
     }
 
-    fn lighting(&self, lamps_in_range: usize) -> Decision {
+    fn lighting(&self) -> Decision {
         let bright = || self.scene.lights().iter().filter(|light| light.intensity() != 0.0);
         let count = bright().count();
         if count == 0 {
             Decision::off(Reason::NoLight)
         } else if self.object.materials.iter().all(|m| m.diffuse == 0.0 && !m.is_specular()) {
             Decision::off(Reason::NoResponse)
-        } else if lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
+        } else if self.lamps_in_range == 0 && bright().all(|light| matches!(light, Light::Lamp { .. })) {
             Decision::off(Reason::LampsOutOfRange { count })
         } else {
             Decision::on(Reason::Lights { count })
         }
     }
 
-    fn positional_lights(&self, in_range: usize, before: &ObjectPlan) -> Decision {
+    fn positional_lights(&self, before: &ObjectPlan) -> Decision {
         let count = self.scene.lights().iter().filter(|light| matches!(light, Light::Lamp { .. })).count();
-        match (count, in_range) {
+        match (count, self.lamps_in_range) {
             (0, _) => Decision::off(Reason::NoLamp),
             (_, 0) => Decision::off(Reason::LampsOutOfRange { count }),
             _ if !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
-            _ => Decision::on(Reason::LampsInRange { count: in_range }),
+            (_, count) => Decision::on(Reason::LampsInRange { count }),
         }
     }
 
     fn specular(&self, before: &ObjectPlan) -> Decision {
         let decision = self.material_has(Material::is_specular);
-        if decision.on {
-            return if before.is_on(Effect::Lighting) {
-                decision
-            } else {
-                Decision::off(before[Effect::Lighting].reason)
-            };
-        }
         match self.object.materials.iter().position(|material| material.specular != 0.0) {
-            Some(material) => Decision::off(Reason::NoShininess { material }),
-            None => decision,
+            _ if decision.on && !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
+            Some(material) if !decision.on => Decision::off(Reason::NoShininess { material }),
+            _ => decision,
         }
     }
 
     fn gouraud(&self, before: &ObjectPlan) -> Decision {
-        if !before.is_on(Effect::Lighting) {
-            return Decision::off(Reason::OneShade);
-        }
-        if let Some(max_error) = self.max_error {
-            return match self.is_lit_by_face(before) {
-                true => Decision::off(Reason::Faceted),
-                false => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
-            };
-        }
-        match self.shading {
-            Shading::Flat => Decision::off(Reason::FlatAsked),
-            shading if shading.lights_pixels() => Decision::off(Reason::Asked).choosing(Choice::Shading(shading)),
-            shading => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
+        match (self.max_error, self.shading) {
+            _ if !before.is_on(Effect::Lighting) => Decision::off(Reason::OneShade),
+            (Some(_), _) if self.is_lit_by_face(before) => Decision::off(Reason::Faceted),
+            (Some(max_error), _) => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
+            (None, Shading::Flat) => Decision::off(Reason::FlatAsked),
+            (None, shading) if shading.lights_pixels() => {
+                Decision::off(Reason::Asked).choosing(Choice::Shading(shading))
+            }
+            (None, shading) => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
         }
     }
 
@@ -375,18 +365,18 @@ impl Rules<'_> {
     }
 
     fn phong(&self, before: &ObjectPlan) -> Decision {
-        if let Some(max_error) = self.max_error {
-            return if !before.is_on(Effect::Lighting) {
-                Decision::off(before[Effect::Lighting].reason)
-            } else if self.is_lit_by_face(before) {
-                Decision::off(Reason::Faceted)
-            } else {
-                Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
+        let Some(max_error) = self.max_error else {
+            return match self.shading.lights_pixels() {
+                true => Decision::on(Reason::Asked).choosing(Choice::Shading(self.shading)),
+                false => Decision::off(Reason::NotAsked),
             };
-        }
-        match self.shading {
-            shading if shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(shading)),
-            _ => Decision::off(Reason::NotAsked),
+        };
+        if !before.is_on(Effect::Lighting) {
+            Decision::off(before[Effect::Lighting].reason)
+        } else if self.is_lit_by_face(before) {
+            Decision::off(Reason::Faceted)
+        } else {
+            Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
         }
     }
 
