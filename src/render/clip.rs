@@ -24,21 +24,20 @@ struct Parts {
     of_texture: f64,
 }
 
+/// The value at `part` of the way from one end to the other. Rounding does not take it out of their range.
+fn between(from: f64, to: f64, part: f64) -> f64 {
+    (from + (to - from) * part).max(from.min(to)).min(from.max(to))
+}
+
 /// Attributes where an edge is cut.
 fn attributes_between(a: &Attributes, b: &Attributes, parts: Parts) -> Attributes {
     let Parts { on_face, on_screen, of_shades, of_texture } = parts;
     let shade = |from: U8F8, to: U8F8, part: f64| {
-        let (from, to) = (f64::from(from.to_bits()), f64::from(to.to_bits()));
-        let (low, high) = (from.min(to), from.max(to));
         // At most 0xFF00, being between two such values. The cast truncates, hence the half.
-        U8F8::from_bits(((from + (to - from) * part).max(low).min(high) + 0.5) as u16)
+        U8F8::from_bits((between(from.to_bits().into(), to.to_bits().into(), part) + 0.5) as u16)
     };
-    let coordinate = |from: i32, to: i32| {
-        let (from, to) = (f64::from(from), f64::from(to));
-        let (low, high) = (from.min(to), from.max(to));
-        // Between two i32 values.
-        libm::floor((from + (to - from) * of_texture).max(low).min(high) + 0.5) as i32
-    };
+    // Between two i32 values.
+    let coordinate = |from: i32, to: i32| libm::floor(between(from.into(), to.into(), of_texture) + 0.5) as i32;
     Attributes {
         texture: core::array::from_fn(|i| coordinate(a.texture[i], b.texture[i])),
         fog: shade(a.fog, b.fog, on_screen),
@@ -102,21 +101,21 @@ fn cut(
     d_outside: f64,
 ) -> Corner {
     let whole = d_inside - d_outside;
-    let between = |a: f64, b: f64| (b * d_inside - a * d_outside) / whole;
+    let mean = |a: f64, b: f64| (b * d_inside - a * d_outside) / whole;
     let (a, b) = (inside.at, outside.at);
     let (low, high) = (a.w.min(b.w), a.w.max(b.w));
-    let w = if plane == 0 { f64::from(view.near()) } else { between(a.w, b.w).max(low).min(high) };
+    let w = if plane == 0 { f64::from(view.near()) } else { mean(a.w, b.w).max(low).min(high) };
     let (cx, cy) = view.centre();
     let limit = ObjectView::LIMIT;
     let x = match plane {
         1 => -(limit + cx) * w,
         2 => (limit - cx) * w,
-        _ => between(a.x, b.x),
+        _ => mean(a.x, b.x),
     };
     let y = match plane {
         3 => -(limit + cy) * w,
         4 => (limit - cy) * w,
-        _ => between(a.y, b.y),
+        _ => mean(a.y, b.y),
     };
     // On the edge's projection the point lies at t·wb / w. If the other end has no projection, beyond the near plane,
     // values that are linear on the screen are linear along the edge.
@@ -125,12 +124,9 @@ fn cut(
     let of_shades = if progressions.interpolation.is_linear_on_the_face() { on_face } else { on_screen };
     let of_texture = if progressions.affine { on_screen } else { on_face };
     let parts = Parts { on_face, on_screen, of_shades, of_texture };
-    let shade = inside.shade + (outside.shade - inside.shade) * of_shades;
-    // Rounding in `shade` must not leave the range of the two ends.
-    let (low, high) = (inside.shade.min(outside.shade), inside.shade.max(outside.shade));
     Corner {
         at: Homogeneous { x, y, w },
-        shade: shade.max(low).min(high),
+        shade: between(inside.shade, outside.shade, of_shades),
         vertex: None,
         attributes: attributes_between(&inside.attributes, &outside.attributes, parts),
     }
