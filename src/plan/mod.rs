@@ -128,35 +128,23 @@ impl ObjectPlan {
 /// Manual overrides of effects: `None` leaves an effect to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Overrides {
-    everywhere: [Option<bool>; Effect::COUNT],
-    /// Overrides for single objects, by index.
-    single: Vec<(usize, Effect, bool)>,
+    /// With the index of an object; `None` is every object without an override of its own.
+    all: Vec<(Option<usize>, Effect, bool)>,
 }
 
 impl Overrides {
-    /// Switches an effect on or off for every object, or leaves it to the plan.
-    pub(crate) fn set(&mut self, effect: Effect, on: Option<bool>) {
-        self.everywhere[effect.index()] = on;
+    /// Switches an effect on or off for one object, by its index in the scene, or for every other object; `None` removes
+    /// the override.
+    pub(crate) fn set(&mut self, object: Option<usize>, effect: Effect, on: Option<bool>) {
+        self.all.retain(|(place, of, _)| (*place, *of) != (object, effect));
+        self.all.extend(on.map(|on| (object, effect, on)));
     }
 
-    /// Returns how an effect is overridden for every object.
+    /// Returns how an effect is overridden for an object, or for every object without an override of its own.
     #[must_use]
-    pub(crate) fn get(&self, effect: Effect) -> Option<bool> {
-        self.everywhere[effect.index()]
-    }
-
-    /// Switches an effect on or off for one object, by its index in the scene, regardless of the setting for every
-    /// object; `None` removes the override.
-    pub(crate) fn set_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
-        self.single.retain(|(place, of, _)| (*place, *of) != (object, effect));
-        self.single.extend(on.map(|on| (object, effect, on)));
-    }
-
-    /// Returns how an effect is overridden for an object.
-    #[must_use]
-    pub(crate) fn get_for(&self, object: usize, effect: Effect) -> Option<bool> {
-        let single = self.single.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
-        single.map(|(_, _, on)| *on).or(self.get(effect))
+    pub(crate) fn get(&self, object: Option<usize>, effect: Effect) -> Option<bool> {
+        let find = |object| self.all.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
+        find(object).or_else(|| find(None)).map(|(_, _, on)| *on)
     }
 }
 

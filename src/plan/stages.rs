@@ -157,8 +157,6 @@ switches! {
     has_mipmaps: Mipmaps;
     /// Returns whether some surface is transparent.
     is_transparent: Transparency;
-    /// Returns whether shades are dithered.
-    has_dither: Dither;
     /// Returns whether pixels pass through tables.
     needs_tables: Fog | RgbChannels | Texture | EnvironmentMap | Transparency;
 }

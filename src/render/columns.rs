@@ -39,20 +39,6 @@ impl VertexColumns {
         self.slope.clear();
     }
 
-    /// Leaves vertices without shades, if faces or pixels are lit instead.
-    pub(super) fn leave_without_light(&mut self) {
-        self.shade.fill([U8F8::default(); 2]);
-    }
-
-    /// Stores a vertex's position on the screen, or that it needs clipping.
-    #[inline]
-    pub(super) fn put(&mut self, i: usize, vertex: Option<Vertex>) {
-        (self.at[i], self.depth[i]) = match vertex {
-            Some(v) => (ScreenPos::of(&v), v.depth()),
-            None => (ScreenPos::NEEDS_CLIPPING, 0),
-        };
-    }
-
     /// The values, with the input of per-pixel lighting.
     #[inline]
     pub(super) fn columns<'a>(&'a self, lit: LitColumn<'a>) -> Columns<'a> {

@@ -1,5 +1,6 @@
 //! Every triangle of a frame with everything the raster would get, for the laboratory.
 
+use super::hidden_surfaces::each_run;
 use super::pipelines::Pipelines;
 use super::{RenderError, Renderer, Screen, Stats};
 use crate::palette::Ramp;
@@ -50,9 +51,10 @@ impl Renderer {
         self.last = None;
         let Self { cache, scratch, kernel, .. } = self;
         let pipelines = Pipelines { scene, cache, kernel: *kernel };
-        scratch.each_run(scene, cache, *kernel, &mut stats, &mut |object, run| {
+        let memory = (&mut scratch.integer, &mut scratch.pick, &mut scratch.counts);
+        each_run(scene, cache, (*kernel, None), false, memory, &mut stats, &mut |object, run| {
             let state = &cache.states[object];
-            let surfaces = state.triangle_surfaces(&scene.objects()[object]);
+            let surfaces = state.geometry(&scene.objects()[object]).triangle_surfaces;
             for k in 0..run.picks.picks.len() {
                 let (vertices, interpolation) = run.vertices(k);
                 let face = (!cache.plan.is_integer).then(|| run.face(k));

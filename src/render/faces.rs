@@ -52,10 +52,6 @@ pub(super) struct Faces<'a> {
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
     pub(super) points: &'a FacePoints,
-    /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if
-    /// there are none. As a back face it is culled even where others show their backs: the other
-    /// one has the same depth, and faces the eye.
-    pub(super) twins: &'a [u64],
     pub(super) kernel: Kernel,
 }
 
@@ -313,19 +309,15 @@ mod tests {
                     shading: Shading::Flat,
                     stages: &stages,
                     geometry: Geometry {
-                        positions: &[],
-                        normals: &[],
-                        texcoords: None,
-                        vertex_surfaces: &[],
                         triangles: &triangles,
                         triangle_surfaces: &triangle_surfaces,
+                        ..Geometry::default()
                     },
                     view: &view,
                     lights: Lights { suns: &suns, lamps, eye: [0.3, 0.2, 5.0] },
                     paints: if is_mixed { &paints } else { &paints[..1] },
                     columns: &columns,
                     points: &face_points,
-                    twins: &[],
                     kernel: Kernel::PORTABLE,
                 };
                 for culls in [false, true] {

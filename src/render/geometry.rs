@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 /// Geometry that is drawn for an object: its mesh, or the result of tessellation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Geometry<'a> {
     pub(super) positions: &'a [Vec3],
     pub(super) normals: &'a [Vec3],
@@ -11,4 +11,8 @@ pub(super) struct Geometry<'a> {
     pub(super) vertex_surfaces: &'a [u16],
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) triangle_surfaces: &'a [u16],
+    /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if
+    /// there are none. As a back face it is culled even where others show their backs: the other
+    /// one has the same depth, and faces the eye.
+    pub(super) twins: &'a [u64],
 }

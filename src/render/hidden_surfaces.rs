@@ -26,8 +26,8 @@ pub(super) struct Scratch {
     depths: DepthMemory,
     spans: SpanScratch,
     effects: EffectScratch,
-    pick: PickScratch,
-    integer: IntegerScratch,
+    pub(super) pick: PickScratch,
+    pub(super) integer: IntegerScratch,
     /// Faces of a frame that must all be known before it is drawn.
     faces: Vec<DeferredFace>,
     /// Transparent faces, drawn after everything opaque.
@@ -39,23 +39,6 @@ pub(super) struct Scratch {
     lists: Lists,
     /// Faces of each object by the shading that a budget chose when it was last drawn.
     pub(super) counts: Vec<Shares>,
-}
-
-impl Scratch {
-    /// Passes every face to `visit` with its object, in runs of one look: object by object, each in the order of its
-    /// faces.
-    pub(super) fn each_run(
-        &mut self,
-        scene: &Scene,
-        cache: &Cache,
-        kernel: Kernel,
-        stats: &mut Stats,
-        visit: &mut dyn FnMut(usize, &Run<'_>),
-    ) {
-        let Self { pick, integer, counts, .. } = self;
-        each_run(scene, cache, (kernel, None), false, (integer, pick, counts), stats, visit);
-        pick.added.clear();
-    }
 }
 
 /// A face that is drawn once all are known.
@@ -90,7 +73,8 @@ impl DeferredFace {
 
     /// The triangles that include it.
     fn triangles<'a>(&self, scene: &'a Scene, cache: &'a Cache, added: Triangles<'a>) -> Triangles<'a> {
-        if self.look.added { added } else { cache.triangles(scene, self.object as usize).unwrap_or(added) }
+        let object = self.object as usize;
+        if self.look.added { added } else { cache.states[object].triangles(&scene.objects()[object]) }
     }
 }
 
@@ -196,7 +180,6 @@ impl Renderer {
         if !transparent.is_empty() {
             drawn += painter.draw_far_to_near(of, transparent, far_to_near);
         }
-        scratch.pick.added.clear();
         stats.raster += drawn;
         // Faces of the 16.16 path are not counted one by one.
         stats.shares.complete(stats.shading.into(), stats.drawn);
@@ -205,7 +188,7 @@ impl Renderer {
 
 /// Passes the faces of a frame to `draw` with their object, in runs that are drawn together: object by object, each in
 /// the order of its faces. Triangles that the frame adds are kept if `keeps` says so, or if they are transparent.
-fn each_run(
+pub(super) fn each_run(
     scene: &Scene,
     cache: &Cache,
     culling: (Kernel, Option<Rect>),

@@ -103,13 +103,9 @@ fn direction(v: [f64; 3]) -> Vector {
 }
 
 fn sun(light: &Light) -> Option<Sun> {
-    match *light {
-        Light::Sun { direction: towards, .. } => Some(Sun {
-            direction: direction(towards.to_array().map(f64::from)),
-            intensity: fixed(light.brightness().into())?,
-        }),
-        Light::Lamp { .. } => None,
-    }
+    let Light::Sun { direction: towards, .. } = *light else { return None };
+    let intensity = fixed(light.brightness().into())?;
+    Some(Sun { direction: direction(towards.to_array().map(f64::from)), intensity })
 }
 
 fn paint(material: &Material, scene: &Scene) -> Option<Paint> {

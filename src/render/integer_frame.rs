@@ -42,12 +42,10 @@ impl Renderer {
             return Err(RenderError::Camera("there is none"));
         };
         let order = self.cache.plan.order.iter();
+        let method = self.cache.plan.hidden_surfaces();
         Ok(IntegerFrame {
             shading: stats.shading,
-            is_depth_tested: !matches!(
-                self.cache.plan.hidden_surfaces(),
-                HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder
-            ),
+            is_depth_tested: !matches!(method, HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder),
             background: scene.background,
             camera,
             focal,

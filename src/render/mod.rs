@@ -48,8 +48,9 @@ use self::integer::IntegerPath;
 use self::object::ObjectState;
 use self::tables::Tables;
 use crate::palette::{BIOS, Palette};
-use crate::plan::{self, Change, Effect, FaceCounts, Findings, Inputs, ObjectPlan, Overrides, Plan, decide};
-use crate::raster::columns::Triangles;
+use crate::plan::{
+    self, Change, Effect, FaceCounts, FaceShading, Findings, Inputs, ObjectPlan, Overrides, Plan, decide,
+};
 use crate::raster::{Frame, Interpolation, Vertex};
 use crate::scene::Scene;
 use crate::settings::{HiddenSurfaces, Settings, VertexPath};
@@ -85,18 +86,12 @@ struct Cache {
 }
 
 impl Cache {
-    /// The triangles of an object, if its vertices were computed.
-    fn triangles<'a>(&'a self, scene: &'a Scene, object: usize) -> Option<Triangles<'a>> {
-        let of_scene = scene.objects().get(object)?;
-        self.states.get(object)?.triangles(of_scene)
-    }
-
     /// The number of faces of the objects that `counts` selects, seen in this frame or not: room
     /// for that many suffices unless a plane cuts some into parts.
     fn most_faces(&self, scene: &Scene, counts: impl Fn(&ObjectPlan) -> bool) -> usize {
         let objects = scene.objects().iter().zip(&self.states).zip(self.plan.objects());
         let counted = objects.filter(|(_, plan)| counts(plan));
-        counted.map(|((object, state), _)| state.most_faces(object)).sum()
+        counted.map(|((object, state), _)| state.geometry(object).triangles.len()).sum()
     }
 }
 
@@ -146,14 +141,14 @@ impl Renderer {
     /// nothing to show, it runs on neutral input (no amplitude, an image that changes nothing). Clipping stays on where
     /// the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
-        self.overrides.set(effect, on);
+        self.overrides.set(None, effect, on);
     }
 
     /// Forces an effect on or off for one object, by its index in the scene, overriding the setting
     /// for all objects. `None` removes the override. Palette animation is on if it is on for any
     /// object. Otherwise like [`force`](Self::force).
     pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
-        self.overrides.set_for(object, effect, on);
+        self.overrides.set(Some(object), effect, on);
     }
 
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to a palette entry; with `None`,
@@ -185,8 +180,12 @@ impl Renderer {
     /// The faces of an object by the shading that a budget gave them in the last frame; `None` without a budget.
     fn face_counts(&self, scene: &Scene, object: usize) -> Option<FaceCounts> {
         self.cache.plan.objects().get(object)?.max_error()?;
-        let counts = self.scratch.counts.get(object)?;
-        Some(self.cache.states.get(object)?.face_counts(scene.objects().get(object)?, counts))
+        let drawn: Vec<(FaceShading, u64)> = self.scratch.counts.get(object)?.into_iter().collect();
+        let geometry = self.cache.states.get(object)?.geometry(scene.objects().get(object)?);
+        // Below 2³².
+        let faces = geometry.triangles.len() as u64;
+        let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
+        Some(FaceCounts { drawn, not_drawn })
     }
 
     /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
@@ -245,13 +244,14 @@ impl Renderer {
         } else if let Some(palette) = &scene.palette {
             vga.set_palette(palette);
         }
-        match self.last {
-            Some((stamp, last)) if !changed && stamp == vga.stamp() && self.keeps_frames() => {
-                stats.redrawn = false;
-                stats.hidden_surfaces = last.hidden_surfaces;
-                return Ok(stats);
-            }
-            _ => {}
+        if let Some((stamp, last)) = self.last
+            && !changed
+            && stamp == vga.stamp()
+            && self.keeps_frames()
+        {
+            stats.redrawn = false;
+            stats.hidden_surfaces = last.hidden_surfaces;
+            return Ok(stats);
         }
         let mut frame = Frame::from(&mut *vga);
         frame.clear(scene.background);
@@ -438,6 +438,6 @@ impl Renderer {
 
     /// Returns whether the last frame may be left as it is if nothing has changed.
     fn keeps_frames(&self) -> bool {
-        self.overrides.get(Effect::Transform) != Some(true)
+        self.overrides.get(None, Effect::Transform) != Some(true)
     }
 }

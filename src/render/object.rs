@@ -10,7 +10,6 @@ use super::faces::{FacePoints, Faces, face_points};
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use super::pixel_light::{PixelLight, fill_normal_table};
-use super::stats::Shares;
 use super::tessellate::Tessellated;
 use super::vertex;
 use crate::fixed::U8F8;
@@ -19,7 +18,7 @@ use crate::mesh::Mesh;
 use crate::mesh::wide::widen;
 use crate::palette::{Lut64K, Palette};
 use crate::plan::stages::{Lamps, Lighting, LitAt, Stages, VertexStage};
-use crate::plan::{Change, FaceCounts, FaceShading, ObjectPlan};
+use crate::plan::{Change, ObjectPlan};
 use crate::raster::columns::Triangles;
 use crate::scene::{Fog, Object, Scene, Shared};
 use crate::settings::Shading;
@@ -284,9 +283,8 @@ impl ObjectState {
         self.is_tessellated = plan.stages().tessellates();
         let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
         let points = self.points.get_or_insert_with(|| object.mesh().points());
-        let (twins, lights) = (object.mesh().twins(), source.lights(&self.lamps, plan));
-        let tolerance = source.parameters.tolerance;
-        self.tessellated.split(&mesh_geometry(object), (points, twins), &lights, &self.paints, tolerance);
+        let (lights, tolerance) = (source.lights(&self.lamps, plan), source.parameters.tolerance);
+        self.tessellated.split(&mesh_geometry(object), points, &lights, &self.paints, tolerance);
     }
 
     /// The table of a surface's shades by normal.
@@ -300,15 +298,14 @@ impl ObjectState {
         self.source.as_ref().map_or(none, |source| source.lights(&self.lamps, plan))
     }
 
-    /// Its triangles, if their vertices were computed.
-    pub(super) fn triangles<'a>(&'a self, object: &'a Object) -> Option<Triangles<'a>> {
-        self.made_by?;
-        Some(self.outputs.columns.triangles(&drawn_geometry(self.is_tessellated, &self.tessellated, object)))
+    /// The geometry that is drawn for the object.
+    pub(super) fn geometry<'a>(&'a self, object: &'a Object) -> Geometry<'a> {
+        drawn_geometry(self.is_tessellated, &self.tessellated, object)
     }
 
-    /// The surface of each of its faces.
-    pub(super) fn triangle_surfaces<'a>(&'a self, object: &'a Object) -> &'a [u16] {
-        drawn_geometry(self.is_tessellated, &self.tessellated, object).triangle_surfaces
+    /// Its triangles, whose vertices must have been computed.
+    pub(super) fn triangles<'a>(&'a self, object: &'a Object) -> Triangles<'a> {
+        self.outputs.columns.triangles(&self.geometry(object))
     }
 
     /// Its faces, ready to be drawn.
@@ -318,13 +315,12 @@ impl ObjectState {
         Some(Faces {
             shading: plan.shading(),
             stages: plan.stages(),
-            geometry: drawn_geometry(self.is_tessellated, &self.tessellated, object),
+            geometry: self.geometry(object),
             view: &self.source.as_ref()?.parameters.view,
             lights: self.lights(plan),
             paints: &self.paints,
             columns: &self.outputs.columns,
             points: &self.outputs.face_points,
-            twins: if self.is_tessellated { self.tessellated.twins() } else { object.mesh().twins() },
             kernel,
         })
     }
@@ -332,20 +328,6 @@ impl ObjectState {
     /// The budget that decides on its faces one by one, if there is one.
     pub(super) fn budget(&self, plan: &ObjectPlan) -> Option<&Budget> {
         plan.max_error().map(|_| &self.outputs.budget)
-    }
-
-    /// The number of its faces, visible or not.
-    pub(super) fn most_faces(&self, object: &Object) -> usize {
-        drawn_geometry(self.is_tessellated, &self.tessellated, object).triangles.len()
-    }
-
-    /// Counts the faces by the shading that a budget chose.
-    pub(super) fn face_counts(&self, object: &Object, counts: &Shares) -> FaceCounts {
-        let drawn: Vec<(FaceShading, u64)> = (*counts).into_iter().collect();
-        // Below 2³².
-        let faces = self.most_faces(object) as u64;
-        let not_drawn = faces.saturating_sub(drawn.iter().map(|(_, count)| count).sum());
-        FaceCounts { drawn, not_drawn }
     }
 }
 
@@ -409,7 +391,7 @@ impl Outputs {
         let leaves = stages.lighting != Lighting::None
             && (stages.lit_at != LitAt::Vertices || stages.lighting == Lighting::Channels);
         if leaves && self.has_shades {
-            columns.leave_without_light();
+            columns.shade.fill([U8F8::default(); 2]);
         }
         self.has_shades = !leaves || has_response;
         match (stages.lighting, stages.lit_at) {
@@ -527,5 +509,6 @@ fn mesh_geometry(object: &Object) -> Geometry<'_> {
         vertex_surfaces: object.vertex_surfaces(),
         triangles: mesh.triangles(),
         triangle_surfaces: mesh.triangle_surfaces(),
+        twins: mesh.twins(),
     }
 }

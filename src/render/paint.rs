@@ -4,7 +4,7 @@ use crate::fixed::U8F8;
 use crate::lanes::each;
 use crate::light::{Blend, LightResponse, Material, Reflectance};
 use crate::palette::{Palette, Ramp};
-use crate::plan::stages::{LitAt, Stages};
+use crate::plan::stages::{Dither, LitAt, Stages};
 use crate::texture::Texture;
 
 /// A material in its scene.
@@ -31,7 +31,8 @@ impl SurfaceMaterial {
         let blend = if stages.is_transparent() { material.blend } else { Blend::Opaque };
         let channels = stages.has_channels();
         let image = texture_size.is_some() || environment_size.is_some();
-        let everywhere = stages.has_fog() || channels || stages.has_dither() || stages.lit_at == LitAt::Pixels;
+        let everywhere =
+            stages.has_fog() || channels || stages.dither != Dither::None || stages.lit_at == LitAt::Pixels;
         // Forced on, an effect runs on every surface, with neutral input where it has none.
         let forced = stages.neutral_image || stages.neutral_blend;
         Self {

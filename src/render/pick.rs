@@ -4,11 +4,10 @@
 use alloc::vec::Vec;
 
 use super::Stats;
-use super::budget::{Budget, FLOAT, Fit, LINEAR};
+use super::budget::{Budget, FLOAT, LINEAR};
 use super::clip::{Corner, Progressions, clip};
 use super::columns::AddedTriangles;
 use super::faces::{Face, Faces};
-use super::geometry::Geometry;
 use super::stats::Shares;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, three};
@@ -135,39 +134,30 @@ impl<'a> Picker<'a> {
         if self.clip.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
 
-    /// Begins a run, if the look changes.
-    fn begin(&mut self, look: Look) {
-        let end = self.scratch.picks.as_slice().len();
-        if self.scratch.runs.last().is_none_or(|(_, last)| *last != look) {
-            self.scratch.runs.push((end, look));
-        }
-    }
-
-    /// Ends the last run after the last pick.
+    /// Extends the last run to the last pick, or begins another if the look changes.
     #[inline]
-    fn end(&mut self) {
+    fn run_to_end(&mut self, look: Look) {
         let end = self.scratch.picks.as_slice().len();
-        if let Some((last_end, _)) = self.scratch.runs.last_mut() {
-            *last_end = end;
+        match self.scratch.runs.last_mut() {
+            Some((last_end, last)) if *last == look => *last_end = end,
+            _ => self.scratch.runs.push((end, look)),
         }
     }
 
     /// Adds the faces whose bits are set, out of 64; they all have this look.
     #[inline]
     fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
-        self.begin(look);
         // Below `Pick::MAX_COUNT`.
         pick(self.kernel.simd_level(), &mut self.scratch.picks, first as u32, masks, chosen);
-        self.end();
+        self.run_to_end(look);
     }
 
     /// Adds one face, or one triangle that the frame adds.
     #[inline]
     fn push(&mut self, look: Look, pick: u32, flat: Option<[U8F8; 3]>) {
-        self.begin(look);
         self.scratch.picks.push(pick);
         self.scratch.flat.extend(flat);
-        self.end();
+        self.run_to_end(look);
     }
 
     /// Adds the triangles that the frame has added from `first` on.
@@ -207,11 +197,6 @@ impl<'a> Picker<'a> {
         self.finish(&Triangles::NONE);
     }
 
-    /// Memory for triangles that the frame adds.
-    pub(super) fn added(&mut self) -> &mut AddedTriangles {
-        &mut self.scratch.added
-    }
-
     /// Returns whether there is no room for 64 more, or for the parts of one more face.
     #[inline]
     fn is_full(&self) -> bool {
@@ -247,8 +232,7 @@ impl Faces<'_> {
     /// Picks the faces to be drawn. Within a budget the shading of each is decided; returns the counts of these
     /// decisions.
     pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
-        let Geometry { triangles, triangle_surfaces, .. } = self.geometry;
-        let culls = self.stages.culls();
+        let (triangles, culls) = (self.geometry.triangles, self.stages.culls());
         stats.faces += triangles.len() as u64;
         if self.stages.lights_faces() {
             picker.scratch.flat.reserve(ROOM);
@@ -280,17 +264,12 @@ impl Faces<'_> {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
                 let is = |bits: u64| bits >> at & 1 == 1;
-                let face = Face {
-                    // Below `Pick::MAX_COUNT`.
-                    index: (first + at) as u32,
-                    indices: triangles[at],
-                    surface: triangle_surfaces[first + at],
-                    back_facing: !culls && is(masks.back),
-                };
+                let pick = masks.pick(at, first + at, !culls && is(masks.back));
+                let face = self.face(Pick(pick));
                 if is(of_common) {
                     let look = self.look(face.surface, common, budget.is_some());
                     let flat = self.lit_face(face, stats);
-                    picker.push(look, masks.pick(at, first + at, face.back_facing), flat);
+                    picker.push(look, pick, flat);
                     continue;
                 }
                 if is(masks.clipped) {
@@ -301,7 +280,6 @@ impl Faces<'_> {
                     }
                 } else if let (Some(budget), Some(classes)) = (budget, &classes) {
                     let error = (!is(classes.float)).then_some(classes.errors[at]);
-                    let pick = masks.pick(at, first + at, face.back_facing);
                     counts.add(self.decided((face, pick), (budget, error), stats, picker), 1);
                 }
                 self.make_space(picker, stats);
@@ -321,7 +299,7 @@ impl Faces<'_> {
     /// The bits of triangles, in a chunk of up to 64, that lie back to back with others.
     #[inline]
     fn twins_of(&self, chunk: usize) -> u64 {
-        self.twins.get(chunk).copied().unwrap_or(0)
+        self.geometry.twins.get(chunk).copied().unwrap_or(0)
     }
 
     /// The bits of faces to be drawn, among up to 64, including those that need clipping. A face that covers no pixel
@@ -420,25 +398,24 @@ impl Faces<'_> {
         let side = usize::from(face.back_facing);
         let columns = self.triangles().columns;
         let vertices = three(face.indices, |i| columns.vertex(i as usize, side, None));
-        let fit = error.map_or(Fit::of(FLOAT), |error| self.fit(budget, (face, error), &vertices));
-        let look = self.look(face.surface, fit.shading, true);
-        stats.shares.add(fit.shading, 1);
-        if fit.shading != FaceShading::Quadratic {
+        let (shading, nodes) = error.map_or((FLOAT, None), |error| self.fit(budget, (face, error), &vertices));
+        let look = self.look(face.surface, shading, true);
+        stats.shares.add(shading, 1);
+        let Some(nodes) = nodes else {
             picker.push(look, pick, None);
-            return fit.shading;
-        }
+            return shading;
+        };
         // The face gets a curve of its own.
-        let curve = self.curve(face.surface, &fit.nodes);
-        let first = picker.added().len();
-        let mut corners = [0; 3];
-        for (k, corner) in corners.iter_mut().enumerate() {
-            let mut attributes = self.attributes(face.indices[k], face.back_facing, false);
-            attributes.lit = curve[k];
-            *corner = picker.added().vertex(&vertices[k], &attributes);
-        }
-        picker.added().triangle(corners, face.index);
+        let curve = self.curve(face.surface, &nodes);
+        let added = &mut picker.scratch.added;
+        let first = added.len();
+        let corners = three([0, 1, 2], |k| {
+            let attributes = columns.attributes(face.indices[k] as usize, side, false);
+            added.vertex(&vertices[k], &Attributes { lit: curve[k], ..attributes })
+        });
+        added.triangle(corners, face.index);
         picker.push_added(look, first, None);
-        fit.shading
+        shading
     }
 
     /// Picks a face that reaches beyond the near plane or the guard band, unless all of it is off the screen. Separate,
@@ -462,8 +439,8 @@ impl Faces<'_> {
             (budget.map_or(self.shading.into(), |budget| self.decide_clipped(budget, face)), stats.drawn);
         let look = self.look(face.surface, shading, budget.is_some());
         let flat = self.lit_face(face, stats);
-        let first = picker.added().len();
-        self.add_parts((face, at), (culls, shading), picker.added(), stats);
+        let first = picker.scratch.added.len();
+        self.add_parts((face, at), (culls, shading), &mut picker.scratch.added, stats);
         picker.push_added(look, first, flat);
         if budget.is_some() {
             stats.shares.add(shading, stats.drawn - before);
@@ -481,14 +458,14 @@ impl Faces<'_> {
     ) {
         let columns = self.triangles().columns;
         let corner = |k: usize| {
-            let i = face.indices[k] as usize;
-            let shade = columns.shade[i][usize::from(face.back_facing)];
+            let (i, side) = (face.indices[k] as usize, usize::from(face.back_facing));
+            let shade = columns.shade[i][side];
             let is_projected = !columns.at[i].needs_clipping();
             Corner {
                 at: at[k],
                 shade: f64::from(shade.to_bits()),
                 vertex: is_projected.then(|| columns.vertex(i, 0, Some(shade))),
-                attributes: self.attributes(face.indices[k], face.back_facing, shading.lights_pixels()),
+                attributes: columns.attributes(i, side, shading.lights_pixels()),
             }
         };
         let progressions =
@@ -512,12 +489,6 @@ impl Faces<'_> {
             // At most seven more than the first.
             added.triangle(three(part, |corner| first + corner as u32), face.index);
         }
-    }
-
-    /// Attributes of a vertex as seen from one side, where there are any, with its normal and position if pixels are
-    /// lit.
-    fn attributes(&self, vertex: u32, back: bool, lights_pixels: bool) -> Attributes {
-        self.triangles().columns.attributes(vertex as usize, usize::from(back), lights_pixels)
     }
 }
 

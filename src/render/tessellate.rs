@@ -43,7 +43,8 @@ pub(super) struct Tessellated {
     triangle_surfaces: Vec<u16>,
     /// The index of each vertex's point: vertices at the same position share it.
     points: Vec<u32>,
-    /// A bit for each triangle whose original triangle lies back to back with another; empty if there is none.
+    /// A bit for each triangle whose original triangle lies back to back with another; empty if there is none. Parts of
+    /// two such triangles may be split differently, but lie in one plane, and show their backs together.
     twins: Vec<u64>,
     /// True for each triangle whose edges have been examined and found straight enough.
     straight: Vec<bool>,
@@ -60,12 +61,12 @@ pub(super) struct Tessellated {
 
 impl Tessellated {
     /// Splits `geometry` until linear shades are off by at most `tolerance` shades, of which 255 are full intensity.
-    /// `points` are the indices of the vertices' points, `twins` marks triangles that lie back to back.
+    /// `points` are the indices of the vertices' points.
     #[inline(never)]
     pub(super) fn split(
         &mut self,
         geometry: &Geometry<'_>,
-        (points, twins): (&[u32], &[u64]),
+        points: &[u32],
         lights: &Lights<'_>,
         paints: &[SurfaceMaterial],
         tolerance: f32,
@@ -77,7 +78,7 @@ impl Tessellated {
         geometry.triangles.clone_into(&mut self.triangles);
         geometry.triangle_surfaces.clone_into(&mut self.triangle_surfaces);
         points.clone_into(&mut self.points);
-        twins.clone_into(&mut self.twins);
+        geometry.twins.clone_into(&mut self.twins);
         self.straight.clear();
         self.straight.resize(self.triangles.len(), false);
         self.light.clear();
@@ -100,13 +101,8 @@ impl Tessellated {
             vertex_surfaces: &self.vertex_surfaces,
             triangles: &self.triangles,
             triangle_surfaces: &self.triangle_surfaces,
+            twins: &self.twins,
         }
-    }
-
-    /// Triangles that lie back to back with others, see [`Mesh::twins`](crate::mesh::Mesh::twins): parts of two such
-    /// triangles may be split differently, but lie in one plane, and show their backs together.
-    pub(super) fn twins(&self) -> &[u64] {
-        &self.twins
     }
 
     /// The edge between two vertices, regardless of its direction and of which vertices at its two points are given.
@@ -312,12 +308,10 @@ impl Bend<'_> {
             let most = if angle < core::f64::consts::FRAC_PI_2 { libm::pow(libm::cos(angle), shininess) } else { 0.0 };
             most * strength > self.tolerance
         };
-        let suns = self.lights.suns.iter().enumerate();
-        let lamps = (self.lights.suns.len()..).zip(self.lights.lamps);
-        suns.into_iter().any(|(i, sun)| strong(eye, angles(i), f64::from(sun.intensity.abs())))
-            || lamps.into_iter().any(|(i, lamp)| {
-                strong(eye.min(to_segment(lamp.position, ends)), angles(i), f64::from(lamp.intensity.abs()))
-            })
+        let suns = self.lights.suns.iter().map(|sun| (eye, sun.intensity));
+        let lamps = self.lights.lamps.iter().map(|lamp| (eye.min(to_segment(lamp.position, ends)), lamp.intensity));
+        let mut lights = suns.chain(lamps).enumerate();
+        lights.any(|(i, (nearest, intensity))| strong(nearest, angles(i), f64::from(intensity.abs())))
     }
 }
 

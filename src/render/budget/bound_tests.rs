@@ -259,10 +259,9 @@ impl Case {
         Clusters::new(&Geometry {
             positions: &self.positions,
             normals: &self.normals,
-            texcoords: None,
-            vertex_surfaces: &[],
             triangles: &self.triangles,
             triangle_surfaces: &[0; LANES],
+            ..Geometry::default()
         })
     }
 

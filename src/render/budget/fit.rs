@@ -60,22 +60,18 @@ const NODES: Weights = [
 /// middles of the edges; padded to full eights with the first corner.
 const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     let mut eights = [[[1.0; LANES], [0.0; LANES], [0.0; LANES]]; EIGHTS];
-    let (mut at, mut a) = (0, 0);
-    while a <= n {
-        let mut b = 0;
-        while a + b <= n {
-            let c = n - a - b;
-            let is_node = a.is_multiple_of(n / 2) && b.is_multiple_of(n / 2);
-            if !is_node {
-                let eight = &mut eights[at / LANES];
-                eight[0][at % LANES] = a as f32 / n as f32;
-                eight[1][at % LANES] = b as f32 / n as f32;
-                eight[2][at % LANES] = c as f32 / n as f32;
-                at += 1;
-            }
-            b += 1;
+    let (mut at, mut point) = (0, 0);
+    while point < (n + 1) * (n + 1) {
+        let (a, b) = (point / (n + 1), point % (n + 1));
+        let is_node = a.is_multiple_of(n / 2) && b.is_multiple_of(n / 2);
+        if a + b <= n && !is_node {
+            let eight = &mut eights[at / LANES];
+            eight[0][at % LANES] = a as f32 / n as f32;
+            eight[1][at % LANES] = b as f32 / n as f32;
+            eight[2][at % LANES] = (n - a - b) as f32 / n as f32;
+            at += 1;
         }
-        a += 1;
+        point += 1;
     }
     eights
 }
@@ -90,19 +86,6 @@ const GRIDS: [(f32, &[Weights]); 4] = [(2.0, &[]), (4.0, &FOURTHS), (8.0, &EIGHT
 
 /// Light at the nodes, on each channel.
 type Nodes = [Lanes<f32>; 3];
-
-/// The shading of a face and, if it is quadratic, the light that its function goes through.
-pub(in crate::render) struct Fit {
-    pub(in crate::render) shading: FaceShading,
-    pub(in crate::render) nodes: Nodes,
-}
-
-impl Fit {
-    /// A shading that is not quadratic.
-    pub(in crate::render) fn of(shading: FaceShading) -> Self {
-        Self { shading, nodes: [[0.0; LANES]; 3] }
-    }
-}
 
 /// A face on the screen.
 struct OnScreen<'a> {
@@ -249,16 +232,22 @@ impl Faces<'_> {
         }
     }
 
-    /// The cheapest shading of a face that is known, from light at some of its points, to stay
-    /// within the budget. `error` is the bound of shades that are linear on the face.
+    /// The cheapest shading of a face that is known, from light at some of its points, to stay within the budget; if it
+    /// is quadratic, with the light that its function goes through. `error` is the bound of shades that are linear on
+    /// the face.
     #[inline(never)]
-    pub(in crate::render) fn fit(&self, budget: &Budget, (face, error): (Face, f32), vertices: &[Vertex; 3]) -> Fit {
+    pub(in crate::render) fn fit(
+        &self,
+        budget: &Budget,
+        (face, error): (Face, f32),
+        vertices: &[Vertex; 3],
+    ) -> (FaceShading, Option<Nodes>) {
         let (depths, spare) = (three(vertices.each_ref(), Vertex::depth), budget.spare(EXACT_ROUNDING));
         let (near, far) = (depths[0].max(depths[1]).max(depths[2]), depths[0].min(depths[1]).min(depths[2]));
         let (ratio, (pixels, width)) = (near as f32 / far as f32, size_of(vertices));
         // If rounding uses up all that is allowed, nothing fits.
         if far == 0 || pixels < WORTH_CURVE || !self.stages.lights_pixels() || spare <= 0.0 {
-            return Fit::of(PHONG);
+            return (PHONG, None);
         }
         // The sizes of parts: four grids, then three spacings; the last is unused.
         let (mut part, mut bend) = ([1.0; LANES], [1.0; LANES]);
@@ -283,7 +272,7 @@ impl Faces<'_> {
         let least = spacings.clone().map(|(lane, _)| part[lane]).fold(part[grids - 1], f32::min);
         // If light continues below the horizon, the face's bound says little.
         if !on_screen.below && error * least * least > HOPE * spare {
-            return Fit::of(PHONG);
+            return (PHONG, None);
         }
         let bounds = |below: bool| self.bounds_of_parts(budget, face, (part, bend), below).on_screen;
         let of_light = bounds(false);
@@ -292,10 +281,10 @@ impl Faces<'_> {
         if budget.adds
             && let Some(nodes) = self.quadratic(&on_screen, &GRIDS[..grids], (spare, &left))
         {
-            return Fit { shading: FaceShading::Quadratic, nodes };
+            return (FaceShading::Quadratic, Some(nodes));
         }
         let spacing = spacings.filter(|(lane, _)| of_light[*lane] <= spare).last();
-        Fit::of(spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)))
+        (spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)), None)
     }
 
     /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes

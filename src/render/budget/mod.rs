@@ -22,7 +22,7 @@ mod fit;
 mod ranges;
 
 use self::clusters::Clusters;
-pub(super) use self::fit::{Fit, limits};
+pub(super) use self::fit::limits;
 use super::geometry::Geometry;
 use super::paint::SurfaceMaterial;
 use crate::light::Lights;

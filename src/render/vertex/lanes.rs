@@ -133,10 +133,11 @@ pub(super) fn one_by_one<const TESTED: bool>(
 ) {
     for (i, &position) in positions.iter().enumerate().skip(first) {
         let vertex = if TESTED { view.project(position) } else { Some(view.project_inside(position)) };
-        vertices.put(i, vertex);
-        if TESTED && vertex.is_none() && !view.is_far_enough(position) {
-            vertices.at[i] = ScreenPos::TOO_NEAR;
-        }
+        (vertices.at[i], vertices.depth[i]) = match vertex {
+            Some(vertex) => (ScreenPos::of(&vertex), vertex.depth()),
+            None if view.is_far_enough(position) => (ScreenPos::NEEDS_CLIPPING, 0),
+            None => (ScreenPos::TOO_NEAR, 0),
+        };
     }
 }
 
@@ -309,7 +310,7 @@ mod tests {
     }
 
     fn geometry<'a>(normals: &'a [Vec3], vertex_surfaces: &'a [u16]) -> Geometry<'a> {
-        Geometry { positions: &[], normals, texcoords: None, vertex_surfaces, triangles: &[], triangle_surfaces: &[] }
+        Geometry { normals, vertex_surfaces, ..Geometry::default() }
     }
 
     proptest! {

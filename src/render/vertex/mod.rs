@@ -206,17 +206,13 @@ pub(super) fn environment_coordinates(
     }
 }
 
-/// Fog density between the eye and every vertex.
+/// Fog density between the eye and every vertex, 0 to 0xFF00.
 #[inline(never)]
 pub(super) fn fog_levels(geometry: &Geometry<'_>, view: &ObjectView, fog: &Fog, levels: &mut [U8F8]) {
     for (level, &position) in levels.iter_mut().zip(geometry.positions) {
-        *level = fog_level(fog, view.homogeneous(position).w);
+        let density = fog.level(view.homogeneous(position).w);
+        *level = U8F8::from_intensity(density as f32, 0, Ramp::WHOLE.entries());
     }
-}
-
-/// Fog density at a distance along the view, 0 to 0xFF00.
-pub(super) fn fog_level(fog: &Fog, distance: f64) -> U8F8 {
-    U8F8::from_intensity(fog.level(distance) as f32, 0, Ramp::WHOLE.entries())
 }
 
 /// The normals' x and y in eye space, for a table.
