@@ -2,9 +2,9 @@
 
 use super::paint::SurfaceMaterial;
 use crate::fixed::U8F8;
-use crate::lanes::{LANES, Lanes, Points, each, three};
+use crate::lanes::{LANES, Lanes, Points, each};
 use crate::light::Lights;
-use crate::palette::Lut64K;
+use crate::palette::{Lut64K, Ramp};
 use crate::raster::effects::PixelLighting;
 use crate::span::Kernel;
 
@@ -19,10 +19,10 @@ pub(super) struct PixelLight<'a> {
 }
 
 impl PixelLight<'_> {
-    /// The shades, or one of the channels, of eight intensities.
+    /// The shades of eight intensities on the material's ramp, or on that of a channel.
     #[inline(always)]
-    fn shown(&self, intensities: &Lanes<f64>) -> Lanes<u16> {
-        let shades = self.paint.shade_of_eight(intensities);
+    fn shown(&self, ramp: Ramp, intensities: &Lanes<f64>) -> Lanes<u16> {
+        let shades = SurfaceMaterial::shade_of_eight(ramp, intensities);
         if self.paint.response.is_some() {
             return each!(lane => self.paint.respond(shades[lane]).to_bits());
         }
@@ -33,13 +33,15 @@ impl PixelLight<'_> {
 impl PixelLighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
-        self.shown(&self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel))
+        let intensities = self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel);
+        self.shown(self.paint.ramp, &intensities)
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let channels = self.lights.front_of_three_channels::<false>(&self.paint.answer, points, self.kernel);
-        three(channels.each_ref(), |intensities| self.shown(intensities))
+        let [red, green, blue] = self.lights.front_of_three_channels::<false>(&self.paint.answer, points, self.kernel);
+        // Not by a closure, which would not be inlined.
+        [self.shown(Ramp::WHOLE, &red), self.shown(Ramp::WHOLE, &green), self.shown(Ramp::WHOLE, &blue)]
     }
 }
 

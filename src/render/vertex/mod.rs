@@ -97,13 +97,12 @@ pub(super) fn light_all(
     (both, kernel): (bool, Kernel),
     vertices: &mut VertexColumns,
 ) {
-    each_eight(geometry, |eight, surface, points| {
+    each_eight(geometry, both, |eight, side, surface, points| {
         let paint = &paints[surface];
-        for side in 0..=usize::from(both) {
-            let intensities = lights.front_of_one_channel::<true>(&paint.answer, &from_side(points, side), kernel);
-            for (shades, shade) in vertices.shade[eight.clone()].iter_mut().zip(paint.shade_of_eight(&intensities)) {
-                shades[side] = shade;
-            }
+        let intensities = lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
+        let lit = SurfaceMaterial::shade_of_eight(paint.ramp, &intensities);
+        for (shades, shade) in vertices.shade[eight].iter_mut().zip(lit) {
+            shades[side] = shade;
         }
     });
 }
@@ -117,21 +116,20 @@ pub(super) fn light_channels(
     (both, kernel): (bool, Kernel),
     vertices: &mut VertexColumns,
 ) {
-    each_eight(geometry, |eight, surface, points| {
-        let paint = &paints[surface];
-        for side in 0..=usize::from(both) {
-            let intensities = lights.front_of_three_channels::<true>(&paint.answer, &from_side(points, side), kernel);
-            let [red, green, blue] = three(intensities.each_ref(), |channel| paint.shade_of_eight(channel));
-            for (lane, channels) in vertices.channels[eight.clone()].iter_mut().enumerate() {
-                channels[side] = [red[lane], green[lane], blue[lane]];
-            }
+    each_eight(geometry, both, |eight, side, surface, points| {
+        let intensities = lights.front_of_three_channels::<true>(&paints[surface].answer, points, kernel);
+        let lit = |channel| SurfaceMaterial::shade_of_eight(Ramp::WHOLE, channel);
+        let [red, green, blue] = three(intensities.each_ref(), lit);
+        for (lane, channels) in vertices.channels[eight].iter_mut().enumerate() {
+            channels[side] = [red[lane], green[lane], blue[lane]];
         }
     });
 }
 
-/// Passes on the vertices, up to eight of one surface at a time: their indices, their surface, and their normals and
-/// positions.
-fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize, &Points)) {
+/// Passes on the vertices, up to eight of one surface at a time, first as seen from the front and then, with `both`, from
+/// the back: their indices, the side, their surface, and their normals and positions.
+#[inline(always)]
+fn each_eight(geometry: &Geometry<'_>, both: bool, mut eight: impl FnMut(Range<usize>, usize, usize, &Points)) {
     let mut first = 0;
     for alike in geometry.vertex_surfaces.chunk_by(|a, b| a == b) {
         for part in alike.chunks(LANES) {
@@ -143,18 +141,13 @@ fn each_eight(geometry: &Geometry<'_>, mut eight: impl FnMut(Range<usize>, usize
                 (px[lane], py[lane], pz[lane]) = geometry.positions[vertex].into();
             }
             first = vertices.end;
-            eight(vertices, usize::from(part[0]), &points);
+            eight(vertices.clone(), 0, usize::from(part[0]), &points);
+            if both {
+                points[..3].as_flattened_mut().iter_mut().for_each(|c| *c = -*c);
+                eight(vertices, 1, usize::from(part[0]), &points);
+            }
         }
     }
-}
-
-/// Points as seen from their front, 0, or from their back, 1, where their normals are reversed.
-fn from_side(points: &Points, side: usize) -> Points {
-    let mut seen = *points;
-    if side == 1 {
-        seen[..3].as_flattened_mut().iter_mut().for_each(|c| *c = -*c);
-    }
-    seen
 }
 
 /// Texture coordinates in texels, for surfaces that have an image.
