@@ -2,15 +2,14 @@
 //!
 //! ```text
 //! cargo bench --bench growth
-//! cargo bench --bench growth -- --most 1000000        # faces; without it as many as there is memory for, up to 10⁷
+//! cargo bench --bench growth -- --most 10000000       # faces; without it 10⁶; 10⁷ need 2 GB of memory
 //! ```
 //!
 //! Every case is timed once in each round, all in one round, and a figure is the median over the rounds; ratios are of
 //! times of one round. The exponent of growth is the slope of the least squares line through the logarithms: 1 is time in
-//! proportion. With the feature `report` there is a chart too, `target/growth.svg`.
+//! proportion.
 
 mod case;
-mod chart;
 mod series;
 
 use std::hint::black_box;
@@ -22,9 +21,6 @@ use series::Series;
 /// What a bound says of ns a face at 10⁶ faces, divided by those at 10⁴.
 const MAX_GROWTH: f64 = 1.5;
 
-/// All spheres together take no more than this, in bytes for each face of the largest: see the table of memory.
-const BYTES: u64 = 200;
-
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     // Under `cargo test` it only has to run.
@@ -32,7 +28,7 @@ fn main() {
     let most = match words.iter().position(|word| word == "--most") {
         Some(at) => words.get(at + 1).and_then(|word| word.parse().ok()).expect("--most takes a number of faces"),
         None if !is_bench => 3_000,
-        None => faces_that_fit(),
+        None => 1_000_000,
     };
     let rounds = if is_bench { 15 } else { 1 };
 
@@ -44,7 +40,7 @@ fn main() {
         println!("{:>10} {mesh:>10.1} {peak:>14.1} {object:>10.1} {renderer:>10.1}", sphere.faces);
     }
 
-    let mut all = vec![
+    let mut all = [
         Series::new("faces, 320 x 200 pixels", "faces", "face", case::faces(&spheres)),
         Series::new("faces, 4 pixels to each drawn", "faces", "face", case::faces_of_equal_size(&spheres)),
         Series::new("pixels a triangle", "pixels", "triangle", case::pixels()),
@@ -87,13 +83,6 @@ fn main() {
             if kept { "kept" } else { "NOT KEPT" }
         );
     }
-    if is_bench {
-        let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/../growth.svg");
-        match std::fs::write(path, chart::svg(&all)) {
-            Ok(()) => println!("chart: target/growth.svg"),
-            Err(error) => println!("chart: {path}: {error}"),
-        }
-    }
 }
 
 /// Time that this thread has run, where the system counts it: other programs do not add to that.
@@ -103,17 +92,4 @@ fn thread_time() -> Duration {
         return time.into();
     }
     std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
-}
-
-/// 10⁷, or fewer if free memory does not hold them twice over.
-fn faces_that_fit() -> u64 {
-    let free = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
-        let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
-        line.split_whitespace().nth(1)?.parse::<u64>().ok()
-    });
-    let fit = free.map_or(1_000_000, |kilobytes| kilobytes * 1024 / (2 * BYTES));
-    if fit < 10_000_000 {
-        println!("memory for {fit} faces: no more than that (--most says how many)");
-    }
-    fit.min(10_000_000)
 }
