@@ -1,70 +1,48 @@
-//! Hard cases S1 to S6: every kernel of this machine against a naive oracle.
-//!
-//! One table of cases and one property, stamped onto every kernel. The long run:
+//! Hard cases S1 to S6: every kernel of this machine against a naive oracle. The long run:
 //!
 //! ```text
-//! cargo test --release --test span_kernels -- --ignored --nocapture
+//! cargo test --release --test span -- --ignored --nocapture
 //! ```
 
 use crate::support::tried::Tried;
 #[cfg(all(feature = "asm", feature = "simd", target_arch = "x86_64"))]
 use crate::support::tried::is_here;
 use mode13h::span::Kernel;
-use mode13h_conformance::Random;
+use mode13h_conformance::loops::Cases;
 use mode13h_conformance::loops::canvas::{Canvas, Shape};
-use mode13h_conformance::loops::spans::{check_span, naive_span};
-use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use mode13h_conformance::loops::spans::{check_fill, check_span, naive_span};
+use mode13h_conformance::random::{Random, seed};
 
 /// Bytes before and after the row that must not change.
 const GUARD: usize = 64;
 /// Three blocks of 64 minus one: at least two of the widest blocks, and every tail.
 const EXHAUSTIVE_LENGTH: usize = 191;
 
-/// A span whose address is `alignment` bytes after a multiple of 64.
-#[derive(Clone, Copy, Debug)]
-struct Case {
-    length: usize,
-    alignment: usize,
-    shade: u16,
-    step: u16,
-}
-
-impl Case {
-    /// The property: the row's bytes match the definition, and no other byte has changed.
-    fn check(self, canvas: &mut Canvas, kernel: Kernel) -> Result<(), String> {
-        let Self { length, alignment, shade, step } = self;
-        check_span(canvas, Shape { length, alignment }, (shade, step), |row, shade, step| kernel.fill(row, shade, step))
-            .map_err(|wrong| format!("{kernel}: {wrong}"))
-    }
-}
-
 /// Shades and steps around which a sign changes or a carry occurs, and the largest ones.
 const EDGES: [u16; 16] =
     [0, 1, 2, 0x7F, 0x80, 0xFF, 0x100, 0x101, 0x7FFF, 0x8000, 0x8001, 0xFEFF, 0xFF00, 0xFF01, 0xFFFE, 0xFFFF];
 
-/// Runs every case on `kernel` and counts them under `test`.
-fn try_all(test: &str, kernel: Kernel, cases: impl Iterator<Item = Case>) {
-    let mut tried = Tried::new(format!("{test} {}", kernel.name()), 1);
-    let mut canvas = Canvas::new(131_073);
-    for case in cases {
-        if let Err(wrong) = case.check(&mut canvas, kernel) {
-            panic!("{wrong}");
-        }
-        tried.add(1);
+/// Checks a span: its bytes match the definition, and no other byte has changed.
+fn check(canvas: &mut Canvas, kernel: Kernel, shape: Shape, shades: (u16, u16)) {
+    if let Err(wrong) = check_span(canvas, shape, shades, |row, shade, step| kernel.fill(row, shade, step)) {
+        panic!("{kernel}: {wrong}");
     }
-    tried.done();
 }
 
 /// S1: nothing is written.
 fn s1_no_pixels(kernel: Kernel) {
+    let mut tried = Tried::new(format!("s1_no_pixels {}", kernel.name()), 64 * 16 * 16);
+    let mut canvas = Canvas::new(0);
     kernel.fill(&mut [], 0x1234, 0x0101); // a pointer to nothing at all
-    let cases = (0..64).flat_map(|alignment| {
-        EDGES
-            .into_iter()
-            .flat_map(move |shade| EDGES.into_iter().map(move |step| Case { length: 0, alignment, shade, step }))
-    });
-    try_all("s1_no_pixels", kernel, cases);
+    for alignment in 0..64 {
+        for shade in EDGES {
+            for step in EDGES {
+                check(&mut canvas, kernel, Shape { length: 0, alignment }, (shade, step));
+                tried.add(1);
+            }
+        }
+    }
+    tried.done();
 }
 
 /// S2: the start shade is written, whatever the step.
@@ -73,10 +51,7 @@ fn s2_one_pixel(kernel: Kernel) {
     let mut canvas = Canvas::new(1);
     for step in EDGES {
         for shade in 0..=u16::MAX {
-            let case = Case { length: 1, alignment: usize::from(shade % 64), shade, step };
-            if let Err(wrong) = case.check(&mut canvas, kernel) {
-                panic!("{wrong}");
-            }
+            check(&mut canvas, kernel, Shape { length: 1, alignment: usize::from(shade % 64) }, (shade, step));
             tried.add(1);
         }
     }
@@ -92,36 +67,24 @@ fn s3_two_pixels(kernel: Kernel) {
             let shade = i32::from(first) * 256;
             let step = i32::from(second) * 256 - shade; // −65,280 to 65,280: 17 bits
             assert!((0..65_536).contains(&(shade + step)), "no wrap");
-            let case = Case { length: 2, alignment: 63, shade: shade as u16, step: step as u16 };
-            assert_eq!(naive_span(2, case.shade, case.step), [first, second]);
-            if let Err(wrong) = case.check(&mut canvas, kernel) {
-                panic!("{wrong}");
-            }
+            let shades = (shade as u16, step as u16);
+            assert_eq!(naive_span(2, shades.0, shades.1), [first, second]);
+            check(&mut canvas, kernel, Shape { length: 2, alignment: 63 }, shades);
             tried.add(1);
         }
     }
     tried.done();
 }
 
-/// S4 in small: random and extreme starts and steps, at the length of the long run.
-fn s4_starts_and_steps(kernel: Kernel) {
-    let mut random = Random::new(4);
-    let edges = EDGES.into_iter().flat_map(|shade| EDGES.into_iter().map(move |step| (shade, step)));
-    let drawn = (0..20_000).map(|_| random.next_u64()).map(|bits| (bits as u16, (bits >> 16) as u16));
-    let cases = edges.chain(drawn).map(|(shade, step)| Case { length: EXHAUSTIVE_LENGTH, alignment: 1, shade, step });
-    try_all("s4_starts_and_steps", kernel, cases);
-}
-
-/// S5: every length of a screen row and the lengths around the 16-bit count, at every alignment.
+/// S5: every length of a screen row and the lengths around the 16-bit count, at every alignment; and S4 in small, random
+/// and extreme starts and steps at the length of the long run.
 fn s5_lengths_and_alignments(kernel: Kernel) {
-    let mut random = Random::new(5);
-    let lengths = (0..=320).chain([65_535, 65_536, 65_537, 131_073]);
-    let cases = lengths.flat_map(|length| (0..64).map(move |alignment| (length, alignment)));
-    let cases = cases.map(|(length, alignment)| {
-        let bits = random.next_u64();
-        Case { length, alignment, shade: bits as u16, step: (bits >> 16) as u16 }
-    });
-    try_all("s5_lengths_and_alignments", kernel, cases);
+    let mut tried = Tried::new(format!("s5_lengths_and_alignments {}", kernel.name()), 40_000);
+    match check_fill(Cases::full(seed()), |row, shade, step| kernel.fill(row, shade, step)) {
+        Ok(cases) => tried.add(cases),
+        Err(wrong) => panic!("{kernel}, MODE13H_SEED={}: {wrong}", seed()),
+    }
+    tried.done();
 }
 
 /// S6: a row of 320 whose exact slope is just short of a step, rising and falling.
@@ -201,35 +164,13 @@ fn s6_complement(kernel: Kernel) {
     tried.done();
 }
 
-/// The property on random spans, shrunk when it fails.
-fn any_span(kernel: Kernel) {
-    let mut seed = [0; 32];
-    seed[..8].copy_from_slice(&mode13h_conformance::random::seed().to_le_bytes());
-    println!("MODE13H_SEED={}", mode13h_conformance::random::seed());
-    let config = Config { cases: 2_000, failure_persistence: None, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed));
-    let edge = || prop_oneof![any::<u16>(), proptest::sample::select(&EDGES[..])];
-    let length = prop_oneof![0_usize..=320, 0_usize..=5_000];
-    let spans = (length, 0_usize..64, edge(), edge());
-    let mut tried = Tried::new(format!("any_span {}", kernel.name()), 2_000);
-    let result = runner.run(&spans, |(length, alignment, shade, step)| {
-        let case = Case { length, alignment, shade, step };
-        case.check(&mut Canvas::new(length), kernel).map_err(TestCaseError::fail)
-    });
-    if let Err(error) = result {
-        panic!("{error}");
-    }
-    tried.add(2_000);
-    tried.done();
-}
-
 /// Stamps the tests onto a kernel. A kernel that the machine lacks is reported and skipped.
 macro_rules! stamp {
     ($($module:ident: $name:literal,)*) => {
         const STAMPED: &[&str] = &[$($name),*];
         $(mod $module {
-            stamp!(@each $name: s1_no_pixels, s2_one_pixel, s3_two_pixels, s4_starts_and_steps,
-                s5_lengths_and_alignments, s6_drift, s6_complement, any_span);
+            stamp!(@each $name: s1_no_pixels, s2_one_pixel, s3_two_pixels, s5_lengths_and_alignments, s6_drift,
+                s6_complement);
         })*
     };
     (@each $name:literal: $($test:ident),*) => {
