@@ -2,6 +2,7 @@
 
 mod support;
 
+mod broken_models;
 mod errors;
 mod gif;
 mod gltf_files;

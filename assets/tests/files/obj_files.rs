@@ -21,34 +21,34 @@ use crate::support::property::property;
 use crate::support::tried::Tried;
 use crate::support::workspace;
 
-fn no_library(_: &Path) -> io::Result<Vec<u8>> {
+pub(crate) fn no_library(_: &Path) -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
+pub(crate) fn parse(text: impl AsRef<[u8]>) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_ref(), "model.obj", no_library)
 }
 
-fn with_mtl(text: &str, mtl: &str) -> Result<Loaded, ModelFileError> {
+pub(crate) fn with_mtl(text: &str, mtl: &str) -> Result<Loaded, ModelFileError> {
     obj::parse(text.as_bytes(), "model.obj", |_: &Path| Ok(mtl.into()))
 }
 
-fn mesh(text: impl AsRef<[u8]>) -> Mesh {
+pub(crate) fn mesh(text: impl AsRef<[u8]>) -> Mesh {
     parse(text).unwrap_or_else(|error| panic!("{error}")).mesh
 }
 
-fn refused(text: impl AsRef<[u8]>) -> String {
+pub(crate) fn refused(text: impl AsRef<[u8]>) -> String {
     match parse(text) {
         Ok(_) => "read".to_owned(),
         Err(error) => error.to_string(),
     }
 }
 
-fn data(name: &str) -> PathBuf {
+pub(crate) fn data(name: &str) -> PathBuf {
     workspace::root().join("tests/data").join(name)
 }
 
-const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+pub(crate) const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 #[test]
 fn a_file_with_materials() {
@@ -77,78 +77,6 @@ fn a_file_with_materials() {
             }
         }
     }
-}
-
-#[test]
-fn f1_broken_files() {
-    let mut tried = Tried::new("f1_broken_files", 7);
-    let message = |name: &str| model_file::load(data(name)).unwrap_err().to_string();
-    for (name, end) in [
-        ("broken_nan.obj", "broken_nan.obj:4: `nan` is not a finite number"),
-        ("broken_empty.obj", "broken_empty.obj: no faces"),
-        ("broken_binary.obj", "broken_binary.obj:1: not a text file"),
-        ("broken_library.obj", "broken_library.mtl:2: too few numbers for a colour (1 or 3)"),
-    ] {
-        let message = message(name);
-        assert!(message.ends_with(end) && message.lines().count() == 1, "{message}");
-        tried.add(1);
-    }
-    assert!(matches!(
-        model_file::load(data("nowhere.obj")).unwrap_err(),
-        ModelFileError { place: None, kind: ModelFileErrorKind::Read(error), .. } if error.kind() == io::ErrorKind::NotFound
-    ));
-    tried.add(1);
-    assert!(message("nowhere.obj").contains("nowhere.obj: "));
-    tried.add(1);
-    let folder = model_file::load(data("")).unwrap_err();
-    assert!(matches!(folder.kind, ModelFileErrorKind::Directory), "{folder}");
-    tried.add(1);
-}
-
-#[test]
-fn f1_broken_lines() {
-    let mut tried = Tried::new("f1_broken_lines", 28);
-    let with = |line: &str| refused(format!("{TRIANGLE}vt 0 0\nvn 0 0 1\n{line}\nf 1 2 3\n"));
-    for (line, message) in [
-        ("f 0 1 2", "index 0: indices count from 1"),
-        ("f 1 2 4", "there is no vertex 4, only 3"),
-        ("f 1 2 -4", "there is no vertex -4, only 3"),
-        ("f 1/1 2/2 3/1", "there is no texture coordinate 2, only 1"),
-        ("f 1//1 2//1 3//-2", "there is no normal -2, only 1"),
-        ("f 1/0 2/1 3/1", "index 0: indices count from 1"),
-        ("f 1 2 99999999999", "there is no vertex 99999999999, only 3"),
-        ("f 1 2 99999999999999999999", "`99999999999999999999` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
-        ("f 1 2 -9223372036854775807", "there is no vertex -9223372036854775807, only 3"),
-        ("f 1 2 x", "`x` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
-        ("f 1 2 3.0", "`3.0` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
-        ("f 1/1/1/1 2 3", "`1/1/1/1` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
-        ("f /1 2 3", "`/1` is not a face corner (v, v/vt, v//vn or v/vt/vn)"),
-        ("f 1 4", "there is no vertex 4, only 3"),
-        ("v 1 2", "too few numbers for a position (3)"),
-        ("v 1 2 three", "`three` is not a number"),
-        ("v 1 2 inf", "`inf` is not a finite number"),
-        ("v 1e39 0 0", "`1e39` is not a finite number"),
-        ("v 1 2 3 nan 0 1", "`nan` is not a finite number"),
-        ("vn 0 NaN 1", "`NaN` is not a finite number"),
-        ("vn 1", "too few numbers for a normal (3)"),
-        ("vt", "too few numbers for texture coordinates (2)"),
-        ("v 1 2 \u{1}\u{2}", "`\u{FFFD}\u{FFFD}` is not a number"),
-        ("\u{0}\u{1}", "not a text file"),
-    ] {
-        assert_eq!(with(line), format!("model.obj:6: {message}"), "{line}");
-        tried.add(1);
-    }
-    for text in ["v 0 0 0\n", TRIANGLE, "", "Dear reader,\nthis is no model.\n"] {
-        assert_eq!(refused(text), "model.obj: no faces");
-        tried.add(1);
-    }
-    // A device, or a small packed file, may have no line ending at all.
-    let endless = obj::parse(io::BufReader::new(io::repeat(b'#')), "model.obj", no_library);
-    assert_eq!(endless.map(|_| ()).unwrap_err().to_string(), "model.obj: a line of more than 64 MiB");
-    tried.add(1);
-    let long = format!("v {} 0 0", "9x".repeat(1000));
-    assert_eq!(refused(&long), format!("model.obj:1: `{}…` is not a number", "9x".repeat(20)));
-    tried.add(1);
 }
 
 #[test]
@@ -183,47 +111,6 @@ fn a_model_far_from_0_keeps_its_shape() {
         ["model.obj: lies far from the origin; its centre, 4500000.25 -610000.5 240, was moved there"]
     );
     assert_eq!(far.mesh, near.mesh);
-}
-
-/// An index may refer to a later vertex; the first that never comes is the error.
-#[test]
-fn f1_indices_that_look_ahead() {
-    let mut tried = Tried::new("f1_indices_that_look_ahead", 3);
-    assert_eq!(mesh(format!("f 1 2 3\n{TRIANGLE}")).triangles(), [[0, 1, 2]]);
-    tried.add(1);
-    let late = refused(format!("f 1 2 3\nf 1 2 5\nf 1 4 2\nf 1 2 9\n{TRIANGLE}"));
-    assert_eq!(late, "model.obj:2: there is no vertex 5, only 3");
-    tried.add(1);
-    let normal = refused(format!("f 1//2 2//2 3//2\nf 1 2 9\nvn 0 0 1\n{TRIANGLE}"));
-    assert_eq!(normal, "model.obj:1: there is no normal 2, only 1");
-    tried.add(1);
-}
-
-#[test]
-fn f1_what_is_large_but_well_formed_loads() {
-    let mut tried = Tried::new("f1_what_is_large_but_well_formed_loads", 2);
-    // A line of two megabytes: a convex face of 10,000 corners, spaced out.
-    let corners = 10_000;
-    let mut text = String::new();
-    for i in 0..corners {
-        let angle = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(corners);
-        writeln!(text, "v {} {} 0", angle.cos(), angle.sin()).unwrap();
-    }
-    text.push('f');
-    for i in 1..=corners {
-        write!(text, "{:200}{i}", "").unwrap();
-    }
-    let disc = mesh(&text);
-    assert_eq!((disc.triangles().len(), disc.positions().len()), (9_998, 10_000));
-    tried.add(1);
-    // A concave one: a saw with 5,000 teeth.
-    let teeth = (0..corners).map(|i| (i as f32, (i % 2) as f32));
-    let outline = [(9999.0, -1.0), (0.0, -1.0)].into_iter().chain(teeth);
-    let face: Vec<Vec3> = outline.rev().map(|(x, y)| Vec3::new(x, y, 0.0)).collect();
-    let saw = mesh(face_text(&face));
-    assert_eq!(saw.triangles().len(), 10_000);
-    tried.add(1);
-    check_split(&saw, &face);
 }
 
 /// Rounded to f32, a ring of this many corners has dents; it is cut from side to side, in any plane.
@@ -792,26 +679,9 @@ fn library_names() {
     assert_eq!(read("mtllib one.mtl two.mtl", &["one.mtl"]), (1, None));
 }
 
-#[test]
-fn f1_broken_libraries() {
-    let mut tried = Tried::new("f1_broken_libraries", 5);
-    for (mtl, message) in [
-        ("Kd", "2: too few numbers for a colour (1 or 3)"),
-        ("Kd 1 1", "2: too few numbers for a colour (1 or 3)"),
-        ("\nKs red", "3: `red` is not a number"),
-        ("Ns nan", "2: `nan` is not a finite number"),
-        ("Ns", "2: too few numbers for an exponent (1)"),
-    ] {
-        let text = format!("mtllib a.mtl\n{TRIANGLE}f 1 2 3\n");
-        let error = with_mtl(&text, &format!("newmtl a\n{mtl}\n")).unwrap_err();
-        assert_eq!(error.to_string(), format!("a.mtl:{message}"));
-        tried.add(1);
-    }
-}
-
 /// A mesh of one face in the plane z = 0, compared with that face: n − 2 triangles, none flipped, whose areas add up,
 /// and each edge of the face in exactly one of them.
-fn check_split(mesh: &Mesh, face: &[Vec3]) {
+pub(crate) fn check_split(mesh: &Mesh, face: &[Vec3]) {
     assert_eq!(mesh.triangles().len(), face.len() - 2);
     let double_area = |a: Vec3, b: Vec3, c: Vec3| {
         let d = |p: Vec3| (f64::from(p.x) - f64::from(a.x), f64::from(p.y) - f64::from(a.y));
@@ -841,7 +711,7 @@ fn check_split(mesh: &Mesh, face: &[Vec3]) {
     }
 }
 
-fn face_text(face: &[Vec3]) -> String {
+pub(crate) fn face_text(face: &[Vec3]) -> String {
     let mut text: String = face.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
     text.push('f');
     (1..=face.len()).for_each(|i| write!(text, " {i}").unwrap());
