@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --release -- [--rabbit MODEL.obj] [--json FILE] [--table] [--rounds N] [--faces N] [--only TEXT]
-//!     [--no-frames | --no-triangles] [MODEL.obj | TRIANGLES.tri] ...
+//!     [--no-frames | --no-triangles] [MODEL.obj] ...
 //! ```
 //!
 //! Triangles: a cleared frame of 320 × 200, then all front faces, back to front. Only the rasterizer is timed,
@@ -111,9 +111,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     for drawing in Drawing::ALL.into_iter().filter(|_| options.triangles) {
         let mut rows = Vec::new();
         println!("\nTriangles, {}: ns a triangle", drawing.name());
-        let is_drawn =
-            |workload: &&Workload| workload.mesh.is_some() || !(drawing.has_texture() || drawing.has_depth());
-        for workload in workloads.iter().filter(is_drawn) {
+        for workload in &workloads {
             rows.push(triangles(workload, drawing, &material, &kernels, options.rounds)?);
         }
         tables.push(json!({ "drawing": drawing.name(), "workloads": rows }));
@@ -122,7 +120,7 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     for stages in Stages::ALL.into_iter().filter(|_| options.frames) {
         println!("\nWhole frames, {}: ns a face of the mesh; the peer is {mesa}, one thread", stages.name());
         for workload in &workloads {
-            let Some(mesh) = &workload.mesh else { continue };
+            let mesh = &workload.mesh;
             let whole = whole::measure((mesh, Shown::One), stages, &material, &kernels, options.rounds)?;
             frames.push(frame(&workload.name, stages, mesh.triangles().len(), &whole)?);
             if workload.name == "cube" {
@@ -225,16 +223,12 @@ fn triangles(
 /// Prints how many times slower the best peer is than our batches with this kernel, by medians: one
 /// row per drawing, one column per workload.
 fn print_table(kernel: &str, tables: &[Value]) {
-    let named = |workload: &Value| workload["name"].as_str().unwrap_or_default().to_owned();
     let workloads = |table: &Value| table["workloads"].as_array().cloned().unwrap_or_default();
-    // The columns are those of the drawing with the most workloads.
-    let Some(most) = tables.iter().map(workloads).max_by_key(Vec::len) else { return };
-    let names: Vec<String> = most.iter().map(named).collect();
+    let Some(first) = tables.first() else { return };
+    let names: Vec<String> = workloads(first).iter().filter_map(|of| Some(of["name"].as_str()?.to_owned())).collect();
     println!("\n| best peer ÷ ours, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
     for table in tables {
-        let of = workloads(table);
-        let ratio = |name: &String| {
-            let workload = of.iter().find(|workload| named(workload) == *name)?;
+        let ratio = |workload: &Value| {
             let times = |wanted: &dyn Fn(&Value) -> bool| {
                 let candidates = workload["candidates"].as_array()?.iter().filter(|candidate| wanted(candidate));
                 candidates.filter_map(|candidate| candidate["ns"]["median"].as_f64()).min_by(f64::total_cmp)
@@ -242,8 +236,8 @@ fn print_table(kernel: &str, tables: &[Value]) {
             let ours = times(&|candidate| candidate["name"] == format!("batches, {kernel}"))?;
             Some(times(&|candidate| candidate["is_ours"] == false)? / ours)
         };
-        let cell = |name| ratio(name).map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
-        let cells: Vec<String> = names.iter().map(cell).collect();
+        let cell = |workload| ratio(&workload).map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
+        let cells: Vec<String> = workloads(table).into_iter().map(cell).collect();
         println!("| {} | {} |", table["drawing"].as_str().unwrap_or_default(), cells.join(" | "));
     }
 }

@@ -1,7 +1,8 @@
-//! The correct picture of a triangle: coverage and shade in exact arithmetic, pixel by pixel.
+//! How far candidates are from the correct picture of a triangle: coverage and shade in exact arithmetic.
 
-use mode13h::raster::Vertex;
+use mode13h::raster::Interpolation;
 use mode13h::span::Kernel;
+use mode13h_conformance::oracle;
 
 use crate::candidate::{Candidate, Triangle};
 use crate::drawing::{Drawing, Material};
@@ -37,11 +38,19 @@ pub fn errors(
             candidate.draw();
             candidate.read(bytes);
         }
-        let plane = Plane::new(&triangle.map(|corner| corner.vertex), drawing);
-        for (place, (&on_black, &on_white)) in black.iter().zip(&white).enumerate() {
-            let (x, y) = ((place % WIDTH) as i64, (place / WIDTH) as i64);
-            let drawn = on_black == on_white;
-            match (plane.as_ref().and_then(|plane| plane.shade(x, y)), drawn) {
+        let vertices = triangle.map(|corner| corner.vertex);
+        let values = match drawing {
+            Drawing::Flat => [i128::from(vertices[0].shade().nearest()) << 8; 3],
+            _ => vertices.map(|v| i128::from(v.shade().to_bits())),
+        };
+        let mut right = vec![None; WIDTH * HEIGHT];
+        for pixel in oracle::pixels(&vertices, Interpolation::Flat(0), WIDTH as i32, HEIGHT as i32) {
+            let (corners, centre) = (vertices.each_ref().map(oracle::point), oracle::centre(pixel.x, pixel.y));
+            let exact = oracle::interpolate(corners, values, centre);
+            right[pixel.y as usize * WIDTH + pixel.x as usize] = Some(exact.n as f64 / exact.d as f64 / 256.0);
+        }
+        for (exact, (&on_black, &on_white)) in right.into_iter().zip(black.iter().zip(&white)) {
+            match (exact, on_black == on_white) {
                 (Some(_), false) => errors.holes += 1,
                 (None, true) => errors.extra += 1,
                 (Some(exact), true) => errors.shade = errors.shade.max((f64::from(on_black) - exact).abs()),
@@ -50,45 +59,4 @@ pub fn errors(
         }
     }
     errors
-}
-
-/// A triangle whose corners are ordered so that its area is positive.
-struct Plane {
-    corners: [[i64; 3]; 3],
-    area: i64,
-}
-
-impl Plane {
-    fn new(vertices: &[Vertex; 3], drawing: Drawing) -> Option<Self> {
-        let first = i64::from(vertices[0].shade().nearest()) << 8;
-        let corner = |v: &Vertex| {
-            let value = if drawing == Drawing::Flat { first } else { i64::from(v.shade().to_bits()) };
-            [i64::from(v.x().to_bits()), i64::from(v.y().to_bits()), value]
-        };
-        let mut corners = vertices.each_ref().map(corner);
-        let [a, b, c] = corners;
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if area < 0 {
-            corners.swap(1, 2);
-        }
-        (area != 0).then_some(Self { corners, area: area.abs() })
-    }
-
-    /// The exact shade at a pixel's centre, if it is inside or on a top or left edge.
-    fn shade(&self, x: i64, y: i64) -> Option<f64> {
-        let (px, py) = (256 * x + 128, 256 * y + 128);
-        let mut sum = 0;
-        for i in 0..3 {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
-            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-            let edge = dx * (py - a[1]) - dy * (px - a[0]);
-            // With positive area on a screen whose y points down, left edges run up and top edges to the right.
-            let owns = dy < 0 || (dy == 0 && dx > 0);
-            if edge < 0 || (edge == 0 && !owns) {
-                return None;
-            }
-            sum += edge * self.corners[(i + 2) % 3][2];
-        }
-        Some(sum as f64 / self.area as f64 / 256.0)
-    }
 }

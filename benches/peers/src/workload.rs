@@ -4,7 +4,6 @@ use std::error::Error;
 use std::path::Path;
 
 use mode13h::Angle;
-use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::Vertex;
@@ -20,8 +19,8 @@ use crate::{HEIGHT, WIDTH};
 pub struct Workload {
     pub name: String,
     pub triangles: Vec<Triangle>,
-    /// With texture coordinates; `None` for triangles from a file, which have neither distances nor an image.
-    pub mesh: Option<Mesh>,
+    /// With texture coordinates.
+    pub mesh: Mesh,
 }
 
 impl Workload {
@@ -35,28 +34,7 @@ impl Workload {
         triangles.sort_by_key(|vertices| vertices.iter().map(|v| u64::from(v.depth())).sum::<u64>());
         let radius = mesh.bounds().radius;
         let texcoords = mesh.positions().iter().map(|p| Vec2::new(p.x + p.z / 2.0, p.y) / radius).collect();
-        Ok(Self { name, triangles: with_texels(&triangles), mesh: Some(mesh.with_texcoords(texcoords)?) })
-    }
-
-    /// Reads a file: a little-endian u32 count, then for each triangle three times f32 x, y and shade (pixels, pixels,
-    /// 0 to 255), back to front.
-    fn of_tri(path: &Path) -> Result<Self, Box<dyn Error>> {
-        let bytes = std::fs::read(path)?;
-        let (count, rest) = bytes.split_first_chunk::<4>().ok_or("too short for a count")?;
-        let count = u32::from_le_bytes(*count) as usize;
-        let mut numbers = rest.as_chunks::<4>().0.iter().map(|four| f32::from_le_bytes(*four));
-        let mut vertex = || -> Result<Vertex, Box<dyn Error>> {
-            let mut next = || numbers.next().ok_or("fewer numbers than its count says");
-            let (x, y, shade) = (next()?, next()?, next()?);
-            let coordinate = |pixels| I24F8::round_from_f32(pixels).ok_or("a coordinate out of range");
-            Ok(Vertex::new(coordinate(x)?, coordinate(y)?, U8F8::from_intensity(shade / 255.0, 0, 256), 0)?)
-        };
-        let mut corner = || Ok::<_, Box<dyn Error>>(Corner { vertex: vertex()?, w: 1.0, texel: [0.0; 2] });
-        let mut triangles = Vec::new();
-        for _ in 0..count {
-            triangles.push([corner()?, corner()?, corner()?]);
-        }
-        Ok(Self { name: name_of(path), triangles, mesh: None })
+        Ok(Self { name, triangles: with_texels(&triangles), mesh: mesh.with_texcoords(texcoords)? })
     }
 
     /// The shapes, the rabbit (or, without one, a rough sphere) refined up to this many faces, and the files.
@@ -75,12 +53,7 @@ impl Workload {
         }
         for file in files {
             let path = Path::new(file);
-            let workload = if path.extension().is_some_and(|end| end == "tri") {
-                Self::of_tri(path)
-            } else {
-                model_file::load(path).map_err(Into::into).and_then(|loaded| Self::of_mesh(name_of(path), loaded.mesh))
-            };
-            all.push(workload.map_err(|error| format!("{file}: {error}"))?);
+            all.push(Self::of_mesh(name_of(path), model_file::load(path)?.mesh)?);
         }
         Ok(all)
     }
