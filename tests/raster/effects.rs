@@ -458,6 +458,16 @@ fn draw(
     pixels
 }
 
+/// Draws with every kernel, all of which must agree.
+fn draw_by_all(vertices: &[Vertex; 3], attributes: &[Attributes; 3], look: &PixelPipeline<'_>) -> Vec<u8> {
+    let bytes = draw(SIZE, vertices, attributes, look, None, Kernel::PORTABLE);
+    for kernel in Kernel::available() {
+        let by_kernel = draw(SIZE, vertices, attributes, look, None, kernel);
+        assert!(by_kernel == bytes, "{kernel}: {vertices:?} {attributes:?} {look:?}");
+    }
+    bytes
+}
+
 fn sum_is_exact(look: &PixelPipeline<'_>) -> bool {
     !matches!(look.source, ShadeSource::Lit(_) | ShadeSource::LitEvery(..) | ShadeSource::Curved(_))
 }
@@ -505,8 +515,8 @@ fn triangles_with_effects_are_the_oracles() {
         let clipped = draw(size, &vertices, &attributes, &look, Some(clip), kernels[0]);
         for place in 0..bytes.len() {
             let (x, y) = ((place as i32 % width) as u32, (place as i32 / width) as u32);
-            let inside = (clip.x0..clip.x1).contains(&x) && (clip.y0..clip.y1).contains(&y);
-            assert_eq!(clipped[place], if inside { bytes[place] } else { BEFORE }, "({x}, {y}) in {clip:?}");
+            let expected = if triangles::contains(clip, x, y) { bytes[place] } else { BEFORE };
+            assert_eq!(clipped[place], expected, "({x}, {y}) in {clip:?}");
         }
         // R9: bands change nothing.
         let cut = random.within(1, i64::from(height) - 1) as u32;
@@ -827,7 +837,6 @@ fn effects_in_batches_are_those_row_by_row() {
 fn quadratic_shades_are_the_definition() {
     let mut tried = Tried::new("quadratic_shades_are_the_definition", 3_000);
     let mut random = Random::named("quadratic shades");
-    let kernels: Vec<Kernel> = Kernel::available().collect();
     let (mut pixels, mut held) = (0_u64, 0_u64);
     while tried.more() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
@@ -841,14 +850,7 @@ fn quadratic_shades_are_the_definition() {
         let channel = if channels.is_some() { channel } else { 0 };
         let look = PixelPipeline { source: ShadeSource::Curved(limits), channels, ..PixelPipeline::PLAIN };
         let naive = Naive::new(SIZE, &vertices, &attributes, &look);
-        let bytes = draw(SIZE, &vertices, &attributes, &look, None, kernels[0]);
-        for kernel in &kernels[1..] {
-            assert_eq!(
-                draw(SIZE, &vertices, &attributes, &look, None, *kernel),
-                bytes,
-                "{kernel}: {vertices:?} {attributes:?}"
-            );
-        }
+        let bytes = draw_by_all(&vertices, &attributes, &look);
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             continue;
         }
@@ -882,7 +884,6 @@ fn quadratic_shades_are_the_definition() {
 fn quadratic_shades_of_any_numbers_stay_within() {
     let mut tried = Tried::new("quadratic_shades_of_any_numbers_stay_within", 1_000);
     let mut random = Random::named("quadratic shades of anything");
-    let kernels: Vec<Kernel> = Kernel::available().collect();
     let odd = [f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e-40, -0.0, 65_280.0, -1.0, 1e10];
     while tried.more() {
         let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
@@ -894,14 +895,7 @@ fn quadratic_shades_of_any_numbers_stay_within() {
         });
         let limits = limits(&mut random);
         let look = PixelPipeline { source: ShadeSource::Curved([limits; 3]), ..PixelPipeline::PLAIN };
-        let bytes = draw(SIZE, &vertices, &attributes, &look, None, kernels[0]);
-        for kernel in &kernels[1..] {
-            assert_eq!(
-                draw(SIZE, &vertices, &attributes, &look, None, *kernel),
-                bytes,
-                "{kernel}: {vertices:?} {attributes:?}"
-            );
-        }
+        let bytes = draw_by_all(&vertices, &attributes, &look);
         let corners = vertices.each_ref().map(oracle::point);
         let [least, most] =
             [limits.least, limits.most].map(|of| ((u32::from(of.to_bits().min(0xFF00)) + 128) >> 8) as u8);
@@ -974,7 +968,6 @@ fn levels_are_the_definition() {
     }
     let levels = Levels::new(&numbers, ubits, vbits).expect("as many texels");
     let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
-    let kernels: Vec<Kernel> = Kernel::available().collect();
     let mappings = [Mapping::Affine, Mapping::Every16, Mapping::Perspective];
     let mut pixels = [[0_u32; 9]; 3];
     while tried.more() {
@@ -996,10 +989,7 @@ fn levels_are_the_definition() {
         if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
             continue;
         }
-        let bytes = draw(SIZE, &vertices, &attributes, &look, None, kernels[0]);
-        for kernel in &kernels[1..] {
-            assert_eq!(draw(SIZE, &vertices, &attributes, &look, None, *kernel), bytes, "{kernel}: {vertices:?}");
-        }
+        let bytes = draw_by_all(&vertices, &attributes, &look);
         let cut = random.within(1, i64::from(HEIGHT) - 1) as u32;
         let mut bands = SIZE.pixels();
         for rows in [0..cut, cut..HEIGHT as u32] {

@@ -1,7 +1,7 @@
 //! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all kinds of input; depth order
 //! against exact planes. Whole scenes are in `hidden_scenes.rs`.
 
-use crate::support::triangles::{triangle, vertex};
+use crate::support::triangles::{rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::fixed::U8F8;
@@ -66,12 +66,7 @@ fn in_turn(mut raster: Raster<'_>, faces: &[Face]) -> DrawStats {
 /// Checks both methods, whole, clipped and in bands.
 fn check(tried: &mut Tried, random: &mut Random, lists: &mut Lists, (width, height): (u32, u32), faces: &[Face]) {
     let whole = Sheet::new(width, height);
-    let mut ends = |size: u32| {
-        let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
-        (a.min(b), a.max(b))
-    };
-    let ((x0, x1), (y0, y1)) = (ends(width), ends(height));
-    let clip = Rect { x0, y0, x1, y1 };
+    let clip = rect(random, width, height);
     let rows_each = random.within(1, height.into()) as u32;
     for sheet in [whole, Sheet { clip, ..whole }, Sheet { rows_each, ..whole }, Sheet { clip, rows_each, ..whole }] {
         let (by_depth, depth_drawn) = sheet.depth_buffer(faces);

@@ -1,6 +1,6 @@
 //! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
 
-use crate::support::triangles::{draw, edge_beside, triangle, vertex};
+use crate::support::triangles::{contains, draw, edge_beside, rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::raster::reference::cover::SortedTriangle;
@@ -240,17 +240,12 @@ fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
     const WIDE: u32 = 200;
     while tried.more() {
         let vertices = triangle(&mut random, i64::from(WIDE), i64::from(HEIGHT));
-        let mut ends = |size: u32| {
-            let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
-            (a.min(b), a.max(b))
-        };
-        let ((x0, x1), (y0, y1)) = (ends(WIDE), ends(HEIGHT));
-        let clip = Rect { x0, y0, x1, y1 };
+        let clip = rect(&mut random, WIDE, HEIGHT);
         for interpolation in interpolations() {
             let mut expected = draw(&vertices, interpolation, WIDE, HEIGHT, None, 0);
             for (place, byte) in expected.iter_mut().enumerate() {
                 let (x, y) = (place as u32 % WIDE, place as u32 / WIDE);
-                if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
+                if !contains(clip, x, y) {
                     *byte = 0;
                 }
             }

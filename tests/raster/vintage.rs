@@ -1,6 +1,6 @@
 //! Triangles as the sources print them: against a naive walk over edges and rows, without panics on any valid input.
 
-use crate::support::triangles::{draw, triangle, vertex};
+use crate::support::triangles::{contains, draw, rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::internals::span::depth::Cell;
@@ -60,12 +60,8 @@ fn r7_period_is_quiet() {
     while tried.more() {
         let (width, height) = random.one_of(&[(96, 24), (320, 7), (17, 60), (1, 9), (70, 1)]);
         let corners = any_corners(&mut random, width, height);
-        let mut ends = |size: u32| {
-            let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
-            (a.min(b), a.max(b))
-        };
-        let ((x0, x1), (y0, y1)) = (ends(width), ends(height));
-        let clip = random.one_of(&[Rect { x0, y0, x1, y1 }, Rect { x0: 0, y0: 0, x1: width, y1: height }]);
+        let part = rect(&mut random, width, height);
+        let clip = random.one_of(&[part, Rect { x0: 0, y0: 0, x1: width, y1: height }]);
         let case = Case {
             corners,
             size: (width, height),
@@ -137,10 +133,7 @@ impl Case {
     /// The naive walk's pixels inside the clip rectangle, with their offsets in the frame.
     fn pixels(&self) -> Vec<(oracle::Pixel, usize)> {
         let (width, height) = self.size;
-        let inside = |pixel: &oracle::Pixel| {
-            let (x, y) = (pixel.x as u32, pixel.y as u32);
-            (self.clip.x0..self.clip.x1).contains(&x) && (self.clip.y0..self.clip.y1).contains(&y)
-        };
+        let inside = |pixel: &oracle::Pixel| contains(self.clip, pixel.x as u32, pixel.y as u32);
         let pixels = oracle::pixels(&self.corners, VINTAGE, width as i32, height as i32);
         pixels.into_iter().filter(inside).map(|p| (p, p.y as usize * width as usize + p.x as usize)).collect()
     }

@@ -77,6 +77,20 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
     })
 }
 
+/// A random part of a frame of `width × height` pixels, perhaps empty.
+pub fn rect(random: &mut Random, width: u32, height: u32) -> Rect {
+    let mut ends = |size: u32| {
+        let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
+        (a.min(b), a.max(b))
+    };
+    let ((x0, x1), (y0, y1)) = (ends(width), ends(height));
+    Rect { x0, y0, x1, y1 }
+}
+
+pub fn contains(rect: Rect, x: u32, y: u32) -> bool {
+    (rect.x0..rect.x1).contains(&x) && (rect.y0..rect.y1).contains(&y)
+}
+
 /// What a triangle draws into a frame full of `empty`, without a depth buffer.
 pub fn draw(
     vertices: &[Vertex; 3],

@@ -1,7 +1,7 @@
 //! Convex polygons by the table of rows, against an i128 oracle of the same definition; and why faces are split into
 //! triangles instead (N8).
 
-use crate::support::triangles::vertex;
+use crate::support::triangles::{contains, rect, vertex};
 use crate::support::tried::Tried;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_conformance::Random;
@@ -203,23 +203,19 @@ fn r8_polygons_clipped_and_in_bands() {
     while tried.more() {
         let hull = convex(&mut random);
         let vertices = shaded(&mut random, &hull);
-        let mut ends = |size: u32| {
-            let (a, b) = (random.within(0, size.into()) as u32, random.within(0, size.into()) as u32);
-            (a.min(b), a.max(b))
-        };
-        let ((x0, x1), (y0, y1)) = (ends(WIDTH), ends(HEIGHT));
+        let clip = rect(&mut random, WIDTH, HEIGHT);
         let rows_each = random.within(1, HEIGHT.into()) as u32;
         for interpolation in [Interpolation::GouraudReseeded, Interpolation::Gouraud, Interpolation::Flat(9)] {
             let (mut whole, _) = Sheet::WHOLE.draw(&vertices, interpolation).expect("convex");
             for (place, byte) in whole.iter_mut().enumerate() {
                 let (x, y) = (place as u32 % WIDTH, place as u32 / WIDTH);
-                if !((x0..x1).contains(&x) && (y0..y1).contains(&y)) {
+                if !contains(clip, x, y) {
                     *byte = 0;
                 }
             }
-            let sheet = Sheet { clip: Rect { x0, y0, x1, y1 }, rows_each, empty: 0 };
+            let sheet = Sheet { clip, rows_each, empty: 0 };
             let (part, _) = sheet.draw(&vertices, interpolation).expect("convex");
-            assert_eq!(part, whole, "({x0}, {y0}) to ({x1}, {y1}), bands of {rows_each}, {vertices:?}");
+            assert_eq!(part, whole, "{clip:?}, bands of {rows_each}, {vertices:?}");
         }
     }
 }

@@ -6,6 +6,7 @@ use mode13h::span::Kernel;
 
 use super::shapes::{CLASSES, shape};
 use super::{MOST, interpolations, together};
+use crate::support::triangles::{contains, rect};
 use crate::support::tried::Tried;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -47,17 +48,13 @@ impl Place {
     fn random(random: &mut Random) -> Self {
         let (width, height) =
             random.one_of(&[(24, 24), (40, 12), (72, 9), (9, 60), (200, 6), (320, 4), (640, 2), (64, 17)]);
-        let mut ends = |size: u32| {
-            let [a, b] = [0; 2].map(|_| random.within(0, size.into()) as u32);
-            (a.min(b), a.max(b))
-        };
-        let ((x0, x1), (y0, y1)) = (ends(width), ends(height));
+        let part = rect(random, width, height);
         let whole = Rect { x0: 0, y0: 0, x1: width, y1: height };
         Self {
             width,
             height,
             pitch: width as usize + random.one_of(&[0, 0, 1, 9]),
-            clip: random.one_of(&[whole, whole, whole, Rect { x0, y0, x1, y1 }]),
+            clip: random.one_of(&[whole, whole, whole, part]),
             background: random.within(0, 255) as u8,
             cells: random.one_of(&CELLS),
         }
@@ -77,7 +74,7 @@ impl Place {
         let depths = (!pixels.is_empty()).then(|| oracle::Depths::of_vertices(vertices));
         for (pixel, depths) in pixels.into_iter().filter_map(|pixel| depths.as_ref().map(|depths| (pixel, depths))) {
             let (x, y) = (pixel.x as u32, pixel.y as u32);
-            if !(self.clip.x0..self.clip.x1).contains(&x) || !(self.clip.y0..self.clip.y1).contains(&y) {
+            if !contains(self.clip, x, y) {
                 continue;
             }
             picture.covered += 1;
