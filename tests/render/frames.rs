@@ -3,18 +3,18 @@
 //!
 //! `MODE13H_MODEL=model.obj cargo test --test render frames` tries a model of your own as well.
 
+use crate::support::judged::{Expected, by_the_oracle};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
-use mode13h::raster::{Interpolation, Vertex};
+use mode13h::raster::Vertex;
 use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Object, Scene};
 use mode13h::settings::{HiddenSurfaces, Shading};
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
-use mode13h_conformance::oracle;
 
 const WIDTH: i32 = Vga::WIDTH as i32;
 const HEIGHT: i32 = Vga::HEIGHT as i32;
@@ -23,35 +23,7 @@ const HEIGHT: i32 = Vga::HEIGHT as i32;
 fn check(scene: &Scene, shading: Shading) -> usize {
     let mut renderer = Renderer::new();
     renderer.settings.accuracy = Some(shading.into());
-    let mut triangles: Vec<([Vertex; 3], Interpolation)> = Vec::new();
-    let stats = renderer
-        .for_each_triangle(scene, Screen::MODE_13H, |v, interpolation| triangles.push((*v, interpolation)))
-        .expect("a legal scene");
-    // Without depth comparison the last face is seen. With exact cover no two share a pixel then.
-    let compares = stats.hidden_surfaces == HiddenSurfaces::DepthBuffer;
-
-    let mut expected = vec![scene.background; (WIDTH * HEIGHT) as usize];
-    let mut nearest = vec![0; expected.len()];
-    let mut covered = 0;
-    let mut shown = vec![false; expected.len()];
-    for (vertices, interpolation) in &triangles {
-        for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, *interpolation, WIDTH, HEIGHT) {
-            covered += 1;
-            if let Some((n, d)) = oracle::bound(*interpolation, WIDTH.into()) {
-                let exact = oracle::exact_shade(vertices, *interpolation, oracle::centre(x, y));
-                assert!(exact.is_within(i128::from(byte) * 256, n, d), "({x}, {y}) of {vertices:?}");
-            }
-            let place = (y * WIDTH + x) as usize;
-            shown[place] = true;
-            let depth = match interpolation.has_exact_cover() {
-                true => oracle::depth_at(vertices, x, y),
-                false => oracle::depth_beyond(vertices, x, y),
-            };
-            if !compares || depth > nearest[place] {
-                (nearest[place], expected[place]) = (depth, byte);
-            }
-        }
-    }
+    let Expected { triangles, bytes: expected, counts } = by_the_oracle(&mut renderer, scene, Screen::MODE_13H);
     let off_screen = triangles.iter().filter(|(vertices, _)| is_off_screen(vertices)).count() as u64;
     for kernel in Kernel::available() {
         let mut vga = Vga::new();
@@ -64,9 +36,9 @@ fn check(scene: &Scene, shading: Shading) -> usize {
         let most_left_out = if stats.clipped == 0 { 0 } else { off_screen };
         let left_out = triangles.len() as u64 - stats.drawn;
         assert!(left_out <= most_left_out, "{left_out} of at most {most_left_out}");
-        assert_eq!(stats.raster.covered, covered);
+        assert_eq!(stats.raster.covered, counts.iter().sum::<u32>());
     }
-    shown.into_iter().filter(|&shown| shown).count()
+    counts.into_iter().filter(|&times| times > 0).count()
 }
 
 /// Returns whether all corners lie beyond one side of the screen.
@@ -97,7 +69,6 @@ fn every_shape_on_every_shading_is_the_oracles_frame() {
 }
 
 /// All shades half a step below the next, so that estimated quotients cannot decide a single pixel. There are more
-/// faces than are listed at a time.
 /// faces than are listed at a time.
 #[test]
 fn many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles() {
