@@ -18,8 +18,8 @@ use super::tried::Tried;
 /// What a golden frame holds.
 #[derive(PartialEq, Eq)]
 pub struct Indexed {
-    pixels: Vec<u8>,
-    colors: Vec<Rgb>,
+    pub pixels: Vec<u8>,
+    pub colors: Vec<Rgb>,
 }
 
 impl Indexed {
@@ -58,7 +58,8 @@ pub fn check(name: &str, tried: &mut Tried, mut frame: impl FnMut(Kernel) -> Ind
     wrong
 }
 
-fn read(path: &Path) -> Indexed {
+/// Reads a picture that holds a frame.
+pub fn read(path: &Path) -> Indexed {
     let file = File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a PNG");
     let info = reader.info();

@@ -1,8 +1,7 @@
 //! The compiled-in scenes: each loads, loops seamlessly, calls for what it should show, and looks as it did.
 
-use std::fs::{self, File};
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::PathBuf;
 
 use mode13h::export;
 use mode13h::palette::Rgb;
@@ -15,6 +14,7 @@ use mode13h_assets::auto_palette;
 use mode13h_assets::scene_file::Loaded;
 use mode13h_assets::shipped::{self, Shipped};
 
+use crate::support::golden::{Indexed, read};
 use crate::support::tried::Tried;
 use crate::support::workspace::names_in;
 
@@ -31,18 +31,7 @@ fn load(shipped: &Shipped) -> Scene {
     scene
 }
 
-/// What the card shows.
-#[derive(PartialEq, Eq)]
-struct Shown {
-    pixels: Vec<u8>,
-    colors: Vec<Rgb>,
-}
-
-impl Shown {
-    fn of(vga: &Vga) -> Self {
-        Self { pixels: vga.pixels().to_vec(), colors: vga.palette().colors().to_vec() }
-    }
-
+impl Indexed {
     /// Pixel by pixel, the colours that a person sees.
     fn seen(&self) -> impl Iterator<Item = Rgb> {
         self.pixels.iter().map(|&pixel| self.colors[usize::from(pixel)])
@@ -54,13 +43,13 @@ impl Shown {
 }
 
 /// Drawn by a fresh renderer.
-fn draw(scene: &Scene) -> (Shown, Renderer) {
+fn draw(scene: &Scene) -> (Indexed, Renderer) {
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     renderer.draw(scene, &mut vga).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    (Shown::of(&vga), renderer)
+    (Indexed::of(&vga), renderer)
 }
 
-fn draw_at(scene: &mut Scene, seconds: f64) -> Shown {
+fn draw_at(scene: &mut Scene, seconds: f64) -> Indexed {
     scene.set_time(seconds);
     draw(scene).0
 }
@@ -154,11 +143,11 @@ fn what_does_not_change_is_not_drawn_again() {
         let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
         scene.set_time(0.0);
         assert!(renderer.draw(&scene, &mut vga).expect("a legal scene").redrawn);
-        let begin = Shown::of(&vga);
+        let begin = Indexed::of(&vga);
         scene.set_time(0.3 * scene.duration);
         let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert!(!stats.redrawn && stats.vertices == 0 && stats.raster.pixels == 0, "{name}: {stats}");
-        let now = Shown::of(&vga);
+        let now = Indexed::of(&vga);
         assert!(now.pixels == begin.pixels, "{name}");
         assert_eq!(now.colors != begin.colors, palette_changes, "{name}");
         assert!(now == draw(&scene).0, "{name}: another picture than a fresh renderer's");
@@ -172,7 +161,7 @@ fn coarse_faces_lose_the_flash_and_split_ones_do_not() {
     for i in 0..20 {
         let seconds = f64::from(i) / 20.0 * coarse.duration;
         let (coarse, split) = (draw_at(&mut coarse, seconds), draw_at(&mut split, seconds));
-        let brightest = |shown: &Shown| shown.seen().map(Rgb::brightness).max().expect("pixels");
+        let brightest = |shown: &Indexed| shown.seen().map(Rgb::brightness).max().expect("pixels");
         darker += i32::from(2 * brightest(&coarse) < brightest(&split));
     }
     assert!(darker >= 4, "the flash is lost in {darker} of 20 frames");
@@ -215,17 +204,6 @@ fn kept(shipped: &Shipped) -> PathBuf {
     crate::support::workspace::root().join(format!("assets/scenes/pictures/{}.png", shipped.name))
 }
 
-fn read(path: &Path) -> Shown {
-    let file = File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a PNG");
-    let info = reader.info();
-    assert_eq!((info.color_type, info.width, info.height), (png::ColorType::Indexed, 320, 200));
-    let colors = info.palette.as_ref().expect("a palette").chunks(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect();
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    reader.next_frame(&mut pixels).expect("a frame");
-    Shown { pixels, colors }
-}
-
 /// `MODE13H_PICTURES=write` regenerates them and always fails, so that such a run never passes.
 #[test]
 fn the_pictures_of_the_readme_are_those_that_are_drawn() {
@@ -240,7 +218,7 @@ fn the_pictures_of_the_readme_are_those_that_are_drawn() {
             fs::create_dir_all(kept(shipped).parent().expect("a folder")).expect("made");
             export::png(&vga, kept(shipped)).expect("written");
         }
-        assert!(read(&kept(shipped)) == Shown::of(&vga), "{}: another picture than is kept", shipped.name);
+        assert!(read(&kept(shipped)) == Indexed::of(&vga), "{}: another picture than is kept", shipped.name);
         tried.add(1);
     }
     assert!(!write, "pictures written: look at them, then run without MODE13H_PICTURES");

@@ -3,6 +3,8 @@
 
 #[path = "../../../tests/support/film.rs"]
 pub mod film;
+#[path = "../../../tests/support/golden.rs"]
+pub mod golden;
 #[path = "../../../tests/support/property.rs"]
 pub mod property;
 #[path = "../../../tests/support/scenes.rs"]
