@@ -11,19 +11,8 @@ use crate::span::texture::Painted;
 pub(super) enum Direct<'a> {
     /// Linear shades, to be fogged.
     Shades,
-    /// Texels of an image. `painted` looks them up in the pipeline's table, whatever the tint.
-    Texture { image: (Image<'a>, Mapping), tint: DirectTint<'a>, painted: Painted<'a> },
-}
-
-/// How texels are tinted.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum DirectTint<'a> {
-    /// None: texels are shown as they are.
-    None,
-    /// One row of a table, for one shade.
-    Row(&'a [u8; 256]),
-    /// A table, for linear shades.
-    Lit,
+    /// Texels of an image, looked up in the pipeline's table unless that would leave them as they are.
+    Texture { image: (Image<'a>, Mapping), painted: Painted<'a>, is_plain: bool },
 }
 
 /// Returns whether a table row leaves every texel unchanged.
@@ -46,14 +35,13 @@ impl<'a> Direct<'a> {
             return None;
         }
         let table = stage.tables[0];
-        let (tint, flat) = match pipeline.source {
+        let (flat, is_plain) = match pipeline.source {
             ShadeSource::Shaded(Interpolation::Flat(shade)) => {
-                let row = table.as_chunks::<256>().0.get(usize::from(shade))?;
-                (if is_identity(row) { DirectTint::None } else { DirectTint::Row(row) }, Some(shade))
+                (Some(shade), is_identity(table.as_chunks().0.get(usize::from(shade))?))
             }
-            _ if is_linear => (DirectTint::Lit, None),
+            _ if is_linear => (None, false),
             _ => return None,
         };
-        Some(Self::Texture { image: (Image::new(stage), stage.mapping), tint, painted: Painted { table, flat } })
+        Some(Self::Texture { image: (Image::new(stage), stage.mapping), painted: Painted { table, flat }, is_plain })
     }
 }

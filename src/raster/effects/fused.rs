@@ -1,7 +1,7 @@
 //! One loop per span from start to frame, in place of stages: texture, light, fog, blending and the depth test.
 
 use super::destination::{Destination, InFrame, Masked};
-use super::direct::{Direct, DirectTint};
+use super::direct::Direct;
 use super::pipeline::{Image, PixelPipeline};
 use super::spans::Spans;
 use super::texture::{show_mipmaps, show_texture};
@@ -50,11 +50,10 @@ impl Direct<'_> {
 
     fn show_in(self, spans: &Spans<'_>, to: &mut impl Destination, kernel: Kernel) -> Option<()> {
         // Shades alone have kernels of their own.
-        let Self::Texture { image, tint, painted } = self else { return None };
-        match tint {
-            DirectTint::None => show_texture(spans, image, (), to, kernel),
-            DirectTint::Row(row) => show_texture(spans, image, row, to, kernel),
-            DirectTint::Lit => show_texture(spans, image, painted, to, kernel),
+        let Self::Texture { image, painted, is_plain } = self else { return None };
+        match is_plain {
+            true => show_texture(spans, image, (), to, kernel),
+            false => show_texture(spans, image, painted, to, kernel),
         }
         Some(())
     }
@@ -63,9 +62,6 @@ impl Direct<'_> {
     fn show_fogged(self, spans: &Spans<'_>, fog: &[u8; 65_536], to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
         match self {
             Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
-            Self::Texture { image, tint: DirectTint::None, .. } => {
-                show_texture(spans, image, Fogged((), fog), to, kernel)
-            }
             Self::Texture { image, painted, .. } => show_texture(spans, image, Fogged(painted, fog), to, kernel),
         }
         Some(())
@@ -75,9 +71,7 @@ impl Direct<'_> {
         match self {
             // Blending shades is 14 % faster in stages.
             Self::Shades => return None,
-            Self::Texture { image, tint: DirectTint::None, .. } => {
-                show_texture(spans, image, Blended((), blend), to, kernel)
-            }
+            Self::Texture { image, is_plain: true, .. } => show_texture(spans, image, Blended((), blend), to, kernel),
             Self::Texture { image, painted, .. } => show_texture(spans, image, Blended(painted, blend), to, kernel),
         }
         Some(())
@@ -96,10 +90,10 @@ impl Direct<'_> {
         to: &mut Masked<'_>,
         kernel: Kernel,
     ) -> Option<()> {
-        let Self::Texture { image, tint, painted } = self else { return None };
-        match (tint, fog) {
-            (DirectTint::None, None) => show_mipmaps(spans, image, (), to, kernel),
-            (_, None) => show_mipmaps(spans, image, painted, to, kernel),
+        let Self::Texture { image, painted, is_plain } = self else { return None };
+        match (is_plain, fog) {
+            (true, None) => show_mipmaps(spans, image, (), to, kernel),
+            (false, None) => show_mipmaps(spans, image, painted, to, kernel),
             (_, Some(fog)) => show_mipmaps(spans, image, Fogged(painted, fog), to, kernel),
         }
         Some(())

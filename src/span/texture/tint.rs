@@ -88,20 +88,6 @@ impl Tint for () {
     }
 }
 
-/// Texels looked up in one row of a table: one shade for all.
-impl Tint for &[u8; 256] {
-    type Along<S: Lanes8> = ();
-    type Rows = ();
-    #[inline(always)]
-    fn begin<S: Lanes8>(self, _: S, _: impl Ramps<S>) {}
-    #[inline(always)]
-    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
-    #[inline(always)]
-    fn show(self, (): (), _: usize, texel: u8) -> u8 {
-        self[usize::from(texel)]
-    }
-}
-
 /// Texels lit by a table, with the shades of the span or with one shade.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painted<'a> {
