@@ -135,11 +135,11 @@ impl Renderer {
 
     /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Effects that save work give the same bytes on or off, except that back-face culling, forced on, also hides the
-    /// backs of open meshes: a room seen from inside has none to hide, and is drawn faster. The method for hidden
-    /// surfaces is set by [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has
-    /// nothing to show, it runs on neutral input (no amplitude, an image that changes nothing). Clipping stays on where
-    /// the plan requires it.
+    /// Effects that save work give the same bytes on or off, with two exceptions: back-face culling, forced on, also
+    /// hides the backs of open meshes (a room seen from inside has none to hide, and is drawn faster), and with the
+    /// transform forced off an object stays as it was last drawn. The method for hidden surfaces is set by
+    /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
+    /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
         self.overrides.set(None, effect, on);
     }
