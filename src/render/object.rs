@@ -134,7 +134,7 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     })
 }
 
-/// What an object's vertices are computed from.
+/// Inputs from which an object's vertices are computed.
 struct Inputs<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -157,7 +157,7 @@ struct OfMesh {
     has_clusters: bool,
 }
 
-/// What is computed from an object's vertices.
+/// An object's vertices, and everything computed with them.
 #[derive(Debug, Default)]
 struct Outputs {
     columns: VertexColumns,

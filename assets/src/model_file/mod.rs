@@ -235,7 +235,7 @@ fn outside(mesh: &Mesh, textures: &Embedded) -> Vec<PathBuf> {
 /// Opens a file that a model or a scene names. Only regular files are accepted: it might name a device that never ends.
 ///
 /// # Errors
-/// Those of the system, and a path to anything but a regular file.
+/// The system's errors, and one for a path to anything but a regular file.
 pub fn open_named(path: &Path) -> io::Result<Box<dyn BufRead>> {
     match fs::metadata(path)?.is_file() {
         true => Ok(Box::new(BufReader::with_capacity(1 << 16, File::open(path)?))),
@@ -246,7 +246,7 @@ pub fn open_named(path: &Path) -> io::Result<Box<dyn BufRead>> {
 /// Reads a file like [`open_named`].
 ///
 /// # Errors
-/// Those of [`open_named`], and of reading.
+/// The errors of [`open_named`], and of reading.
 pub fn read_named(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_named(path)?.read_to_end(&mut bytes).map(|_| bytes)
