@@ -9,14 +9,10 @@
 //! lies left of the other in exact arithmetic, and rounding up preserves their order.
 
 use super::frame::Rect;
-#[cfg(simd_x86_64)]
-use super::setup::FrameLayout;
 use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
-#[cfg(simd_x86_64)]
-use crate::span::LargeTriangle;
 use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
 
 /// The greatest height, in rows, of small triangles that are walked eight at a time; their rows are
@@ -199,13 +195,6 @@ pub(super) trait Shades8 {
     /// Completes the set-up of triangle `i` of the eight, which is not a small one.
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
 
-    /// Triangle `i` of the eight alone, if its shades are linear.
-    #[cfg(simd_x86_64)]
-    #[inline(always)]
-    fn large_triangle(&self, i: usize, setup: &TriangleSetup8, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
-        setup.large_triangle(i, layout, reseeds)
-    }
-
     /// Draws the spans of a list and empties it; with `DEPTHS`, only where they are nearer than the
     /// target's cells.
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
@@ -268,16 +257,6 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
 
     #[inline(always)]
     fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
-
-    #[cfg(simd_x86_64)]
-    #[inline(always)]
-    fn large_triangle(&self, i: usize, setup: &TriangleSetup8, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
-        let linear = setup.large_triangle(i, layout, reseeds);
-        if !FLAT {
-            return linear;
-        }
-        LargeTriangle { shade: [self.paint[i % LANES].into(), 0.0, 1.0], per_column: 0.0, step: 0, ..linear }
-    }
 
     #[inline(always)]
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
@@ -588,6 +567,10 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
 ) {
     let lane = OneTriangle(i);
     let (ends, j, rows) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
+    if clip.is_none() && s.to_bitmask(s.is_greater(rows.length, s.splat_i32(longest))) == 0 {
+        shades.append::<S, DEPTHS>(s, list, &rows, DepthSteps::All(setup.z_per_column[i % LANES]));
+        return;
+    }
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame relative to the box's first. All are below 4,096.
     let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));

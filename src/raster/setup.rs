@@ -42,8 +42,6 @@ use super::reference::depth::DepthPlane;
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
-#[cfg(simd_x86_64)]
-use crate::span::LargeTriangle;
 
 /// Layout of a frame's pixels.
 #[derive(Clone, Copy)]
@@ -261,27 +259,6 @@ impl TriangleSetup8 {
         self.z[i] = z << 8;
         self.z_per_column[i] = plane.step() << 8;
         self.z_per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(z) << 8;
-    }
-
-    /// Triangle `i` alone.
-    #[cfg(simd_x86_64)]
-    pub(super) fn large_triangle(&self, i: usize, layout: FrameLayout, reseeds: bool) -> LargeTriangle {
-        let edge = |edges: &Edges| [edges.n[i], edges.per_row[i], edges.inverse[i]];
-        LargeTriangle {
-            long: edge(&self.long),
-            upper: edge(&self.upper),
-            lower: edge(&self.lower),
-            shade: [self.shade.n[i], self.shade.per_row[i], self.inverse[i]],
-            per_column: self.shade.per_column[i],
-            at: self.at[i],
-            // At most 2¹⁶.
-            pitch: layout.pitch as i32,
-            rows: self.rows[i],
-            split: self.split[i],
-            // The upper half.
-            step: (self.shade.step[i] >> 16) as u16,
-            reseeds,
-        }
     }
 
     /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth

@@ -338,20 +338,6 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                 let row = setup.row[i % LANES];
                 (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
             }
-            #[cfg(simd_x86_64)]
-            if !DEPTHS
-                && P::IS_LINEAR
-                && pick.class() == SizeClass::Large
-                && let Some(avx512) = target.kernel.avx512()
-            {
-                shades.draw::<S, LISTED>(s, list, target);
-                list.count_drawn(crate::span::fill_large(
-                    avx512,
-                    target.pixels,
-                    &shades.large_triangle(i, &setup, layout, of.in_pieces),
-                ));
-                continue;
-            }
             while first < end {
                 if !list.has_room(LANES * pieces) {
                     shades.draw::<S, LISTED>(s, list, target);

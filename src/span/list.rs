@@ -160,13 +160,6 @@ impl SpanList {
         (self.drawn, self.covered.iter().sum::<i32>().cast_unsigned(), self.nearer)
     }
 
-    /// Counts spans that were drawn without the list, and their pixels.
-    #[cfg(simd_x86_64)]
-    pub(crate) fn count_drawn(&mut self, (spans, covered): (u32, u32)) {
-        self.drawn = self.drawn.wrapping_add(spans);
-        self.covered[0] = self.covered[0].wrapping_add(covered.cast_signed());
-    }
-
     /// Returns whether there is room for this many more.
     #[inline(always)]
     pub(crate) fn has_room(&self, spans: usize) -> bool {

@@ -59,6 +59,7 @@ pub(crate) mod curve;
 pub(crate) mod depth;
 pub(crate) mod depth_test;
 pub(crate) mod dither;
+pub(crate) mod fixed16;
 pub(crate) mod float;
 pub(crate) mod hyperbolic;
 pub(crate) mod list;
@@ -73,9 +74,6 @@ mod portable;
     allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
-#[cfg(simd_x86_64)]
-pub(crate) use simd::avx512::{LargeTriangle, fill_large};
-pub(crate) mod fixed16;
 pub(crate) mod texture;
 mod thresholds;
 #[cfg(any(asm_x86_64, asm_i686))]

@@ -300,24 +300,24 @@ pub(crate) mod avx2 {
         unsafe { each(pixels, spans) }
     }
 
-    /// Fills a span at `at`, up to sixteen pixels at once. `paint` has its shade, with the step in the upper half.
-    /// Bytes after the span, in whichever row, are rewritten unchanged. A span that reaches beyond
-    /// `pixels` is not drawn.
+    /// Fills a span at `at`. `paint` has its shade, with the step in the upper half. Bytes after a span of up to 32
+    /// pixels, in whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not drawn.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
-        const MOST: usize = 16;
-        static MASK: [[u8; MOST]; 2] = [[0; MOST], [u8::MAX; MOST]];
+        static MASK: [[u8; 32]; 2] = [[0; 32], [u8::MAX; 32]];
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
         // No overflow: both are below 2³², and usize has 64 bits.
         let (at, n) = (at as usize, length as usize);
-        if n <= MOST
-            && let Some(row) = pixels.get_mut(at..at + MOST)
+        // The bytes that stay, of 32 or of the first 16: from byte 32 or an earlier one on.
+        let stays = MASK.as_ptr().cast::<u8>().wrapping_add(32_usize.wrapping_sub(n));
+        if n <= 16
+            && let Some(row) = pixels.get_mut(at..at + 16)
         {
             let bytes = sse2::Block::new(shade, step).bytes();
-            // SAFETY: sixteen of 32 bytes, from byte 16 or an earlier one on; the load requires no alignment.
-            let stays = unsafe { _mm_loadu_si128(MASK.as_ptr().cast::<u8>().add(MOST - n).cast()) };
-            if n <= MOST / 2 {
+            // SAFETY: sixteen of 64 bytes; the load requires no alignment.
+            let stays = unsafe { _mm_loadu_si128(stays.cast()) };
+            if n <= 8 {
                 // SAFETY: sixteen bytes, of which eight are read; the load requires no alignment.
                 let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };
                 // SAFETY: sixteen bytes, of which eight are written; the store requires no alignment.
@@ -330,11 +330,24 @@ pub(crate) mod avx2 {
             unsafe { _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
             return;
         }
+        if n <= 32
+            && let Some(row) = pixels.get_mut(at..at + 32)
+        {
+            let bytes = Block::new(shade, step).bytes();
+            // SAFETY: 32 of 64 bytes; the load requires no alignment.
+            let stays = unsafe { _mm256_loadu_si256(stays.cast()) };
+            // SAFETY: 32 bytes; the load requires no alignment.
+            let before = unsafe { _mm256_loadu_si256(row.as_ptr().cast()) };
+            // SAFETY: 32 bytes; the store requires no alignment.
+            unsafe { _mm256_storeu_si256(row.as_mut_ptr().cast(), _mm256_blendv_epi8(bytes, before, stays)) };
+            return;
+        }
         if let Some(row) = pixels.get_mut(at..at + n) {
-            vectors(row, shade, step);
+            if n > 32 { blocks(row, shade, step) } else { vectors(row, shade, step) }
         }
     }
 
+    /// Even and odd shades of a block of 32 pixels.
     #[derive(Clone, Copy)]
     struct Block {
         even: __m256i,
@@ -342,6 +355,16 @@ pub(crate) mod avx2 {
     }
 
     impl Block {
+        /// The block whose first pixel has `shade`.
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        fn new(shade: u16, step: u16) -> Self {
+            let steps = _mm256_set1_epi16(step as i16);
+            let lanes = _mm256_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+            let even = _mm256_add_epi16(_mm256_mullo_epi16(steps, lanes), _mm256_set1_epi16(shade as i16));
+            Self { even, odd: _mm256_add_epi16(even, steps) }
+        }
+
         #[inline]
         #[target_feature(enable = "avx2")]
         fn raised(self, by: __m256i) -> Self {
@@ -350,11 +373,16 @@ pub(crate) mod avx2 {
 
         #[inline]
         #[target_feature(enable = "avx2")]
-        fn store(self, to: &mut [u8; 32]) {
+        fn bytes(self) -> __m256i {
             let odd_bytes = _mm256_set1_epi16(0xFF00_u16 as i16);
-            let bytes = _mm256_or_si256(_mm256_srli_epi16(self.even, 8), _mm256_and_si256(self.odd, odd_bytes));
+            _mm256_or_si256(_mm256_srli_epi16(self.even, 8), _mm256_and_si256(self.odd, odd_bytes))
+        }
+
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        fn store(self, to: &mut [u8; 32]) {
             // SAFETY: `to` is 32 writable bytes; the store requires no alignment.
-            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), bytes) }
+            unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), self.bytes()) }
         }
     }
 
@@ -364,22 +392,26 @@ pub(crate) mod avx2 {
         if n < 16 {
             return sse2::short(row, shade, step);
         }
-        if n <= 32 {
-            let first = sse2::Block::new(shade, step);
-            let to_last = step.wrapping_mul((n - 16) as u16);
-            let last = first.raised(_mm_set1_epi16(to_last as i16));
-            if let Some(to) = row.first_chunk_mut::<16>() {
-                first.store(to);
-            }
-            if let Some(to) = row.last_chunk_mut::<16>() {
-                last.store(to);
-            }
-            return;
+        if n > 32 {
+            return blocks(row, shade, step);
         }
-        let steps = _mm256_set1_epi16(step as i16);
-        let lanes = _mm256_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-        let even = _mm256_add_epi16(_mm256_mullo_epi16(steps, lanes), _mm256_set1_epi16(shade as i16));
-        let first = Block { even, odd: _mm256_add_epi16(even, steps) };
+        let first = sse2::Block::new(shade, step);
+        let to_last = step.wrapping_mul((n - 16) as u16);
+        let last = first.raised(_mm_set1_epi16(to_last as i16));
+        if let Some(to) = row.first_chunk_mut::<16>() {
+            first.store(to);
+        }
+        if let Some(to) = row.last_chunk_mut::<16>() {
+            last.store(to);
+        }
+    }
+
+    /// Rows of more than 32 pixels.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn blocks(row: &mut [u8], shade: u16, step: u16) {
+        let n = row.len();
+        let first = Block::new(shade, step);
         let to_last = step.wrapping_mul((n - 32) as u16);
         let last = first.raised(_mm256_set1_epi16(to_last as i16));
         if let Some(to) = row.first_chunk_mut::<32>() {
