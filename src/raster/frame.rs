@@ -163,6 +163,14 @@ impl<'a> Frame<'a> {
 
     /// Sets every pixel that it holds to `index`; bytes between the rows are left alone.
     pub fn clear(&mut self, index: u8) {
+        let (width, rows) = (self.width as usize, self.rows.len());
+        if self.pitch == width {
+            // All rows at once. In range, as for `offset_of`.
+            if let Some(pixels) = self.pixels.get_mut(..width * rows) {
+                pixels.fill(index);
+            }
+            return;
+        }
         for y in self.rows() {
             if let Some(row) = self.row_mut(y) {
                 row.fill(index);
