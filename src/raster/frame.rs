@@ -237,6 +237,22 @@ mod tests {
         assert!(Frame::new(&mut bytes, 1, 8, 9).is_ok(), "the last row needs only its pixels");
     }
 
+    /// Neither the bytes between rows are cleared nor those after the last, whether or not rows adjoin.
+    #[test]
+    fn clearing_leaves_all_other_bytes_alone() {
+        for pitch in 7..10 {
+            for rows in [0..6, 0..1, 2..5] {
+                let mut bytes = [1_u8; 9 * 6 + 20];
+                let count = rows.len();
+                Frame::band(&mut bytes, 7, 6, pitch, rows).expect("legal").clear(5);
+                for (at, byte) in bytes.into_iter().enumerate() {
+                    let is_pixel = at % pitch < 7 && at / pitch < count;
+                    assert_eq!(byte, if is_pixel { 5 } else { 1 }, "byte {at} of {count} rows with pitch {pitch}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn bands_hold_each_row_once() {
         let mut bytes = [0_u8; 10 * 7 - 3];
