@@ -15,8 +15,8 @@ const WIDTH: usize = 100;
 
 /// Draw scenes and models as a 386 with a VGA card did
 ///
-/// Frames have 320 x 200 pixels and a palette of 256 colours. `mode13h INPUT` is short for
-/// `mode13h demo INPUT`.
+/// Frames have 320 x 200 pixels and a palette of 256 colours. `mode13h INPUT` is short for `mode13h demo INPUT` and takes
+/// the same options; `mode13h demo --help` explains them all.
 #[derive(Parser)]
 #[command(name = "mode13h", version, args_conflicts_with_subcommands = true)]
 pub(crate) struct Words {
@@ -82,13 +82,8 @@ pub(crate) fn command() -> clap::Command {
         true => arg,
         false => arg.allow_negative_numbers(true),
     };
-    // The program's short help has its commands; the drawing options are in that of the commands.
-    let is_left_out = |arg: clap::Arg| {
-        let has_heading = arg.get_help_heading().is_some();
-        arg.hide_short_help(has_heading)
-    };
-    let command = Words::command().mut_args(takes_negative).mut_args(is_left_out);
-    command
+    Words::command()
+        .mut_args(takes_negative)
         .mut_subcommands(|command| command.mut_args(takes_negative))
         .max_term_width(WIDTH)
         .mut_subcommands(|command| match command.get_name() {
@@ -103,7 +98,13 @@ pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
         return Err(Err(Failure::words(format!("{word}: empty value ({} shows the options)", help()))));
     }
-    let typed = command().try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
+    // The program's help has the commands; how scenes are drawn is in the help of those that draw.
+    let without_drawing = |arg: clap::Arg| {
+        let has_heading = arg.get_help_heading().is_some();
+        arg.hide(has_heading)
+    };
+    let typed =
+        command().mut_args(without_drawing).try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(&error.render().to_string()),
         _ => Err(Failure::words(sentence(&error))),

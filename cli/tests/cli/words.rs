@@ -73,6 +73,20 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
     assert_ne!(help("render", "--help", "80"), help("render", "--help", "100"));
 }
 
+/// The program's own help has the options of `demo` that no other command has, but not those for drawing.
+#[test]
+fn the_help_of_the_program_is_that_of_demo_without_the_drawing() {
+    for option in ["-h", "--help"] {
+        let [program, demo] = ["", "demo"].map(|command| help(command, option, "100"));
+        let (own, drawing) = demo.split_once("\n\nWhat is drawn:\n").expect("a heading");
+        let mut expected = options(own);
+        expected.insert("--version".into());
+        assert_eq!(options(&program), expected, "{option}");
+        assert!(drawing.contains("--zoom") && !program.contains("What is drawn"), "{program}");
+    }
+    assert!(help("", "--help", "100").contains("`mode13h demo --help` explains"));
+}
+
 /// A time that every frame fits in chooses the least error, one that none fits in the greatest; the
 /// greatest error is that of the option.
 #[test]
