@@ -7,7 +7,6 @@ use mode13h_lab::hard_cases::{self, CASES, Case};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::options::Quiet;
 use crate::output;
 
 #[derive(Args)]
@@ -24,15 +23,12 @@ pub(crate) struct Options {
     #[arg(long, requires = "id")]
     force: bool,
     /// Print the list, or what was drawn, as JSON
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    quiet: Quiet,
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { id, out, force, json, quiet } = options;
-    quiet.obey();
+    let Options { id, out, force, json } = options;
     let Some(id) = id else {
         return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
     };

@@ -22,7 +22,6 @@ use mode13h_assets::scene_file::{GOURAUD, in_full};
 
 use crate::failure::Failure;
 use crate::input::{self, Input};
-use crate::output;
 use crate::turntable::{Background, Colors, Turntable};
 pub(crate) use shading::{ShadingOptions, pace};
 
@@ -194,23 +193,6 @@ impl Moment {
     /// Time in seconds of the first of several frames.
     pub(crate) fn of_first(&self) -> f64 {
         self.time.unwrap_or_default()
-    }
-}
-
-/// Whether a command says what it does.
-#[derive(Args, Clone, Copy, Default)]
-pub(crate) struct Quiet {
-    /// Print only warnings and errors
-    #[arg(short, long)]
-    quiet: bool,
-}
-
-impl Quiet {
-    /// Silences the program, if that was asked for.
-    pub(crate) fn obey(self) {
-        if self.quiet {
-            output::be_quiet();
-        }
     }
 }
 

@@ -29,7 +29,7 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Set once by --quiet.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Lets the program print nothing but warnings, errors and what it is run for.
+/// Leaves out progress, remarks and what [`say`] prints; warnings, errors and what the program is run for remain.
 pub(crate) fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
@@ -49,6 +49,13 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
 pub(crate) fn note(line: impl Display) {
     // At once, so that lines of several threads do not mix.
     let _ = io::stderr().write_all(format!("mode13h: {line}\n").as_bytes());
+}
+
+/// Prints a [`note`] that is no warning, unless the program is to be quiet.
+pub(crate) fn remark(line: impl Display) {
+    if !is_quiet() {
+        note(line);
+    }
 }
 
 /// Makes Ctrl-C, and other signals to end, wait for the files that are being written: each is then whole under its

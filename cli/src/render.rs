@@ -25,7 +25,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::host::clock;
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, Quiet, ShadingOptions, finite, number, one_of};
+use crate::options::{Drawing, Moment, ShadingOptions, finite, number, one_of};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
@@ -105,10 +105,8 @@ pub(crate) struct Options {
     #[arg(long)]
     stats: bool,
     /// Print file names, and with --stats the figures, as JSON
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    quiet: Quiet,
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
@@ -142,7 +140,6 @@ fn rate(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    options.quiet.obey();
     let path = options.out();
     let mut out = Out::new(options, &path)?;
     if options.json && film_kind(&path) == Some(Kind::Stream) {

@@ -15,16 +15,13 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::options::Quiet;
 use crate::{output, typo};
 
 #[derive(Args)]
 pub(crate) struct Options {
     /// Print the result as JSON
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    quiet: Quiet,
     /// Seed the random cases of the loops with N
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
@@ -34,7 +31,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME", conflicts_with = "seed")]
     frame: Option<String>,
     /// List the names of the frames without checking them
-    #[arg(long, conflicts_with_all = ["json", "quiet", "seed", "out"])]
+    #[arg(long, conflicts_with_all = ["json", "seed", "out"])]
     list: bool,
     /// Write a picture of the first wrong frame to FILE, which ends in .png
     ///
@@ -43,11 +40,6 @@ pub(crate) struct Options {
     /// [default: verify-NAME.png, if frame NAME is wrong]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-}
-
-pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    options.quiet.obey();
-    check(options)
 }
 
 fn kernels() -> Vec<&'static str> {
@@ -124,7 +116,7 @@ fn draw(kernel: Kernel, frames: &[Built]) -> ByKernel {
     drawn
 }
 
-fn check(options: &Options) -> Result<(), Failure> {
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let prefix = options.frame.as_deref();
     let chosen = chosen(prefix);
     if let Some(name) = prefix.filter(|_| chosen.is_empty()) {
@@ -154,11 +146,10 @@ fn check(options: &Options) -> Result<(), Failure> {
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
         + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
     let picture = picture(options, &chosen, &by_kernel)?;
-    output::say(&if options.json {
-        as_json(options, &loops, &by_kernel, picture.as_deref())
-    } else {
-        as_text(options, &loops, &by_kernel, picture.as_deref())
-    })?;
+    match options.json {
+        true => output::print(&as_json(options, &loops, &by_kernel, picture.as_deref())),
+        false => output::say(&as_text(options, &loops, &by_kernel, picture.as_deref())),
+    }?;
     verdict(failed)
 }
 
@@ -294,7 +285,7 @@ mod tests {
 
     fn options() -> Options {
         let frame = Some("canvas/bands".into());
-        Options { json: false, quiet: Quiet::default(), seed: 13, frame, list: false, out: None }
+        Options { json: false, seed: 13, frame, list: false, out: None }
     }
 
     #[test]

@@ -24,6 +24,12 @@ pub(crate) struct Words {
     command: Option<Command>,
     #[command(flatten)]
     demo: demo::Options,
+    /// Print no progress and no notes
+    ///
+    /// File names and the reports of `cost` and `verify` are left out, too; warnings, errors, JSON, lists, plans and
+    /// explanations are not.
+    #[arg(short, long, global = true, help_heading = None::<&str>)]
+    quiet: bool,
 }
 
 #[derive(Subcommand)]
@@ -112,6 +118,9 @@ pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
 }
 
 pub(crate) fn run(words: &Words) -> Result<(), Failure> {
+    if words.quiet {
+        output::be_quiet();
+    }
     match &words.command {
         None => {
             if let Some(command) = words.demo.more_inputs().iter().find_map(|word| named(word)) {

@@ -17,7 +17,7 @@ use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 use serde::Serialize;
 
 use crate::failure::{Failure, on_one_line};
-use crate::options::{Drawing, Quiet, number, shading_of};
+use crate::options::{Drawing, number, shading_of};
 use crate::turntable::Turntable;
 use crate::{host, input, output};
 
@@ -42,10 +42,8 @@ pub(crate) struct Options {
     #[arg(long, conflicts_with = "json")]
     open: bool,
     /// Print the study as JSON
-    #[arg(long, conflicts_with = "quiet")]
+    #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    quiet: Quiet,
     #[arg(
         long,
         help = "Measure only these shadings [default: all]",
@@ -94,8 +92,7 @@ fn seconds(words: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, force, open, json, quiet, frames, instructions, seconds, counted, drawing, .. } = options;
-    quiet.obey();
+    let Options { input, out, force, open, json, frames, instructions, seconds, counted, drawing, .. } = options;
     let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
     let input = drawing.input(input)?;
@@ -131,9 +128,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
     };
     let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
-    if !output::is_quiet() {
-        output::note(format_args!("comparing {compared} with the reference, then timing for {times}"));
-    }
+    output::remark(format_args!("comparing {compared} with the reference, then timing for {times}"));
     let progress = Progress::new();
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
@@ -155,7 +150,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     // The results are printed whatever became of the files.
     let place = written.as_ref().map_or(String::new(), |directory| format!("\nwritten to {}\n", directory.display()));
-    output::say(&if *json { as_json } else { report::text(&study) + &place })?;
+    match json {
+        true => output::print(&as_json),
+        false => output::say(&(report::text(&study) + &place)),
+    }?;
     result?;
     if let Some(directory) = written.filter(|_| *open) {
         let page = directory.join(files::REPORT);
@@ -205,9 +203,7 @@ impl Progress {
                 // The first frame is done, and on every other processor nearly another.
                 let threads = std::thread::available_parallelism().map_or(1.0, |threads| threads.get() as f64);
                 let seconds = (self.begun.elapsed().as_secs_f64() / (share * threads)).ceil().max(1.0);
-                if !output::is_quiet() {
-                    self.bar.suspend(|| output::note(format_args!("the comparison takes about {seconds} s")));
-                }
+                self.bar.suspend(|| output::remark(format_args!("the comparison takes about {seconds} s")));
             }
             self.bar.set_message(match step {
                 Step::Errors => "comparing frames with the reference",

@@ -428,10 +428,16 @@ impl Demo {
     /// not end the demo.
     fn save(&mut self) {
         let notice = match output::numbered_picture(&self.show.screen) {
-            Ok(path) => format!("saved {}", path.display()),
-            Err(error) => error.to_string(),
+            Ok(path) => {
+                let saved = format!("saved {}", path.display());
+                output::remark(&saved);
+                saved
+            }
+            Err(error) => {
+                output::note(&error);
+                error.to_string()
+            }
         };
-        output::note(&notice);
         self.show.notice = Some((notice, self.show.seconds + SAVED));
     }
 

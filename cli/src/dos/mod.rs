@@ -24,7 +24,7 @@ use self::player::{Film, PIXELS, Player};
 use self::unpack::unpack;
 use crate::failure::Failure;
 use crate::input;
-use crate::options::{Drawing, Quiet, shading_of};
+use crate::options::{Drawing, shading_of};
 use crate::turntable::{Pose, Turntable};
 use crate::{output, read_files};
 
@@ -65,8 +65,6 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME", value_parser = shading_of(SHADINGS))]
     shading: Option<Shading>,
     #[command(flatten)]
-    quiet: Quiet,
-    #[command(flatten)]
     drawing: Drawing,
 }
 
@@ -81,8 +79,7 @@ const SHADINGS: [Shading; 6] = [
 ];
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Options { input, out, force, frames, shading, quiet, drawing } = options;
-    quiet.obey();
+    let Options { input, out, force, frames, shading, drawing } = options;
     let kernel = drawing.kernel()?;
     let name = input::name_of(input);
     let out = output::path_or(out.as_ref(), format!("{}.EXE", short_name(&name)), *force)?;

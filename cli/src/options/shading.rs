@@ -95,7 +95,7 @@ impl ShadingOptions {
         calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock())?;
         let accuracy = pace.accuracy();
         match pace.fits() {
-            true => output::note(format_args!("{accuracy}, the smallest error that fits in {max_time} ms")),
+            true => output::remark(format_args!("{accuracy}, the smallest error that fits in {max_time} ms")),
             false => output::note(format_args!("{accuracy}, which takes more than {max_time} ms")),
         }
         renderer.settings.accuracy = Some(accuracy);

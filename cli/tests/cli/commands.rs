@@ -142,7 +142,6 @@ fn wrong_words_end_with_2() {
         ("render cube --size 4096x4096 --scale 5x6 -o x.gif", "x.gif: "),
         ("render torus --size 64x64 --max-time 9", "cannot be used with"),
         ("cost torus --open --json", "cannot be used with"),
-        ("cost torus --quiet --json", "cannot be used with"),
         ("list", "<WHAT>"),
         ("list colours", "[possible values: shadings, palettes, kernels, scenes]"),
         ("palette", "`mode13h list palettes` shows the built-in ones"),

@@ -303,6 +303,40 @@ fn quiet_commands_say_nothing() {
     folder.fails("render cube -q", 3, "");
 }
 
+/// What a command is run for is printed all the same: text, or JSON.
+#[test]
+fn quiet_commands_print_what_was_asked_for() {
+    let folder = Folder::new();
+    for words in [
+        "list palettes",
+        "plan cube --json",
+        "explain cube --pixel 160,100",
+        "explain cube --row 100 --json",
+        "palette copper",
+        "cases",
+        "cases R5 --force --json",
+        "render cube --force --json",
+        "verify --frame canvas/bands/plain --json",
+        "verify --frame canvas/bands/plain --list",
+        "generate man",
+        "generate completions bash",
+    ] {
+        let loud = folder.printed(words);
+        assert!(!loud.is_empty() && folder.printed(&format!("{words} -q")) == loud, "{words}");
+    }
+    let quiet = folder.run(&format!("{COST} --quiet"));
+    assert_eq!((String::from_utf8_lossy(&quiet.stderr), &quiet.stdout[..1]), ("".into(), &b"{"[..]));
+    let timed = "plan cube --max-time 100000";
+    assert!(folder.said(timed).contains("the smallest error"));
+    assert_eq!(folder.said(&format!("{timed} -q")), "");
+    for command in COMMANDS.into_iter().chain(["", "scenes copy", "generate man"]) {
+        assert!(options(&help(command, "-h", "100")).contains("--quiet"), "{command}");
+    }
+    // The window, where a display is missing.
+    folder.said("demo cube -q");
+    folder.said("cube -q");
+}
+
 /// A scene's moment by the one option, in the window too: without a display a frame of it is saved.
 #[test]
 fn time_is_the_same_for_all_that_draw() {
