@@ -172,6 +172,10 @@ struct Pipeline {
     kernel: Option<Kernel>,
 }
 
+/// The options that say nothing to a program for DOS, which draws by an integer path of its own.
+pub(crate) const IGNORED_BY_DOS: [&str; 7] =
+    ["hidden-surfaces", "mapping", "mipmaps", "no-mipmaps", "arithmetic", "kernel", "vertex-bits"];
+
 /// Which moment of a scene is drawn.
 #[derive(Args, Clone, Default)]
 pub(crate) struct Moment {
@@ -205,22 +209,21 @@ impl Drawing {
         default_kernel()
     }
 
-    /// The options given that say nothing to a program for DOS, which draws by the integer path of its own.
-    pub(crate) fn ignored_by_dos(&self) -> Vec<&'static str> {
+    /// Those of [`IGNORED_BY_DOS`] that were given.
+    pub(crate) fn ignored_by_dos(&self) -> Vec<String> {
         let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, kernel, vertex_bits, .. } =
             &self.pipeline;
-        [
-            ("--hidden-surfaces", hidden_surfaces.is_some()),
-            ("--mapping", mapping.is_some()),
-            ("--mipmaps", *mipmaps),
-            ("--no-mipmaps", *no_mipmaps),
-            ("--arithmetic", *arithmetic == Some(VertexPath::Float)),
-            ("--kernel", kernel.is_some()),
-            ("--vertex-bits", vertex_bits.is_some()),
-        ]
-        .into_iter()
-        .filter_map(|(name, is_given)| is_given.then_some(name))
-        .collect()
+        let given = [
+            hidden_surfaces.is_some(),
+            mapping.is_some(),
+            *mipmaps,
+            *no_mipmaps,
+            *arithmetic == Some(VertexPath::Float),
+            kernel.is_some(),
+            vertex_bits.is_some(),
+        ];
+        let given = IGNORED_BY_DOS.into_iter().zip(given).filter(|(_, is_given)| *is_given);
+        given.map(|(name, _)| format!("--{name}")).collect()
     }
 
     /// Reads INPUT as was asked for.

@@ -7,6 +7,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_STATUS, Failure};
+use crate::options::IGNORED_BY_DOS;
 use crate::typo::COMMANDS;
 use crate::{cases, cost, demo, dos, explain, generate, list, output, palette, plan, render, scenes, typo, verify};
 
@@ -88,13 +89,20 @@ pub(crate) fn command() -> clap::Command {
         true => arg,
         false => arg.allow_negative_numbers(true),
     };
+    let without_ignored = |arg: clap::Arg| {
+        let is_ignored = arg.get_long().is_some_and(|name| IGNORED_BY_DOS.contains(&name));
+        arg.hide(is_ignored)
+    };
     Words::command()
         .mut_args(takes_negative)
-        .mut_subcommands(|command| command.mut_args(takes_negative))
         .max_term_width(WIDTH)
-        .mut_subcommands(|command| match command.get_name() {
-            "demo" => command.after_long_help(keys_and_status.clone()),
-            _ => command.after_long_help(EXIT_STATUS),
+        .mut_subcommands(|command| {
+            let command = command.mut_args(takes_negative).after_long_help(EXIT_STATUS);
+            match command.get_name() {
+                "demo" => command.after_long_help(keys_and_status.clone()),
+                "dos" => command.mut_args(without_ignored),
+                _ => command,
+            }
         })
         .after_long_help(keys_and_status)
 }

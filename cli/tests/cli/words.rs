@@ -38,9 +38,10 @@ fn help(command: &str, option: &str, columns: &str) -> String {
     printed(folder.program(command).arg(option).env("COLUMNS", columns).output().expect("started"))
 }
 
-/// The options that a help text lists, such as `--shading`.
+/// The options that a help text lists, such as `--shading`. What it says of each stands farther to the right.
 fn options(help: &str) -> BTreeSet<String> {
-    let starts = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let lines = help.lines().filter(|line| line.starts_with("  -") || line.starts_with("      --"));
+    let starts = lines.map(str::trim_start);
     let words = starts.flat_map(|line| line.split_whitespace().take(2).map(|word| word.trim_end_matches(',')));
     let is_option = |word: &&str| word.starts_with("--") && word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
     words.filter(is_option).map(String::from).collect()
@@ -85,6 +86,19 @@ fn the_help_of_the_program_is_that_of_demo_without_the_drawing() {
         assert!(drawing.contains("--zoom") && !program.contains("What is drawn"), "{program}");
     }
     assert!(help("", "--help", "100").contains("`mode13h demo --help` explains"));
+}
+
+/// What a program for DOS ignores is accepted, with a note, but not offered.
+#[test]
+fn the_help_of_dos_leaves_out_what_it_ignores() {
+    let ignored =
+        ["--hidden-surfaces", "--mapping", "--mipmaps", "--no-mipmaps", "--arithmetic", "--kernel", "--vertex-bits"];
+    let ignored = BTreeSet::from(ignored.map(String::from));
+    for option in ["-h", "--help"] {
+        let [dos, render] = ["dos", "render"].map(|command| options(&help(command, option, "100")));
+        assert!(dos.is_disjoint(&ignored) && dos.contains("--dither"), "{option}: {dos:?}");
+        assert!(option == "-h" || render.is_superset(&ignored), "{render:?}");
+    }
 }
 
 /// A time that every frame fits in chooses the least error, one that none fits in the greatest; the
