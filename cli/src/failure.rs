@@ -17,7 +17,7 @@ use mode13h_lab::explain::ExplainError;
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
-  1    A check failed: `verify` found a wrong byte, `cost` a broken promise
+  1    A check failed: `verify` found a wrong byte, `cost` exceeded a promised error
   2    Wrong arguments or wrong input
   3    A file could not be read or written
   130  Interrupted";

@@ -32,9 +32,9 @@ enum What {
         #[arg(value_name = "SHELL")]
         shell: Shell,
     },
-    /// Print the man page, or write it and one for each command
+    /// Print the main man page, or write all pages to a directory
     ///
-    /// Without -o the page of `mode13h` is printed: mode13h generate man | man -l -
+    /// Without -o, prints mode13h's page: mode13h generate man | man -l -
     Man {
         /// Write mode13h.1, mode13h-render.1 and so on to DIR
         #[arg(short, long, value_name = "DIR")]

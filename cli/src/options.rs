@@ -42,7 +42,7 @@ pub(crate) fn default_kernel() -> Result<Kernel, Failure> {
 /// What is drawn, and how, except for the shading. The scene decides what the options leave open, and the library what
 /// the scene does.
 #[derive(Args, Clone)]
-#[command(next_help_heading = "What is drawn")]
+#[command(next_help_heading = "Scene")]
 pub(crate) struct Drawing {
     /// Enlarge by FACTOR
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
@@ -54,7 +54,7 @@ pub(crate) struct Drawing {
     /// [default: the scene's or the model's camera, or one that shows the whole model; TARGET is 0,0,0]
     #[arg(long, value_name = "EYE[:TARGET]", value_parser = camera, allow_hyphen_values = true)]
     camera: Option<(Vec3, Vec3)>,
-    /// Set the axis of a model that points up [default: y; z for a flat sheet facing z]
+    /// Choose which model axis points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_parser = axis(), hide_short_help = true)]
     up: Option<UpAxis>,
     /// Keep a model's edges sharp at DEGREES and above
@@ -100,7 +100,7 @@ pub(crate) struct Drawing {
 
 /// How triangles become bytes.
 #[derive(Args, Clone)]
-#[command(next_help_heading = "How it is drawn")]
+#[command(next_help_heading = "Rendering")]
 struct Pipeline {
     #[arg(
         long,
@@ -179,9 +179,9 @@ pub(crate) const IGNORED_BY_DOS: [&str; 7] =
 /// Which moment of a scene is drawn.
 #[derive(Args, Clone, Default)]
 pub(crate) struct Moment {
-    /// Draw the scene as it is at SECONDS
+    /// Show the scene at time SECONDS
     ///
-    /// Several frames start there. A model turns by 90 degrees a second, or plays its animation.
+    /// The first of several frames is at that time. A model turns by 90 degrees a second, or plays its animation.
     ///
     /// [default: the scene's `picture` for a single frame, otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
@@ -189,6 +189,16 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
+    /// The option's help in a command that shows a single frame.
+    pub(crate) fn of_one_frame(command: clap::Command) -> clap::Command {
+        command.mut_arg("time", |time| {
+            time.long_help(
+                "Show the scene at time SECONDS\n\nA model turns by 90 degrees a second, or plays its animation.\n\n\
+                 [default: the scene's `picture`]",
+            )
+        })
+    }
+
     /// Time in seconds of one frame of a scene.
     pub(crate) fn of_picture(&self, scene: &Scene) -> f64 {
         self.time.unwrap_or(scene.picture)

@@ -40,7 +40,7 @@ pub(crate) struct Options {
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]
     crease: Option<Angle>,
-    /// Convert to FILE, in the format of its extension; .png draws a chart
+    /// Convert to FILE, in the format given by its extension; .png draws a chart
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     out: Option<PathBuf>,
     /// Print the colours as JSON

@@ -65,13 +65,13 @@ pub(crate) struct Options {
     force: bool,
     /// Draw N frames, numbered from 0
     ///
-    /// [default: 1; for an animation one round, which is four seconds or what the scene says]
+    /// [default: 1; for an animation one loop, which is four seconds or what the scene says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
     /// Rotate by DEGREES, spread over all frames
     ///
     /// A single frame is rotated by the whole angle, frame i of N by i/N of it, so 360 loops seamlessly. A scene or model that
-    /// moves by itself goes through one round in 360 degrees; around one that does not, the camera circles.
+    /// moves by itself goes through one loop in 360 degrees; around one that does not, the camera circles.
     ///
     /// [default: 0; for an animation 360]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]

@@ -22,7 +22,7 @@ pub(crate) struct Options {
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// Seed the random cases of the loops with N
+    /// Random seed for the loop checks
     #[arg(long, value_name = "N", default_value_t = 13)]
     seed: u64,
     /// Check only the frame NAME, or all whose names begin with NAME/

@@ -7,7 +7,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_STATUS, Failure};
-use crate::options::IGNORED_BY_DOS;
+use crate::options::{IGNORED_BY_DOS, Moment};
 use crate::typo::COMMANDS;
 use crate::{cases, cost, demo, dos, explain, generate, list, output, palette, plan, render, scenes, typo, verify};
 
@@ -69,9 +69,10 @@ enum Command {
     Cases(cases::Options),
     /// Write a DOS program, or a bootable floppy, that shows a scene
     ///
-    /// The program loops one round of the scene in mode 13h until Esc is pressed. It needs a 386 with 4 MB, HIMEM.SYS and a
-    /// VGA. It computes in integers, so it leaves out the effects that `--arithmetic fixed` leaves out, and palettes do not
-    /// change. Started with /B, it prints frames per second and a hash of its frames, which must equal the one printed here.
+    /// The program repeats one loop of the scene in mode 13h until Esc is pressed. It needs a 386 with 4 MB, HIMEM.SYS and a
+    /// VGA. It computes in integers, so it leaves out the effects that `--arithmetic fixed` leaves out, and the palette is
+    /// not animated. Started with /B, it prints frames per second and a hash of its frames, which must equal the one
+    /// printed here.
     Dos(dos::Options),
     /// Check that this machine draws the right bytes
     ///
@@ -101,6 +102,7 @@ pub(crate) fn command() -> clap::Command {
             match command.get_name() {
                 "demo" => command.after_long_help(keys_and_status.clone()),
                 "dos" => command.mut_args(without_ignored),
+                "plan" | "explain" => Moment::of_one_frame(command),
                 _ => command,
             }
         })

@@ -54,14 +54,14 @@ pub(crate) struct Options {
         hide_possible_values = true,
     )]
     shadings: Vec<Shading>,
-    /// Measure N frames of one round
+    /// Measure N frames of one loop
     ///
-    /// They are evenly spaced. A model turns once; a scene sets the length of its round.
+    /// They are evenly spaced. A model turns once; a scene sets the length of its loop.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 8)]
     frames: u32,
     /// Count instructions as well, with valgrind
     ///
-    /// Valgrind lacks some vector instructions; times are then taken with the kernel that it can run.
+    /// Valgrind lacks some vector instructions; timings then use a kernel that valgrind supports.
     #[arg(long)]
     instructions: bool,
     /// Stop timing after SECONDS

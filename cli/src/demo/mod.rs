@@ -134,7 +134,7 @@ pub(crate) struct Options {
     /// Show INPUT in the terminal instead of a window
     ///
     /// The terminal must support images, as xterm, foot, kitty and others do, even over ssh. Arrows turn, + and - zoom, Space
-    /// stops time; q, Esc or Ctrl-C quits.
+    /// pauses or resumes; q, Esc or Ctrl-C quits.
     #[arg(long, conflicts_with = "max_time")]
     terminal: bool,
     /// Send pictures to the terminal as sixel or kitty
@@ -153,7 +153,7 @@ pub(crate) struct Options {
     to: Option<Protocol>,
     /// Enlarge the frame in the terminal: 2, 5x6, or to a size like 640x480
     ///
-    /// [default: 640x480, or 320x240 if the terminal is too small for that or does not tell its size]
+    /// [default: 640x480, or 320x240 if the terminal is too small for that or does not report its size]
     #[arg(long, value_name = "SCALE", hide_short_help = true, requires = "terminal")]
     scale: Option<Scale>,
     /// Quit after N frames in the terminal
@@ -194,7 +194,7 @@ const STILL_REST: Duration = Duration::from_millis(100);
 const SHORT_REST: Duration = Duration::from_millis(14);
 
 fn long_help_on_inputs() -> String {
-    format!("{}\n\nOf several, the first is shown; press N for the next.", input::long_help())
+    format!("{}\n\nWith several, the first is shown; press N for the next.", input::long_help())
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {

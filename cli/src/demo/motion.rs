@@ -5,7 +5,7 @@ use mode13h::vga::Vga;
 use super::{Failure, Input, Key, Keys, Panel, Row, Show};
 use crate::turntable::Pose;
 
-pub(super) const KEYS: Keys = &[("Space", "Stop time, restart it"), ("arrows, mouse", "Turn"), ("+ -, wheel", "Zoom")];
+pub(super) const KEYS: Keys = &[("Space", "Pause or resume"), ("arrows, mouse", "Turn"), ("+ -, wheel", "Zoom")];
 
 /// The note on a stopped picture.
 pub(super) const STOPPED: &str = "stopped";

@@ -218,7 +218,7 @@ impl Keys {
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Key {
     End,
-    /// Stop time, or start it again.
+    /// Pause or resume.
     Stop,
     /// Turn and tilt, in radians.
     Turn(f64, f64),

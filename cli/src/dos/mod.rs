@@ -58,7 +58,7 @@ pub(crate) struct Options {
     /// Overwrite INPUT.EXE
     #[arg(long)]
     force: bool,
-    /// Draw one round of the scene in N frames
+    /// Render one loop of the scene as N frames
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u16).range(1..=1024))]
     frames: u16,
     /// Shade every face by one of the integer methods

@@ -18,7 +18,7 @@ use crate::output;
 
 /// How faces are shaded. The scene decides what is not said here, and the library what the scene leaves open.
 #[derive(Args, Clone)]
-#[command(next_help_heading = "How faces are shaded")]
+#[command(next_help_heading = "Shading")]
 pub(crate) struct ShadingOptions {
     #[arg(
         long,
@@ -29,7 +29,7 @@ pub(crate) struct ShadingOptions {
         long_help = long_help(),
     )]
     shading: Option<Shading>,
-    /// Shade each face as cheaply as E shades of error allow
+    /// Use the cheapest shading within E shades of error
     ///
     /// A shade is 1/255 of full intensity. Not with --shading.
     #[arg(long, value_name = "E", value_parser = shades, conflicts_with = "shading")]

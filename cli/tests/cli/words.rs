@@ -79,11 +79,11 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
 fn the_help_of_the_program_is_that_of_demo_without_the_drawing() {
     for option in ["-h", "--help"] {
         let [program, demo] = ["", "demo"].map(|command| help(command, option, "100"));
-        let (own, drawing) = demo.split_once("\n\nWhat is drawn:\n").expect("a heading");
+        let (own, drawing) = demo.split_once("\n\nScene:\n").expect("a heading");
         let mut expected = options(own);
         expected.insert("--version".into());
         assert_eq!(options(&program), expected, "{option}");
-        assert!(drawing.contains("--zoom") && !program.contains("What is drawn"), "{program}");
+        assert!(drawing.contains("--zoom") && !program.contains("Scene:"), "{program}");
     }
     assert!(help("", "--help", "100").contains("`mode13h demo --help` explains"));
 }
@@ -168,7 +168,7 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
             assert_eq!(known.contains(&format!("--{key}")), !is_compared, "{command} --{key}");
         }
         let long = help(command, "--help", "100");
-        for heading in ["\nWhat is drawn:\n", "\nHow it is drawn:\n"] {
+        for heading in ["\nScene:\n", "\nRendering:\n"] {
             assert!(long.contains(heading), "{command}: no {heading}");
         }
     }
