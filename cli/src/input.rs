@@ -234,7 +234,7 @@ pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> 
     })
 }
 
-/// A model. If INPUT is neither, `kinds` says what files can be read, and `known` what names there are.
+/// Loads INPUT as a model; otherwise says which files and names exist.
 fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
     if let Some(stream) = stream(words)?.filter(|stream| !stream.is_scene) {
         return model_of(stream, options);

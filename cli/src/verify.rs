@@ -71,7 +71,7 @@ impl std::fmt::Display for Wrong {
 struct ByKernel {
     kernel: Kernel,
     count: usize,
-    /// The hash over those of all frames.
+    /// Hash of all frame hashes.
     hash: u64,
     wrong: Vec<Wrong>,
 }

@@ -152,7 +152,7 @@ impl Map {
         Some(found.sides.get(side)?.figures)
     }
 
-    /// State of the map: when its picture was shown, and how much of that is known, in words.
+    /// Describes the map's progress.
     fn state(&self, number: u64, seconds: f64) -> String {
         let Some(Measured { snapshot, found }) = &self.last else { return "computing".into() };
         let refined = found.as_ref().map_or(1.0, |found| found.refined);

@@ -33,7 +33,7 @@ pub(super) struct Sending {
 }
 
 impl Sending {
-    /// Fails if nothing could end it.
+    /// Fails if there would be no way to quit.
     pub(super) fn check(&self, inputs: &[impl AsRef<OsStr>]) -> Result<(), Failure> {
         if inputs.len() > 1 {
             return Err(Failure::words("--terminal shows one INPUT, not several"));

@@ -1,6 +1,6 @@
 //! `mode13h dos`: a scene as a program for DOS, which draws it in the mode 13h of a real VGA.
 //!
-//! The program is a DOS header, a 16-bit stub, a flat image of the engine for a 386, and a film: one round of the scene
+//! The program is a DOS header, a 16-bit stub, a flat image of the engine for a 386, and a film: one loop of the scene
 //! in 16.16 ([`player`]), packed ([`unpack`]). Stub and image are included as bytes, so no assembler is needed here;
 //! their source is in `machines/dos`, whose `build` rebuilds the bytes.
 
@@ -133,7 +133,7 @@ fn short_name(name: &str) -> String {
     if short.is_empty() { "SCENE".into() } else { short }
 }
 
-/// One round of a scene as a film, and the largest number of vertices in a mesh.
+/// One loop of a scene as a film, and the largest number of vertices in a mesh.
 fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Result<(Vec<u8>, usize), Failure> {
     let mut writer = film::Writer::new();
     for number in 0..frames {
@@ -146,7 +146,7 @@ fn film_of(stage: &mut Turntable, renderer: &mut Renderer, frames: u16) -> Resul
     Ok((writer.finish(palette).map_err(Failure::words)?, vertices))
 }
 
-/// Moves a scene to a frame of its round. A film cannot draw in painter's order, so it uses a depth buffer instead.
+/// Moves a scene to a frame of its loop. A film cannot draw in painter's order, so it uses a depth buffer instead.
 fn show(stage: &mut Turntable, renderer: &mut Renderer, number: u16, frames: u16) {
     let (seconds, pose) = stage.turned(0.0, 360.0 * f64::from(number) / f64::from(frames));
     stage.show(seconds, pose);

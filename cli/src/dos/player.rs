@@ -1,5 +1,5 @@
-//! A film of projected scenes: one round of a scene in 16.16, drawn without a float and without a standard library. The
-//! program for DOS includes this file, and the tests here compare its frames with the renderer's.
+//! One loop of a projected scene in 16.16, without floats or std. The program for DOS includes this file, and the tests
+//! here compare its frames with the renderer's.
 //!
 //! The file is little-endian. Numbers are `u32` unless noted; slices of 16 bits are padded to four bytes.
 //!
