@@ -189,16 +189,13 @@ fn wrong_words_end_with_2() {
 
 #[test]
 fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
-    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 8);
+    let mut tried = Tried::new("f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind", 5);
     let folder = Folder::new();
     fs::create_dir(folder.path("x.png")).expect("made");
     for (words, says) in [
-        ("render torus -o none/x.png", "none/x.png: the directory none does not exist"),
         ("render torus -o none/%04d.png", "none/0000.png: the directory none does not exist"),
         ("render torus -o x.png", "x.png: is a directory"),
         ("render torus -o none/%d.png --frames 9", "none does not exist"),
-        ("render torus -o none/x.gif", "none/x.gif: the directory none does not"),
-        ("palette grey -o none/x.pal", "none does not exist"),
     ] {
         folder.fails(words, 3, says);
         tried.add(1);

@@ -159,10 +159,11 @@ fn f2_long_progress_is_shown_on_a_terminal() {
 
 const OLD: &[u8] = b"what stood there before";
 
-/// The commands that write one file, with its name and how many bytes it has at the least.
-const WRITERS: [(&str, &str); 5] = [
+/// The commands that write one file, with its name.
+const WRITERS: [(&str, &str); 6] = [
     ("render torus -o x.png", "x.png"),
     ("render cube -o x.png --rgb --scale 1", "x.png"),
+    ("render torus -o x.gif --frames 9", "x.gif"),
     ("palette bios -o x.pal", "x.pal"),
     ("palette bios -o x.act", "x.act"),
     ("palette bios -o x.png", "x.png"),
