@@ -32,7 +32,7 @@ pub(crate) struct Options {
     /// a turn of the model, the longer its ramp.
     #[arg(long, value_name = "MODEL")]
     from: Option<OsString>,
-    /// Set the axis of the model that points up [default: y; z for a flat sheet facing z]
+    /// Choose which model axis points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_parser = options::axis(), requires = "from", conflicts_with = "palette")]
     up: Option<UpAxis>,
     /// Keep the model's edges sharp at DEGREES and above, if it has no normals
