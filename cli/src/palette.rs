@@ -12,6 +12,7 @@ use mode13h::scene::UpAxis;
 use mode13h_assets::auto_palette::Entries;
 use mode13h_assets::model_file;
 use mode13h_assets::palette_file::Format;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, on_one_line};
@@ -88,20 +89,17 @@ pub(crate) fn summary(builtin: &Builtin) -> String {
 
 fn as_json(name: &str, palette: &Palette, made: &[Made]) -> Value {
     let colors = palette.colors().iter().map(|color| format!("#{:06x}", color));
-    let made = made.iter().map(|made| {
-        let Made { material, what, first, last } = made;
-        json!({ "material": material, "what": what, "first": first, "last": last })
-    });
     json!({
         "schema": output::SCHEMA,
         "name": name,
         "ramps": palette.ramps(),
         "colors": colors.collect::<Vec<_>>(),
-        "materials": made.collect::<Vec<_>>(),
+        "materials": made,
     })
 }
 
 /// Entries that a palette made for a model holds for one of its materials.
+#[derive(Serialize)]
 struct Made {
     material: String,
     what: &'static str,

@@ -1,6 +1,5 @@
 //! Counts of drawing a frame, for programs.
 
-use mode13h::raster::DrawStats;
 use mode13h::render::Stats;
 use serde_json::{Map, Value, json};
 
@@ -8,9 +7,7 @@ use serde_json::{Map, Value, json};
 pub(crate) fn json(number: u32, stats: &Stats) -> Value {
     let shares: Map<String, Value> =
         stats.shares.into_iter().map(|(shading, triangles)| (shading.name().to_string(), triangles.into())).collect();
-    let DrawStats {
-        spans, covered, pixels, tested, textured, mipmapped, dithered, fogged, blended, mixed, lit, ..
-    } = stats.raster;
+    let raster = &stats.raster;
     json!({
         "frame": number,
         "shading": stats.shading.name(),
@@ -29,17 +26,17 @@ pub(crate) fn json(number: u32, stats: &Stats) -> Value {
         "triangles": stats.drawn,
         "triangles_by_shading": shares,
         "raster": {
-            "spans": spans,
-            "covered": covered,
-            "pixels": pixels,
-            "tested": tested,
-            "textured": textured,
-            "mipmapped": mipmapped,
-            "dithered": dithered,
-            "fogged": fogged,
-            "blended": blended,
-            "mixed": mixed,
-            "lit": lit,
+            "spans": raster.spans,
+            "covered": raster.covered,
+            "pixels": raster.pixels,
+            "tested": raster.tested,
+            "textured": raster.textured,
+            "mipmapped": raster.mipmapped,
+            "dithered": raster.dithered,
+            "fogged": raster.fogged,
+            "blended": raster.blended,
+            "mixed": raster.mixed,
+            "lit": raster.lit,
         },
     })
 }
