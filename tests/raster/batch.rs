@@ -3,6 +3,8 @@
 mod against_the_oracle;
 mod shapes;
 
+use std::fmt::Display;
+
 use crate::support::triangles::{triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
@@ -13,7 +15,6 @@ use mode13h::span::Kernel;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
 
-/// Shadings that a batch takes.
 /// An interpolation with exact cover.
 fn interpolation(random: &mut Random) -> Interpolation {
     let interpolated = random.one_of(Interpolation::INTERPOLATED);
@@ -65,6 +66,20 @@ fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)
 /// Draws triangles together.
 fn together<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
     raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
+}
+
+/// What the portable kernel draws one by one, and `on` returns with its counts; every kernel must draw it together.
+fn drawn_alike<T: PartialEq>(
+    triangles: &[([Vertex; 3], Interpolation)],
+    about: impl Display,
+    on: impl Fn(Kernel, &dyn Fn(&mut Raster<'_>) -> DrawStats) -> (T, DrawStats),
+) -> (T, DrawStats) {
+    let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, triangles));
+    for kernel in Kernel::available() {
+        let batched = on(kernel, &|raster| together(raster, triangles));
+        assert!(batched == expected, "{kernel}, {about}: {:?} and {:?}", batched.1, expected.1);
+    }
+    expected
 }
 
 /// The most triangles in a list, so that some are drawn in two parts.
@@ -130,22 +145,31 @@ struct Place {
     depth: bool,
 }
 
-/// Bytes, depths and counts after drawing with `draw`.
-fn drawn(
-    place: &Place,
-    kernel: Kernel,
-    mut plain: impl FnMut(&mut Raster<'_>) -> DrawStats,
-    mut deep: impl FnMut(&mut Raster<'_, u32>) -> DrawStats,
-) -> (Vec<u8>, Vec<u32>, DrawStats) {
-    let mut bytes = vec![99; place.pitch * (place.band.end - place.band.start) as usize];
-    let mut depths = Vec::new();
-    let frame = Frame::band(&mut bytes, place.width, place.height, place.pitch, place.band.clone()).expect("legal");
-    let mut raster = Raster::new(frame).with_kernel(kernel);
-    if let Some(clip) = place.clip {
-        raster = raster.with_clip(clip);
+impl Place {
+    /// A whole frame without a depth buffer, with `beside` bytes after each row.
+    fn whole(width: i64, height: i64, beside: usize) -> Self {
+        let (width, height, pitch) = (width as u32, height as u32, width as usize + beside);
+        Self { width, height, pitch, clip: None, band: 0..height, depth: false }
     }
-    let drawn = if place.depth { deep(&mut raster.with_cleared_depth(&mut depths)) } else { plain(&mut raster) };
-    (bytes, depths, drawn)
+
+    /// Bytes, depths and counts after drawing with `draw`.
+    fn drawn(&self, kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> DrawStats) -> ((Vec<u8>, Vec<u32>), DrawStats) {
+        let mut bytes = vec![99; self.pitch * (self.band.end - self.band.start) as usize];
+        let mut depths = Vec::new();
+        let frame = Frame::band(&mut bytes, self.width, self.height, self.pitch, self.band.clone()).expect("legal");
+        let mut raster = Raster::new(frame).with_kernel(kernel);
+        if let Some(clip) = self.clip {
+            raster = raster.with_clip(clip);
+        }
+        let drawn = draw(&mut if self.depth { raster.with_cleared_depth(&mut depths) } else { raster });
+        ((bytes, depths), drawn)
+    }
+
+    /// Compares triangles drawn together with the same drawn one by one, and returns the bytes and the counts.
+    fn drawn_alike(&self, triangles: &[([Vertex; 3], Interpolation)], about: impl Display) -> (Vec<u8>, DrawStats) {
+        let ((bytes, _), drawn) = drawn_alike(triangles, about, |kernel, draw| self.drawn(kernel, draw));
+        (bytes, drawn)
+    }
 }
 
 #[test]
@@ -164,29 +188,16 @@ fn batches_draw_what_single_triangles_do() {
         };
         let (clip, band) = (some_rect(width, height), some_rect(1, height - 1));
         let place = Place {
-            width: width as u32,
-            height: height as u32,
-            pitch: width as usize + random.one_of(&[0, 0, 3]),
             clip: (round % 3 == 0).then_some(clip),
             band: if round % 4 == 0 { band.y0..band.y1 + 1 } else { 0..height as u32 },
             depth: round % 2 == 0,
+            ..Place::whole(width, height, random.one_of(&[0, 0, 3]))
         };
         let count = random.within(0, MOST as i64);
         let mut interpolation = interpolations(&mut random);
         let triangles: Vec<([Vertex; 3], Interpolation)> =
             (0..count).map(|_| (any(&mut random, width, height), interpolation(&mut random))).collect();
-        let expected = drawn(
-            &place,
-            Kernel::PORTABLE,
-            |raster| one_by_one(raster, &triangles),
-            |raster| one_by_one(raster, &triangles),
-        );
-        for kernel in Kernel::available() {
-            let batched =
-                drawn(&place, kernel, |raster| together(raster, &triangles), |raster| together(raster, &triangles));
-            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
-        }
-        total += expected.2;
+        total += place.drawn_alike(&triangles, format_args!("round {round}")).1;
     }
     assert!(total.pixels > 100_000, "{total:?}");
 }
@@ -199,14 +210,7 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
     let mut total = DrawStats::default();
     for round in 0..600 {
         let (width, height) = random.one_of(&[(40, 30), (17, 9), (9, 40), (64, 64), (130, 5)]);
-        let place = Place {
-            width: width as u32,
-            height: height as u32,
-            pitch: width as usize + random.one_of(&[0, 0, 7]),
-            clip: None,
-            band: 0..height as u32,
-            depth: round % 3 > 0,
-        };
+        let place = Place { depth: round % 3 > 0, ..Place::whole(width, height, random.one_of(&[0, 0, 7])) };
         // Units across and down.
         let (across, down) =
             random.one_of(&[(200, 200), (300, 200), (700, 260), (700, 700), (1_500, 1_500), (3_000, 3_500)]);
@@ -228,14 +232,7 @@ fn triangles_of_one_size_are_drawn_as_one_by_one() {
             let interpolation = interpolation(&mut random);
             triangles.push((vertices, interpolation));
         }
-        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
-        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
-        for kernel in Kernel::available() {
-            let batched =
-                drawn(&place, kernel, |raster| together(raster, &triangles), |raster| together(raster, &triangles));
-            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
-        }
-        total += expected.2;
+        total += place.drawn_alike(&triangles, format_args!("round {round}")).1;
     }
     assert!(total.tested > 50_000 && total.pixels > 50_000, "{total:?}");
 }
@@ -259,14 +256,8 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
     let mut total = DrawStats::default();
     for round in 0..160 {
         let (width, height) = frames[round % frames.len()];
-        let place = Place {
-            width: width as u32,
-            height: height as u32,
-            pitch: width as usize + random.one_of(&[0, 5]),
-            clip: None,
-            band: 0..height as u32,
-            depth: round / frames.len() % 2 == 0,
-        };
+        let depth = round / frames.len() % 2 == 0;
+        let place = Place { depth, ..Place::whole(width, height, random.one_of(&[0, 5])) };
         let mut triangles = Vec::new();
         for _ in 0..random.within(1, 12) {
             let level = random.one_of(&[None, None, Some(9), Some(10)]);
@@ -274,14 +265,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
             let interpolation = interpolation(&mut random);
             triangles.push((vertices, interpolation));
         }
-        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &triangles);
-        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, one_by_one);
-        for kernel in Kernel::available() {
-            let draw = |raster: &mut Raster<'_>| together(raster, &triangles);
-            let batched = drawn(&place, kernel, draw, draw);
-            assert!(batched == expected, "{kernel}, round {round}: {:?} and {:?}", batched.2, expected.2);
-        }
-        total += expected.2;
+        total += place.drawn_alike(&triangles, format_args!("round {round}")).1;
     }
     assert!(total.pixels > 10_000_000 && total.tested > 10_000_000, "{total:?}");
 }
@@ -291,14 +275,7 @@ fn triangles_as_large_as_the_frame_are_drawn_as_one_by_one() {
 fn r4_large_triangles_of_batches_start_exactly() {
     let mut tried = Tried::new("r4_large_triangles_of_batches_start_exactly", per_kernel(320));
     let mut random = Random::named("exact starts");
-    let place = Place {
-        width: shapes::SIDE as u32,
-        height: shapes::SIDE as u32,
-        pitch: shapes::SIDE as usize,
-        clip: None,
-        band: 0..shapes::SIDE as u32,
-        depth: false,
-    };
+    let place = Place::whole(shapes::SIDE, shapes::SIDE, 0);
     // By the number of squares that a batch divides them into.
     let (mut larger, mut smaller) = (0, 0);
     for _ in 0..320 {
@@ -309,22 +286,17 @@ fn r4_large_triangles_of_batches_start_exactly() {
             (along.iter().max().expect("three") - along.iter().min().expect("three")) / 256
         });
         *if columns * rows > 1 << 18 { &mut larger } else { &mut smaller } += 1;
-        let one_by_one = |raster: &mut Raster<'_>| one_by_one(raster, &[triangle]);
-        let expected = drawn(&place, Kernel::PORTABLE, one_by_one, |_| DrawStats::default());
+        let (bytes, _) = place.drawn_alike(&[triangle], format_args!("{triangle:?}"));
+        tried.add(per_kernel(1));
         // The bytes of the first pixels of rows, from the oracle.
         let points = triangle.0.each_ref().map(oracle::point);
         let shades = oracle::Shades::of_vertices(&triangle.0, interpolation);
         for y in (0..shapes::SIDE as i32).step_by(61) {
             let covers = |x: &i32| oracle::covers(points, oracle::centre(*x, y));
             if let Some(x) = (0..shapes::SIDE as i32).find(covers) {
-                let byte = expected.0[(y * shapes::SIDE as i32 + x) as usize];
+                let byte = bytes[(y * shapes::SIDE as i32 + x) as usize];
                 assert_eq!(byte, shades.byte((x, x), x, y, None), "({x}, {y}) of {triangle:?}");
             }
-        }
-        for kernel in Kernel::available() {
-            let batched = drawn(&place, kernel, |raster| together(raster, &[triangle]), |_| DrawStats::default());
-            assert!(batched == expected, "{kernel}: {:?} and {:?} of {triangle:?}", batched.2, expected.2);
-            tried.add(1);
         }
     }
     assert!(larger > 60 && smaller > 20, "{larger} are larger than what a batch draws, {smaller} are not");
@@ -350,15 +322,11 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
                 let frame = Frame::band(&mut bytes, WIDTH, 16, WIDTH as usize, rows.clone()).expect("legal");
                 let depth = DepthBuffer::new(&mut depths, &other).expect("long enough");
                 let drawn = draw(&mut Raster::new(frame).with_kernel(kernel).with_depth(depth));
-                (bytes, depths, drawn)
+                ((bytes, depths), drawn)
             };
-            let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, &triangles));
-            missed += expected.2.covered - expected.2.tested;
-            written += expected.2.pixels;
-            for kernel in Kernel::available() {
-                let batched = on(kernel, &|raster| together(raster, &triangles));
-                assert!(batched == expected, "{kernel}, {rows:?} and {held:?}: {:?}, {:?}", batched.2, expected.2);
-            }
+            let (_, drawn) = drawn_alike(&triangles, format_args!("{rows:?} and {held:?}"), on);
+            missed += drawn.covered - drawn.tested;
+            written += drawn.pixels;
         }
     }
     assert!(missed > 5_000 && written > 5_000, "{missed} pixels missed, {written} written");
@@ -383,13 +351,12 @@ fn tiny_triangles_together_are_those_one_by_one() {
             let mut bytes = [0; 64 * 32];
             let frame = Frame::new(&mut bytes, 64, 32, 64).expect("legal");
             let drawn = draw(&mut Raster::new(frame).with_kernel(kernel));
-            (drawn, bytes)
+            (bytes, drawn)
         };
         let plain = PixelPipeline { source: ShadeSource::Shaded(Interpolation::Gouraud), ..PixelPipeline::PLAIN };
-        let expected = on(Kernel::PORTABLE, &|raster| one_by_one(raster, &triangles));
-        covered += expected.0.covered;
+        let expected = drawn_alike(&triangles, format_args!("reach {reach}"), on);
+        covered += expected.1.covered;
         for kernel in Kernel::available() {
-            assert!(on(kernel, &|raster| together(raster, &triangles)) == expected, "{kernel}");
             let effects = |raster: &mut Raster<'_>| raster.faces_with_effects(&faces, &plain, &mut EffectBatch::new());
             assert!(on(kernel, &effects) == expected, "{kernel}, with effects");
             // A batch that is refilled leaves out specks when they are added.
