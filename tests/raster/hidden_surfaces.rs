@@ -3,7 +3,6 @@
 
 use crate::support::triangles::{rect, triangle, vertex};
 use crate::support::tried::Tried;
-use mode13h::Angle;
 use mode13h::fixed::U8F8;
 use mode13h::internals::raster::scan_line::Lists;
 use mode13h::raster::{DepthBuffer, DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
@@ -442,40 +441,4 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         assert!(depths.iter().zip(&cells).all(|(is, should)| u128::from(*is) == *should), "{faces:?}");
     }
     assert!(ties > 1000, "{ties}");
-}
-
-/// Depths are cleared only where objects may be seen: what other frames have left must never count.
-#[test]
-fn depths_of_earlier_frames_do_not_count() {
-    use mode13h::glam::Vec3;
-    use mode13h::mesh::shapes;
-    use mode13h::render::Renderer;
-    use mode13h::scene::Object;
-    use mode13h::settings::{HiddenSurfaces, Shading};
-    use mode13h::vga::Vga;
-
-    let mut random = Random::named("depths of earlier frames");
-    let mut scene = crate::support::scenes::framed(shapes::torus(24, 12));
-    let second = scene.add(Object::new(shapes::by_name("cube").expect("listed")));
-    let (mut again, mut machine) = (Renderer::new(), Vga::new());
-    again.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
-    let mut drawn = 0;
-    for round in 0..300 {
-        let mut number = |most: f64| (random.unit() * 2.0 - 1.0) * most;
-        for object in 0..=1 {
-            scene.objects_mut()[object].angles = [number(3.0), number(3.0), number(3.0)].map(Angle::from_radians);
-        }
-        // Also beyond the screen's edges and through the near plane.
-        let far = number(3.0);
-        scene[second].position = Vec3::new(number(4.0) as f32, number(3.0) as f32, far as f32);
-        scene.camera.eye = Vec3::new(number(1.0) as f32, number(1.0) as f32, 3.0 + number(1.5) as f32);
-        again.settings.accuracy = Some(random.one_of(&Shading::ALL).into());
-        let mut fresh = again.with_same_settings();
-        let mut other = Vga::new();
-        let stats = again.draw(&scene, &mut machine).expect("a legal scene");
-        fresh.draw(&scene, &mut other).expect("a legal scene");
-        assert!(machine.pixels() == other.pixels(), "round {round}, {}", again.settings.accuracy.unwrap_or_default());
-        drawn += stats.raster.pixels;
-    }
-    assert!(drawn > 1_000_000, "{drawn}");
 }

@@ -266,59 +266,40 @@ fn ways_are_typed_by_name() {
     assert_eq!(error, "unknown hidden-surface method; there are back-faces, painter, depth-buffer, scan-line");
 }
 
-/// `MODE13H_MODEL=model.obj cargo test --release --test render a_model`: a full turn at 1°.
-#[test]
-fn a_model_of_your_own() {
-    let Ok(path) = std::env::var("MODE13H_MODEL") else {
-        println!("MODE13H_MODEL names no model: none tried");
-        return;
-    };
-    {
-        let mut tried = Tried::new("hidden_a_model_of_your_own", 360);
-        let mut scene = crate::support::scenes::framed(mode13h_assets::model_file::load(&path).expect("a model").mesh);
-        for degrees in 0..360 {
-            scene.objects_mut()[0].angles = [0.2, f64::from(degrees).to_radians(), 0.0].map(Angle::from_radians);
-            assert_eq!(by(&scene, HiddenSurfaces::DepthBuffer), by(&scene, HiddenSurfaces::ScanLine), "{degrees}°");
-            tried.add(1);
-        }
-    }
-}
-
-/// A renderer clears depths in one frame of three: bars that jump about, and shadings and frames that change, give the
-/// bytes of a new renderer.
+/// A renderer clears depths in one frame of three, and only where objects may be seen: bars that jump about, beyond the
+/// screen's edges and through the near plane, an eye that moves, and shadings that change, give the bytes of a new
+/// renderer.
 #[test]
 fn depths_of_earlier_frames_hide_nothing() {
     let mut random = Random::named("depths of earlier frames");
     let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
     let mut scene = bars();
     let usual = scene.camera;
-    for number in 0..240 {
-        let place = [(); 3].map(|()| random.within(-14, 14) as f32);
+    let mut drawn = 0;
+    for number in 0..400 {
+        let mut place = |x, y, z| Vec3::from([x, y, z].map(|most: i64| random.within(-most, most) as f32));
+        scene.camera.eye = usual.eye + place(5, 5, 20);
+        let at = place(14, 14, 14);
         let degrees = random.within(0, 359) as f64;
         for object in scene.objects_mut() {
             // Far away it has lower depths than nearer ones of frames before it.
-            object.position = Vec3::new(place[0], place[1], place[2] * random.one_of(&[1.0, 1.0, 20.0]));
+            object.position = at * Vec3::new(1.0, 1.0, random.one_of(&[1.0, 1.0, 20.0]));
             object.angles = [0.0, degrees.to_radians(), 0.0].map(Angle::from_radians);
         }
-        let shading = match random.within(0, 5) {
-            0 => Some(Shading::GouraudVintage),
-            1 => Some(Shading::Phong),
-            _ => None,
-        };
+        let shading = (random.within(0, 1) == 0).then(|| random.one_of(&Shading::ALL));
         let path = (random.within(0, 7) == 0).then_some(VertexPath::Integer);
         // The bars are among the farthest that there are, as usual, or cut off where depths are greatest.
-        let nearest = random.one_of(&[1e-8, usual.near, usual.eye.z - 4.0]);
+        let nearest = random.one_of(&[1e-8, usual.near, scene.camera.eye.z - 4.0]);
         // 16.16 has no room for the first.
         scene.camera.near = if path.is_some() { nearest.max(usual.near) } else { nearest };
-        let mut fresh = Renderer::new();
-        for renderer in [&mut renderer, &mut fresh] {
-            renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
-            renderer.settings.accuracy = shading.map(Into::into);
-            renderer.settings.vertex_path = path;
-        }
+        renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
+        renderer.settings.accuracy = shading.map(Into::into);
+        renderer.settings.vertex_path = path;
         let mut alone = Vga::new();
-        renderer.draw(&scene, &mut vga).expect("a legal scene");
-        fresh.draw(&scene, &mut alone).expect("a legal scene");
+        let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
+        renderer.with_same_settings().draw(&scene, &mut alone).expect("a legal scene");
         assert!(vga.pixels() == alone.pixels(), "frame {number}, {shading:?}, {path:?}");
+        drawn += stats.raster.pixels;
     }
+    assert!(drawn > 1_000_000, "{drawn}");
 }
