@@ -17,12 +17,43 @@ mod edge;
 mod every;
 #[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
 mod guarded;
+/// Kernels behind the assembly's interface, whose calling convention and type of a length are given: `shim` is number
+/// `I` of those available, and `WRONG` are those listed, each wrong in one respect, with the message it must give.
+macro_rules! kernels {
+    ($abi:literal, $count:ty; $($name:ident => $fault:literal: $($before:literal),* ; $($after:literal),*)*) => {
+        pub(crate) type Count = $count;
+
+        pub(crate) unsafe extern $abi fn shim<const I: usize>(row: *mut u8, count: Count, shade: u16, step: u16) {
+            let kernel = Kernel::available().nth(I).expect("as many kernels as shims are used");
+            // SAFETY: the caller's `row` is valid for `count` bytes.
+            kernel.fill(unsafe { std::slice::from_raw_parts_mut(row, count as usize) }, shade, step);
+        }
+
+        $(#[unsafe(naked)]
+        unsafe extern $abi fn $name(_row: *mut u8, _count: Count, _shade: u16, _step: u16) {
+            sound_loop!($($before,)* ; $($after),*)
+        })*
+
+        pub(crate) const WRONG: &[(entry::Entry, &str)] = &[$(($name, $fault)),*];
+    };
+}
+
 #[cfg(target_arch = "x86_64")]
 #[path = "abi/x86_64.rs"]
 mod machine;
 #[cfg(target_arch = "x86")]
 #[path = "abi/i686.rs"]
 mod machine;
+
+/// What the trampoline reads: four words for the arguments, six for callee-saved registers, as far as there are as many,
+/// and one for all other registers.
+#[repr(C)]
+pub(crate) struct Call {
+    kernel: entry::Entry,
+    arguments: [usize; 4],
+    kept: [usize; 6],
+    rubbish: usize,
+}
 
 /// What the trampoline found after the kernel returned.
 #[repr(C)]
@@ -73,13 +104,32 @@ const DIRECTION_FLAG: usize = 1 << 10;
 const MXCSR_CONTROL: u32 = 0xFFC0;
 const GUARD: usize = 64;
 
+/// Calls `kernel` through the trampoline, with `rubbish` in everything that it must not read.
+fn call(kernel: entry::Entry, row: *mut u8, length: usize, shade: u16, step: u16, rubbish: u64) -> Result<(), String> {
+    let rubbish = rubbish as usize;
+    let count = machine::Count::try_from(length).expect("a short row");
+    let call = Call {
+        kernel,
+        arguments: [
+            row as usize,
+            rubbish << machine::Count::BITS | count as usize,
+            rubbish << 16 | usize::from(shade),
+            rubbish << 16 | usize::from(step),
+        ],
+        kept: std::array::from_fn(kept_value),
+        rubbish,
+    };
+    let mut seen = Seen::default();
+    // SAFETY: `row` is valid for `length` bytes, which is all that a correct kernel writes; the wrong ones here stay
+    // within it, except for the guards beside it. The trampoline preserves its own caller's registers.
+    unsafe { machine::trampoline(&call, &mut seen) };
+    seen.rules()
+}
+
 /// Calls `kernel` for one span through the trampoline, with `rubbish` in everything that it must not read.
 fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u64) -> Result<(), String> {
     let mut canvas = vec![0xA5; length + 2 * GUARD];
-    let mut seen = Seen::default();
-    let row = canvas[GUARD..GUARD + length].as_mut_ptr();
-    machine::call(kernel, row, length, shade, step, rubbish, &mut seen);
-    seen.rules()?;
+    call(kernel, canvas[GUARD..GUARD + length].as_mut_ptr(), length, shade, step, rubbish)?;
     let expected = naive_span(length, shade, step);
     if let Some(k) = (0..length).find(|&k| canvas[GUARD + k] != expected[k]) {
         return Err(format!("pixel {k} is {:#04x}, not {:#04x}", canvas[GUARD + k], expected[k]));
@@ -90,13 +140,11 @@ fn called(kernel: entry::Entry, length: usize, shade: u16, step: u16, rubbish: u
     Ok(())
 }
 
-#[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
 /// Runs `action` through the trampoline, with `rubbish` in everything that it must not read.
+#[cfg(all(target_os = "linux", target_arch = "x86_64", feature = "std"))]
 fn ran(mut action: impl FnMut(), rubbish: u64) -> Result<(), String> {
     let mut action: &mut dyn FnMut() = &mut action;
-    let mut seen = Seen::default();
-    machine::call(machine::run, (&raw mut action).cast(), 1, 0, 0, rubbish, &mut seen);
-    seen.rules()
+    call(machine::run, (&raw mut action).cast(), 1, 0, 0, rubbish)
 }
 
 /// Calls it for many spans.

@@ -1,55 +1,17 @@
 //! The trampoline for 32-bit x86, cdecl, and deliberately wrong kernels.
 
-use super::{Kernel, Seen, entry, kept_value};
+use super::{Call, Kernel, Seen, entry};
 use std::arch::naked_asm;
 
 pub(crate) const LOOP: entry::Entry = entry::mode13h_span_i686;
 /// The loop without its jump.
 pub(crate) const FOUR: [&str; 4] = ["mov [edi],ah", "inc edi", "add ax,bx", "dec cx"];
-/// Four there are; the last two stand for the six of x86-64.
-pub(crate) const KEPT: [&str; 6] = ["ebx", "ebp", "esi", "edi", "nothing", "nothing"];
-
-/// What the trampoline reads.
-#[repr(C)]
-struct Call {
-    kernel: entry::Entry, // 0
-    arguments: [u32; 4],  // 4
-    kept: [usize; 6],     // 20: ebx, ebp, esi, edi
-    rubbish: u32,         // 44: eax, ecx, edx
-}
-
-pub(crate) fn call(
-    kernel: entry::Entry,
-    row: *mut u8,
-    length: usize,
-    shade: u16,
-    step: u16,
-    rubbish: u64,
-    seen: &mut Seen,
-) {
-    let count = u16::try_from(length).expect("a short row");
-    let rubbish = (rubbish >> 16) as u32;
-    let call = Call {
-        kernel,
-        arguments: [
-            row as u32,
-            rubbish << 16 | u32::from(count),
-            rubbish << 16 | u32::from(shade),
-            rubbish << 16 | u32::from(step),
-        ],
-        kept: std::array::from_fn(kept_value),
-        rubbish,
-    };
-    seen.kept = call.kept;
-    // SAFETY: `row` is valid for `length` bytes, which is all that a correct kernel writes; the wrong ones here stay
-    // within it, except for the guards beside it. The trampoline preserves its own caller's registers.
-    unsafe { trampoline(&call, seen) }
-}
+pub(crate) const KEPT: &[&str] = &["ebx", "ebp", "esi", "edi"];
 
 /// Saves what it needs to return in a block at a multiple of 256, found again from whatever the stack pointer is when
 /// the kernel returns; 64 bytes below it are guarded, then come the arguments.
 #[unsafe(naked)]
-unsafe extern "cdecl" fn trampoline(call: &Call, seen: &mut Seen) {
+pub(crate) unsafe extern "cdecl" fn trampoline(call: &Call, seen: &mut Seen) {
     naked_asm!(
         "push ebx",
         "push ebp",
@@ -117,13 +79,6 @@ unsafe extern "cdecl" fn trampoline(call: &Call, seen: &mut Seen) {
     )
 }
 
-/// Kernel number `I` of those available, behind the assembly's interface.
-pub(crate) unsafe extern "cdecl" fn shim<const I: usize>(row: *mut u8, count: u16, shade: u16, step: u16) {
-    let kernel = Kernel::available().nth(I).expect("as many kernels as shims are used");
-    // SAFETY: the caller's `row` is valid for `count` bytes.
-    kernel.fill(unsafe { std::slice::from_raw_parts_mut(row, usize::from(count)) }, shade, step);
-}
-
 /// A sound loop: edi is kept, eax is the row, dx the shade, and the step is read from the stack.
 macro_rules! sound_loop {
     ($($before:literal,)* ; $($after:literal),*) => {
@@ -139,18 +94,8 @@ macro_rules! sound_loop {
     };
 }
 
-macro_rules! wrong {
-    ($($name:ident => $fault:literal: $($before:literal),* ; $($after:literal),*)*) => {
-        $(#[unsafe(naked)]
-        unsafe extern "cdecl" fn $name(_row: *mut u8, _count: u16, _shade: u16, _step: u16) {
-            sound_loop!($($before,)* ; $($after),*)
-        })*
-        /// Each with the message it must give.
-        pub(crate) const WRONG: &[(entry::Entry, &str)] = &[$(($name, $fault)),*];
-    };
-}
-
-wrong! {
+kernels! {
+    "cdecl", u16;
     clobbers_ebx => "ebx is": ; "mov ebx, 1"
     clobbers_ebp => "ebp is": ; "inc ebp"
     clobbers_esi => "esi is": ; "inc esi"

@@ -1,52 +1,17 @@
 //! The trampoline for x86-64, System V convention, and deliberately wrong kernels.
 
-use super::{Kernel, Seen, entry, kept_value};
+use super::{Call, Kernel, Seen, entry};
 use std::arch::naked_asm;
 
 pub(crate) const LOOP: entry::Entry = entry::mode13h_span_x86_64;
 /// The loop without its jump.
 pub(crate) const FOUR: [&str; 4] = ["mov [rdi],ah", "inc rdi", "add ax,bx", "dec ecx"];
-pub(crate) const KEPT: [&str; 6] = ["rbx", "rbp", "r12", "r13", "r14", "r15"];
-
-/// What the trampoline reads.
-#[repr(C)]
-struct Call {
-    kernel: entry::Entry, // 0
-    arguments: [u64; 4],  // 8: rdi, rsi, rdx, rcx
-    kept: [usize; 6],     // 40: rbx, rbp, r12 to r15
-    rubbish: u64,         // 88: rax, r8, r9, r10
-}
-
-pub(crate) fn call(
-    kernel: entry::Entry,
-    row: *mut u8,
-    length: usize,
-    shade: u16,
-    step: u16,
-    rubbish: u64,
-    seen: &mut Seen,
-) {
-    let count = u32::try_from(length).expect("a short row");
-    let call = Call {
-        kernel,
-        arguments: [
-            row as u64,
-            rubbish << 32 | u64::from(count),
-            rubbish << 16 | u64::from(shade),
-            rubbish << 16 | u64::from(step),
-        ],
-        kept: std::array::from_fn(kept_value),
-        rubbish,
-    };
-    // SAFETY: `row` is valid for `length` bytes, which is all that a correct kernel writes; the wrong ones here stay
-    // within it, except for the guards beside it. The trampoline preserves its own caller's registers.
-    unsafe { trampoline(&call, seen) }
-}
+pub(crate) const KEPT: &[&str] = &["rbx", "rbp", "r12", "r13", "r14", "r15"];
 
 /// Saves what it needs to return in a block at a multiple of 256, found again from whatever the stack pointer is when
 /// the kernel returns; 64 bytes below it are guarded.
 #[unsafe(naked)]
-unsafe extern "sysv64" fn trampoline(call: &Call, seen: &mut Seen) {
+pub(crate) unsafe extern "sysv64" fn trampoline(call: &Call, seen: &mut Seen) {
     naked_asm!(
         "push rbx",
         "push rbp",
@@ -121,13 +86,6 @@ unsafe extern "sysv64" fn trampoline(call: &Call, seen: &mut Seen) {
     )
 }
 
-/// Kernel number `I` of those available, behind the assembly's interface.
-pub(crate) unsafe extern "sysv64" fn shim<const I: usize>(row: *mut u8, count: u32, shade: u16, step: u16) {
-    let kernel = Kernel::available().nth(I).expect("as many kernels as shims are used");
-    // SAFETY: the caller's `row` is valid for `count` bytes.
-    kernel.fill(unsafe { std::slice::from_raw_parts_mut(row, count as usize) }, shade, step);
-}
-
 /// Runs any code: `row` is the address of a `&mut dyn FnMut()`, which it calls.
 pub(crate) unsafe extern "sysv64" fn run(row: *mut u8, _count: u32, _shade: u16, _step: u16) {
     // SAFETY: the caller's promise, and nobody else uses it meanwhile.
@@ -150,18 +108,8 @@ macro_rules! sound_loop {
     };
 }
 
-macro_rules! wrong {
-    ($($name:ident => $fault:literal: $($before:literal),* ; $($after:literal),*)*) => {
-        $(#[unsafe(naked)]
-        unsafe extern "sysv64" fn $name(_row: *mut u8, _count: u32, _shade: u16, _step: u16) {
-            sound_loop!($($before,)* ; $($after),*)
-        })*
-        /// Each with the message it must give.
-        pub(crate) const WRONG: &[(entry::Entry, &str)] = &[$(($name, $fault)),*];
-    };
-}
-
-wrong! {
+kernels! {
+    "sysv64", u32;
     clobbers_rbx => "rbx is": ; "mov ebx, 1"
     clobbers_rbp => "rbp is": ; "inc rbp"
     clobbers_r12 => "r12 is": ; "xor r12d, r12d"
