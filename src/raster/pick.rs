@@ -60,6 +60,13 @@ impl Pick {
         Self(self.0 & !Self::INDEX | index as u32)
     }
 
+    /// The pick of another triangle at the same place, seen from the front.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    pub(crate) const fn with_front(self, index: usize) -> Self {
+        Self(self.with_index(index).0 & !Self::BACK)
+    }
+
     /// The visible side: 0 for the front, 1 for the back.
     #[inline(always)]
     pub(crate) const fn side(self) -> usize {

@@ -414,7 +414,7 @@ impl Faces<'_> {
             added.vertex(&vertices[k], &Attributes { lit: curve[k], ..attributes })
         });
         added.triangle(corners, face.index);
-        picker.push_added(look, first, None);
+        picker.push(Look { added: true, ..look }, Pick(pick).with_front(first).0, None);
         shading
     }
 
