@@ -118,18 +118,24 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usi
             continue;
         }
         if let (Some(row), Some(near)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-            let (z, dz) = (depth.z >> 8, depth.dz >> 8);
-            let written = match own {
-                Own::Fixed16(start, step) => fill_nearer_16_16(row, near, [start, step], z, dz),
-                Own::Linear => fill_nearer(row, near, span.paint as u16, (span.paint >> 16) as u16, z, dz),
-            };
-            turned = turned.wrapping_add(written);
+            turned = turned.wrapping_add(one_by_one(row, near, span, depth, own));
         }
     }
     let of_eight = _mm_add_epi32(_mm256_castsi256_si128(of_eight), _mm256_extracti128_si256(of_eight, 1));
     let four = _mm_add_epi32(of_eight, of_four);
     let two = _mm_add_epi32(four, _mm_srli_si128(four, 8));
     turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
+}
+
+/// Fills one span at the very end of the frame. Returns the number of pixels written.
+#[cold]
+#[inline(never)]
+fn one_by_one(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own) -> u32 {
+    let (z, dz) = (depth.z >> 8, depth.dz >> 8);
+    match own {
+        Own::Fixed16(start, step) => fill_nearer_16_16(row, cells, [start, step], z, dz),
+        Own::Linear => fill_nearer(row, cells, span.paint as u16, (span.paint >> 16) as u16, z, dz),
+    }
 }
 
 /// A mask with the first `count` lanes set, at most eight.
@@ -291,17 +297,16 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
     let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
     let mut stayed = _mm256_setzero_si256();
     let (pixels, cells) = (row.as_chunks_mut::<SIXTEEN>().0, cells.as_chunks_mut::<SIXTEEN>().0);
-    let mut turns = pixels.iter_mut().zip(cells);
-    let last = turns.next_back();
-    for (pixels, cells) in turns {
-        let depths = [depths.next(), depths.next()];
+    for (pixels, cells) in pixels.iter_mut().zip(cells) {
+        let left = depths.left;
+        let mut depths = [depths.next(), depths.next()];
+        if left < SIXTEEN {
+            // The last ones.
+            let there = [first_eight(left), first_eight(left.saturating_sub(EIGHT))];
+            depths = [_mm256_and_si256(depths[0], there[0]), _mm256_and_si256(depths[1], there[1])];
+        }
         stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
         shades = _mm256_add_epi16(shades, next_shade);
-    }
-    if let Some((pixels, cells)) = last {
-        let there = [first_eight(depths.left), first_eight(depths.left.saturating_sub(EIGHT))];
-        let depths = [_mm256_and_si256(depths.next(), there[0]), _mm256_and_si256(depths.next(), there[1])];
-        stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
     }
     stayed
 }
