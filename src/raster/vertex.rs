@@ -127,9 +127,7 @@ impl Vertex {
 #[inline]
 pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
     let [a, b, c] = corners;
-    // The first pixel whose centre is at or after a coordinate. At most 2²⁰ and 127: no overflow.
-    let first = |coordinate: I24F8| (coordinate.to_bits() + 127) >> 8;
-    let no_centre = |[a, b, c]: [I24F8; 3]| first(a.min(b).min(c)) == first(a.max(b).max(c));
+    let no_centre = |[a, b, c]: [I24F8; 3]| a.min(b).min(c).first_centre() == a.max(b).max(c).first_centre();
     // Both without a branch, as one for each would be mispredicted twice as often.
     no_centre([a.x(), b.x(), c.x()]) | no_centre([a.y(), b.y(), c.y()])
 }
