@@ -265,12 +265,6 @@ impl I16F16 {
         // Rounds a number 256 times as large to 1/256; the product is exact.
         I24F8::round_from_f64(x * 256.0).map(|units| Self(units.0))
     }
-
-    /// The product, rounded toward minus infinity (`sar`), or `None` if it does not fit.
-    #[must_use]
-    pub fn checked_mul_floor(self, other: Self) -> Option<Self> {
-        i32::try_from((i64::from(self.0) * i64::from(other.0)) >> 16).ok().map(Self)
-    }
 }
 
 #[cfg(test)]
@@ -327,20 +321,6 @@ mod tests {
                 assert_eq!(U8F8::from_eight_intensities(eight, first, entries), expected, "{eight:?}");
             }
         }
-    }
-
-    #[test]
-    fn products_are_rounded_down_or_refused() {
-        const EDGES: [i32; 12] =
-            [i32::MIN, -0xB5_04F4, -65_537, -65_536, -1, 0, 1, 3, 65_535, 65_537, 0xB5_04F3, i32::MAX];
-        let mut fit = 0;
-        for (a, b) in EDGES.into_iter().flat_map(|a| EDGES.map(|b| (a, b))) {
-            let naive = (i128::from(a) * i128::from(b)).div_euclid(65_536);
-            let expected = i32::try_from(naive).ok().map(I16F16);
-            fit += usize::from(expected.is_some());
-            assert_eq!(I16F16(a).checked_mul_floor(I16F16(b)), expected, "{a} · {b}");
-        }
-        assert!((60..130).contains(&fit), "{fit} of 144");
     }
 
     #[test]
