@@ -208,6 +208,7 @@ int m13_mesh_init(m13_mesh *mesh, const void *vertices, uint32_t count, uint32_t
 #define M13_DITHER_NONE 0
 #define M13_DITHER_BAYER 1
 #define M13_DITHER_BLUE_NOISE 2
+#define M13_DITHER_PS1 3
 
 /* How the triangles of a list are drawn. Each pixel passes, as far as pointers are not null:
  *

@@ -438,7 +438,7 @@ unsafe fn draw_by(
         unsafe { read(stats) }?;
     }
     let interpolation = interpolation(&material)?;
-    if material.cull > 2 || material.mapping > 2 || material.dither > 2 || material.keep_depth > 1 {
+    if material.cull > 2 || material.mapping > 2 || material.dither > 3 || material.keep_depth > 1 {
         return Err(Refusal::Value);
     }
     let pointers = [material.texels, material.slope_table, material.fog_table, material.blend_table];

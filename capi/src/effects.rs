@@ -182,7 +182,8 @@ impl Effects<'_> {
         let dither = match material.dither {
             0 => None,
             1 => Some(DitherPattern::Ordered.thresholds()),
-            _ => Some(DitherPattern::BlueNoise.thresholds()),
+            2 => Some(DitherPattern::BlueNoise.thresholds()),
+            _ => Some(DitherPattern::Ps1.thresholds()),
         };
         let keeps_depth = material.keep_depth == 1;
         let pipeline = PixelPipeline { source, channels: None, dither, texture, fog, blend, keeps_depth };

@@ -388,7 +388,7 @@ static void fuzz(m13_context *context, int rounds)
         material.color = below(20) ? below(256) : odd_number(300);
         material.cull = below(20) ? below(3) : odd_number(3);
         material.mapping = below(20) ? below(3) : odd_number(3);
-        material.dither = below(2) ? 0 : below(20) ? below(3) : odd_number(3);
+        material.dither = below(2) ? 0 : below(20) ? below(4) : odd_number(4);
         material.keep_depth = below(3) ? 1 : below(20) ? 0 : odd_number(3);
         material.u_bits = below(20) ? below(9) : odd_number(9);
         material.v_bits = below(20) ? below(9) : odd_number(9);

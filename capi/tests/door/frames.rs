@@ -64,8 +64,8 @@ fn material_of(pipeline: &PixelPipeline<'_>) -> Option<(Material, Vec<u8>)> {
         return None;
     }
     if let Some(dither) = pipeline.dither {
-        let is = |pattern: DitherPattern| core::ptr::eq(pattern.thresholds().row(0), dither.row(0));
-        made.dither = if is(DitherPattern::Ordered) { 1 } else { 2 };
+        let is = |pattern: &DitherPattern| core::ptr::eq(pattern.thresholds().row(0), dither.row(0));
+        made.dither = 1 + DitherPattern::ALL.iter().position(is)? as u32;
     }
     let mut texels = Vec::new();
     if let Some(stage) = pipeline.texture {
