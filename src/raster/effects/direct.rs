@@ -24,6 +24,9 @@ fn is_identity(row: &[u8; 256]) -> bool {
 impl<'a> Direct<'a> {
     /// The direct form of a pipeline whose bytes before fog depend on nothing but an image and a linear shade.
     pub(super) fn of(pipeline: &PixelPipeline<'a>) -> Option<Self> {
+        // Every stage is named, so that a new one cannot be skipped here by oversight.
+        let PixelPipeline { source: _, channels: _, dither: _, texture: _, fog: _, blend: _, keeps_depth: _ } =
+            pipeline;
         // A build for size has no loop for each tint: it stores texels, then looks them up.
         if IS_SMALL || pipeline.channels().is_some() {
             return None;
