@@ -84,7 +84,7 @@ impl<Make: Fn() -> Renderer> EffectCost<'_, Make> {
                 switched.renderer.settings.hidden_surfaces = Some(way);
             }
             Effect::PaletteAnimation => switched.renderer.force(effect, Some(!on)),
-            _ => switched.renderer.force_for(object, effect, Some(!on)),
+            _ => switched.renderer.force_for(self.frames[0].object_ids()[object], effect, Some(!on)),
         }
         let differences = self.rounds(|scene, round| {
             // In turn, so that neither always finds the caches as the other left them.

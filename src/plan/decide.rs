@@ -156,7 +156,7 @@ impl Rules<'_> {
                 plan.set(effect, Decision::off(Reason::NotInIntegers));
                 continue;
             }
-            if let Some(on) = self.inputs.forced.get(Some(self.place), effect)
+            if let Some(on) = self.inputs.forced.get(Some(self.scene.object_ids()[self.place]), effect)
                 && on != decision.on
                 && !(decision.on && effect.keeps_inside())
             {

@@ -40,7 +40,7 @@ pub(crate) use hidden::far_to_near;
 
 use self::stages::Stages;
 use crate::raster::Rect;
-use crate::scene::Scene;
+use crate::scene::{ObjectId, Scene};
 use crate::settings::{HiddenSurfaces, Shading};
 
 /// The decision on an effect.
@@ -128,21 +128,20 @@ impl ObjectPlan {
 /// Manual overrides of effects: `None` leaves an effect to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Overrides {
-    /// With the index of an object; `None` is every object without an override of its own.
-    all: Vec<(Option<usize>, Effect, bool)>,
+    /// `None` is every object without an override of its own.
+    all: Vec<(Option<ObjectId>, Effect, bool)>,
 }
 
 impl Overrides {
-    /// Switches an effect on or off for one object, by its index in the scene, or for every other object; `None` removes
-    /// the override.
-    pub(crate) fn set(&mut self, object: Option<usize>, effect: Effect, on: Option<bool>) {
+    /// Switches an effect on or off for one object, or for every other object; `None` removes the override.
+    pub(crate) fn set(&mut self, object: Option<ObjectId>, effect: Effect, on: Option<bool>) {
         self.all.retain(|(place, of, _)| (*place, *of) != (object, effect));
         self.all.extend(on.map(|on| (object, effect, on)));
     }
 
     /// Returns how an effect is overridden for an object, or for every object without an override of its own.
     #[must_use]
-    pub(crate) fn get(&self, object: Option<usize>, effect: Effect) -> Option<bool> {
+    pub(crate) fn get(&self, object: Option<ObjectId>, effect: Effect) -> Option<bool> {
         let find = |object| self.all.iter().find(|(place, of, _)| (*place, *of) == (object, effect));
         find(object).or_else(|| find(None)).map(|(_, _, on)| *on)
     }

@@ -52,7 +52,7 @@ use crate::plan::{
     self, Change, Effect, FaceCounts, FaceShading, Findings, Inputs, ObjectPlan, Overrides, Plan, decide,
 };
 use crate::raster::{Frame, Interpolation, Vertex};
-use crate::scene::Scene;
+use crate::scene::{ObjectId, Scene};
 use crate::settings::{HiddenSurfaces, Settings, VertexPath};
 use crate::span::Kernel;
 use crate::vga::Vga;
@@ -144,10 +144,10 @@ impl Renderer {
         self.overrides.set(None, effect, on);
     }
 
-    /// Forces an effect on or off for one object, by its index in the scene, overriding the setting
-    /// for all objects. `None` removes the override. Palette animation is on if it is on for any
-    /// object. Otherwise like [`force`](Self::force).
-    pub fn force_for(&mut self, object: usize, effect: Effect, on: Option<bool>) {
+    /// Forces an effect on or off for one object of the scene that is drawn, overriding the setting for all objects.
+    /// `None` removes the override. Palette animation is on if it is on for any object. Otherwise like
+    /// [`force`](Self::force).
+    pub fn force_for(&mut self, object: ObjectId, effect: Effect, on: Option<bool>) {
         self.overrides.set(Some(object), effect, on);
     }
 
@@ -262,7 +262,8 @@ impl Renderer {
 
     /// Draws `scene` into any frame, or into a band of one, with this ratio of pixel width to height.
     ///
-    /// No palette is loaded, as the frame has none: on a machine call [`Scene::load_palette`] before.
+    /// No palette is loaded, as the frame has none. [`Scene::load_palette`] loads the one of the moment into a machine,
+    /// whose [`palette`](Vga::palette) gives its colours, animated or not.
     ///
     /// # Errors
     /// See [`draw`](Self::draw). On error the frame is left unchanged.

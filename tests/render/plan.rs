@@ -339,19 +339,26 @@ fn an_effect_is_switched_for_one_object_or_for_all() {
         let (_, _, renderer) = draw(scene, prepare);
         renderer.plan().objects().iter().map(|plan| plan.is_on(Effect::Fog)).collect()
     };
+    let [_, second, third, ..] = *scene.object_ids() else { panic!("fewer than three objects") };
     assert_eq!(is_on(&|_| ()), [true; 5]);
-    assert_eq!(is_on(&|r| r.force_for(2, Effect::Fog, Some(false))), [true, true, false, true, true]);
+    assert_eq!(is_on(&|r| r.force_for(third, Effect::Fog, Some(false))), [true, true, false, true, true]);
     let one_of_all = |r: &mut Renderer| {
         r.force(Effect::Fog, Some(false));
-        r.force_for(2, Effect::Fog, Some(true));
+        r.force_for(third, Effect::Fog, Some(true));
     };
     assert_eq!(is_on(&one_of_all), [false, false, true, false, false]);
     let taken_back = |r: &mut Renderer| {
         one_of_all(r);
-        r.force_for(2, Effect::Fog, None);
-        r.force_for(1, Effect::Dither, Some(true));
+        r.force_for(third, Effect::Fog, None);
+        r.force_for(second, Effect::Dither, Some(true));
     };
     assert_eq!(is_on(&taken_back), [false; 5]);
+    // The objects behind a removed one have other indices and the same overrides.
+    let mut fewer = scene.clone();
+    fewer.remove(second);
+    let (_, _, renderer) = draw(&fewer, |r| r.force_for(third, Effect::Fog, Some(false)));
+    let on: Vec<bool> = renderer.plan().objects().iter().map(|plan| plan.is_on(Effect::Fog)).collect();
+    assert_eq!(on, [true, false, true, true]);
 }
 
 /// The plan has text for every decision, and the same text every time.
