@@ -11,13 +11,14 @@ use mode13h::settings::Shading;
 use mode13h::vga::Vga;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut scene = Scene::showing(shapes::teapot(8));
+    let mut scene = Scene::new();
+    let teapot = scene.show(shapes::teapot(8));
     let tones = LightResponse::new(|intensity| match intensity {
         ..0.3 => 0.25,
         0.3..0.75 => 0.6,
         _ => 1.0,
     });
-    scene.objects_mut()[0].materials[0].response = Some(tones);
+    scene[teapot].materials[0].response = Some(tones);
     // Light is taken at every pixel; by default it is taken at the vertices, and linear between them.
     scene.settings.accuracy = Some(Shading::Phong.into());
     let mut vga = Vga::new();

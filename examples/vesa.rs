@@ -20,9 +20,9 @@ const HEIGHT: u32 = 480;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let fire = std::array::from_fn(|i| Rgb::from_intensities([i as f32 / 128.0, i as f32 / 255.0, 0.1]));
     let fire = Palette::from_colors(fire);
-    let mut scene = Scene::showing(shapes::teapot(8));
+    let mut scene = Scene::new();
+    let teapot = scene.show(shapes::teapot(8));
     scene.palette = Some(fire.clone());
-    let teapot = scene.object_ids()[0];
     // Five tones, at every pixel; by default light is taken at the vertices, and is linear between them.
     scene[teapot].materials[0].response = Some(LightResponse::new(|intensity| (intensity * 5.0).ceil() / 5.0));
     scene.settings.accuracy = Some(Shading::Phong.into());

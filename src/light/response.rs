@@ -15,8 +15,9 @@ use crate::shared::Shared;
 ///
 /// // A toon shader: three tones.
 /// let toon = LightResponse::new(|intensity| (intensity * 3.0).floor().min(2.0) / 2.0);
-/// let mut scene = Scene::showing(shapes::teapot(8));
-/// scene.objects_mut()[0].materials[0].response = Some(toon);
+/// let mut scene = Scene::new();
+/// let teapot = scene.show(shapes::teapot(8));
+/// scene[teapot].materials[0].response = Some(toon);
 /// // At every pixel; without this at the vertices, and linear between them.
 /// scene.settings.accuracy = Some(Shading::Phong.into());
 /// ```

@@ -50,10 +50,11 @@ const PATIENCE: usize = 128;
 /// use mode13h::vga::Vga;
 /// use std::time::{Duration, Instant};
 ///
-/// let (mut scene, mut renderer, mut vga) = (Scene::showing(shapes::torus(48, 24)), Renderer::new(), Vga::new());
+/// let (mut scene, mut renderer, mut vga) = (Scene::new(), Renderer::new(), Vga::new());
+/// let torus = scene.show(shapes::torus(48, 24));
 /// let mut pace = Pace::new(Duration::from_millis(5));
 /// for _ in 0..40 {
-///     scene.objects_mut()[0].rotate_y(Angle::from_degrees(1.0));
+///     scene[torus].rotate_y(Angle::from_degrees(1.0));
 ///     renderer.settings.accuracy = Some(pace.accuracy());
 ///     let start = Instant::now();
 ///     let stats = renderer.draw(&scene, &mut vga)?;

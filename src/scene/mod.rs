@@ -123,8 +123,16 @@ impl Scene {
         }
     }
 
-    /// Makes a scene that shows a mesh, or an object with its own materials and up axis: centred, filling the picture,
-    /// turning about its centre, lit by one sun from the upper right behind the eye.
+    /// Makes a scene that [shows](Self::show) a mesh or an object.
+    #[must_use]
+    pub fn showing(object: impl Into<Object>) -> Self {
+        let mut scene = Self::new();
+        scene.show(object);
+        scene
+    }
+
+    /// Adds a mesh, or an object with its own materials and up axis, and shows it: centred, filling the picture, turning
+    /// about its centre, lit by one sun from the upper right behind the eye.
     ///
     /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once per
     /// [loop](Self::duration), driven by [`set_time`](Self::set_time). Over the whole turn it fills nine tenths of the
@@ -133,32 +141,29 @@ impl Scene {
     /// ```
     /// use mode13h::mesh::shapes;
     /// use mode13h::scene::Scene;
-    /// let mut scene = Scene::showing(shapes::teapot(8));
-    /// let teapot = scene.object_ids()[0];
+    /// let mut scene = Scene::new();
+    /// let teapot = scene.show(shapes::teapot(8));
     /// scene[teapot].materials[0].specular = 0.5;
     /// scene.set_time(scene.duration / 4.0);
     /// assert_eq!(scene[teapot].angles[1].to_degrees(), 90.0);
     /// ```
-    #[must_use]
-    pub fn showing(object: impl Into<Object>) -> Self {
-        Self::showing_turned(object.into(), |_| [Self::TILT, Angle::default()])
+    pub fn show(&mut self, object: impl Into<Object>) -> ObjectId {
+        self.show_turned(object.into(), |_| [Self::TILT, Angle::default()])
     }
 
-    /// Makes a scene that [shows](Self::showing) an object with other initial angles about x and y.
-    /// `angles` is called with the object once it is centred.
-    #[must_use]
-    pub fn showing_turned(object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> Self {
+    /// [Shows](Self::show) an object with other initial angles about x and y. `angles` is called with the object once it
+    /// is centred.
+    pub fn show_turned(&mut self, object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> ObjectId {
         let mut object = object.centred();
         object.position = Vec3::ZERO;
         let [tilt, turn] = angles(&object);
         object.angles = [tilt, turn, Angle::default()];
-        let mut scene = Self::new();
-        scene.camera = Camera::framing_turn(&object);
+        self.camera = Camera::framing_turn(&object);
         let start = object.angles;
-        let object = scene.add(object);
-        scene.motions.push(Motion::Spin { object, start, turns: [0.0, 1.0 / scene.duration, 0.0] });
-        scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-        scene
+        let object = self.add(object);
+        self.motions.push(Motion::Spin { object, start, turns: [0.0, 1.0 / self.duration, 0.0] });
+        self.add_light(Light::sun([0.4, 0.6, 1.0]));
+        object
     }
 
     /// Sets the colour behind all objects: its nearest entry in the scene's palette, or without one in the card's own.

@@ -75,13 +75,14 @@ impl AutomaticPalette {
 /// use mode13h_assets::auto_palette;
 /// use mode13h::scene::Scene;
 ///
-/// let mut scene = Scene::showing(shapes::torus(48, 24));
-/// scene.objects_mut()[0].materials[0].color = [0.9, 0.5, 0.2];
+/// let mut scene = Scene::new();
+/// let torus = scene.show(shapes::torus(48, 24));
+/// scene[torus].materials[0].color = [0.9, 0.5, 0.2];
 /// let made = auto_palette::of_scene(&scene)?;
 /// let Entries::Ramp { ramp, full_light: 1.0, .. } = made.entries[0][0] else { unreachable!("it is matt") };
 /// made.apply(&mut scene);
 /// assert_eq!(scene.palette, Some(made.palette));
-/// assert_eq!(scene.objects()[0].materials[0].ramp, mode13h::light::RampChoice::Entries(ramp));
+/// assert_eq!(scene[torus].materials[0].ramp, mode13h::light::RampChoice::Entries(ramp));
 /// # Ok::<(), mode13h::render::RenderError>(())
 /// ```
 ///

@@ -54,7 +54,8 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     let turn = Angle::from_degrees(-90.0 * facing[0]);
     expose(&mut object);
     let has_colors = object.has_colors();
-    let mut scene = Scene::showing_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
+    let mut scene = Scene::new();
+    scene.show_turned(object, |object| [framing::tilt(object, Scene::TILT), turn]);
     scene.clear_lights();
     light(&mut scene, Vec3::from_array);
     finish(scene, has_colors)

@@ -11,7 +11,7 @@ use mode13h::palette::{Palette, Ramp, Rgb, builtin};
 use mode13h::plan::Effect;
 use mode13h::raster::{Frame, Interpolation, Vertex};
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
-use mode13h::scene::{Fog, Motion, Moving, Object, PaletteAnimation, Path, Scene, Shared, UpAxis};
+use mode13h::scene::{Fog, Motion, Moving, Object, ObjectId, PaletteAnimation, Path, Scene, Shared, UpAxis};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
 use mode13h::span::Kernel;
@@ -28,7 +28,7 @@ pub(super) struct World {
     pub(super) settings: Settings,
     pub(super) kernel: Kernel,
     /// Effects forced for one object or for all objects, in the order they were forced.
-    pub(super) forced: Vec<(Option<usize>, Effect, Option<bool>)>,
+    pub(super) forced: Vec<(Option<ObjectId>, Effect, Option<bool>)>,
     pub(super) kept: Renderer,
     pub(super) machines: [Box<Vga>; 2],
 }
@@ -90,6 +90,18 @@ pub(super) const CHANGES: &[Change] = &[
         if w.scene.objects().len() < 5 {
             let object = object(r);
             w.scene.add(object);
+        }
+    }),
+    seen("Scene::show", |w, r| {
+        if w.scene.objects().len() < 5 && w.scene.lights().len() < 4 {
+            let object = object(r);
+            w.scene.show(object);
+        }
+    }),
+    seen("Scene::show_turned", |w, r| {
+        if w.scene.objects().len() < 5 && w.scene.lights().len() < 4 {
+            let (object, angles) = (object(r), [r.unit(), r.unit()].map(Angle::from_radians));
+            w.scene.show_turned(object, |_| angles);
         }
     }),
     seen("Scene::add_light", |w, r| {
@@ -403,9 +415,11 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Renderer::force_for", |w, r| {
         let (effect, on) = forced(r);
-        let object = r.within(0, 2) as usize;
-        w.forced.push((Some(object), effect, on));
-        w.kept.force_for(object, effect, on);
+        let object = w.scene.object_ids().get(r.within(0, 2) as usize).copied();
+        if let Some(object) = object {
+            w.forced.push((Some(object), effect, on));
+            w.kept.force_for(object, effect, on);
+        }
     }),
     unseen("Renderer::make_plan", |w, r| {
         let screen = r.one_of(&[Screen::MODE_13H, Screen { width: 200, height: 320, pixel_aspect: (1, 1) }]);
