@@ -12,7 +12,7 @@ use super::key::Key;
 /// The value that minifb reports for one notch. On X11, where the wheel is a button, it counts both press and release.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
 
-/// The mouse buttons that are down.
+/// A mark for each mouse button.
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Buttons {
@@ -22,6 +22,14 @@ pub struct Buttons {
     pub middle: bool,
     /// The right button.
     pub right: bool,
+}
+
+impl Buttons {
+    /// The buttons that are marked here but not in `other`.
+    fn but_not(self, other: Self) -> Self {
+        let Self { left, middle, right } = self;
+        Self { left: left && !other.left, middle: middle && !other.middle, right: right && !other.right }
+    }
 }
 
 /// The user's input since the last frame, and the keys and buttons that are down.
@@ -43,6 +51,10 @@ pub struct Input {
     pub mouse: Option<(f32, f32)>,
     /// The mouse buttons that are down.
     pub buttons: Buttons,
+    /// The mouse buttons that went down since the last frame, and are down still.
+    pub buttons_pressed: Buttons,
+    /// The mouse buttons that went up since the last frame.
+    pub buttons_released: Buttons,
     /// How far the mouse was dragged with the left button since the last frame, in pixels of the picture: to the right
     /// and down.
     pub drag: (f32, f32),
@@ -74,7 +86,20 @@ impl Input {
 
     /// Returns whether the user did anything since `before`, or holds a key or button.
     pub(super) fn differs(&self, before: &Input) -> bool {
-        let Input { pressed, shifted: _, held, released: _, elapsed: _, typed, mouse, buttons, drag, wheel } = self;
+        let Input {
+            pressed,
+            shifted: _,
+            held,
+            released: _,
+            elapsed: _,
+            typed,
+            mouse,
+            buttons,
+            buttons_pressed: _,
+            buttons_released: _,
+            drag,
+            wheel,
+        } = self;
         !(pressed.is_empty() && held.is_empty() && typed.is_empty())
             || (*mouse, *buttons) != (before.mouse, before.buttons)
             || (*drag, *wheel) != ((0.0, 0.0), 0.0)
@@ -102,6 +127,8 @@ struct Pressed {
 pub(super) struct Events {
     queue: Rc<RefCell<Queue>>,
     held: Vec<Key>,
+    /// The mouse buttons that were down at the last call.
+    buttons: Buttons,
     active: bool,
     /// The last position of the mouse with its left button down, in pixels of the frame.
     drawn_from: Option<(f32, f32)>,
@@ -136,13 +163,28 @@ impl Events {
             middle: window.get_mouse_down(MouseButton::Middle),
             right: window.get_mouse_down(MouseButton::Right),
         };
+        let before = mem::replace(&mut self.buttons, buttons);
+        let (buttons_pressed, buttons_released) = (buttons.but_not(before), before.but_not(buttons));
         // Tracked outside the window, too, while the button is still down.
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
         let drag = self.draw(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
         // The window fills in how long the frame took.
         let (held, elapsed) = (self.held.clone(), 0.0);
-        Input { pressed, shifted, held, released, elapsed, typed, mouse, buttons, drag, wheel }
+        Input {
+            pressed,
+            shifted,
+            held,
+            released,
+            elapsed,
+            typed,
+            mouse,
+            buttons,
+            buttons_pressed,
+            buttons_released,
+            drag,
+            wheel,
+        }
     }
 
     /// Applies key events in order and returns the keys that went down. Repeats of a held key do not count.
@@ -225,6 +267,14 @@ mod tests {
         ] {
             assert!(something.differs(&nothing), "{something:?}");
         }
+    }
+
+    #[test]
+    fn buttons_change_one_by_one() {
+        let left = Buttons { left: true, ..Buttons::default() };
+        let both = Buttons { right: true, ..left };
+        assert_eq!(both.but_not(left), Buttons { right: true, ..Buttons::default() });
+        assert_eq!(left.but_not(both), Buttons::default());
     }
 
     #[test]
