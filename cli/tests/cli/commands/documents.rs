@@ -29,7 +29,7 @@ const MORE_DOCUMENTS: [(&str, &str); 13] = [
     ("ARCHITECTURE.md", include_str!("../../../../ARCHITECTURE.md")),
     ("CONTRIBUTING.md", include_str!("../../../../CONTRIBUTING.md")),
     ("docs/decisions.md", include_str!("../../../../docs/decisions.md")),
-    ("docs/sources.md", include_str!("../../../../docs/sources.md")),
+    ("docs/sources.md", SOURCES),
     ("docs/testing.md", include_str!("../../../../docs/testing.md")),
     ("docs/machines.md", include_str!("../../../../docs/machines.md")),
     ("examples/README.md", include_str!("../../../../examples/README.md")),
@@ -43,6 +43,8 @@ const MORE_DOCUMENTS: [(&str, &str); 13] = [
 
 /// It has the table of shadings and the keys of the window.
 const PROGRAM: &str = include_str!("../../../../docs/program.md");
+/// It has a command for everything that the source texts describe.
+const SOURCES: &str = include_str!("../../../../docs/sources.md");
 const SCENES: &str = include_str!("../../../../assets/scenes/README.md");
 
 /// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
@@ -93,6 +95,21 @@ fn commands() -> Vec<(String, BTreeSet<String>)> {
 /// Texts between backticks, outside of blocks of code.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with("    ")).flat_map(|line| line.split('`').skip(1).step_by(2))
+}
+
+#[test]
+fn all_that_the_source_texts_describe_is_seen_by_a_command() {
+    let mut tried = Tried::new("all_that_the_source_texts_describe_is_seen_by_a_command", 26);
+    let table = SOURCES.split("| see it by").nth(1).expect("a table");
+    for row in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
+        let command = row.split('`').nth(1).expect("a command");
+        // Tests of its own run this one, which takes long.
+        if command != "verify" {
+            let output = Folder::new().run(command);
+            assert!(output.status.success(), "{row}: {output:?}");
+        }
+        tried.add(1);
+    }
 }
 
 #[test]
