@@ -12,7 +12,7 @@
 //! | [`span`] | the loop, and its assembly and vector versions, which draw the same bytes | – |
 //! | [`texture`] | 8-bit texels with colours of their own: from pictures, or built in | `alloc` |
 //! | [`raster`] | triangles: exact coverage, shades in range, depth, clip rectangles, bands; textures and other effects | –, effects `alloc` |
-//! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | – |
+//! | [`settings`] | how to draw: shadings, error budgets, hidden-surface methods | `Shading` –, the rest `alloc` |
 //! | [`integer`] | the vertex path in 16.16: transform, light and clipping without a float | – |
 //! | [`mesh`] | vertices, faces, normals; shapes | `alloc` |
 //! | [`light`] | suns and lamps, materials, the intensity at a point | `alloc` |
@@ -53,15 +53,13 @@
 //! fog is an [`Rgb`](palette::Rgb) of three bytes. The colour of a light or a surface is
 //! `[f32; 3]`: red, green and blue, usually 0 to 1. An `Rgb` converts to one with `into`.
 //!
-//! The feature `internals` opens the engine's internals to the lab, the conformance crate, tests
-//! and benchmarks. They may change in any version.
-//!
 //! # Features
 //!
 //! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
 //! `unsafe` code), and `png`. Optional are `window` and `embedded-graphics` (text and shapes on a frame). The crate
-//! `mode13h-assets` reads files. Without any feature, `fixed`, `palette`, `vga`, `span`, `raster`, `settings` and
-//! `integer` remain, which need neither `std` nor an allocator; `alloc` adds the engine.
+//! `mode13h-assets` reads files. Without any feature, `fixed`, `palette`, `vga`, `span`, `raster`, `integer` and the list
+//! of shadings remain, which need neither `std` nor an allocator; `alloc` adds the engine. The feature `internals` opens
+//! the engine's internals to the lab, the conformance crate, tests and benchmarks; they may change in any version.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]

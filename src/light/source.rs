@@ -114,10 +114,10 @@ impl Light {
     /// light.aim([0.3, -1.0, 0.0]);
     /// assert!(matches!(light, Light::Lamp { cone: Some(Cone { direction, .. }), .. } if direction.x == 0.3));
     /// ```
-    pub fn aim(&mut self, at: impl Into<Vec3>) {
+    pub fn aim(&mut self, direction: impl Into<Vec3>) {
         match self {
-            Self::Sun { direction, .. } | Self::Lamp { cone: Some(Cone { direction, .. }), .. } => {
-                *direction = at.into()
+            Self::Sun { direction: of, .. } | Self::Lamp { cone: Some(Cone { direction: of, .. }), .. } => {
+                *of = direction.into()
             }
             Self::Lamp { cone: None, .. } => {}
         }

@@ -56,7 +56,7 @@ impl Interpolation {
         Self::Float,
     ];
 
-    /// The name used in a recorded frame.
+    /// The name, for messages.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -12,16 +12,15 @@
 //! dither and light at every pixel.
 //!
 //! ```
-//! use mode13h::fixed::{I24F8, U8F8};
 //! use mode13h::raster::{Frame, Raster, Interpolation, Vertex};
 //!
 //! let mut bytes = [0_u8; 8 * 4];
 //! let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
-//! let at = |x, y, shade| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 0);
-//! let drawn = raster.triangle(&[at(0, 0, 40)?, at(8, 0, 200)?, at(0, 4, 40)?], Interpolation::default());
+//! let [a, b, c] = [Vertex::at(0.0, 0.0, 40.0), Vertex::at(8.0, 0.0, 200.0), Vertex::at(0.0, 4.0, 40.0)];
+//! let drawn = raster.triangle(&[a, b, c], Interpolation::default());
 //! assert_eq!(drawn.pixels, 16);
 //! assert_eq!(&bytes[..8], &[50, 70, 90, 110, 130, 150, 170, 0]);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), mode13h::raster::RasterError>(())
 //! ```
 
 // The files, in the order in which a triangle passes through them:

@@ -13,7 +13,7 @@ use crate::span::Kernel;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Stats {
-    /// The shading, if no error was accepted.
+    /// The shading; with an error budget, the default one.
     pub shading: Shading,
     /// Accepted error in shades.
     pub max_error: Option<f32>,

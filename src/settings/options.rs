@@ -10,10 +10,9 @@ named! {
     pub enum HiddenSurfaces, "hidden-surface method" {
         /// Back faces are culled, which is enough for a single convex object.
         BackFaces = "back-faces",
-        /// Far to near, each object over those before it. Correct for convex objects that lie one
-        /// behind the other, drawn object by object. On explicit request, it is the painter's
-        /// algorithm by face, sorted by the mean depth of a face's vertices: wrong where faces
-        /// overlap cyclically or intersect.
+        /// Far to near. If the plan chooses it: object by object, right because they are convex and lie one behind
+        /// the other. If you ask for it: all faces, sorted by the mean depth of their vertices, which is wrong where
+        /// faces intersect or overlap cyclically.
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
@@ -114,7 +113,7 @@ impl fmt::Display for Accuracy {
 pub struct Settings {
     /// The accuracy of shades: a shading, or an error budget.
     pub accuracy: Option<Accuracy>,
-    /// The hidden-surface method, correct for the scene or not.
+    /// The hidden-surface method, used even if it draws the scene wrongly.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// The mapping of textures.
     pub mapping: Option<Mapping>,

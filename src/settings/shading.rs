@@ -4,7 +4,7 @@ use crate::names::named;
 use crate::raster::Interpolation;
 
 named! {
-    /// The shading of a face, from cheap to exact.
+    /// The shading of a face, roughly from cheap to exact.
     #[derive(Default)]
     pub enum Shading, "shading" {
         /// One shade for each face.

@@ -1,7 +1,7 @@
 //! A window that shows a [`Vga`] or any other picture, and its user input.
 //!
-//! [`run`] is the whole frame loop of a game; [`Window`] is for programs with their own loop. Without a display, both
-//! return a [`WindowError`] and do not panic.
+//! [`run`] is the whole frame loop of a game in mode 13h; [`Window`] is for programs with their own loop, or with frames
+//! of another size. Without a display, both return a [`WindowError`] and do not panic.
 
 mod area;
 mod canvas;
