@@ -233,7 +233,12 @@ const tests = {
     assert.ok(worst.every((w, i) => !i || w <= worst[i - 1]), `${worst}`);
     const ratio = worst[3] / worst[4];
     assert.ok(ratio > 3 && ratio < 5, `${worst}`);
-    for (let i = 0; i < 144; i++) assert.ok(M.wallLight(i, 30, 60, 40) >= 0 && M.wallLight(i, 30, 60, 40) <= 1);
+    for (let i = 0; i < 144; i++) {
+      for (const spot of [false, true]) assert.ok(M.wallLight(i, 30, 60, 40, spot) >= 0 && M.wallLight(i, 30, 60, 40, spot) <= 1);
+    }
+    // A spot light: full light on its axis, less on its soft edge, and beyond it only what is everywhere.
+    const [inside, edge] = [10, 33].map((off) => M.wallLight(60 + off, 40, 60, 40, true) / M.wallLight(60 + off, 40, 60, 40, false, 52));
+    assert.ok(inside === 1 && edge > .2 && edge < .8 && M.wallLight(105, 40, 60, 40, true) === .07, `${inside} ${edge}`);
   },
 
   "no true error is above its bound"() {

@@ -3,14 +3,22 @@ import * as M from "./00-shared.js";
 
 const [WIDTH, HEIGHT] = [144, 90];
 
+// A spot light that shines straight at the wall: full light up to 25 degrees from its axis, none from 40 degrees on, and
+// between the two the engine's soft edge. Given the cosine of the angle.
+const [INNER, OUTER] = [25, 40].map((degrees) => Math.cos(degrees * Math.PI / 180));
+function cone(cosine) {
+  const x = M.clamp(1 - (INNER - cosine) / (INNER - OUTER), 0, 1);
+  return x * x * (3 - 2 * x);
+}
+
 // Light, 0 to 1, at a point of the wall (pixels) from a lamp at (lx, ly), `near` pixels before it.
 // Body and highlight, with the engine's fall-off; the eye is far in front of the middle.
-export function wallLight(x, y, lx, ly, near = 26) {
+export function wallLight(x, y, lx, ly, isSpot = false, near = isSpot ? 52 : 26) {
   const [dx, dy] = [lx - x, ly - y];
   const d2 = dx * dx + dy * dy + near * near;
   const d = Math.sqrt(d2);
   const range = 110;
-  const fall = d < range ? (1 - d2 / (range * range)) ** 2 : 0;
+  const fall = d < range ? (1 - d2 / (range * range)) ** 2 * (isSpot ? cone(near / d) : 1) : 0;
   const [vx, vy, vz] = [WIDTH / 2 - x, HEIGHT / 2 - y, 220];
   const v = Math.hypot(vx, vy, vz);
   // The reflected ray: the light's direction with the part along the wall turned round.
@@ -19,10 +27,10 @@ export function wallLight(x, y, lx, ly, near = 26) {
 }
 
 // The wall cut into n × n squares of two triangles, lit at their corners: x and y in pixels, and a shade up to 255.
-export function wallTriangles(n, lx, ly) {
+export function wallTriangles(n, lx, ly, isSpot) {
   const at = (i, j) => {
     const [x, y] = [i * WIDTH / n, j * HEIGHT / n];
-    return [x, y, 255 * wallLight(x, y, lx, ly)];
+    return [x, y, 255 * wallLight(x, y, lx, ly, isSpot)];
   };
   const triangles = [];
   for (let j = 0; j < n; j++) {
@@ -35,15 +43,15 @@ export function wallTriangles(n, lx, ly) {
 }
 
 // Their bytes, in the upper left of the engine's frame of 320 columns.
-function wallGouraud(engine, n, lx, ly) {
-  const frame = engine.triangles(Float64Array.from(wallTriangles(n, lx, ly).flat(2)));
+function wallGouraud(engine, n, lx, ly, isSpot) {
+  const frame = engine.triangles(Float64Array.from(wallTriangles(n, lx, ly, isSpot).flat(2)));
   return Uint8Array.from({ length: WIDTH * HEIGHT }, (_, i) => frame[Math.floor(i / WIDTH) * 320 + i % WIDTH]);
 }
 
 // Light at every pixel's centre, not rounded to a byte.
-export function wallExact(lx, ly) {
+export function wallExact(lx, ly, isSpot) {
   return Float64Array.from({ length: WIDTH * HEIGHT }, (_, i) =>
-    255 * wallLight(i % WIDTH + .5, Math.floor(i / WIDTH) + .5, lx, ly));
+    255 * wallLight(i % WIDTH + .5, Math.floor(i / WIDTH) + .5, lx, ly, isSpot));
 }
 
 M.figure("highlights", (stage, engine) => {
@@ -51,7 +59,7 @@ M.figure("highlights", (stage, engine) => {
     M.make("p", "fig-say fig-wait", stage, "The pictures follow when the engine is loaded.");
     return;
   }
-  let [lx, ly, power] = [62, 48, 0];
+  let [lx, ly, power, isSpot] = [62, 48, 0, false];
   const CUTS = [1, 2, 4, 8, 16, 32];
   const pair = M.make("div", "fig-pair", stage);
   let drawn = null;
@@ -90,6 +98,10 @@ M.figure("highlights", (stage, engine) => {
   };
   const say = M.readout(stage);
   const bar = M.controls(stage);
+  M.choice(bar, {
+    label: "The lamp shines", options: [["round", "all round"], ["spot", "as a spot light"]], value: "round",
+    input: (v) => ((isSpot = v === "spot"), show()),
+  });
   M.slider(bar, {
     label: "Cut the wall", min: 0, max: CUTS.length - 1, value: power,
     format: (v) => `${CUTS[v]} × ${CUTS[v]}, ${M.group(2 * CUTS[v] ** 2)} triangles`,
@@ -97,8 +109,8 @@ M.figure("highlights", (stage, engine) => {
   });
   function show() {
     const n = CUTS[power];
-    const exact = wallExact(lx, ly);
-    const gouraud = wallGouraud(engine, n, lx, ly);
+    const exact = wallExact(lx, ly, isSpot);
+    const gouraud = wallGouraud(engine, n, lx, ly, isSpot);
     drawn = [gouraud, Uint8Array.from(exact, (v) => Math.floor(v + .5))];
     let [worst, sum] = [0, 0];
     exact.forEach((v, i) => {
