@@ -144,11 +144,11 @@ impl<const N: usize> Side<N> {
     }
 
     /// The ambient and diffuse light that the surface reflects, and its highlight.
-    fn answer(&self, answer: &Reflectance) -> ([f64; N], [f64; N]) {
+    fn reflected(&self, reflectance: &Reflectance) -> ([f64; N], [f64; N]) {
         let (mut body, mut highlight) = ([0.0; N], [0.0; N]);
         for i in 0..N {
-            body[i] = answer.ambient + answer.diffuse * self.diffuse[i];
-            highlight[i] = answer.specular * self.specular[i];
+            body[i] = reflectance.ambient + reflectance.diffuse * self.diffuse[i];
+            highlight[i] = reflectance.specular * self.specular[i];
         }
         (body, highlight)
     }
@@ -159,12 +159,12 @@ impl Lights<'_> {
     /// out of and for the other: first the suns, then the lamps, each in their order. Without lamps
     /// and highlights, the results are those of [`both_sides`].
     #[inline(never)]
-    pub(crate) fn one_channel(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
+    pub(crate) fn one_channel(&self, reflectance: &Reflectance, position: Vec3, normal: Vec3) -> (f64, f64) {
         let of_sun = |sun: &SunBeam| [f64::from(sun.intensity)];
         let of_lamp = |lamp: &LampBeam| [f64::from(lamp.intensity)];
-        let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = self.sum(reflectance, position, normal, of_sun, of_lamp);
         let of_side = |side: Side<1>| {
-            let ([body], [highlight]) = side.answer(answer);
+            let ([body], [highlight]) = side.reflected(reflectance);
             body + highlight
         };
         (of_side(front), of_side(back))
@@ -172,13 +172,13 @@ impl Lights<'_> {
 
     /// Sums all light on three channels: red, green, blue. Otherwise like [`one_channel`](Self::one_channel).
     #[inline(never)]
-    pub(crate) fn three_channels(&self, answer: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
+    pub(crate) fn three_channels(&self, reflectance: &Reflectance, position: Vec3, normal: Vec3) -> (Wide, Wide) {
         let of_sun = |sun: &SunBeam| three(sun.channels, f64::from);
         let of_lamp = |lamp: &LampBeam| three(lamp.channels, f64::from);
-        let [front, back] = self.sum(answer, position, normal, of_sun, of_lamp);
+        let [front, back] = self.sum(reflectance, position, normal, of_sun, of_lamp);
         let of_side = |side: Side<3>| {
-            let (body, highlight) = side.answer(answer);
-            three([0, 1, 2], |i| body[i] * answer.color[i] + highlight[i] * answer.highlight[i])
+            let (body, highlight) = side.reflected(reflectance);
+            three([0, 1, 2], |i| body[i] * reflectance.color[i] + highlight[i] * reflectance.highlight[i])
         };
         (of_side(front), of_side(back))
     }
@@ -187,16 +187,16 @@ impl Lights<'_> {
     #[inline]
     fn sum<const N: usize>(
         &self,
-        answer: &Reflectance,
+        reflectance: &Reflectance,
         position: Vec3,
         normal: Vec3,
         of_sun: impl Fn(&SunBeam) -> [f64; N],
         of_lamp: impl Fn(&LampBeam) -> [f64; N],
     ) -> [Side<N>; 2] {
-        if answer.shines() {
-            self.sum_by::<N, true>(answer, position, normal, of_sun, of_lamp)
+        if reflectance.shines() {
+            self.sum_by::<N, true>(reflectance, position, normal, of_sun, of_lamp)
         } else {
-            self.sum_by::<N, false>(answer, position, normal, of_sun, of_lamp)
+            self.sum_by::<N, false>(reflectance, position, normal, of_sun, of_lamp)
         }
     }
 
@@ -204,7 +204,7 @@ impl Lights<'_> {
     #[inline]
     fn sum_by<const N: usize, const SHINES: bool>(
         &self,
-        answer: &Reflectance,
+        reflectance: &Reflectance,
         position: Vec3,
         normal: Vec3,
         of_sun: impl Fn(&SunBeam) -> [f64; N],
@@ -216,7 +216,7 @@ impl Lights<'_> {
         // A build that leaves them out (`plan::Effect::is_left_out`) has no lamps.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let to_eye = SHINES.then(|| unit(sub(self.eye, at))).flatten();
-        let shininess = Shininess::new(answer.shininess);
+        let shininess = Shininess::new(reflectance.shininess);
         for sun in self.suns {
             let cosine = f64::from(normal.dot(sun.towards));
             let highlight = highlight(to_eye, wide_normal, widen(sun.towards), cosine, shininess);

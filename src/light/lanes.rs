@@ -85,26 +85,26 @@ impl Lights<'_> {
     /// any length, unless they are `UNIT` normals, which are used unchanged.
     pub(crate) fn front_of_one_channel<const UNIT: bool>(
         &self,
-        answer: &Reflectance,
+        reflectance: &Reflectance,
         points: &Points,
         kernel: Kernel,
     ) -> Wides {
-        let (level, shines) = (kernel.simd_level(), answer.shines());
+        let (level, shines) = (kernel.simd_level(), reflectance.shines());
         let sum = if shines { shiny_one::<UNIT> } else { matt_one::<UNIT> };
-        let [lanes] = sum(level, self, answer, points);
+        let [lanes] = sum(level, self, reflectance, points);
         lanes
     }
 
     /// [`front_of_one_channel`](Self::front_of_one_channel) for three channels: red, green, blue.
     pub(crate) fn front_of_three_channels<const UNIT: bool>(
         &self,
-        answer: &Reflectance,
+        reflectance: &Reflectance,
         points: &Points,
         kernel: Kernel,
     ) -> [Wides; 3] {
-        let (level, shines) = (kernel.simd_level(), answer.shines());
+        let (level, shines) = (kernel.simd_level(), reflectance.shines());
         let sum = if shines { shiny_three::<UNIT> } else { matt_three::<UNIT> };
-        sum(level, self, answer, points)
+        sum(level, self, reflectance, points)
     }
 
     /// Sums the light that falls on the points. Without highlights (`SHINES`), the eye is not used, and nothing is
@@ -113,7 +113,7 @@ impl Lights<'_> {
     fn front<L: F32Lanes8, const N: usize, const SHINES: bool>(
         &self,
         l: L,
-        answer: &Reflectance,
+        reflectance: &Reflectance,
         narrow: &[L::F32; 3],
         points: &Points,
     ) -> Front<L, N> {
@@ -121,7 +121,7 @@ impl Lights<'_> {
         let mut front = Front { diffuse: [zero; N], specular: [zero; N] };
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
-        let shininess = Shininess::new(answer.shininess);
+        let shininess = Shininess::new(reflectance.shininess);
         // Suns without highlights need neither normals in f64 nor positions.
         let (mut normals, mut places) = ([zero; 3], [zero; 3]);
         if SHINES || !lamps.is_empty() {
@@ -174,12 +174,12 @@ impl Lights<'_> {
 fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
     l: L,
     lights: &Lights<'_>,
-    answer: &Reflectance,
+    reflectance: &Reflectance,
     points: &Points,
 ) -> [Wides; N] {
     let normals = normals_of::<L, UNIT>(l, points);
-    let (ambient, diffuse) = (l.splat_f64(answer.ambient), l.splat_f64(answer.diffuse));
-    let front = lights.front::<L, N, SHINES>(l, answer, &normals, points);
+    let (ambient, diffuse) = (l.splat_f64(reflectance.ambient), l.splat_f64(reflectance.diffuse));
+    let front = lights.front::<L, N, SHINES>(l, reflectance, &normals, points);
     let mut lanes = [[0.0; LANES]; N];
     let mut i = 0;
     while i < N {
@@ -187,12 +187,12 @@ fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
         // Without a highlight, zero is added: −0 becomes 0, as it does with one.
         let mut mirrored = l.splat_f64(0.0);
         if SHINES {
-            mirrored = l.mul(l.splat_f64(answer.specular), front.specular[i]);
+            mirrored = l.mul(l.splat_f64(reflectance.specular), front.specular[i]);
         }
         if N == 3 {
-            own = l.mul(own, l.splat_f64(answer.color[i % 3]));
+            own = l.mul(own, l.splat_f64(reflectance.color[i % 3]));
             if SHINES {
-                mirrored = l.mul(mirrored, l.splat_f64(answer.highlight[i % 3]));
+                mirrored = l.mul(mirrored, l.splat_f64(reflectance.highlight[i % 3]));
             }
         }
         l.store_f64(l.add(own, mirrored), &mut lanes[i]);
@@ -207,17 +207,17 @@ macro_rules! sums {
         $(
             compiled_for_each_level! {
                 #[inline(never)]
-                fn $name[const UNIT: bool][UNIT](lights: &Lights<'_>, answer: &Reflectance, points: &Points)
+                fn $name[const UNIT: bool][UNIT](lights: &Lights<'_>, reflectance: &Reflectance, points: &Points)
                     -> [Wides; $channels] = $by;
             }
             #[inline(always)]
             fn $by<L: F32Lanes8, const UNIT: bool>(
                 l: L,
                 lights: &Lights<'_>,
-                answer: &Reflectance,
+                reflectance: &Reflectance,
                 points: &Points,
             ) -> [Wides; $channels] {
-                sum::<L, $channels, UNIT, $shines>(l, lights, answer, points)
+                sum::<L, $channels, UNIT, $shines>(l, lights, reflectance, points)
             }
         )*
     };
@@ -333,7 +333,7 @@ mod tests {
         )
     }
 
-    fn answer() -> impl Strategy<Value = Reflectance> {
+    fn reflectance() -> impl Strategy<Value = Reflectance> {
         let shininess = prop_oneof![(0_u32..200).prop_map(f64::from), 0.0..60.0];
         (prop::array::uniform3(0.0..1.0), prop::bool::ANY, shininess, prop::array::uniform3(0.0..1.0)).prop_map(
             |([ambient, diffuse, specular], is_specular, shininess, color)| Reflectance {
@@ -356,7 +356,7 @@ mod tests {
             suns in prop::collection::vec(sun(), 0..4),
             lamps in prop::collection::vec(lamp(), 0..4),
             eye in vector(),
-            answer in answer(),
+            reflectance in reflectance(),
             kernel in prop::sample::select(Kernel::available().collect::<Vec<_>>()),
         ) {
             let lights = Lights { suns: &suns, lamps: &lamps, eye: eye.map(f64::from) };
@@ -367,8 +367,8 @@ mod tests {
                     points[axis + 3][lane] = position[axis];
                 }
             }
-            let one = lights.front_of_one_channel::<false>(&answer, &points, kernel);
-            let three = lights.front_of_three_channels::<false>(&answer, &points, kernel);
+            let one = lights.front_of_one_channel::<false>(&reflectance, &points, kernel);
+            let three = lights.front_of_three_channels::<false>(&reflectance, &points, kernel);
             let mut unit_points = points;
             for (lane, (normal, _)) in ends.iter().enumerate() {
                 let unit = normals::unit((*normal).into()).unwrap_or(Vec3::ZERO).to_array();
@@ -377,16 +377,16 @@ mod tests {
             let mut turned = unit_points;
             turned[..3].iter_mut().flatten().for_each(|c| *c = -*c);
             let sides = [unit_points, turned].map(|points| {
-                let one = lights.front_of_one_channel::<true>(&answer, &points, kernel);
-                (one, lights.front_of_three_channels::<true>(&answer, &points, kernel))
+                let one = lights.front_of_one_channel::<true>(&reflectance, &points, kernel);
+                (one, lights.front_of_three_channels::<true>(&reflectance, &points, kernel))
             });
             for (lane, (normal, position)) in ends.into_iter().enumerate() {
                 let (normal, position) = (normals::unit(normal.into()).unwrap_or(Vec3::ZERO), Vec3::from(position));
-                let (front, _) = lights.one_channel(&answer, position, normal);
+                let (front, _) = lights.one_channel(&reflectance, position, normal);
                 prop_assert_eq!(one[lane].to_bits(), front.to_bits(), "{} and {}", one[lane], front);
-                let (front, _) = lights.three_channels(&answer, position, normal);
+                let (front, _) = lights.three_channels(&reflectance, position, normal);
                 prop_assert_eq!(three.map(|channel| channel[lane].to_bits()), front.map(f64::to_bits));
-                let (ones, threes) = (lights.one_channel(&answer, position, normal), lights.three_channels(&answer, position, normal));
+                let (ones, threes) = (lights.one_channel(&reflectance, position, normal), lights.three_channels(&reflectance, position, normal));
                 for (side, (one, three)) in sides.iter().zip([(ones.0, threes.0), (ones.1, threes.1)]) {
                     prop_assert_eq!(side.0[lane].to_bits(), one.to_bits(), "{} and {}", side.0[lane], one);
                     prop_assert_eq!(side.1.map(|channel| channel[lane].to_bits()), three.map(f64::to_bits));

@@ -58,7 +58,7 @@ impl Renderer {
             for k in 0..run.picks.picks.len() {
                 let (vertices, interpolation) = run.vertices(k);
                 let face = (!cache.plan.is_integer).then(|| run.face(k));
-                let ramp = face.map(|face| state.paints[usize::from(surfaces[face])].ramp);
+                let ramp = face.map(|face| state.materials[usize::from(surfaces[face])].ramp);
                 let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
                 if !run.look.effects {
                     visit(&plain);

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::columns::VertexColumns;
 use super::geometry::Geometry;
-use super::paint::SurfaceMaterial;
+use super::surface_material::SurfaceMaterial;
 use super::vertex::{light_eight, shade_of_intensities};
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, three};
@@ -48,7 +48,7 @@ pub(super) struct Faces<'a> {
     pub(super) view: &'a ObjectView,
     pub(super) lights: Lights<'a>,
     /// One for each surface of the mesh.
-    pub(super) paints: &'a [SurfaceMaterial],
+    pub(super) materials: &'a [SurfaceMaterial],
     pub(super) columns: &'a VertexColumns,
     /// Where each face is lit, if faces are lit.
     pub(super) points: &'a FacePoints,
@@ -65,17 +65,19 @@ impl<'a> Faces<'a> {
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
         let FacePoints { normals, centres } = self.points;
         let (normal, centre) = (normals[face.index as usize], centres[face.index as usize]);
-        let paint = &self.paints[usize::from(face.surface)];
+        let material = &self.materials[usize::from(face.surface)];
         if self.stages.has_channels() {
-            let (front, back) = self.lights.three_channels(&paint.answer, centre, normal);
-            return three(if face.back_facing { back } else { front }, |channel| paint.respond(paint.shade(channel)));
+            let (front, back) = self.lights.three_channels(&material.reflectance, centre, normal);
+            return three(if face.back_facing { back } else { front }, |channel| {
+                material.respond(material.shade(channel))
+            });
         }
         let (front, back) = if self.stages.lighting == Lighting::All {
-            self.lights.one_channel(&paint.answer, centre, normal)
+            self.lights.one_channel(&material.reflectance, centre, normal)
         } else {
-            both_sides(paint.answer.ambient, paint.answer.diffuse, self.lights.suns, normal)
+            both_sides(material.reflectance.ambient, material.reflectance.diffuse, self.lights.suns, normal)
         };
-        [paint.respond(paint.shade(if face.back_facing { back } else { front })); 3]
+        [material.respond(material.shade(if face.back_facing { back } else { front })); 3]
     }
 
     /// The face of a pick.
@@ -93,7 +95,7 @@ impl<'a> Faces<'a> {
     /// The surface of up to eight picked faces, if they share one.
     #[inline(always)]
     fn surface_of_all(&self, picks: &[u32]) -> Option<u16> {
-        if self.paints.len() == 1 {
+        if self.materials.len() == 1 {
             return Some(0);
         }
         let surfaces = self.geometry.triangle_surfaces;
@@ -131,13 +133,13 @@ impl<'a> Faces<'a> {
 
     /// Stores the shades of up to eight faces of one surface.
     #[inline(always)]
-    fn put(&self, paint: &SurfaceMaterial, shades: [u16; LANES], flat: &mut [[U8F8; 3]]) {
+    fn put(&self, material: &SurfaceMaterial, shades: [u16; LANES], flat: &mut [[U8F8; 3]]) {
         for (lane, flat) in flat.iter_mut().take(LANES).enumerate() {
             *flat = [U8F8::from_bits(shades[lane]); 3];
         }
-        if paint.response.is_some() {
+        if material.response.is_some() {
             for flat in flat {
-                *flat = [paint.respond(flat[0]); 3];
+                *flat = [material.respond(flat[0]); 3];
             }
         }
     }
@@ -166,8 +168,8 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
                 faces.shade_each(eight, flat);
                 continue;
             };
-            let paint = &faces.paints[usize::from(surface)];
-            let shades = light_eight::<S, BOTH>(s, paint, &faces.lights, &normals[k % (CHUNK / LANES)]);
+            let material = &faces.materials[usize::from(surface)];
+            let shades = light_eight::<S, BOTH>(s, material, &faces.lights, &normals[k % (CHUNK / LANES)]);
             let mut fronts = s.low_words(shades);
             if BOTH {
                 let backs = s.low_words(s.shr_i32(shades, 16));
@@ -175,7 +177,7 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
                     fronts[lane] = if Pick(pick).side() == 0 { fronts[lane] } else { backs[lane] };
                 }
             }
-            faces.put(paint, fronts, flat);
+            faces.put(material, fronts, flat);
         }
     }
 }
@@ -212,10 +214,10 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, picks: &[u32], fl
                 faces.shade_each(eight, flat);
                 continue;
             };
-            let paint = &faces.paints[usize::from(surface)];
+            let material = &faces.materials[usize::from(surface)];
             let points = &points[k % (CHUNK / LANES)];
-            let light = faces.lights.front_of_one_channel::<true>(&paint.answer, points, faces.kernel);
-            faces.put(paint, s.low_words(shade_of_intensities(s, paint, s.load_f64(&light))), flat);
+            let light = faces.lights.front_of_one_channel::<true>(&material.reflectance, points, faces.kernel);
+            faces.put(material, s.low_words(shade_of_intensities(s, material, s.load_f64(&light))), flat);
         }
     }
 }
@@ -256,10 +258,17 @@ mod tests {
         prop::array::uniform3(-1.5_f32..1.5).prop_map(Vec3::from)
     }
 
-    fn paint() -> impl Strategy<Value = SurfaceMaterial> {
+    fn material() -> impl Strategy<Value = SurfaceMaterial> {
         let specular = prop_oneof![Just(0.0), 0.0..1.0];
         (0.0..0.5, 0.0..2.0, specular, 0_u8..200).prop_map(|(ambient, diffuse, specular, first)| SurfaceMaterial {
-            answer: Reflectance { ambient, diffuse, specular, shininess: 9.0, color: [1.0; 3], highlight: [1.0; 3] },
+            reflectance: Reflectance {
+                ambient,
+                diffuse,
+                specular,
+                shininess: 9.0,
+                color: [1.0; 3],
+                highlight: [1.0; 3],
+            },
             ramp: Ramp::new(first, 50).expect("a legal ramp"),
             texture_size: None,
             environment_size: None,
@@ -276,7 +285,7 @@ mod tests {
         fn picked_faces_are_lit_as_each_is_alone(
             points in prop::collection::vec((vector(), vector(), any::<bool>()), 1..40),
             picks in prop::collection::vec((any::<usize>(), any::<bool>()), 0..200),
-            paints in prop::array::uniform2(paint()),
+            materials in prop::array::uniform2(material()),
             is_mixed: bool,
             suns in prop::collection::vec((vector(), -0.5_f32..2.0), 0..3),
             lamps in prop::collection::vec((vector(), 0.1_f32..2.0), 0..3),
@@ -315,7 +324,7 @@ mod tests {
                     },
                     view: &view,
                     lights: Lights { suns: &suns, lamps, eye: [0.3, 0.2, 5.0] },
-                    paints: if is_mixed { &paints } else { &paints[..1] },
+                    materials: if is_mixed { &materials } else { &materials[..1] },
                     columns: &columns,
                     points: &face_points,
                     kernel: Kernel::PORTABLE,

@@ -13,7 +13,7 @@
 // | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
 // | `budget` | the error budget: the shading for each triangle |
 // | `hidden_surfaces` | hidden-surface methods: faces in scene order, with depths or without, far to near, or by rows |
-// | `paint`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
+// | `surface_material`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
 // | `integer` | a scene in 16.16 |
 // | `pace` | the least error that fits in a time, independent of the renderer |
 // | `stats` | counts of a frame |
@@ -32,11 +32,11 @@ mod integer;
 pub(crate) mod integer_frame;
 mod object;
 mod pace;
-mod paint;
 mod pick;
 mod pipelines;
 mod pixel_light;
 mod stats;
+mod surface_material;
 mod tables;
 mod tessellate;
 mod vertex;

@@ -8,8 +8,8 @@ use super::budget::Budget;
 use super::columns::VertexColumns;
 use super::faces::{FacePoints, Faces, face_points};
 use super::geometry::Geometry;
-use super::paint::SurfaceMaterial;
 use super::pixel_light::{PixelLight, fill_normal_table};
+use super::surface_material::SurfaceMaterial;
 use super::tessellate::Tessellated;
 use super::vertex;
 use crate::fixed::U8F8;
@@ -143,7 +143,7 @@ struct Inputs<'a> {
     /// True if the geometry is the object's mesh, unsplit.
     is_mesh: bool,
     lights: Lights<'a>,
-    paints: &'a [SurfaceMaterial],
+    materials: &'a [SurfaceMaterial],
     plan: &'a ObjectPlan,
     kernel: Kernel,
 }
@@ -181,7 +181,7 @@ pub(super) struct ObjectState {
     stale: bool,
     /// The plan that the vertices were computed by, without its reasons.
     made_by: Option<Stages>,
-    pub(super) paints: Vec<SurfaceMaterial>,
+    pub(super) materials: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
     /// The index of each of the mesh's vertices' points, for tessellation.
@@ -244,11 +244,11 @@ impl ObjectState {
         (self.made_by, self.stale) = (Some(stages), false);
         self.take_materials_and_lamps(scene, object, plan);
         self.split_faces(object, plan);
-        let Self { source: Some(source), paints, lamps, tessellated, outputs, .. } = self else { return false };
+        let Self { source: Some(source), materials, lamps, tessellated, outputs, .. } = self else { return false };
         let is_mesh = !self.is_tessellated;
         let geometry = drawn_geometry(self.is_tessellated, tessellated, object);
         let lights = source.lights(lamps, plan);
-        let inputs = Inputs { scene, view, source, geometry, is_mesh, lights, paints, plan, kernel };
+        let inputs = Inputs { scene, view, source, geometry, is_mesh, lights, materials, plan, kernel };
         outputs.project(&inputs, stats);
         outputs.light_vertices(&inputs, stats);
         outputs.add_attributes(&inputs);
@@ -260,10 +260,10 @@ impl ObjectState {
 
     /// The scene's current materials, and the lamps that light the object.
     fn take_materials_and_lamps(&mut self, scene: &Scene, object: &Object, plan: &ObjectPlan) {
-        self.paints.clear();
+        self.materials.clear();
         let palette = scene.palette.as_ref();
         let surfaces = object.materials.iter().zip(object.mesh().surfaces());
-        self.paints.extend(surfaces.map(|(material, surface)| match material.misses_ramp(palette) {
+        self.materials.extend(surfaces.map(|(material, surface)| match material.misses_ramp(palette) {
             true => SurfaceMaterial::new(&material.in_own_colors(surface), scene.ambient, palette, plan.stages()),
             false => SurfaceMaterial::new(material, scene.ambient, palette, plan.stages()),
         }));
@@ -284,7 +284,7 @@ impl ObjectState {
         let Some(source) = self.source.as_ref().filter(|_| self.is_tessellated) else { return };
         let points = self.points.get_or_insert_with(|| object.mesh().points());
         let (lights, tolerance) = (source.lights(&self.lamps, plan), source.parameters.tolerance);
-        self.tessellated.split(&mesh_geometry(object), points, &lights, &self.paints, tolerance);
+        self.tessellated.split(&mesh_geometry(object), points, &lights, &self.materials, tolerance);
     }
 
     /// The table of a surface's shades by normal.
@@ -318,7 +318,7 @@ impl ObjectState {
             geometry: self.geometry(object),
             view: &self.source.as_ref()?.parameters.view,
             lights: self.lights(plan),
-            paints: &self.paints,
+            materials: &self.materials,
             columns: &self.outputs.columns,
             points: &self.outputs.face_points,
             kernel,
@@ -335,7 +335,7 @@ impl Outputs {
     /// Projects the vertices to the screen.
     fn project(&mut self, inputs: &Inputs<'_>, stats: &mut Stats) {
         self.forget_texels(inputs);
-        let &Inputs { source, geometry, paints, plan, kernel, .. } = inputs;
+        let &Inputs { source, geometry, materials, plan, kernel, .. } = inputs;
         let (stages, Parameters { view, bits, .. }) = (plan.stages(), &source.parameters);
         let count = geometry.positions.len();
         stats.vertices += count as u64;
@@ -348,7 +348,7 @@ impl Outputs {
         if let Some(bits) = bits {
             vertex::requantize(*bits, &mut self.columns);
         }
-        if paints.iter().all(|paint| !paint.has_effects) {
+        if materials.iter().all(|material| !material.has_effects) {
             return;
         }
         // Those that the plan asks for, even where an effect is forced to run on neutral input.
@@ -371,7 +371,11 @@ impl Outputs {
             && stages.has_texture()
             && !stages.has_environment()
             && inputs.is_mesh
-            && inputs.paints.iter().map(|paint| paint.texture_size).eq(self.of_mesh.texture_sizes.iter().copied());
+            && inputs.materials.iter().map(|material| material.texture_size).eq(self
+                .of_mesh
+                .texture_sizes
+                .iter()
+                .copied());
         if !stay {
             self.columns.texture.clear();
             self.of_mesh.texture_sizes.clear();
@@ -380,14 +384,14 @@ impl Outputs {
 
     /// Computes the vertices' shades, or their channels, if vertices are lit.
     fn light_vertices(&mut self, inputs: &Inputs<'_>, stats: &mut Stats) {
-        let Inputs { geometry, lights, paints, plan, kernel, .. } = inputs;
+        let Inputs { geometry, lights, materials, plan, kernel, .. } = inputs;
         let (columns, stages) = (&mut self.columns, plan.stages());
         // Nobody sees the back of a closed object.
         let sides = (!stages.culls(), *kernel);
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += geometry.positions.len() as u64;
         }
-        let has_response = paints.iter().any(|paint| paint.response.is_some());
+        let has_response = materials.iter().any(|material| material.response.is_some());
         let leaves = stages.lighting != Lighting::None
             && (stages.lit_at != LitAt::Vertices || stages.lighting == Lighting::Channels);
         if leaves && self.has_shades {
@@ -395,29 +399,29 @@ impl Outputs {
         }
         self.has_shades = !leaves || has_response;
         match (stages.lighting, stages.lit_at) {
-            (Lighting::None, _) => vertex::light_none(geometry, paints, columns),
+            (Lighting::None, _) => vertex::light_none(geometry, materials, columns),
             (_, LitAt::Faces | LitAt::Pixels) => {}
-            (Lighting::Suns, _) => vertex::light_suns(geometry, paints, lights, sides, columns),
-            (Lighting::All, _) => vertex::light_all(geometry, paints, lights, sides, columns),
-            (Lighting::Channels, _) => vertex::light_channels(geometry, paints, lights, sides, columns),
+            (Lighting::Suns, _) => vertex::light_suns(geometry, materials, lights, sides, columns),
+            (Lighting::All, _) => vertex::light_all(geometry, materials, lights, sides, columns),
+            (Lighting::Channels, _) => vertex::light_channels(geometry, materials, lights, sides, columns),
         }
         if has_response {
-            vertex::respond(geometry, paints, columns);
+            vertex::respond(geometry, materials, columns);
         }
     }
 
     /// Adds the vertices' attributes for images and fog.
     fn add_attributes(&mut self, inputs: &Inputs<'_>) {
-        let Inputs { scene, source, geometry, paints, plan, .. } = inputs;
+        let Inputs { scene, source, geometry, materials, plan, .. } = inputs;
         let (stages, view) = (plan.stages(), &source.parameters.view);
         if stages.has_texture() && self.of_mesh.texture_sizes.is_empty() {
-            vertex::texture_coordinates(geometry, paints, &mut self.columns.texture);
+            vertex::texture_coordinates(geometry, materials, &mut self.columns.texture);
             if inputs.is_mesh && !stages.has_environment() {
-                self.of_mesh.texture_sizes.extend(paints.iter().map(|paint| paint.texture_size));
+                self.of_mesh.texture_sizes.extend(materials.iter().map(|material| material.texture_size));
             }
         }
         if stages.has_environment() {
-            vertex::environment_coordinates(geometry, view, paints, &mut self.columns.texture);
+            vertex::environment_coordinates(geometry, view, materials, &mut self.columns.texture);
         }
         if let Some(fog) = scene.fog.as_ref().filter(|_| stages.has_fog()) {
             vertex::fog_levels(geometry, view, fog, &mut self.columns.fog);
@@ -438,7 +442,7 @@ impl Outputs {
         let Some(max_error) = inputs.plan.max_error() else { return };
         let is_known = self.of_mesh.has_clusters && inputs.is_mesh;
         let geometry = Some(&inputs.geometry).filter(|_| !is_known);
-        self.budget.renew(max_error, geometry, &inputs.lights, inputs.paints);
+        self.budget.renew(max_error, geometry, &inputs.lights, inputs.materials);
         self.of_mesh.has_clusters = inputs.is_mesh;
     }
 
@@ -456,7 +460,7 @@ impl Outputs {
 
     /// Updates the tables of shades by normal in eye space; they stay valid as the object turns.
     fn tables_of_normals(&mut self, inputs: &Inputs<'_>) {
-        let &Inputs { scene, view, source, paints, kernel, .. } = inputs;
+        let &Inputs { scene, view, source, materials, kernel, .. } = inputs;
         let suns = scene.lights().iter().filter_map(|light| {
             // A lamp counts as a sun at the object's position, since a table knows no positions.
             let (towards, share) = match *light {
@@ -479,18 +483,18 @@ impl Outputs {
             Some(SunBeam { towards, intensity: light.brightness() * share, channels: [0.0; 3] })
         });
         let is_relit = replace_all(&mut self.table_suns, suns);
-        self.normal_tables.truncate(paints.len());
+        self.normal_tables.truncate(materials.len());
         let lights = Lights { suns: &self.table_suns, lamps: &[], eye: [0.0, 0.0, 1.0] };
-        for (i, paint) in paints.iter().enumerate() {
-            if !is_relit && self.normal_tables.get(i).is_some_and(|(of, _)| of == paint) {
+        for (i, material) in materials.iter().enumerate() {
+            if !is_relit && self.normal_tables.get(i).is_some_and(|(of, _)| of == material) {
                 continue;
             }
             if i == self.normal_tables.len() {
-                self.normal_tables.push((paint.clone(), Lut64K::from_fn(|_, _| 0)));
+                self.normal_tables.push((material.clone(), Lut64K::from_fn(|_, _| 0)));
             }
             let (of, table) = &mut self.normal_tables[i];
-            of.clone_from(paint);
-            fill_normal_table(table, &PixelLight { lights, paint, kernel });
+            of.clone_from(material);
+            fill_normal_table(table, &PixelLight { lights, material, kernel });
         }
     }
 }

@@ -323,7 +323,7 @@ impl Faces<'_> {
     /// The look of faces of a surface that are drawn with one shading.
     #[inline]
     fn look(&self, surface: u16, shading: FaceShading, is_decided: bool) -> Look {
-        let material = &self.paints[usize::from(surface)];
+        let material = &self.materials[usize::from(surface)];
         let effects = material.has_effects || (is_decided && shading.lights_pixels());
         Look {
             surface: if effects { surface } else { 0 },
@@ -337,8 +337,8 @@ impl Faces<'_> {
 
     /// The look of all faces, if they share one.
     fn one_look(&self, shading: FaceShading, is_decided: bool) -> Option<Look> {
-        let plain = self.paints.iter().all(|material| !material.has_effects);
-        (self.paints.len() == 1 || (plain && !self.paints.is_empty())).then(|| self.look(0, shading, is_decided))
+        let plain = self.materials.iter().all(|material| !material.has_effects);
+        (self.materials.len() == 1 || (plain && !self.materials.is_empty())).then(|| self.look(0, shading, is_decided))
     }
 
     /// The single shade of a face, or its channels, if faces are lit.

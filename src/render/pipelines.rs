@@ -3,9 +3,9 @@
 use super::Cache;
 use super::budget::limits;
 use super::object::ObjectState;
-use super::paint::SurfaceMaterial;
 use super::pick::Look;
 use super::pixel_light::PixelLight;
+use super::surface_material::SurfaceMaterial;
 use super::tables::{Image, Tables};
 use crate::light::{Blend, Material};
 use crate::palette::Palette;
@@ -24,11 +24,11 @@ use crate::span::texture::Texels;
 const ONE_TEXEL: [u8; 1] = [0];
 
 /// The image of a surface, if one is on: its own, or the environment it mirrors.
-fn image<'a>(plan: &ObjectPlan, material: &'a Material, paint: &SurfaceMaterial) -> Option<Image<'a>> {
-    let (texture, has_levels) = if paint.texture_size.is_some() {
-        (&material.texture, plan.stages().has_mipmaps())
-    } else if paint.environment_size.is_some() {
-        (&material.environment, false)
+fn image<'a>(plan: &ObjectPlan, own: &'a Material, material: &SurfaceMaterial) -> Option<Image<'a>> {
+    let (texture, has_levels) = if material.texture_size.is_some() {
+        (&own.texture, plan.stages().has_mipmaps())
+    } else if material.environment_size.is_some() {
+        (&own.environment, false)
     } else {
         return None;
     };
@@ -56,13 +56,13 @@ pub(super) fn ensure_tables(
         if channels {
             tables.ensure_mix();
         }
-        for (material, paint) in object.materials.iter().zip(&state.paints) {
-            let image = image(plan, material, paint);
+        for (own, material) in object.materials.iter().zip(&state.materials) {
+            let image = image(plan, own, material);
             if image.is_some() || plan.stages().neutral_image {
                 tables.ensure_shades(image, channels);
             }
-            if paint.blend != Blend::Opaque || plan.stages().neutral_blend {
-                tables.ensure_blend(paint.blend);
+            if material.blend != Blend::Opaque || plan.stages().neutral_blend {
+                tables.ensure_blend(material.blend);
             }
         }
     }
@@ -86,12 +86,12 @@ impl Pipelines<'_> {
     ) -> T {
         let Cache { plan, states, tables, .. } = self.cache;
         let (plan, state) = (&plan.objects[object], &states[object]);
-        let material = &self.scene.objects()[object].materials[usize::from(surface)];
-        let paint = &state.paints[usize::from(surface)];
-        let light = PixelLight { lights: state.lights(plan), paint, kernel: self.kernel };
+        let own = &self.scene.objects()[object].materials[usize::from(surface)];
+        let material = &state.materials[usize::from(surface)];
+        let light = PixelLight { lights: state.lights(plan), material, kernel: self.kernel };
         let dither = plan.stages().dither;
         let channels = plan.stages().has_channels().then(|| tables.mix(dither != Dither::None));
-        let image = image(plan, material, paint);
+        let image = image(plan, own, material);
         let texels = match image {
             Some(Image { texture, .. }) => {
                 Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok()
@@ -103,10 +103,10 @@ impl Pipelines<'_> {
             texels.zip(tables.shades(image, channels.is_some())).map(|(texels, tables_of_image)| TextureStage {
                 texels,
                 levels: image.and_then(|image| tables.levels(image)),
-                mapping: if paint.texture_size.is_some() { plan.stages().mapping } else { Mapping::Affine },
+                mapping: if material.texture_size.is_some() { plan.stages().mapping } else { Mapping::Affine },
                 tables: tables_of_image,
             });
-        let blends = paint.blend != Blend::Opaque || plan.stages().neutral_blend;
+        let blends = material.blend != Blend::Opaque || plan.stages().neutral_blend;
         draw(&PixelPipeline {
             source: source(plan, shading, channels.is_some(), state.normal_table(surface), &light),
             channels,
@@ -120,8 +120,8 @@ impl Pipelines<'_> {
             },
             texture,
             fog: if plan.stages().has_fog() { tables.fog() } else { None },
-            blend: if blends { tables.blend(paint.blend) } else { None },
-            keeps_depth: paint.blend == Blend::Opaque,
+            blend: if blends { tables.blend(material.blend) } else { None },
+            keeps_depth: material.blend == Blend::Opaque,
         })
     }
 }
@@ -138,7 +138,7 @@ fn source<'a>(
             (FaceShading::By(Shading::PhongTable), Some(table)) if !channels => ShadeSource::NormalTable(table),
             (FaceShading::By(_), _) => ShadeSource::Lit(light),
             (FaceShading::PhongEvery(spacing), _) => ShadeSource::LitEvery(spacing, light),
-            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(light.paint, channels)),
+            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(light.material, channels)),
         };
     }
     ShadeSource::Shaded(shading.interpolation())

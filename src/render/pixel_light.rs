@@ -1,6 +1,6 @@
 //! Per-pixel lighting: the Russian article's Phong shading, and the table that stood in for it in 1994.
 
-use super::paint::SurfaceMaterial;
+use super::surface_material::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::light::Lights;
@@ -14,7 +14,7 @@ use crate::span::Kernel;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
-    pub(super) paint: &'a SurfaceMaterial,
+    pub(super) material: &'a SurfaceMaterial,
     pub(super) kernel: Kernel,
 }
 
@@ -23,8 +23,8 @@ impl PixelLight<'_> {
     #[inline(always)]
     fn shown(&self, ramp: Ramp, intensities: &Lanes<f64>) -> Lanes<u16> {
         let shades = SurfaceMaterial::shade_of_eight(ramp, intensities);
-        if self.paint.response.is_some() {
-            return each!(lane => self.paint.respond(shades[lane]).to_bits());
+        if self.material.response.is_some() {
+            return each!(lane => self.material.respond(shades[lane]).to_bits());
         }
         each!(lane => shades[lane].to_bits())
     }
@@ -33,13 +33,14 @@ impl PixelLight<'_> {
 impl PixelLighting for PixelLight<'_> {
     #[inline(never)]
     fn shades(&self, points: &Points) -> Lanes<u16> {
-        let intensities = self.lights.front_of_one_channel::<false>(&self.paint.answer, points, self.kernel);
-        self.shown(self.paint.ramp, &intensities)
+        let intensities = self.lights.front_of_one_channel::<false>(&self.material.reflectance, points, self.kernel);
+        self.shown(self.material.ramp, &intensities)
     }
 
     #[inline(never)]
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
-        let [red, green, blue] = self.lights.front_of_three_channels::<false>(&self.paint.answer, points, self.kernel);
+        let [red, green, blue] =
+            self.lights.front_of_three_channels::<false>(&self.material.reflectance, points, self.kernel);
         // Not by a closure, which would not be inlined.
         [self.shown(Ramp::WHOLE, &red), self.shown(Ramp::WHOLE, &green), self.shown(Ramp::WHOLE, &blue)]
     }

@@ -21,7 +21,7 @@ use glam::{Vec2, Vec3};
 
 use super::edge_map::EdgeMap;
 use super::geometry::Geometry;
-use super::paint::SurfaceMaterial;
+use super::surface_material::SurfaceMaterial;
 use crate::light::Lights;
 use crate::mesh::normals::unit;
 use crate::mesh::wide::{dot, sub, widen};
@@ -68,7 +68,7 @@ impl Tessellated {
         geometry: &Geometry<'_>,
         points: &[u32],
         lights: &Lights<'_>,
-        paints: &[SurfaceMaterial],
+        materials: &[SurfaceMaterial],
         tolerance: f32,
     ) {
         geometry.positions.clone_into(&mut self.positions);
@@ -83,8 +83,8 @@ impl Tessellated {
         self.straight.resize(self.triangles.len(), false);
         self.light.clear();
         self.angles.clear();
-        let has_highlights = paints.iter().any(|paint| paint.answer.specular != 0.0);
-        let bend = Bend { lights, paints, tolerance: f64::from(tolerance) / 255.0, has_highlights };
+        let has_highlights = materials.iter().any(|material| material.reflectance.specular != 0.0);
+        let bend = Bend { lights, materials, tolerance: f64::from(tolerance) / 255.0, has_highlights };
         for _ in 0..DEPTH {
             if self.triangles.len() >= MAX_TRIANGLES || !self.halve(&bend) {
                 return;
@@ -190,8 +190,8 @@ impl Tessellated {
     fn light(&mut self, bend: &Bend<'_>) {
         for vertex in self.light.len()..self.positions.len() {
             let (position, normal) = (self.positions[vertex], self.normals[vertex]);
-            let paint = &bend.paints[usize::from(self.vertex_surfaces[vertex])];
-            self.light.push(bend.lights.one_channel(&paint.answer, position, normal));
+            let material = &bend.materials[usize::from(self.vertex_surfaces[vertex])];
+            self.light.push(bend.lights.one_channel(&material.reflectance, position, normal));
             if bend.has_highlights {
                 self.angles.extend(bend.angles(position, normal));
             }
@@ -227,7 +227,7 @@ fn two(a: u32, b: u32, c: u32, ab: u32, bc: u32) -> [[u32; 3]; 3] {
 /// Decides how much light bends along an edge.
 struct Bend<'a> {
     lights: &'a Lights<'a>,
-    paints: &'a [SurfaceMaterial],
+    materials: &'a [SurfaceMaterial],
     /// The greatest allowed error, as a fraction of full intensity.
     tolerance: f64,
     /// True if any surface has a highlight.
@@ -240,7 +240,7 @@ impl Bend<'_> {
         let (a, b) = (a as usize, b as usize);
         let (pa, pb) = (mesh.positions[a], mesh.positions[b]);
         let (na, nb) = (mesh.normals[a], mesh.normals[b]);
-        let paint = &self.paints[usize::from(mesh.vertex_surfaces[a])];
+        let material = &self.materials[usize::from(mesh.vertex_surfaces[a])];
         let ends = [widen(pa), widen(pb)];
         let square = distance_squared(ends[0], ends[1]);
         if square <= 0.0 {
@@ -251,20 +251,20 @@ impl Bend<'_> {
         for lamp in self.lights.lamps {
             let h = to_segment(lamp.position, ends);
             if h * lamp.inverse_square < 1.0 {
-                let strength = f64::from(lamp.intensity.abs()) * paint.answer.diffuse.abs();
+                let strength = f64::from(lamp.intensity.abs()) * material.reflectance.diffuse.abs();
                 if square * strength > eight * h || square * strength * 4.0 * lamp.inverse_square > eight {
                     return true;
                 }
             }
         }
         // A highlight that the eye may see here.
-        if paint.answer.specular != 0.0 && self.mirrors(mesh, [a, b], paint, square, eight) {
+        if material.reflectance.specular != 0.0 && self.mirrors(mesh, [a, b], material, square, eight) {
             return true;
         }
         // Normals that turn.
         let middle = unit(na + nb).unwrap_or(na);
         let ((fa, ba), (fb, bb)) = (mesh.light[a], mesh.light[b]);
-        let (fm, bm) = self.lights.one_channel(&paint.answer, pa * 0.5 + pb * 0.5, middle);
+        let (fm, bm) = self.lights.one_channel(&material.reflectance, pa * 0.5 + pb * 0.5, middle);
         let off = |a: f64, b: f64, m: f64| {
             let shown = |i: f64| i.clamp(0.0, 1.0);
             ((shown(a) + shown(b)) / 2.0 - shown(m)).abs()
@@ -286,17 +286,24 @@ impl Bend<'_> {
     }
 
     /// Returns whether a highlight near the edge bends too much along it.
-    fn mirrors(&self, mesh: &Tessellated, edge: [usize; 2], paint: &SurfaceMaterial, square: f64, eight: f64) -> bool {
+    fn mirrors(
+        &self,
+        mesh: &Tessellated,
+        edge: [usize; 2],
+        material: &SurfaceMaterial,
+        square: f64,
+        eight: f64,
+    ) -> bool {
         let ends = edge.map(|vertex| widen(mesh.positions[vertex]));
         let normals = edge.map(|vertex| mesh.normals[vertex]);
         let count = self.lights.suns.len() + self.lights.lamps.len();
         let angles = |light: usize| edge.map(|vertex| mesh.angles[vertex * count + light]);
         let eye = to_segment(self.lights.eye, ends);
-        let shininess = paint.answer.shininess.max(1.0);
+        let shininess = material.reflectance.shininess.max(1.0);
         // Twice the turn of its normals.
         let turned = 2.0 * libm::acos(f64::from(normals[0].dot(normals[1])).clamp(-1.0, 1.0));
         let strong = |nearest: f64, angles: [f64; 2], intensity: f64| {
-            let strength = paint.answer.specular.abs() * intensity;
+            let strength = material.reflectance.specular.abs() * intensity;
             let bends = square * shininess * strength > eight * nearest;
             if !bends {
                 return false;

@@ -47,7 +47,7 @@ struct Strength {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Incident<'a> {
     pub(super) lights: Lights<'a>,
-    pub(super) answer: &'a Reflectance,
+    pub(super) reflectance: &'a Reflectance,
     /// The greatest coordinate of the object's vertices.
     pub(super) extent: f32,
     /// True if red, green and blue are lit separately.
@@ -359,14 +359,14 @@ impl Incident<'_> {
         let Lights { suns, lamps, eye } = self.lights;
         let is_near = |at: [f64; 3]| at.iter().all(|c| c.abs() < f64::from(HUGE));
         let lamps_are_near = lamps.iter().all(|lamp| is_near(lamp.position) && lamp.inverse_square < 1e30);
-        if self.extent >= HUGE || !lamps_are_near || (self.answer.specular != 0.0 && !is_near(eye)) {
+        if self.extent >= HUGE || !lamps_are_near || (self.reflectance.specular != 0.0 && !is_near(eye)) {
             return false;
         }
         let suns = suns.iter().map(|sun| self.strength(sun.intensity, sun.channels));
         let lamps = lamps.iter().map(|lamp| self.strength(lamp.intensity, lamp.channels));
         let size = |of: Strength| of.body.iter().chain(&of.highlight).map(|share| share.abs()).sum::<f32>();
-        let colors = self.answer.color.map(|color| color.abs() as f32);
-        let ambient = self.answer.ambient.abs() as f32 * (1.0 + colors.iter().sum::<f32>());
+        let colors = self.reflectance.color.map(|color| color.abs() as f32);
+        let ambient = self.reflectance.ambient.abs() as f32 * (1.0 + colors.iter().sum::<f32>());
         suns.chain(lamps).map(size).sum::<f32>() + ambient < MODERATE
     }
 
@@ -378,14 +378,14 @@ impl Incident<'_> {
 
     #[inline(always)]
     fn strength(&self, intensity: f32, channels: [f32; 3]) -> Strength {
-        let (kd, ks) = (self.answer.diffuse as f32, self.answer.specular as f32);
+        let (kd, ks) = (self.reflectance.diffuse as f32, self.reflectance.specular as f32);
         let of = |channel: usize, share: f32, color: [f64; 3]| {
             if self.in_color { share * channels[channel] * color[channel] as f32 } else { share * intensity }
         };
         let mut strength = Strength { body: [0.0; 3], highlight: [0.0; 3] };
         for channel in 0..self.channels() {
-            strength.body[channel] = of(channel, kd, self.answer.color);
-            strength.highlight[channel] = of(channel, ks, self.answer.highlight);
+            strength.body[channel] = of(channel, kd, self.reflectance.color);
+            strength.highlight[channel] = of(channel, ks, self.reflectance.highlight);
         }
         strength
     }
@@ -426,17 +426,17 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
         let deficit = if spread < CANCELS { (1.0 - length) / length } else { HUGE };
         *normals = Normals { spread, deficit, part: shapes.part[lane] };
     }
-    let ambient = incident.answer.ambient as f32;
+    let ambient = incident.reflectance.ambient as f32;
     let mut of = [[[0.0; LANES]; 4]; 3];
     for (channel, of) in of.iter_mut().enumerate() {
-        let ambient = if incident.in_color { ambient * incident.answer.color[channel] as f32 } else { ambient };
+        let ambient = if incident.in_color { ambient * incident.reflectance.color[channel] as f32 } else { ambient };
         (of[2], of[3]) = ([ambient; LANES], [ambient; LANES]);
     }
     let mut sums = Sums { of, channels: incident.channels(), normals, below: incident.below };
-    let eye = if incident.answer.specular != 0.0 {
+    let eye = if incident.reflectance.specular != 0.0 {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
         let turn = each!(lane => lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
-        Some(Eye { lobe: Lobe::new(incident.answer.shininess), sight, turn })
+        Some(Eye { lobe: Lobe::new(incident.reflectance.shininess), sight, turn })
     } else {
         None
     };

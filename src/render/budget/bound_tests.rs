@@ -67,7 +67,7 @@ struct Case {
     suns: Vec<SunBeam>,
     lamps: Vec<LampBeam>,
     eye: [f64; 3],
-    answer: Reflectance,
+    reflectance: Reflectance,
     part: f32,
     in_color: bool,
 }
@@ -120,7 +120,7 @@ impl Case {
             kind if kind < 0.6 => 1.0 + (60.0 * random.unit()).floor(),
             _ => random.log(1.0, 300.0),
         };
-        let answer = Reflectance {
+        let reflectance = Reflectance {
             ambient: random.unit() * 0.5,
             diffuse: random.unit(),
             specular: if random.chance(0.6) { random.log(1e-2, 10.0) } else { 0.0 },
@@ -131,7 +131,7 @@ impl Case {
         let part = if random.chance(0.5) { 1.0 } else { random.log(0.02, 0.7) as f32 };
         let triangles = (0..LANES as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let in_color = random.chance(0.4);
-        Self { triangles, positions, normals, suns, lamps, eye: wide(eye_at), answer, part, in_color }
+        Self { triangles, positions, normals, suns, lamps, eye: wide(eye_at), reflectance, part, in_color }
     }
 
     /// Faces that one lamp grazes, seen from the other side: all corners are lit, the first one
@@ -159,7 +159,7 @@ impl Case {
         (case.suns, case.lamps) = (Vec::new(), [lamp].into());
         let eye = away * -random.log(0.5, 2.0) as f32 + Vec3::Z * random.log(1e-3, 1.0) as f32;
         case.eye = wide(eye);
-        (case.answer.specular, case.answer.shininess) = (1.0, random.log(2.0, 20.0));
+        (case.reflectance.specular, case.reflectance.shininess) = (1.0, random.log(2.0, 20.0));
         case
     }
 
@@ -190,8 +190,8 @@ impl Case {
     /// A tiny exponent: where r·v passes 0 the highlight is nearly a step, and elsewhere it is flat.
     fn stepped(random: &mut Chance) -> Self {
         let mut case = Self::new(random);
-        case.answer.shininess = if random.chance(0.1) { 0.0 } else { random.log(1e-30, 1.0) };
-        case.answer.specular = random.log(1e-2, 10.0);
+        case.reflectance.shininess = if random.chance(0.1) { 0.0 } else { random.log(1e-30, 1.0) };
+        case.reflectance.specular = random.log(1e-2, 10.0);
         case
     }
 
@@ -214,17 +214,18 @@ impl Case {
         let sub = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let (at, normal) = (sum(&self.positions), made_unit(sum(&self.normals)));
         let to_eye = made_unit(sub(self.eye, at));
-        let mut light = self.answer.color.map(|color| self.answer.ambient * if self.in_color { color } else { 1.0 });
+        let mut light =
+            self.reflectance.color.map(|color| self.reflectance.ambient * if self.in_color { color } else { 1.0 });
         let mut add = |towards: [f64; 3], intensity: f64, channels: [f32; 3]| {
             let cosine = dot(normal, towards);
             if cosine <= 0.0 || cosine.is_nan() {
                 return;
             }
             let along = 2.0 * cosine * dot(normal, to_eye) - dot(towards, to_eye);
-            let power = if along > 0.0 { along.powf(self.answer.shininess) } else { 0.0 };
+            let power = if along > 0.0 { along.powf(self.reflectance.shininess) } else { 0.0 };
             for (channel, light) in light.iter_mut().enumerate() {
-                let (body, mirrored) = (self.answer.diffuse * cosine, self.answer.specular * power);
-                let (own, of_highlight) = (self.answer.color[channel], self.answer.highlight[channel]);
+                let (body, mirrored) = (self.reflectance.diffuse * cosine, self.reflectance.specular * power);
+                let (own, of_highlight) = (self.reflectance.color[channel], self.reflectance.highlight[channel]);
                 *light += if self.in_color {
                     f64::from(channels[channel]) * (body * own + mirrored * of_highlight)
                 } else {
@@ -252,7 +253,13 @@ impl Case {
     }
 
     fn incident(&self, extent: f32) -> Incident<'_> {
-        Incident { lights: self.lights(), answer: &self.answer, extent, in_color: self.in_color, below: false }
+        Incident {
+            lights: self.lights(),
+            reflectance: &self.reflectance,
+            extent,
+            in_color: self.in_color,
+            below: false,
+        }
     }
 
     fn clusters(&self) -> Clusters {
@@ -349,7 +356,7 @@ fn try_case(case: &Case, random: &mut Chance, points: u32) -> Vec<f64> {
                 case.suns,
                 case.lamps,
                 case.eye,
-                case.answer,
+                case.reflectance,
                 case.in_color
             )
         };

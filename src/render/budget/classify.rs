@@ -58,9 +58,9 @@ impl Faces<'_> {
         surface: u16,
         below: bool,
     ) -> Bounds {
-        let answer = &self.paints[usize::from(surface)].answer;
+        let reflectance = &self.materials[usize::from(surface)].reflectance;
         let (extent, in_color) = (budget.clusters.extent, self.stages.has_channels());
-        let incident = Incident { lights: self.lights, answer, extent, in_color, below };
+        let incident = Incident { lights: self.lights, reflectance, extent, in_color, below };
         error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
     }
 

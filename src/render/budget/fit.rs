@@ -19,7 +19,7 @@ use crate::raster::Vertex;
 use crate::raster::clip::doubled_area;
 use crate::raster::effects::{Limits, SampleSpacing};
 use crate::render::faces::{Face, Faces};
-use crate::render::paint::SurfaceMaterial;
+use crate::render::surface_material::SurfaceMaterial;
 use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
@@ -92,7 +92,7 @@ struct OnScreen<'a> {
     normals: [Vec3; 3],
     positions: [Vec3; 3],
     depths: [f32; 3],
-    answer: &'a Reflectance,
+    reflectance: &'a Reflectance,
     /// True if its light continues below the horizon.
     below: bool,
 }
@@ -182,9 +182,9 @@ impl Faces<'_> {
     fn on_screen(&self, Face { indices, surface, back_facing, .. }: Face, depths: [u32; 3]) -> OnScreen<'_> {
         let normals = three(indices, |i| self.geometry.normals[i as usize]);
         let positions = three(indices, |i| self.geometry.positions[i as usize]);
-        let answer = &self.paints[usize::from(surface)].answer;
+        let reflectance = &self.materials[usize::from(surface)].reflectance;
         let mixed = |cosines: [f32; 3]| cosines.iter().any(|c| *c > 0.0) && cosines.iter().any(|c| *c < 0.0);
-        let below = answer.specular == 0.0
+        let below = reflectance.specular == 0.0
             && match (self.lights.suns, self.lights.lamps) {
                 ([sun], []) => mixed(three(normals, |normal| normal.dot(sun.towards))),
                 ([], [lamp]) => {
@@ -198,7 +198,7 @@ impl Faces<'_> {
             positions,
             // Rounded to 24 bits.
             depths: three(depths, |depth| depth as f32),
-            answer,
+            reflectance,
             below,
         }
     }
@@ -224,10 +224,10 @@ impl Faces<'_> {
     fn front(&self, face: &OnScreen<'_>, weights: &Weights, turned: bool) -> [Lanes<f32>; 3] {
         let points = face.points(weights, turned);
         if self.stages.has_channels() {
-            let [r, g, b] = self.lights.front_of_three_channels::<false>(face.answer, &points, self.kernel);
+            let [r, g, b] = self.lights.front_of_three_channels::<false>(face.reflectance, &points, self.kernel);
             [narrow(&r), narrow(&g), narrow(&b)]
         } else {
-            let one = self.lights.front_of_one_channel::<false>(face.answer, &points, self.kernel);
+            let one = self.lights.front_of_one_channel::<false>(face.reflectance, &points, self.kernel);
             [narrow(&one), [0.0; LANES], [0.0; LANES]]
         }
     }
@@ -320,7 +320,7 @@ impl Faces<'_> {
 
     /// The shades that a quadratic face goes through, for each of its corners: see `Attributes::lit`.
     pub(in crate::render) fn curve(&self, surface: u16, nodes: &Nodes) -> [[f32; 6]; 3] {
-        let ramp = self.paints[usize::from(surface)].ramp;
+        let ramp = self.materials[usize::from(surface)].ramp;
         let (first, units) = (f32::from(ramp.first()) * 256.0, f32::from(ramp.entries().saturating_sub(1)) * 256.0);
         let mut curve = [[0.0; 6]; 3];
         for (corner, values) in curve.iter_mut().enumerate() {
@@ -344,13 +344,13 @@ fn size_of(vertices: &[Vertex; 3]) -> (f32, f32) {
 
 /// The limits of quadratic shades: the shade without light, since no light is negative here, and
 /// the last shade.
-pub(in crate::render) fn limits(paint: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
+pub(in crate::render) fn limits(material: &SurfaceMaterial, channels: bool) -> [Limits; 3] {
     if channels {
-        let Reflectance { ambient, color, .. } = paint.answer;
-        return color.map(|channel| Limits { least: paint.shade(ambient * channel), most: U8F8::MAX_VERTEX });
+        let Reflectance { ambient, color, .. } = material.reflectance;
+        return color.map(|channel| Limits { least: material.shade(ambient * channel), most: U8F8::MAX_VERTEX });
     }
     // A ramp ends at entry 255 at most.
-    let last = u16::from(paint.ramp.first()) + paint.ramp.entries().saturating_sub(1);
+    let last = u16::from(material.ramp.first()) + material.ramp.entries().saturating_sub(1);
     let most = U8F8::from_bits(last.min(255) << 8);
-    [Limits { least: paint.constant(), most }; 3]
+    [Limits { least: material.constant(), most }; 3]
 }

@@ -24,7 +24,7 @@ mod ranges;
 use self::clusters::Clusters;
 pub(super) use self::fit::limits;
 use super::geometry::Geometry;
-use super::paint::SurfaceMaterial;
+use super::surface_material::SurfaceMaterial;
 use crate::light::Lights;
 use crate::plan::FaceShading;
 use crate::settings::Shading;
@@ -61,9 +61,9 @@ impl Budget {
         allowed: f32,
         changed: Option<&Geometry<'_>>,
         lights: &Lights<'_>,
-        paints: &[SurfaceMaterial],
+        materials: &[SurfaceMaterial],
     ) {
-        (self.allowed, self.adds) = (allowed, adds(lights, paints));
+        (self.allowed, self.adds) = (allowed, adds(lights, materials));
         if let Some(geometry) = changed {
             self.clusters = Clusters::new(geometry);
         }
@@ -76,11 +76,11 @@ impl Budget {
 }
 
 /// Returns whether no light and no material takes light away.
-fn adds(lights: &Lights<'_>, paints: &[SurfaceMaterial]) -> bool {
+fn adds(lights: &Lights<'_>, materials: &[SurfaceMaterial]) -> bool {
     let is_light = |intensity: f32, channels: [f32; 3]| intensity >= 0.0 && channels.iter().all(|c| *c >= 0.0);
     lights.suns.iter().all(|sun| is_light(sun.intensity, sun.channels))
         && lights.lamps.iter().all(|lamp| is_light(lamp.intensity, lamp.channels))
-        && paints.iter().all(|SurfaceMaterial { answer: of, .. }| {
+        && materials.iter().all(|SurfaceMaterial { reflectance: of, .. }| {
             let shares = [of.diffuse, of.specular].into_iter().chain(of.color).chain(of.highlight);
             shares.into_iter().all(|share| share >= 0.0)
         })

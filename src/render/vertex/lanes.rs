@@ -11,7 +11,7 @@ use crate::fixed::U8F8;
 use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
 use crate::render::columns::{ScreenPos, VertexColumns};
-use crate::render::paint::SurfaceMaterial;
+use crate::render::surface_material::SurfaceMaterial;
 use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
 
@@ -145,7 +145,7 @@ compiled_for_each_level! {
     /// [`light_suns`](super::light_suns).
     pub(super) fn light_suns[const BOTH: bool][BOTH](
         geometry: &Geometry<'_>,
-        paints: &[SurfaceMaterial],
+        materials: &[SurfaceMaterial],
         lights: &Lights<'_>,
         vertices: &mut VertexColumns,
     ) = light_suns_by;
@@ -155,7 +155,7 @@ compiled_for_each_level! {
 fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
     s: S,
     geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     lights: &Lights<'_>,
     vertices: &mut VertexColumns,
 ) {
@@ -168,15 +168,15 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
         let (shades, surfaces) = (&mut shades[i], &surfaces[i]);
         if *surfaces == [surfaces[0]; LANES] {
             let mut pairs = [0; LANES];
-            s.store_i32(light_eight::<S, BOTH>(s, &paints[usize::from(surfaces[0])], lights, normals), &mut pairs);
+            s.store_i32(light_eight::<S, BOTH>(s, &materials[usize::from(surfaces[0])], lights, normals), &mut pairs);
             for (lane, shades) in shades.iter_mut().enumerate() {
                 *shades = [U8F8::from_bits(pairs[lane] as u16), U8F8::from_bits((pairs[lane] >> 16) as u16)];
             }
         } else {
-            light_one_by_one::<BOTH>(normals, surfaces, paints, lights, shades);
+            light_one_by_one::<BOTH>(normals, surfaces, materials, lights, shades);
         }
     }
-    light_one_by_one::<BOTH>(rest, rest_surfaces, paints, lights, rest_shades);
+    light_one_by_one::<BOTH>(rest, rest_surfaces, materials, lights, rest_shades);
 }
 
 /// Lights vertices one by one: the definition.
@@ -184,14 +184,15 @@ fn light_suns_by<S: F32Lanes8, const BOTH: bool>(
 fn light_one_by_one<const BOTH: bool>(
     normals: &[Vec3],
     surfaces: &[u16],
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     lights: &Lights<'_>,
     shades: &mut [[U8F8; 2]],
 ) {
     for ((shades, normal), &surface) in shades.iter_mut().zip(normals).zip(surfaces) {
-        let paint = &paints[usize::from(surface)];
-        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, lights.suns, *normal);
-        *shades = [paint.shade(front), if BOTH { paint.shade(back) } else { U8F8::default() }];
+        let material = &materials[usize::from(surface)];
+        let (front, back) =
+            both_sides(material.reflectance.ambient, material.reflectance.diffuse, lights.suns, *normal);
+        *shades = [material.shade(front), if BOTH { material.shade(back) } else { U8F8::default() }];
     }
 }
 
@@ -199,7 +200,7 @@ fn light_one_by_one<const BOTH: bool>(
 #[inline(always)]
 pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
     s: S,
-    paint: &SurfaceMaterial,
+    material: &SurfaceMaterial,
     lights: &Lights<'_>,
     normals: &[Vec3; LANES],
 ) -> S::I32 {
@@ -218,28 +219,28 @@ pub(in crate::render) fn light_eight<S: F32Lanes8, const BOTH: bool>(
             back = s.sub(back, s.mul(intensity, s.widen(s.min_f32(cosine, dark))));
         }
     }
-    let front = shade(s, paint, front);
-    if BOTH { s.or_i32(front, s.shl_i32(shade(s, paint, back), 16)) } else { front }
+    let front = shade(s, material, front);
+    if BOTH { s.or_i32(front, s.shl_i32(shade(s, material, back), 16)) } else { front }
 }
 
 /// The shades of these sums of light.
 #[inline(always)]
-fn shade<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
+fn shade<S: F32Lanes8>(s: S, material: &SurfaceMaterial, light: S::F64) -> S::I32 {
     shade_of_intensities(
         s,
-        paint,
-        s.add(s.splat_f64(paint.answer.ambient), s.mul(s.splat_f64(paint.answer.diffuse), light)),
+        material,
+        s.add(s.splat_f64(material.reflectance.ambient), s.mul(s.splat_f64(material.reflectance.diffuse), light)),
     )
 }
 
 /// [`SurfaceMaterial::shade`].
 #[inline(always)]
-pub(in crate::render) fn shade_of_intensities<S: F32Lanes8>(s: S, paint: &SurfaceMaterial, light: S::F64) -> S::I32 {
+pub(in crate::render) fn shade_of_intensities<S: F32Lanes8>(s: S, material: &SurfaceMaterial, light: S::F64) -> S::I32 {
     // NaN gives the second argument, 0.
     let clamped = s.min_f32(s.max_f32(s.narrow(light), s.splat_f32(0.0)), s.splat_f32(1.0));
-    let units = s.splat_f64(f64::from(paint.ramp.entries().saturating_sub(1)) * 256.0);
+    let units = s.splat_f64(f64::from(material.ramp.entries().saturating_sub(1)) * 256.0);
     let above = s.whole(s.add(s.mul(s.widen(clamped), units), s.splat_f64(0.5)));
-    s.min_i32(s.add_i32(s.splat_i32(i32::from(paint.ramp.first()) * 256), above), s.splat_i32(0xFF00))
+    s.min_i32(s.add_i32(s.splat_i32(i32::from(material.ramp.first()) * 256), above), s.splat_i32(0xFF00))
 }
 
 #[cfg(test)]
@@ -289,10 +290,10 @@ mod tests {
         )
     }
 
-    fn paint() -> impl Strategy<Value = SurfaceMaterial> {
+    fn material() -> impl Strategy<Value = SurfaceMaterial> {
         let ramp = (0_u8..=255).prop_flat_map(|first| (Just(first), 1..=256 - u16::from(first)));
         (-0.5_f64..1.5, -1.0_f64..3.0, ramp).prop_map(|(ambient, diffuse, (first, entries))| SurfaceMaterial {
-            answer: Reflectance {
+            reflectance: Reflectance {
                 ambient,
                 diffuse,
                 specular: 0.0,
@@ -349,7 +350,7 @@ mod tests {
         fn eight_vertices_are_lit_as_each_is_alone(
             normals in prop::collection::vec(vector(), 0..40),
             surfaces in prop::collection::vec(0_usize..6, 40),
-            paints in prop::array::uniform2(paint()),
+            materials in prop::array::uniform2(material()),
             suns in prop::collection::vec((vector(), -0.5_f32..2.0), 0..4),
         ) {
             let suns: Vec<SunBeam> =
@@ -362,12 +363,12 @@ mod tests {
                 for both in [true, false] {
                     let mut vertices = VertexColumns::default();
                     vertices.begin(normals.len());
-                    light_suns(&geometry, &paints, &lights, (both, kernel), &mut vertices);
+                    light_suns(&geometry, &materials, &lights, (both, kernel), &mut vertices);
                     for (i, &normal) in normals.iter().enumerate() {
-                        let paint = &paints[usize::from(vertex_surfaces[i])];
-                        let (front, back) = both_sides(paint.answer.ambient, paint.answer.diffuse, &suns, normal);
-                        let back = if both { paint.shade(back) } else { U8F8::default() };
-                        prop_assert_eq!(vertices.shade[i], [paint.shade(front), back], "{:?}", normal);
+                        let material = &materials[usize::from(vertex_surfaces[i])];
+                        let (front, back) = both_sides(material.reflectance.ambient, material.reflectance.diffuse, &suns, normal);
+                        let back = if both { material.shade(back) } else { U8F8::default() };
+                        prop_assert_eq!(vertices.shade[i], [material.shade(front), back], "{:?}", normal);
                     }
                 }
             }

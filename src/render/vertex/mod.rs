@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::columns::{ScreenPos, VertexColumns};
 use super::geometry::Geometry;
-use super::paint::SurfaceMaterial;
+use super::surface_material::SurfaceMaterial;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, three};
 use crate::light::Lights;
@@ -22,12 +22,12 @@ pub(super) use lanes::{light_eight, shade_of_intensities};
 
 /// Applies the response of each vertex's material to its shade.
 #[inline(never)]
-pub(super) fn respond(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {
+pub(super) fn respond(geometry: &Geometry<'_>, materials: &[SurfaceMaterial], vertices: &mut VertexColumns) {
     for (i, &surface) in geometry.vertex_surfaces.iter().enumerate() {
-        let paint = &paints[usize::from(surface)];
-        vertices.shade[i] = vertices.shade[i].map(|shade| paint.respond(shade));
+        let material = &materials[usize::from(surface)];
+        vertices.shade[i] = vertices.shade[i].map(|shade| material.respond(shade));
         if let Some(sides) = vertices.channels.get_mut(i) {
-            *sides = sides.map(|channels| channels.map(|channel| paint.respond(channel)));
+            *sides = sides.map(|channels| channels.map(|channel| material.respond(channel)));
         }
     }
 }
@@ -66,9 +66,9 @@ pub(super) fn requantize(bits: u8, vertices: &mut VertexColumns) {
 
 /// No light: each surface has one shade.
 #[inline(never)]
-pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], vertices: &mut VertexColumns) {
+pub(super) fn light_none(geometry: &Geometry<'_>, materials: &[SurfaceMaterial], vertices: &mut VertexColumns) {
     for (shades, &surface) in vertices.shade.iter_mut().zip(geometry.vertex_surfaces) {
-        *shades = [paints[usize::from(surface)].constant(); 2];
+        *shades = [materials[usize::from(surface)].constant(); 2];
     }
 }
 
@@ -76,15 +76,15 @@ pub(super) fn light_none(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], ve
 #[inline(never)]
 pub(super) fn light_suns(
     geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
     vertices: &mut VertexColumns,
 ) {
     let level = kernel.simd_level();
     match both {
-        true => lanes::light_suns::<true>(level, geometry, paints, lights, vertices),
-        false => lanes::light_suns::<false>(level, geometry, paints, lights, vertices),
+        true => lanes::light_suns::<true>(level, geometry, materials, lights, vertices),
+        false => lanes::light_suns::<false>(level, geometry, materials, lights, vertices),
     }
 }
 
@@ -92,15 +92,15 @@ pub(super) fn light_suns(
 #[inline(never)]
 pub(super) fn light_all(
     geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
     vertices: &mut VertexColumns,
 ) {
     each_eight(geometry, both, |eight, side, surface, points| {
-        let paint = &paints[surface];
-        let intensities = lights.front_of_one_channel::<true>(&paint.answer, points, kernel);
-        let lit = SurfaceMaterial::shade_of_eight(paint.ramp, &intensities);
+        let material = &materials[surface];
+        let intensities = lights.front_of_one_channel::<true>(&material.reflectance, points, kernel);
+        let lit = SurfaceMaterial::shade_of_eight(material.ramp, &intensities);
         for (shades, shade) in vertices.shade[eight].iter_mut().zip(lit) {
             shades[side] = shade;
         }
@@ -111,13 +111,13 @@ pub(super) fn light_all(
 #[inline(never)]
 pub(super) fn light_channels(
     geometry: &Geometry<'_>,
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     lights: &Lights<'_>,
     (both, kernel): (bool, Kernel),
     vertices: &mut VertexColumns,
 ) {
     each_eight(geometry, both, |eight, side, surface, points| {
-        let intensities = lights.front_of_three_channels::<true>(&paints[surface].answer, points, kernel);
+        let intensities = lights.front_of_three_channels::<true>(&materials[surface].reflectance, points, kernel);
         let lit = |channel| SurfaceMaterial::shade_of_eight(Ramp::WHOLE, channel);
         let [red, green, blue] = three(intensities.each_ref(), lit);
         for (lane, channels) in vertices.channels[eight].iter_mut().enumerate() {
@@ -152,10 +152,10 @@ fn each_eight(geometry: &Geometry<'_>, both: bool, mut eight: impl FnMut(Range<u
 
 /// Texture coordinates in texels, for surfaces that have an image.
 #[inline(never)]
-pub(super) fn texture_coordinates(geometry: &Geometry<'_>, paints: &[SurfaceMaterial], texture: &mut [[i32; 2]]) {
+pub(super) fn texture_coordinates(geometry: &Geometry<'_>, materials: &[SurfaceMaterial], texture: &mut [[i32; 2]]) {
     let Some(texcoords) = geometry.texcoords else { return };
     for ((texture, uv), &surface) in texture.iter_mut().zip(texcoords).zip(geometry.vertex_surfaces) {
-        if let Some([width, height]) = paints[usize::from(surface)].texture_size {
+        if let Some([width, height]) = materials[usize::from(surface)].texture_size {
             *texture = [texels(uv.x, width), texels(uv.y, height)];
         }
     }
@@ -184,12 +184,12 @@ fn floor(x: f64) -> i32 {
 pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,
     view: &ObjectView,
-    paints: &[SurfaceMaterial],
+    materials: &[SurfaceMaterial],
     texture: &mut [[i32; 2]],
 ) {
     let to_eye = view.directions_to_eye();
     for ((texture, &normal), &surface) in texture.iter_mut().zip(geometry.normals).zip(geometry.vertex_surfaces) {
-        if let Some([width, height]) = paints[usize::from(surface)].environment_size {
+        if let Some([width, height]) = materials[usize::from(surface)].environment_size {
             let seen = to_eye * normal;
             // Up to the centres of the outermost texels, so that no coordinate wraps to the
             // opposite side.

@@ -10,7 +10,7 @@ use crate::texture::Texture;
 /// A material in its scene.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct SurfaceMaterial {
-    pub(super) answer: Reflectance,
+    pub(super) reflectance: Reflectance,
     /// Range of its shades: the material's entries; all 256 for an image, or for a channel.
     pub(super) ramp: Ramp,
     /// The image's width and height, if it is on.
@@ -36,7 +36,7 @@ impl SurfaceMaterial {
         // Forced on, an effect runs on every surface, with neutral input where it has none.
         let forced = stages.neutral_image || stages.neutral_blend;
         Self {
-            answer: Reflectance {
+            reflectance: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
                 specular: if stages.has_highlights() && material.is_specular() {
@@ -78,7 +78,7 @@ impl SurfaceMaterial {
 
     /// The shade in ambient light only.
     pub(super) fn constant(&self) -> U8F8 {
-        self.shade(self.answer.ambient)
+        self.shade(self.reflectance.ambient)
     }
 }
 
