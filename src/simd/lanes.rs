@@ -34,6 +34,9 @@ pub(super) use intrinsics;
 /// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
 ///
 /// All methods are inlined into a function that is compiled for the level: see `compiled_for_each_level!`.
+///
+/// # Safety invariant
+/// Every implementation computes what is said here: [`SpanList`](crate::span::list::SpanList) admits spans by it.
 pub(crate) trait Lanes8: Copy {
     /// Eight f64.
     type F64: Copy;

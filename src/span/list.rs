@@ -20,6 +20,10 @@ type Numbers = [u32; CAPACITY + LANES];
 type Depths = [i64; CAPACITY + LANES];
 
 /// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
+///
+/// # Safety invariant
+/// The stores of AVX-512 rely on that. Only `append` and `push` add spans, and they add no others; for `append` it rests on
+/// `Lanes8` computing what its methods say.
 #[derive(Clone, Debug)]
 pub(crate) struct SpanList {
     /// Offsets of the first pixels.
