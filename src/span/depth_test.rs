@@ -6,7 +6,7 @@
 
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
-use crate::simd::{Lanes8, Portable, compiled_for_each_level};
+use crate::simd::{Lanes8, Portable};
 
 /// The masks of a span of up to 64 pixels.
 pub(crate) type Masks = [u64; 64 / LANES];
@@ -136,45 +136,6 @@ pub(crate) fn copy_span<S: Lanes8>(
     let nearer = test_span(s, (cells, length), depths, keeps, masks);
     if nearer > 0 {
         copy_masked(row, bytes, masks);
-    }
-    nearer
-}
-
-compiled_for_each_level! {
-    /// [`copy_where_nearer_by`] at this level.
-    pub(super) fn copy_where_nearer[][](
-        length: usize,
-        row: &mut [u8],
-        cells: &mut [u32],
-        bytes: &[u8],
-        keeps: bool,
-        depths: [i64; 2],
-    ) -> u32 = copy_where_nearer_by;
-}
-
-/// [`copy_nearer`](super::depth::copy_nearer) of the first `length` bytes, or if it does not keep
-/// depths [`copy_nearer_keep_depth`](super::depth::copy_nearer_keep_depth), with depths as in
-/// [`test_span`]. The rest of the row and of the cells does not change.
-#[inline(always)]
-fn copy_where_nearer_by<S: Lanes8>(
-    s: S,
-    length: usize,
-    row: &mut [u8],
-    cells: &mut [u32],
-    bytes: &[u8],
-    keeps: bool,
-    [z, dz]: [i64; 2],
-) -> u32 {
-    const MOST: usize = 64;
-    let length = length.min(row.len()).min(cells.len()).min(bytes.len());
-    let (mut first, mut nearer) = (0, 0);
-    while first < length {
-        let n = (length - first).min(MOST);
-        // A slice has less than 2⁶³ bytes.
-        let z = z.wrapping_add(dz.wrapping_mul(first as i64));
-        let target = (&mut row[first..], &mut cells[first..]);
-        nearer += copy_span(s, target, (&bytes[first..], n), keeps, [z, dz]);
-        first += n;
     }
     nearer
 }

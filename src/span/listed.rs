@@ -2,9 +2,9 @@
 
 use super::Kernel;
 use super::depth::Cell;
-use super::list::{DepthSteps, SpanList, Spans8, Target};
+use super::list::{DepthSteps, SpanBytes, SpanDepth, SpanList, Spans8, Target};
 use crate::lanes::LANES;
-use crate::simd::Portable;
+use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 
 /// A span and its position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -69,6 +69,36 @@ pub fn fill_where_nearer<D: Cell>(
     }
     list.draw_by::<true>(target);
     list.counts().2
+}
+
+/// Writes the first `length` bytes where they are nearer, and with `keeps` their depths to the cells, as spans with
+/// effects are written: up to 64 pixels at a time. Pixels beyond the shortest of the three are left alone. Returns the
+/// number of pixels written.
+pub fn write_nearer<D: Cell>(
+    kernel: Kernel,
+    (row, cells): (&mut [u8], &mut [D]),
+    (bytes, length): (&[u8], usize),
+    keeps: bool,
+    [z, dz]: [i64; 2],
+) -> u32 {
+    let length = length.min(row.len()).min(cells.len()).min(bytes.len());
+    let target = &mut Target { pixels: row, cells: Some(D::cells(cells)), kernel };
+    let span = |first: usize| {
+        let cell = first as u32;
+        let depth = SpanDepth { cell, z: z.wrapping_add(dz.wrapping_mul(first as i64)) << 8, dz: dz << 8 };
+        let n = (length - first).min(SpanBytes::LENGTH);
+        write(kernel.simd_level(), target, (cell, depth), (&bytes[first..], n), keeps)
+    };
+    (0..length).step_by(SpanBytes::LENGTH).map(span).sum()
+}
+
+compiled_for_each_level! {
+    fn write[][](target: &mut Target<'_>, at: (u32, SpanDepth), bytes: (&[u8], usize), keeps: bool) -> u32 = write_by;
+}
+
+#[inline(always)]
+fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, at: (u32, SpanDepth), bytes: (&[u8], usize), keeps: bool) -> u32 {
+    target.write(s, at, bytes, keeps)
 }
 
 fn lanes(spans: &[ListedSpan]) -> Spans8<Portable, ()> {

@@ -285,36 +285,6 @@ impl Kernel {
         }
     }
 
-    internal! {
-    /// Copies the first `length` bytes like [`depth::copy_nearer`] with `KEEPS`, otherwise like
-    /// [`depth::copy_nearer_keep_depth`]. Returns the number of pixels written.
-    ///
-    /// Row, cells and bytes may be longer, and the rest of the row and of the cells does not
-    /// change: vectors take whole iterations where there is room for them. Pixels beyond the
-    /// shortest of the three are left alone.
-    #[inline]
-    fn copy_where_nearer<D: depth::Cell, const KEEPS: bool>(
-        self,
-        length: usize,
-        row: &mut [u8],
-        cells: &mut [D],
-        bytes: &[u8],
-        z: i64,
-        dz: i64,
-    ) -> u32 {
-        if let Cells::U32(cells) = D::cells(cells) {
-            let depths = [z << 8, dz << 8];
-            return depth_test::copy_where_nearer(self.level, length, row, cells, bytes, KEEPS, depths);
-        }
-        let bytes = &bytes[..length.min(bytes.len())];
-        if KEEPS {
-            depth::copy_nearer(row, cells, bytes, z, dz)
-        } else {
-            depth::copy_nearer_keep_depth(row, cells, bytes, z, dz)
-        }
-    }
-    }
-
     /// Copies the first `length` bytes to a row that has at least as many. The rest of the row does
     /// not change.
     #[inline(always)]

@@ -402,7 +402,7 @@ fn wrong_depth_tests_are_caught() {
     assert_caught(
         "the depths of 16 bits are kept, and should stay",
         check_copy::<u16>(full(), false, |n, row, depth, bytes, z, dz| {
-            Kernel::default().copy_where_nearer::<_, true>(n, row, depth, bytes, z, dz)
+            listed::write_nearer(Kernel::default(), (row, depth), (bytes, n), true, [z, dz])
         }),
     );
     let equal = |_, row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
@@ -411,7 +411,7 @@ fn wrong_depth_tests_are_caught() {
     };
     assert_caught("an equal depth counts as nearer", check_copy(full(), false, equal));
     let one_more = |n: usize, row: &mut [u8], depth: &mut [u32], bytes: &[u8], z, dz| {
-        Kernel::PORTABLE.copy_where_nearer::<_, true>(n + 1, row, depth, bytes, z, dz)
+        listed::write_nearer(Kernel::PORTABLE, (row, depth), (bytes, n + 1), true, [z, dz])
     };
     assert_caught("a pixel behind the last", check_copy(full(), true, one_more));
 }

@@ -142,10 +142,10 @@ fn check_copies<D: depth::NaiveCell>(cases: Cases) -> Checked {
 /// Loops that have a separate form for each kernel.
 const BY_KERNEL: [(&str, CheckKernel); 11] = [
     ("fill", |cases, kernel| spans::check_fill(cases, |row, shade, step| kernel.fill(row, shade, step))),
-    ("copy_where_nearer, u32, depths are kept", copy::<u32, true>),
-    ("copy_where_nearer, u32, depths stay", copy::<u32, false>),
-    ("copy_where_nearer, u16, depths are kept", copy::<u16, true>),
-    ("copy_where_nearer, u16, depths stay", copy::<u16, false>),
+    ("listed::write_nearer, u32, depths are kept", copy::<u32, true>),
+    ("listed::write_nearer, u32, depths stay", copy::<u32, false>),
+    ("listed::write_nearer, u16, depths are kept", copy::<u16, true>),
+    ("listed::write_nearer, u16, depths stay", copy::<u16, false>),
     ("listed::fill", |cases, kernel| depth::check_list(cases, |pixels, spans| listed::fill(kernel, pixels, spans))),
     ("listed::fill_where_nearer, u32", list_nearer::<u32>),
     ("listed::fill_where_nearer, u16", list_nearer::<u16>),
@@ -164,7 +164,7 @@ const BY_KERNEL: [(&str, CheckKernel); 11] = [
 
 fn copy<D: depth::NaiveCell, const KEEPS: bool>(cases: Cases, kernel: Kernel) -> Checked {
     depth::check_copy::<D>(cases, KEEPS, |length, row, cells, bytes, z, dz| {
-        kernel.copy_where_nearer::<D, KEEPS>(length, row, cells, bytes, z, dz)
+        listed::write_nearer(kernel, (row, cells), (bytes, length), KEEPS, [z, dz])
     })
 }
 
