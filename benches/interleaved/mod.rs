@@ -9,16 +9,24 @@ pub(crate) fn is_bench() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
-/// The times of `candidates`, in seconds, one per round each: how long `run` takes with the candidate's index.
+/// The times of `candidates`, in seconds of the wall clock, one per round each: how long `run` takes with the candidate's
+/// index.
 pub(crate) fn times(candidates: usize, rounds: usize, mut run: impl FnMut(usize)) -> Vec<Vec<f64>> {
+    times_by(candidates, rounds, |_, candidate| {
+        let started = Instant::now();
+        run(candidate);
+        started.elapsed().as_secs_f64()
+    })
+}
+
+/// The times of `candidates`, one per round each: what `time` returns for a round and a candidate.
+pub(crate) fn times_by(candidates: usize, rounds: usize, mut time: impl FnMut(usize, usize) -> f64) -> Vec<Vec<f64>> {
     let (mut random, mut order) = (Random::again(13), (0..candidates).collect::<Vec<usize>>());
     let mut times = vec![Vec::with_capacity(rounds); candidates];
-    for _ in 0..rounds {
+    for round in 0..rounds {
         random.shuffle(&mut order);
         for &candidate in &order {
-            let started = Instant::now();
-            run(candidate);
-            times[candidate].push(started.elapsed().as_secs_f64());
+            times[candidate].push(time(round, candidate));
         }
     }
     times

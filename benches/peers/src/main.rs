@@ -19,9 +19,14 @@ mod allegro;
 mod candidate;
 mod drawing;
 mod field;
+#[allow(dead_code)]
+#[path = "../../interleaved/mod.rs"]
+mod interleaved;
 mod ours;
 mod refine;
 mod retrofire;
+#[path = "../../interleaved/thread_time.rs"]
+mod thread_time;
 mod timing;
 mod truth;
 mod whole;
@@ -34,7 +39,8 @@ use candidate::{Candidate, Triangle};
 use drawing::{Drawing, Material};
 use mode13h::span::Kernel;
 use serde_json::{Value, json};
-use timing::{Median, Times, Turns};
+use thread_time::seconds;
+use timing::{Median, Times};
 use whole::{Shown, Stages};
 use workload::Workload;
 
@@ -162,19 +168,12 @@ fn triangles(
     let count = workload.triangles.len();
     let pictures = pictures(workload, drawing, &mut candidates)?;
     let repeats: Vec<u32> = candidates.iter_mut().map(|candidate| repeats(candidate.as_mut())).collect();
-    let mut times = vec![Times::default(); candidates.len()];
-    let mut turns = Turns::of(candidates.len());
-    for _ in 0..rounds {
-        for &which in turns.shuffled() {
-            let candidate = &mut candidates[which];
-            candidate.clear(0);
-            let started = timing::seconds();
-            for _ in 0..repeats[which] {
-                candidate.draw();
-            }
-            times[which].push((timing::seconds() - started) / f64::from(repeats[which]));
-        }
-    }
+    let times = interleaved::times_by(candidates.len(), rounds, |_, which| {
+        let candidate = &mut candidates[which];
+        candidate.clear(0);
+        seconds(|| (0..repeats[which]).for_each(|_| candidate.draw())) / f64::from(repeats[which])
+    });
+    let times: Vec<Times> = times.into_iter().map(Times).collect();
     // The best is chosen by medians; the ratio is that of the two.
     let best = |ours: bool| {
         let of = (0..times.len()).filter(|i| candidates[*i].is_ours() == ours);
@@ -324,9 +323,7 @@ fn mean_pixels(triangles: &[Triangle]) -> f64 {
 /// How many times a candidate draws in a millisecond; at least once.
 fn repeats(candidate: &mut dyn Candidate) -> u32 {
     candidate.draw();
-    let started = timing::seconds();
-    candidate.draw();
-    (1e-3 / (timing::seconds() - started)).clamp(1.0, 10_000.0) as u32
+    (1e-3 / seconds(|| candidate.draw())).clamp(1.0, 10_000.0) as u32
 }
 
 /// One mesh, drawn by us in several ways and by Mesa.

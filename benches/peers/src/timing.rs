@@ -1,35 +1,8 @@
-//! Times of rounds in which every candidate has a turn, in an order reshuffled every round.
-
-use std::ffi::{c_int, c_long};
-
-use mode13h_conformance::Random;
-
-/// `struct timespec` of 64-bit Linux.
-#[repr(C)]
-struct Timespec {
-    seconds: c_long,
-    nanoseconds: c_long,
-}
-
-unsafe extern "C" {
-    fn clock_gettime(clock: c_int, time: *mut Timespec) -> c_int;
-}
-
-/// `CLOCK_THREAD_CPUTIME_ID`.
-const THREAD: c_int = 3;
-
-/// Seconds of CPU time of this thread. All candidates draw in it, and whatever else the processor does meanwhile does
-/// not count.
-pub fn seconds() -> f64 {
-    let mut time = Timespec { seconds: 0, nanoseconds: 0 };
-    // SAFETY: the clock exists since Linux 2.6.12, and both numbers are written.
-    unsafe { clock_gettime(THREAD, &raw mut time) };
-    time.seconds as f64 + time.nanoseconds as f64 * 1e-9
-}
+//! Medians of the times of rounds, and of their ratios.
 
 /// The times of one candidate in seconds, one per round.
-#[derive(Clone, Debug, Default)]
-pub struct Times(Vec<f64>);
+#[derive(Debug)]
+pub struct Times(pub Vec<f64>);
 
 /// A median, with the interval that contains it in 95 of 100 runs.
 #[derive(Clone, Copy, Debug)]
@@ -40,10 +13,6 @@ pub struct Median {
 }
 
 impl Times {
-    pub fn push(&mut self, seconds: f64) {
-        self.0.push(seconds);
-    }
-
     pub fn median(&self) -> Median {
         Median::of(&self.0)
     }
@@ -74,22 +43,5 @@ impl Median {
 
     pub fn json(self) -> serde_json::Value {
         serde_json::json!({ "low": self.low, "median": self.median, "high": self.high })
-    }
-}
-
-/// Orders of turns, reshuffled every time.
-pub struct Turns {
-    random: Random,
-    order: Vec<usize>,
-}
-
-impl Turns {
-    pub fn of(candidates: usize) -> Self {
-        Self { random: Random::again(13), order: (0..candidates).collect() }
-    }
-
-    pub fn shuffled(&mut self) -> &[usize] {
-        self.random.shuffle(&mut self.order);
-        &self.order
     }
 }

@@ -16,7 +16,9 @@ use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
 use crate::drawing::{Material, SIDE_BITS};
-use crate::timing::{Times, Turns, seconds};
+use crate::interleaved::times_by;
+use crate::thread_time::seconds;
+use crate::timing::Times;
 use crate::{HEIGHT, WIDTH};
 
 unsafe extern "C" {
@@ -205,29 +207,26 @@ pub fn measure(
         peers_mesa_stages(both.into(), stages.textured.into(), start, end, f32::from(FOG) / 255.0);
     }
 
-    let mut times = vec![Times::default(); ours.len() + 1];
-    let mut turns = Turns::of(times.len());
-    for round in 0..=rounds {
-        // Each renderer sees each pose once, so nothing is cached. The first round warms up.
-        let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0];
-        for object in scene.objects_mut() {
-            object.angles = angles.map(Angle::from_radians);
+    let (mut posed, mut models) = (None, Vec::new());
+    let mut times = times_by(ours.len() + 1, rounds + 1, |round, which| {
+        // Each renderer sees each pose once, so nothing is cached.
+        if posed.replace(round) != Some(round) {
+            let angles = [0.4, 0.6 + 0.01 * round as f64, 0.0].map(Angle::from_radians);
+            scene.objects_mut().iter_mut().for_each(|object| object.angles = angles);
+            let turn = scene.objects()[0].rotation();
+            let of_place =
+                |(place, size): &(Vec3, f32)| model(turn, bounds.centre, (*place * bounds.radius, *size), scale);
+            models = places.iter().map(of_place).collect::<Vec<[f32; 16]>>();
         }
-        let turn = scene.objects()[0].rotation();
-        let of_place = |(place, size): &(Vec3, f32)| model(turn, bounds.centre, (*place * bounds.radius, *size), scale);
-        let models: Vec<[f32; 16]> = places.iter().map(of_place).collect();
-        for &which in turns.shuffled() {
-            let started = seconds();
-            match ours.get_mut(which) {
-                Some((renderer, vga)) => drop(renderer.draw(&scene, vga)?),
-                // SAFETY: `models` has this many matrices of 16.
-                None => unsafe { peers_mesa_frame(models.as_flattened().as_ptr(), models.len() as c_int) },
-            }
-            if round > 0 {
-                times[which].push(seconds() - started);
-            }
-        }
-    }
+        seconds(|| match ours.get_mut(which) {
+            Some((renderer, vga)) => _ = renderer.draw(&scene, vga).expect("a legal scene"),
+            // SAFETY: `models` has this many matrices of 16.
+            None => unsafe { peers_mesa_frame(models.as_flattened().as_ptr(), models.len() as c_int) },
+        })
+    });
+    // The first round warms up.
+    times.iter_mut().for_each(|times| _ = times.remove(0));
+    let times = times.into_iter().map(Times).collect();
     let mut theirs = vec![0; WIDTH * HEIGHT];
     // SAFETY: Mesa has as many pixels.
     unsafe { peers_mesa_read(theirs.len() as c_int, theirs.as_mut_ptr()) };

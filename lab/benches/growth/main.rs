@@ -10,13 +10,18 @@
 //! proportion.
 
 mod case;
+#[allow(dead_code)]
+#[path = "../../../benches/interleaved/mod.rs"]
+mod interleaved;
 mod series;
+#[path = "../../../benches/interleaved/thread_time.rs"]
+mod thread_time;
 
 use std::hint::black_box;
-use std::time::Duration;
 
 use case::Case;
 use series::Series;
+use thread_time::seconds;
 
 /// What a bound says of ns a face at 10⁶ faces, divided by those at 10⁴.
 const MAX_GROWTH: f64 = 1.5;
@@ -24,7 +29,7 @@ const MAX_GROWTH: f64 = 1.5;
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     // Under `cargo test` it only has to run.
-    let is_bench = words.iter().any(|word| word == "--bench");
+    let is_bench = interleaved::is_bench();
     let most = match words.iter().position(|word| word == "--most") {
         Some(at) => words.get(at + 1).and_then(|word| word.parse().ok()).expect("--most takes a number of faces"),
         None if !is_bench => 3_000,
@@ -47,28 +52,19 @@ fn main() {
         Series::new("suns", "suns", "frame", case::lights(case::sun)),
         Series::new("lamps", "lamps", "frame", case::lights(case::lamp)),
     ];
-    for round in 0..=rounds {
-        let count: usize = all.iter().map(|series| series.cases.len()).sum();
-        let mut cases: Vec<&mut Case> = all.iter_mut().flat_map(|series| &mut series.cases).collect();
-        for i in 0..count {
-            // In a new order each round: so no case always comes after the same one.
-            let case = &mut cases[(i * 7 + round) % count];
-            let started = thread_time();
-            for _ in 0..case.repeats {
-                black_box(case.draw());
-            }
-            let time = (thread_time() - started).as_secs_f64() * 1e9 / f64::from(case.repeats);
-            if round == 0 {
-                // The first frame, in which memory is taken, and one to see how many make 2 ms.
-                let started = thread_time();
-                case.draw();
-                let time = (thread_time() - started).as_secs_f64() * 1e9;
-                case.repeats = if is_bench { (2e6 / time.max(1.0)).clamp(1.0, 10_000.0) as u32 } else { 1 };
-            } else {
-                case.times.push(time);
-            }
-        }
+    let mut cases: Vec<&mut Case> = all.iter_mut().flat_map(|series| &mut series.cases).collect();
+    for case in &mut cases {
+        // The first frame, in which memory is taken, and one to see how many make 2 ms.
+        case.draw();
+        let time = seconds(|| _ = case.draw());
+        case.repeats = if is_bench { (2e-3 / time.max(1e-9)).clamp(1.0, 10_000.0) as u32 } else { 1 };
     }
+    let times = interleaved::times_by(cases.len(), rounds, |_, which| {
+        let repeats = cases[which].repeats;
+        let time = seconds(|| (0..repeats).for_each(|_| _ = black_box(cases[which].draw())));
+        time * 1e9 / f64::from(repeats)
+    });
+    cases.iter_mut().zip(times).for_each(|(case, times)| case.times = times);
     println!("\nmedian of {rounds} rounds");
     all.iter().for_each(Series::print);
 
@@ -83,13 +79,4 @@ fn main() {
             if kept { "kept" } else { "NOT KEPT" }
         );
     }
-}
-
-/// Time that this thread has run, where the system counts it: other programs do not add to that.
-fn thread_time() -> Duration {
-    #[cfg(unix)]
-    if let Ok(time) = nix::time::clock_gettime(nix::time::ClockId::CLOCK_THREAD_CPUTIME_ID) {
-        return time.into();
-    }
-    std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
 }

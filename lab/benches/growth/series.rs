@@ -1,6 +1,7 @@
 //! A row of cases that differ in one thing, and how their time grows with it.
 
 use crate::case::Case;
+use crate::interleaved::median;
 
 pub(crate) struct Series {
     pub(crate) title: &'static str,
@@ -19,7 +20,7 @@ impl Series {
     /// x, and the median nanoseconds: of a frame, or of a triangle where the number of triangles is not what grows.
     pub(crate) fn points(&self) -> Vec<(f64, f64)> {
         let each = |case: &Case| if self.of == "pixels" { case.units } else { 1.0 };
-        self.cases.iter().map(|case| (case.x, median(&case.times) / each(case))).collect()
+        self.cases.iter().map(|case| (case.x, median(case.times.clone()) / each(case))).collect()
     }
 
     /// The exponent e of time ~ xᵉ, over the points with x from `least` on: the slope of the line through the logarithms,
@@ -44,7 +45,7 @@ impl Series {
         let find = |faces: f64| self.cases.iter().find(|case| (case.x / faces - 1.0).abs() < 0.05);
         let (from, to) = (find(from)?, find(to)?);
         let ratios = from.times.iter().zip(&to.times).map(|(a, b)| (b / to.units) / (a / from.units));
-        Some(median(&ratios.collect::<Vec<f64>>()))
+        Some(median(ratios.collect()))
     }
 
     pub(crate) fn print(&self) {
@@ -54,7 +55,7 @@ impl Series {
         let points = self.points();
         let most = points.iter().fold(0.0_f64, |most, (_, ns)| most.max(*ns));
         for (case, (_, ns)) in self.cases.iter().zip(&points) {
-            let time = median(&case.times);
+            let time = median(case.times.clone());
             let bar = "#".repeat((40.0 + 8.0 * (ns / most).log10()).max(1.0) as usize);
             println!("{:>10} {:>14.1} {:>12.1} {:>12} {bar}", case.x, time / 1e3, time / case.units, case.pixels);
         }
@@ -75,10 +76,4 @@ impl Series {
             _ => 8.0,
         }
     }
-}
-
-fn median(times: &[f64]) -> f64 {
-    let mut sorted = times.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
 }
