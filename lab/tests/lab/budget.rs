@@ -266,37 +266,6 @@ fn shares_are_of_all_triangles() {
     }
 }
 
-/// A renderer that has drawn before gives the frames of a new one, whatever changes in between.
-#[test]
-fn a_kept_renderer_decides_as_a_fresh_one() {
-    let mut tried = Tried::new("a_kept_renderer_decides_as_a_fresh_one", 200);
-    for (name, mut scene) in scenes::all() {
-        let mut renderer = within(4.0);
-        let mut vga = Vga::new();
-        for change in 0..8 {
-            let max_error = match change {
-                1 | 2 => 1.0,
-                3 => 9.0,
-                _ => 4.0,
-            };
-            if change == 4 {
-                scene.objects_mut()[0].rotate_y(Angle::from_radians(0.3));
-            }
-            // Only the eye moves, so the objects' error bounds remain known.
-            if change > 5 {
-                scene.camera.eye += 0.2;
-            }
-            if change == 5 {
-                scene.lights_mut().iter_mut().for_each(|light| *light = light.with_intensity(0.6));
-            }
-            renderer.settings.accuracy = Some(Accuracy::WithinError(max_error));
-            let kept = draw(&mut renderer, &scene, &mut vga);
-            assert_eq!(kept, draw(&mut within(max_error), &scene, &mut Vga::new()), "{name}, change {change}");
-            tried.add(1);
-        }
-    }
-}
-
 /// Wider budgets never light more pixels individually.
 #[test]
 fn a_wider_budget_lights_fewer_pixels() {
