@@ -48,4 +48,4 @@ else:
 wrong = sum(a != b for a, b in zip(screen, pixels))
 if len(screen) != length or wrong or colors_wrong:
     sys.exit(f"{len(screen)} bytes; {wrong} pixels and {colors_wrong} colours or parts of them differ")
-print("video memory and DAC are those of the picture")
+print("video memory and DAC match the picture")

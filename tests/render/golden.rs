@@ -33,7 +33,7 @@ fn golden_frames() {
         scene.settings.accuracy = Some(shading.into());
         wrong.extend(check(&format!("{name}-{shading}"), &mut tried, |kernel| draw(&scene, kernel)));
     }
-    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
+    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were rewritten: {wrong:#?}");
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn golden_frames_of_every_scene() {
             wrong.extend(check(&format!("scenes/{}-{third}", shipped.name), &mut tried, |kernel| draw(&scene, kernel)));
         }
     }
-    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
+    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were rewritten: {wrong:#?}");
 }
 
 /// Grass, bricks and glazed tiles, each in its own colours, from three sides; and once in the nearest entries of the
@@ -114,5 +114,5 @@ fn golden_frames_of_a_house() {
     for (name, scene) in &scenes {
         wrong.extend(check(name, &mut tried, |kernel| draw(scene, kernel)));
     }
-    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were written anew: {wrong:#?}");
+    assert!(wrong.is_empty(), "frames that differ from their golden ones, or were rewritten: {wrong:#?}");
 }

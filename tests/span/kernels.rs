@@ -118,7 +118,8 @@ fn s6_drift(kernel: Kernel) {
                     for (k, (&byte, &sum)) in row.iter().zip(&sums).enumerate() {
                         let behind = exact(k as i64) - sum * denominator;
                         let lag = if slope >= 0 { behind } else { -behind };
-                        let place = format!("{kernel}: slope {slope}/{denominator}, anew every {reseed}, pixel {k}");
+                        let place =
+                            format!("{kernel}: slope {slope}/{denominator}, reseeded every {reseed}, pixel {k}");
                         let measure = if reseed == 320 { "shades behind" } else { "reseeded" };
                         tried.worst(measure, lag as f64 / denominator as f64 / 256.0);
                         assert!((0..bound * denominator).contains(&lag), "{place}: lag {lag}/{denominator}");

@@ -52,7 +52,7 @@ export class Stopwatch {
   #laps = [];
   /** Laps since the picture changed. */
   #fresh = 0;
-  /** Whether the scene is drawn anew as it moves: where nothing changes the engine leaves the frame as it is. */
+  /** Whether the scene moves and is redrawn: where nothing changes the engine leaves the frame as it is. */
   isRedrawn = true;
 
   /**

@@ -55,7 +55,7 @@ async function times() {
       const accuracy = setting.maxError ? `max-error=${setting.maxError}` : `shading=${setting.shading}`;
       const found = [];
       for (let i = 0; i < TRIES && !found.at(-1)?.isNear; i++) {
-        // Opened anew, as it is the first times that were wrong.
+        // Opened again, because only the first times were wrong.
         const tab = await suite.open({ isStill, link: state === "a link" ? `#scene=${name}&t=${seconds}&${accuracy}` : "" });
         if (state !== "a link") {
           await openScene(tab, name);

@@ -5,7 +5,7 @@ import { mountFigures } from "./figures/00-shared.js";
 
 mountFigures();
 
-/** Mounts anew what uses the engine. */
+/** Remounts what uses the engine. */
 export async function begin(wasm) {
   mountFigures(new Engine(await WebAssembly.compile(wasm)));
 }

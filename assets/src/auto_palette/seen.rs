@@ -34,8 +34,8 @@ pub struct Seen {
     pub brightest: f32,
 }
 
-/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, at more if
-/// something repeats 8 times in it or a multiple of that, or at one if nothing moves.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, or at one if
+/// nothing moves. There are more moments if a motion repeats a multiple of 8 times per loop.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].

@@ -10,7 +10,7 @@ use super::named::Named;
 /// The default shininess: neither broad nor a point.
 const SHININESS: f32 = 20.0;
 
-/// Changes `material` by the keys of the layout. `has_texcoords`: whether the mesh can have a texture.
+/// Applies the layout's keys to `material`. `has_texcoords`: whether the mesh can have a texture.
 pub(super) fn apply(
     layout: &MaterialLayout,
     material: &mut Material,

@@ -43,7 +43,7 @@ pub struct Settings {
     pub clock: Clock,
     /// Roughly how long to take times; up to twice as long while ratios are too uncertain.
     pub seconds: f64,
-    /// True if `seconds` is a limit: fewer rounds are drawn then, but at least seven.
+    /// True if `seconds` is a hard limit (at least seven rounds).
     pub at_most: bool,
     /// Seed of the drawing order and of resampling.
     pub seed: u64,

@@ -163,7 +163,7 @@ pub enum ProbeError {
     /// The scene cannot be drawn.
     #[error(transparent)]
     Scene(RenderError),
-    /// No frame has the screen's size.
+    /// The screen size is not a legal frame size.
     #[error(transparent)]
     Screen(RasterError),
     /// An object has too many surfaces for its triangles to be numbered.
@@ -224,7 +224,7 @@ impl Numbered {
         Ok(())
     }
 
-    /// An object with another mesh. Each of its materials is repeated for every digit, and shows it whatever the light.
+    /// An object with another mesh. Copies each material once per digit; each copy shows its digit under any light.
     fn object(&self, like: &Object, mesh: &Shared<Mesh>) -> Object {
         let digits = |material: &Material| {
             let mut digits = vec![material.clone(); self.base];

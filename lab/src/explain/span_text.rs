@@ -77,7 +77,7 @@ pub(super) fn say_account(text: &mut Text, shade_trace: &ShadeTrace, x: u32) {
 
 fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
     let Accumulator { first, start_at, start, steps, half, .. } = *sums;
-    let anew = if start_at == first { String::new() } else { format!(", restarted every 64 pixels: at {start_at}") };
+    let restart = if start_at == first { String::new() } else { format!(", restarted every 64 pixels: at {start_at}") };
     let half_words = if half > 0 { ", plus half a shade so that the byte is the nearest" } else { ", no half added" };
     let back = match sums.step {
         0 => "cut",
@@ -85,7 +85,7 @@ fn say_sums(text: &mut Text, sums: &Accumulator, x: u32) {
         _ => "rounded down because it rises",
     };
     let back = if half > 0 { format!("the exact shade there, {back}") } else { "its left edge's shade".into() };
-    text.say("span", &format!("begins at column f = {first}{anew}; this is column {x}"));
+    text.say("span", &format!("begins at column f = {first}{restart}; this is column {x}"));
     let in_shades = in_units(sums, f64::from(start));
     text.say("start", &format!("0x{} = {in_shades:.3}: {back}{half_words}", hex(sums, start)));
     let sum = sums.sum();

@@ -318,18 +318,18 @@ fn every_pixel_of_a_long_row_and_of_equal_depths() {
         }
         let mut renderer = shaded(shading);
         let bytes = frame(&mut renderer, &scene);
-        let mut anew = 0;
+        let mut restarts = 0;
         for x in 0..320 {
             let pixel = explain(&mut renderer, &scene, x, 90);
             assert_eq!(pixel.byte, bytes[90 * 320 + x as usize], "{pixel}");
             check_front(&pixel, &format!("{shading} at {x}"));
             let shade_trace = pixel.front().and_then(|(_, seen)| seen.accounts.first().copied());
             if let Some(ShadeTrace { way: Progression::Accumulator(sums), .. }) = shade_trace {
-                anew += usize::from(sums.start_at != sums.first);
+                restarts += usize::from(sums.start_at != sums.first);
                 assert!(shading != Shading::Gouraud88Reseeded || sums.steps < 64, "{pixel}");
             }
         }
-        assert!(shading != Shading::Gouraud88Reseeded || anew > 100, "{anew}");
+        assert!(shading != Shading::Gouraud88Reseeded || restarts > 100, "{restarts}");
     }
 }
 

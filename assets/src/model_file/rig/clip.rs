@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// The formula of the specification, appendix C, with numbers that f32 holds.
+    /// The formula of the specification, appendix C, with values exact in f32.
     #[test]
     fn a_spline_follows_the_formula() {
         let (a, b, c) = ([1.0, -2.0, 0.5, 8.0], [3.0, 0.25, 0.0, -1.0], [-4.0, 2.0, 1.0, 0.5]);

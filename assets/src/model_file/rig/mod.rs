@@ -22,7 +22,7 @@ pub(crate) use stage::{Eye, Kind, Source};
 
 use crate::wide::{Wide, widen};
 
-/// The moving parts of a model that was read: its skeleton, and its animations.
+/// A loaded model's skeleton and animations.
 ///
 /// ```no_run
 /// use mode13h::scene::{Object, Scene};
