@@ -91,7 +91,7 @@ pub(crate) enum Lamps {
     All,
 }
 
-/// The dithering, in place of the constant half that is otherwise added to a shade.
+/// The dithering, in place of the constant half that is usually added to a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) enum Dither {
     #[default]

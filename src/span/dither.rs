@@ -1,4 +1,4 @@
-//! Dither: at each pixel a threshold replaces the half that is otherwise added to a shade.
+//! Dither: at each pixel a threshold replaces the half that is usually added to a shade.
 //!
 //! ```text
 //! row[k] = ((shade + k·step + thresholds.at(x + k)) mod 65,536) >> 8

@@ -51,7 +51,7 @@ function promiseText({ max, maxError, beyond, edgeOn }) {
 }
 
 /**
- * Why the slider changes nothing here, or makes a frame dearer, if it does; by what was measured at its marks.
+ * Why the slider changes nothing here, or makes a frame slower, if it does; by what was measured at its marks.
  * @param {Setting} state
  * @param {(Mark | undefined)[]} found
  */
@@ -72,12 +72,12 @@ function whyText(state, found) {
   if (!state.maxError) return "";
   if (from < budgets.length && state.maxError <= OCTAVES[from - 1]) return `Already as exact as it gets: from ${budgetText(OCTAVES[from - 1])} on the slider changes nothing.`;
   const here = budgets[clamp(Math.round(Math.log2(OCTAVES[0] / state.maxError)), 0, budgets.length - 1)];
-  const isDearer = here.isRedrawn && (here.ms ?? 0) > DEARER * (finest.ms ?? Infinity);
-  return isDearer ? "Slower than ½ shade here: bounding the error of a blend takes longer than lighting its pixels." : "";
+  const isSlower = here.isRedrawn && (here.ms ?? 0) > SLOWER * (finest.ms ?? Infinity);
+  return isSlower ? "Slower than ½ shade here: bounding the error of a blend takes longer than lighting its pixels." : "";
 }
 
 /** How much longer a coarser picture must take for the page to say why. */
-const DEARER = 1.08;
+const SLOWER = 1.08;
 
 export class Accuracy {
   /**

@@ -15,7 +15,7 @@ import { msText } from "./stopwatch.js";
 const SAME = 0.05;
 
 /**
- * How many times the dearer of two takes, with an arrow to it.
+ * How many times as long the slower of two takes, with an arrow to it.
  * @param {number} left
  * @param {number} right
  */

@@ -16,7 +16,7 @@ use mode13h::scene::{Motion, Path, Scene};
 use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
-/// The number of pictures per loop, unless too many of them would be alike.
+/// The number of pictures per loop, unless too many of them would show the same pose.
 const POSES: u32 = 16;
 
 /// The greatest number of pictures per loop.

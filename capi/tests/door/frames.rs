@@ -26,7 +26,7 @@ struct Corner {
     slope: [i32; 2],
 }
 
-/// Triangles that are drawn alike, with the memory of their texels.
+/// Triangles that are drawn by one material, with the memory of their texels.
 struct Run {
     material: Material,
     texels: Vec<u8>,
@@ -87,7 +87,7 @@ fn material_of(pipeline: &PixelPipeline<'_>) -> Option<(Material, Vec<u8>)> {
     Some((made, texels))
 }
 
-/// Returns whether two materials draw alike. Texels are compared by the object they are of.
+/// Returns whether two materials draw the same. Texels are compared by the object they are of.
 fn is_alike(a: &Material, b: &Material) -> bool {
     let numbers = |m: &Material| [m.shading, m.color, m.cull, m.mapping, m.dither, m.keep_depth, m.u_bits, m.v_bits];
     let tables = |m: &Material| [m.shade_table, m.slope_table, m.fog_table, m.blend_table];

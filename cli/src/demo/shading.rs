@@ -38,7 +38,7 @@ enum Wish {
     Shading(Shading),
     /// The next cheaper shading.
     Cheaper,
-    /// The next dearer one.
+    /// The next more expensive one.
     Dearer,
     /// The budget.
     Budget,
