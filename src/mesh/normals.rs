@@ -189,8 +189,8 @@ impl Mesh {
 
     /// Gives every face its own normal at all its corners. Vertices are split where necessary.
     ///
-    /// It shows facets with any shading. [`Shading::Flat`](crate::settings::Shading::Flat) shows them without it, and
-    /// without more vertices.
+    /// For facets under any shading. [`Shading::Flat`](crate::settings::Shading::Flat) shows facets without splitting
+    /// vertices.
     pub fn flat(&mut self) {
         let faces = self.faces();
         let normal = |corner: usize, _| {

@@ -89,8 +89,8 @@ fn welded(triangle: [u32; 3], points: &[u32]) -> [u32; 3] {
 pub(super) struct Edges {
     /// The index where each point's edges begin, and where the last one's end.
     starts: Vec<u32>,
-    /// The edges, grouped by point in order. First comes twice the edge's higher point, plus 1 if the edge runs
-    /// downward; then the corner where it starts, counted through all triangles.
+    /// The edges, grouped by point in order: twice the edge's higher point, plus 1 if it runs downward; and the corner
+    /// where it starts, counted through all triangles.
     edges: Vec<(u32, u32)>,
 }
 

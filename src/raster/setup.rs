@@ -252,7 +252,7 @@ impl TriangleSetup8 {
         split: [0; LANES],
     };
 
-    /// Stores the depth plane of triangle `i`, which is too large for eight at a time.
+    /// Stores the depth plane of triangle `i`, which is too large for the eight-lane set-up.
     pub(super) fn put_depth_plane(&mut self, i: usize, plane: &DepthPlane) {
         let (column, row) = (self.column[i], self.row[i]);
         let z = plane.fixed_at(column, row);

@@ -113,8 +113,8 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 pub struct Kernel {
     name: &'static str,
     level: Level,
-    /// Uses only features that every processor of the target has. Any other level is a proof that
-    /// this processor has its features, and has its own function.
+    /// Uses only features that every processor of the target has. Other levels hold a proof that this processor has
+    /// theirs, and have functions of their own.
     fill: Fill,
 }
 

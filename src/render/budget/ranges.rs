@@ -321,7 +321,7 @@ pub(super) fn dot(a: &Vectors, b: &Vectors) -> Lanes<f32> {
     each!(lane => a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }
 
-/// Square root; both functions round correctly, so they agree. The compiler vectorises the first.
+/// The square root, with or without `std`: both round correctly, so they agree. The compiler vectorises that of `std`.
 #[inline(always)]
 pub(super) fn square_root(square: f32) -> f32 {
     #[cfg(feature = "std")]

@@ -16,7 +16,7 @@ use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
 
 compiled_for_each_level! {
-    /// [`project_inside`](super::project_inside), or [`project_tested`](super::project_tested).
+    /// Projects vertices, eight at a time, with or without the test of the near plane.
     pub(super) fn project[const TESTED: bool][TESTED](
         view: &ObjectView,
         narrow: &Narrow,

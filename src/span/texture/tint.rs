@@ -6,7 +6,7 @@ use crate::simd::Lanes8;
 /// Values of a span that are linear along it: the first, with the step in the upper half.
 #[derive(Clone, Copy)]
 pub(crate) struct SpanValues {
-    /// The shade.
+    /// The packed shade.
     pub(crate) paint: u32,
     /// The density of fog, if there is any.
     pub(crate) fog: u32,
