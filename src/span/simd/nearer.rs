@@ -297,18 +297,17 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
     let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
     let mut stayed = _mm256_setzero_si256();
     let (pixels, cells) = (row.as_chunks_mut::<SIXTEEN>().0, cells.as_chunks_mut::<SIXTEEN>().0);
-    for (pixels, cells) in pixels.iter_mut().zip(cells) {
-        let left = depths.left;
-        let mut depths = [depths.next(), depths.next()];
-        if left < SIXTEEN {
-            // The last ones.
-            let there = [first_eight(left), first_eight(left.saturating_sub(EIGHT))];
-            depths = [_mm256_and_si256(depths[0], there[0]), _mm256_and_si256(depths[1], there[1])];
-        }
-        stayed = _mm256_add_epi32(stayed, sixteen(pixels, cells, depths, shades));
+    let n = pixels.len().min(cells.len());
+    let Some(last) = n.checked_sub(1) else { return stayed };
+    let (pixels, cells) = (&mut pixels[..n], &mut cells[..n]);
+    for i in 0..last {
+        let depths = [depths.next(), depths.next()];
+        stayed = _mm256_add_epi32(stayed, sixteen(&mut pixels[i], &mut cells[i], depths, shades));
         shades = _mm256_add_epi16(shades, next_shade);
     }
-    stayed
+    let there = [first_eight(depths.left), first_eight(depths.left.saturating_sub(EIGHT))];
+    let depths = [_mm256_and_si256(depths.next(), there[0]), _mm256_and_si256(depths.next(), there[1])];
+    _mm256_add_epi32(stayed, sixteen(&mut pixels[last], &mut cells[last], depths, shades))
 }
 
 /// Fills sixteen pixels where they are nearer; a pixel of depth 0 stays. The shades are arranged as by [`halves`].
