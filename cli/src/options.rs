@@ -219,7 +219,7 @@ impl Drawing {
         default_kernel()
     }
 
-    /// Those of [`IGNORED_BY_DOS`] that were given.
+    /// The options in [`IGNORED_BY_DOS`] that were given.
     pub(crate) fn ignored_by_dos(&self) -> Vec<String> {
         let Pipeline { hidden_surfaces, mapping, mipmaps, no_mipmaps, arithmetic, kernel, vertex_bits, .. } =
             &self.pipeline;

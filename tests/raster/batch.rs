@@ -68,7 +68,8 @@ fn together<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Inte
     raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
 }
 
-/// What the portable kernel draws one by one, and `on` returns with its counts; every kernel must draw it together.
+/// The result and counts that `on` returns for the portable kernel, one triangle at a time. Every kernel must give the
+/// same for all triangles together.
 fn drawn_alike<T: PartialEq>(
     triangles: &[([Vertex; 3], Interpolation)],
     about: impl Display,

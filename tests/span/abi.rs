@@ -45,8 +45,8 @@ mod machine;
 #[path = "abi/i686.rs"]
 mod machine;
 
-/// What the trampoline reads: four words for the arguments, six for callee-saved registers, as far as there are as many,
-/// and one for all other registers.
+/// The trampoline's input: four words for the arguments, one for each callee-saved register, at most six, and one for all
+/// other registers.
 #[repr(C)]
 pub(crate) struct Call {
     kernel: entry::Entry,
@@ -55,7 +55,7 @@ pub(crate) struct Call {
     rubbish: usize,
 }
 
-/// What the trampoline found after the kernel returned.
+/// The state that the trampoline found after the kernel returned.
 #[repr(C)]
 #[derive(Default)]
 pub(crate) struct Seen {

@@ -19,7 +19,7 @@ mod allegro;
 mod candidate;
 mod drawing;
 mod field;
-#[allow(dead_code)]
+#[expect(dead_code, reason = "other benchmarks use the rest")]
 #[path = "../../interleaved/mod.rs"]
 mod interleaved;
 mod ours;

@@ -88,7 +88,7 @@ fn the_help_of_the_program_is_that_of_demo_without_the_drawing() {
     assert!(help("", "--help", "100").contains("`mode13h demo --help` explains"));
 }
 
-/// What a program for DOS ignores is accepted, with a note, but not offered.
+/// Options that a program for DOS ignores are accepted with a note, but not offered.
 #[test]
 fn the_help_of_dos_leaves_out_what_it_ignores() {
     let ignored =
@@ -317,7 +317,7 @@ fn quiet_commands_say_nothing() {
     folder.fails("render cube -q", 3, "");
 }
 
-/// What a command is run for is printed all the same: text, or JSON.
+/// Even with `--quiet` a command prints its result, as text or JSON.
 #[test]
 fn quiet_commands_print_what_was_asked_for() {
     let folder = Folder::new();

@@ -10,7 +10,7 @@
 //! proportion.
 
 mod case;
-#[allow(dead_code)]
+#[expect(dead_code, reason = "other benchmarks use the rest")]
 #[path = "../../../benches/interleaved/mod.rs"]
 mod interleaved;
 mod series;
