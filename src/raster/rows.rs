@@ -367,7 +367,10 @@ impl<S: Lanes8> RowCursor8<S> {
         number: i32,
     ) -> Spans8<S, P::Columns<S>> {
         if const { is_apart::<S, P>() } {
-            apart(|| self.row::<P, DEPTHS>(s, setup, shades, list, number))
+            s.apart(
+                #[inline(always)]
+                || self.row::<P, DEPTHS>(s, setup, shades, list, number),
+            )
         } else {
             self.row::<P, DEPTHS>(s, setup, shades, list, number)
         }
@@ -411,12 +414,6 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Calls code of the baseline that would otherwise be inlined several times, or into a long loop.
-#[inline(never)]
-fn apart<R>(part: impl FnOnce() -> R) -> R {
-    part()
-}
-
 /// Returns whether lanes are plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while inlining
 /// makes a build take half as long again or more. Vectors are aligned to their size.
 #[inline(always)]
@@ -434,8 +431,8 @@ const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
 /// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that the
 /// call is not compiled for the other levels.
 #[inline(always)]
-pub(super) fn part<S: Lanes8, R>(part: impl FnOnce() -> R) -> R {
-    if const { are_arrays::<S>() } { apart(part) } else { part() }
+pub(super) fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
+    if const { are_arrays::<S>() } { s.apart(part) } else { part() }
 }
 
 /// [`Shades8::append`].
@@ -448,7 +445,10 @@ fn append<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     dz: DepthSteps<S>,
 ) {
     if const { is_apart::<S, P>() } {
-        apart(|| shades.append::<S, DEPTHS>(s, list, spans, dz));
+        s.apart(
+            #[inline(always)]
+            || shades.append::<S, DEPTHS>(s, list, spans, dz),
+        );
     } else {
         shades.append::<S, DEPTHS>(s, list, spans, dz);
     }
@@ -501,43 +501,49 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
 }
 
-/// The ends of eight rows, their indices, and the rows as spans.
-type EightRows<S, P> = (RowEnds<S>, <S as Lanes8>::F64, Spans8<S, <P as Shades8>::Columns<S>>);
+/// Eight rows of a triangle.
+struct EightRows<S: Lanes8> {
+    ends: RowEnds<S>,
+    /// Their indices.
+    j: S::F64,
+    /// Offsets of their first pixels and cells.
+    at: S::I32,
+    cell: S::I32,
+    length: S::I32,
+    /// Depths of their first pixels.
+    z: S::I64,
+}
 
-/// Eight rows of triangle `i` from row `first` on. Rows beyond its last have no length.
-#[inline(always)]
-fn eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
-    s: S,
-    setup: &TriangleSetup8,
-    shades: &P,
-    (i, first): (usize, i32),
-    list: &SpanList,
-) -> EightRows<S, P> {
-    let lane = OneTriangle(i);
-    let number = s.add_i32(s.splat_i32(first), s.load_i32(&NUMBERS));
-    let j = s.to_f64(number);
-    let ends = RowEnds::of(s, lane, setup, j, number);
-    let is_row = s.is_greater(lane.load_i32(s, &setup.rows), number);
-    let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
-    let at = s.add_i32(lane.load_i32(s, &setup.at), s.mul_i32(number, s.splat_i32(list.pitch)));
-    let (mut cell, mut z) = (at, s.splat_i64(0));
-    if DEPTHS {
-        cell = s.add_i32(lane.load_i32(s, &setup.cell), s.mul_i32(number, s.splat_i32(list.width)));
-        z = s.mul_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
-        z = s.add_i64(z, lane.load_i64(s, &setup.z));
-        z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
+impl<S: Lanes8> EightRows<S> {
+    /// Rows of triangle `i` from row `first` on. Those beyond its last have no length.
+    #[inline(always)]
+    fn new<const DEPTHS: bool>(s: S, setup: &TriangleSetup8, (i, first): (usize, i32), list: &SpanList) -> Self {
+        let lane = OneTriangle(i);
+        let number = s.add_i32(s.splat_i32(first), s.load_i32(&NUMBERS));
+        let j = s.to_f64(number);
+        let ends = RowEnds::of(s, lane, setup, j, number);
+        let is_row = s.is_greater(lane.load_i32(s, &setup.rows), number);
+        let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
+        let at = s.add_i32(lane.load_i32(s, &setup.at), s.mul_i32(number, s.splat_i32(list.pitch)));
+        let (mut cell, mut z) = (at, s.splat_i64(0));
+        if DEPTHS {
+            cell = s.add_i32(lane.load_i32(s, &setup.cell), s.mul_i32(number, s.splat_i32(list.width)));
+            z = s.mul_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
+            z = s.add_i64(z, lane.load_i64(s, &setup.z));
+            z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
+        }
+        let length = s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0));
+        Self { ends, j, at: s.add_i32(at, left), cell: s.add_i32(cell, left), length, z }
     }
-    let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-    let (paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
-    let spans = Spans8 {
-        at: s.add_i32(at, left),
-        cell: s.add_i32(cell, left),
-        length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
-        paint,
-        z,
-        columns,
-    };
-    (ends, j, spans)
+
+    /// The whole rows as spans.
+    #[inline(always)]
+    fn spans<P: Shades8>(&self, s: S, setup: &TriangleSetup8, shades: &P, i: usize) -> Spans8<S, P::Columns<S>> {
+        let Self { ends, j, at, cell, length, z } = self;
+        let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
+        let (paint, columns) = shades.fill_of(s, OneTriangle(i), setup, (ends, *j), &parts);
+        Spans8 { at: *at, cell: *cell, length: *length, paint, z: *z, columns }
+    }
 }
 
 /// Lists eight rows of small triangle `i` from row `first` on. The list must have room for eight.
@@ -549,7 +555,7 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     (i, first): (usize, i32),
     list: &mut SpanList,
 ) {
-    let (_, _, spans) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
+    let spans = EightRows::new::<DEPTHS>(s, setup, (i, first), list).spans(s, setup, shades, i);
     shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
 }
 
@@ -566,11 +572,13 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let lane = OneTriangle(i);
-    let (ends, j, rows) = eight_rows::<S, P, DEPTHS>(s, setup, shades, (i, first), list);
+    let rows = EightRows::new::<DEPTHS>(s, setup, (i, first), list);
     if clip.is_none() && s.to_bitmask(s.is_greater(rows.length, s.splat_i32(longest))) == 0 {
-        shades.append::<S, DEPTHS>(s, list, &rows, DepthSteps::All(setup.z_per_column[i % LANES]));
+        let spans = rows.spans(s, setup, shades, i);
+        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         return;
     }
+    let ends = &rows.ends;
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame relative to the box's first. All are below 4,096.
     let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
@@ -593,7 +601,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             right = s.min(right, side(clip.x1));
         }
         let parts = Parts { row: row_origin, end: last, seed: left, start };
-        let (mut paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+        let (mut paint, columns) = shades.fill_of(s, lane, setup, (ends, rows.j), &parts);
         if P::IS_LINEAR && clip.is_some() {
             // A piece that begins left of the rectangle continues from its start.
             paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
@@ -608,7 +616,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             columns,
         };
-        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
         left = end;
         if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;

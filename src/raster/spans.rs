@@ -283,7 +283,8 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             shades.draw::<S, LISTED>(s, list, target);
         }
         shades.begin(number * LANES);
-        rows::part::<S, _>(
+        rows::part(
+            s,
             #[inline(always)]
             || {
                 let basis = if P::IS_FLAT {
@@ -343,7 +344,8 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
                     shades.draw::<S, LISTED>(s, list, target);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
-                rows::part::<S, _>(
+                rows::part(
+                    s,
                     #[inline(always)]
                     || rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list),
                 );

@@ -87,6 +87,17 @@ impl Lanes8 for Avx2 {
     /// −1 in the set lanes, 0 in the others.
     type Mask = __m256i;
 
+    #[inline(always)]
+    fn apart<R>(self, part: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx2,fma,popcnt")]
+        #[inline(never)]
+        fn call<R>(part: impl FnOnce() -> R) -> R {
+            part()
+        }
+        // SAFETY: the token proves that the processor has the level.
+        unsafe { call(part) }
+    }
+
     intrinsics! {
         fn load_f64(from: &[f64; 8]) -> F64 { [_mm256_loadu_pd(from.as_ptr()), _mm256_loadu_pd(from.as_ptr().add(4))] }
         fn splat_f64(value: f64) -> F64 { [_mm256_set1_pd(value); 2] }

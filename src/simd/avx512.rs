@@ -16,6 +16,17 @@ impl Lanes8 for Avx512 {
     type I64 = __m512i;
     type Mask = __mmask8;
 
+    #[inline(always)]
+    fn apart<R>(self, part: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt,avx2,fma")]
+        #[inline(never)]
+        fn call<R>(part: impl FnOnce() -> R) -> R {
+            part()
+        }
+        // SAFETY: the token proves that the processor has the level.
+        unsafe { call(part) }
+    }
+
     intrinsics! {
         fn load_f64(from: &[f64; 8]) -> __m512d { _mm512_loadu_pd(from.as_ptr()) }
         fn splat_f64(value: f64) -> __m512d { _mm512_set1_pd(value) }

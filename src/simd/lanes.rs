@@ -33,7 +33,8 @@ pub(super) use intrinsics;
 
 /// Operations on eight lanes of f64, i32 and i64, and on masks of eight lanes.
 ///
-/// All methods are inlined into a function that is compiled for the level: see `compiled_for_each_level!`.
+/// All methods except [`apart`](Self::apart) are inlined into a function that is compiled for the level: see
+/// `compiled_for_each_level!`.
 ///
 /// # Safety invariant
 /// Every implementation computes what is said here: [`SpanList`](crate::span::list::SpanList) admits spans by it.
@@ -46,6 +47,18 @@ pub(crate) trait Lanes8: Copy {
     type I64: Copy;
     /// Eight booleans.
     type Mask: Copy;
+
+    /// Calls a part of a function that is better not inlined: because it would be compiled several times, or because it
+    /// is rare and would slow down what is around it. If the closure is `#[inline(always)]`, it is compiled for this level;
+    /// what it captures by reference has to be in memory.
+    #[inline(always)]
+    fn apart<R>(self, part: impl FnOnce() -> R) -> R {
+        #[inline(never)]
+        fn call<R>(part: impl FnOnce() -> R) -> R {
+            part()
+        }
+        call(part)
+    }
 
     fn load_f64(self, from: &[f64; 8]) -> Self::F64;
     fn splat_f64(self, value: f64) -> Self::F64;

@@ -90,7 +90,7 @@ use super::triangle::Raster;
 use crate::fixed::{HAS_F64, IS_COMPACT};
 pub use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
-use crate::simd::{Lanes8, Level, compiled_for_each_level};
+use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
 use crate::span::list::{Span, SpanList, Target};
 pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
@@ -249,11 +249,12 @@ fn write_by<S: Lanes8>(
 }
 
 compiled_for_each_level! {
-    /// Draws triangles with effects; if there are cells, only their nearer pixels.
+    /// Draws triangles with effects; if there are cells, only their nearer pixels. With wide vectors the compiler knows
+    /// the mapping.
     #[inline(never)]
     fn draw_effects[const MAPPED: u8][MAPPED](
         of: Drawn<'_>,
-        effects: (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
+        effects: (EffectSpans<'_>, &mut SpanList),
         place: Place,
         target: &mut Target<'_>,
     ) -> DrawStats = draw_effects_by;
@@ -263,22 +264,26 @@ compiled_for_each_level! {
 fn draw_effects_by<S: Lanes8, const MAPPED: u8>(
     s: S,
     of: Drawn<'_>,
-    (effects, list): (&mut EffectSpans<'_, MAPPED>, &mut SpanList),
-    place: Place,
-    target: &mut Target<'_>,
-) -> DrawStats {
-    draw_triangles::<S, _, true, true>(s, of, place, target, effects, list)
-}
-
-/// Draws triangles with effects, whose mapping the compiler knows.
-fn draw_mapped<const MAPPED: u8>(
-    level: Level,
-    of: Drawn<'_>,
     (spans, list): (EffectSpans<'_>, &mut SpanList),
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_effects::<MAPPED>(level, of, (&mut spans.with_mapping::<MAPPED>(), list), place, target)
+    // Columns do not fit into registers of 128 bits anyway, and each copy takes seconds to compile.
+    if const { align_of::<S::F64>() <= 16 } {
+        return draw_at_baseline(of, (spans, list), place, target);
+    }
+    draw_triangles::<S, _, true, true>(s, of, place, target, &mut spans.with_mapping::<MAPPED>(), list)
+}
+
+/// Draws triangles with effects by what every processor of the target has.
+#[inline(never)]
+fn draw_at_baseline(
+    of: Drawn<'_>,
+    (mut spans, list): (EffectSpans<'_>, &mut SpanList),
+    place: Place,
+    target: &mut Target<'_>,
+) -> DrawStats {
+    draw_triangles::<_, _, true, true>(BASELINE, of, place, target, &mut spans, list)
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -313,10 +318,12 @@ impl<D: Cell> Raster<'_, D> {
                 let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
                 let (level, place) = (kernel.simd_level(), (layout, clip));
                 drawn += match spans.mapping() {
-                    _ if IS_COMPACT => draw_mapped::<{ mapped::ANY }>(level, of, (spans, list), place, target),
-                    None => draw_mapped::<{ mapped::NONE }>(level, of, (spans, list), place, target),
-                    Some(Mapping::Affine) => draw_mapped::<{ mapped::AFFINE }>(level, of, (spans, list), place, target),
-                    Some(_) => draw_mapped::<{ mapped::ON_FACE }>(level, of, (spans, list), place, target),
+                    _ if IS_COMPACT => draw_effects::<{ mapped::ANY }>(level, of, (spans, list), place, target),
+                    None => draw_effects::<{ mapped::NONE }>(level, of, (spans, list), place, target),
+                    Some(Mapping::Affine) => {
+                        draw_effects::<{ mapped::AFFINE }>(level, of, (spans, list), place, target)
+                    }
+                    Some(_) => draw_effects::<{ mapped::ON_FACE }>(level, of, (spans, list), place, target),
                 };
                 first += together;
                 continue;

@@ -13,11 +13,11 @@ use crate::lanes::LANES;
 use crate::mapping::Mapping;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
-use crate::simd::{BASELINE, F32Lanes8, Lanes8, compiled_for_each_level};
+use crate::simd::{BASELINE, F32Lanes8, Lanes8, Level, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
-    AffineAlong, LevelTexels, PairValues, PlaceLanes, PlacesAlong, Texels, Tint, affine_pair, fill_affine,
-    perspective_along, show_pair, singles_along, singles_pair,
+    AffineAlong, LevelTexels, PairValues, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, Texels, Tint,
+    affine_pair, fill_affine, perspective_along, show_pair, singles_along, singles_pair,
 };
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
@@ -37,7 +37,7 @@ pub(super) fn show_texture<T: Tint, D: Destination>(
     match mapping {
         _ if IS_COMPACT => show_mipmaps(spans, (image, mapping), tint, to, kernel),
         Mapping::Affine => show_affine::<T, D>(level, spans, image.texels, tint, to),
-        _ => show_exact::<T, D>(level, spans, image.texels, tint, to),
+        _ => show_exact::<T, D>(level, spans, image.texels, tint, (to, level)),
     }
 }
 
@@ -53,7 +53,7 @@ pub(super) fn show_mipmaps<T: Tint, D: Destination>(
     let level = kernel.simd_level();
     match mapping {
         Mapping::Affine => show_affine_levels::<T, D>(level, spans, image, tint, to),
-        _ => show_levels::<T, D>(level, spans, image, tint, to),
+        _ => show_levels::<T, D>(level, spans, image, tint, (to, level)),
     }
 }
 
@@ -118,7 +118,7 @@ compiled_for_each_level! {
 compiled_for_each_level! {
     /// Draws the texels of every span, linear on the face.
     #[inline(never)]
-    fn show_exact[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
+    fn show_exact[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: (&mut D, Level))
         = show_exact_by;
 }
 
@@ -126,7 +126,7 @@ compiled_for_each_level! {
     /// Draws the texels of every span, linear on the face, from a mipmap level chosen every 16
     /// pixels.
     #[inline(never)]
-    fn show_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: &mut D)
+    fn show_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: (&mut D, Level))
         = show_levels_by;
 }
 
@@ -216,7 +216,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     spans: &Spans<'_>,
     image: Texels<'_>,
     tint: T,
-    to: &mut D,
+    (to, level): (&mut D, Level),
 ) {
     let places = PlaceLanes::of_level(s, (image, 0));
     let mut i = 0;
@@ -242,7 +242,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
         }
         let (at, length, skipped) = to.span(spans, i);
         // At most 64.
-        show_part((spans, i, 0), (at, length), skipped as usize, ((image, 0), places), tint, to);
+        show_part((spans, i, 0), (at, length), skipped as usize, ((image, 0), places), tint, (to, level));
         i += 1;
     }
 }
@@ -265,52 +265,70 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     spans: &Spans<'_>,
     image: Image<'_>,
     tint: T,
-    to: &mut D,
+    (to, level): (&mut D, Level),
 ) {
-    const EVERY: usize = self::EVERY as usize;
-    let (texels, last_level) = (image.all(), image.last());
+    let (all, last_level) = (&image.all(), image.last());
     // The level of the face before, whose set-up is kept.
-    let mut image = (texels[0], 0);
+    let mut image = (all[0], 0);
     let mut places = PlaceLanes::of_level(s, image);
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
-        // In f32 alone, since each loop takes long to compile.
+        // Inlined for quotients in f32 alone, since each loop takes long to compile.
         if let Some(level) = single.filter(|_| !IS_COMPACT && spans.fits_singles(i)) {
-            // At most 64.
             if level != image.1 {
-                image = (texels[level as usize % LEVELS], level);
+                image = (all[level as usize % LEVELS], level);
                 places = PlaceLanes::of_level(s, image);
             }
+            // At most 64.
             show_in_singles((spans, i, 0), (at, length), skipped as usize, (image, places), tint, to);
             continue;
         }
-        // At most 64, all of them.
-        let (mut first, end, last) = (skipped as usize, skipped as usize + length, spans.last(i));
-        let level_of_16 = |begin: usize| {
-            let k = middle(begin as i32, last);
-            let estimated = if HAS_F64 { spans.level(i, k, last_level) } else { None };
-            match estimated {
-                Some(level) => level,
-                None => exact_level(spans, i, k, last_level),
-            }
-        };
-        // Where the next level is chosen.
-        let mut next = if single.is_some() { end } else { first / EVERY * EVERY };
-        let mut level = single.unwrap_or_else(|| level_of_16(next));
-        while first < end {
-            let (shown, before) = (level, first - skipped as usize);
-            while level == shown && next < end {
-                next += EVERY;
-                if next < end {
-                    level = level_of_16(next);
-                }
-            }
-            let (place, n) = ((spans, i, before as u32), next.min(end) - first);
-            let image = (texels[shown as usize % LEVELS], shown);
-            show_part(place, (at + before, n), first, (image, PlaceLanes::of_level(s, image)), tint, to);
-            first += n;
+        let to = (&mut *to, level);
+        // Moved: see `show_part`.
+        s.apart(
+            #[inline(always)]
+            move || show_parts(s, (spans, i), (at, length, skipped), (all, last_level, single), tint, to),
+        );
+    }
+}
+
+/// Draws the texels of span `i`, from levels chosen every 16 pixels unless there is a single one.
+#[inline(always)]
+fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
+    s: S,
+    (spans, i): (&Spans<'_>, usize),
+    (at, length, skipped): (usize, usize, u32),
+    (all, last_level, single): (&[Texels<'_>; LEVELS], u32, Option<u32>),
+    tint: T,
+    (to, lanes): (&mut D, Level),
+) {
+    const EVERY: usize = self::EVERY as usize;
+    // At most 64, all of them.
+    let (mut first, end, last) = (skipped as usize, skipped as usize + length, spans.last(i));
+    let level_of_16 = |begin: usize| {
+        let k = middle(begin as i32, last);
+        let estimated = if HAS_F64 { spans.level(i, k, last_level) } else { None };
+        match estimated {
+            Some(level) => level,
+            None => exact_level(spans, i, k, last_level),
         }
+    };
+    // Where the next level is chosen.
+    let mut next = if single.is_some() { end } else { first / EVERY * EVERY };
+    let mut level = single.unwrap_or_else(|| level_of_16(next));
+    while first < end {
+        let (shown, before) = (level, first - skipped as usize);
+        while level == shown && next < end {
+            next += EVERY;
+            if next < end {
+                level = level_of_16(next);
+            }
+        }
+        let (place, n) = ((spans, i, before as u32), next.min(end) - first);
+        let image = (all[shown as usize % LEVELS], shown);
+        show_part(place, (at + before, n), first, (image, PlaceLanes::of_level(s, image)), tint, (&mut *to, lanes));
+        first += n;
     }
 }
 
@@ -318,16 +336,29 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
-    at: (usize, usize),
+    (at, length): (usize, usize),
     first: usize,
-    image: (LevelTexels<'_>, PlaceLanes<S>),
+    (image, places): (LevelTexels<'_>, PlaceLanes<S>),
     tint: T,
-    to: &mut D,
+    (to, level): (&mut D, Level),
 ) {
     if !IS_COMPACT && spans.fits_singles(i) {
-        show_in_singles((spans, i, before), at, first, image, tint, to);
+        show_in_singles((spans, i, before), (at, length), first, (image, places), tint, to);
     } else {
-        show_in_doubles((spans, i, before), at, first, image, tint, to);
+        // Moved, so that nothing that the others use has to be in memory.
+        places.s.apart(
+            #[inline(always)]
+            move || {
+                // At most 64.
+                let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
+                let all = StoredAlong::new(
+                    places.s,
+                    #[inline(always)]
+                    |places| places_in_doubles(level, (spans, i), image, (first, first + length), places),
+                );
+                to.show(places.s, (spans, i, before), (at, length), (image.0, tint, along), all);
+            },
+        );
     }
 }
 
@@ -350,22 +381,31 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     to.show(places.s, (spans, i, before), at, (image.0, tint, along), all);
 }
 
-/// [`show_part`] by quotients in f64.
+compiled_for_each_level! {
+    /// Stores the indices of the texels of span `i` in this range of its pixels, by quotients in f64.
+    #[inline(never)]
+    fn places_in_doubles[][](
+        of: (&Spans<'_>, usize),
+        image: LevelTexels<'_>,
+        range: (usize, usize),
+        places: &mut StoredPlaces,
+    ) = places_in_doubles_by;
+}
+
 #[inline(always)]
-fn show_in_doubles<S: F32Lanes8, T: Tint, D: Destination>(
-    (spans, i, before): (&Spans<'_>, usize, u32),
-    (at, length): (usize, usize),
-    first: usize,
-    (image, places): (LevelTexels<'_>, PlaceLanes<S>),
-    tint: T,
-    to: &mut D,
+fn places_in_doubles_by<S: Lanes8>(
+    s: S,
+    (spans, i): (&Spans<'_>, usize),
+    image: LevelTexels<'_>,
+    range: (usize, usize),
+    places: &mut StoredPlaces,
 ) {
     let mut plane = None;
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
-    // At most 64.
-    let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
-    let all = perspective_along(places, spans.sums(i), (first, first + length), exact);
-    to.show(places.s, (spans, i, before), (at, length), (image.0, tint, along), all);
+    let mut along = perspective_along(PlaceLanes::of_level(s, image), spans.sums(i), range, exact);
+    for eight in places.iter_mut().take((range.1 - range.0).div_ceil(LANES)) {
+        s.store_i32(along.next(), eight);
+    }
 }
 
 /// The level of an image at pixel `k` of span `i`, by its definition.

@@ -291,6 +291,44 @@ impl<S: Lanes8> PlacesAlong<S> for AffineAlong<S> {
     }
 }
 
+/// Indices of the texels of up to 64 pixels, eight at a time.
+pub(crate) type StoredPlaces = [[i32; LANES]; 8];
+
+/// Indices that a function computes all at once when the first are asked for.
+pub(crate) struct StoredAlong<S, F> {
+    s: S,
+    fill: F,
+    places: StoredPlaces,
+    /// Number of the next eight.
+    next: usize,
+    is_filled: bool,
+}
+
+impl<S: Lanes8, F: FnMut(&mut StoredPlaces)> StoredAlong<S, F> {
+    #[inline(always)]
+    pub(crate) fn new(s: S, fill: F) -> Self {
+        Self { s, fill, places: [[0; LANES]; 8], next: 0, is_filled: false }
+    }
+}
+
+impl<S: Lanes8, F: FnMut(&mut StoredPlaces)> PlacesAlong<S> for StoredAlong<S, F> {
+    #[inline(always)]
+    fn next(&mut self) -> S::I32 {
+        if !self.is_filled {
+            self.is_filled = true;
+            (self.fill)(&mut self.places);
+        }
+        let eight = self.next % 8;
+        self.skip();
+        self.s.load_i32(&self.places[eight])
+    }
+
+    #[inline(always)]
+    fn skip(&mut self) {
+        self.next += 1;
+    }
+}
+
 /// The first texel again and again.
 pub(crate) struct FirstPlace<S>(pub(crate) S);
 

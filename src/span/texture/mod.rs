@@ -23,8 +23,8 @@ use core::fmt;
 
 #[cfg(feature = "alloc")]
 pub(crate) use self::along::{
-    AffineAlong, FOUR, FirstPlace, LevelTexels, PlaceLanes, PlacesAlong, affine_pair, show_along, show_block,
-    show_masked, show_pair,
+    AffineAlong, FOUR, FirstPlace, LevelTexels, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, affine_pair,
+    show_along, show_block, show_masked, show_pair,
 };
 #[cfg(feature = "internals")]
 pub use self::perspective::fill_perspective;
