@@ -122,14 +122,11 @@ impl Lights<'_> {
         // As in `Lights::sum_by`.
         let lamps = if cfg!(mode13h_leave_out = "positional-lights") { &[] } else { self.lamps };
         let shininess = Shininess::new(reflectance.shininess);
-        // Suns without highlights need neither normals in f64 nor positions.
-        let (mut normals, mut places) = ([zero; 3], [zero; 3]);
-        if SHINES || !lamps.is_empty() {
-            normals = [l.widen(narrow[0]), l.widen(narrow[1]), l.widen(narrow[2])];
-            places =
-                [l.widen(l.load_f32(&points[3])), l.widen(l.load_f32(&points[4])), l.widen(l.load_f32(&points[5]))];
+        let mut eye = None;
+        if SHINES {
+            let (normals, places) = widened(l, narrow, points);
+            eye = Some(Eye::new(l, unit(l, &from(l, &self.eye, &places)), &normals));
         }
-        let eye = if SHINES { Some(Eye::new(l, unit(l, &from(l, &self.eye, &places)), &normals)) } else { None };
         for sun in self.suns {
             let [x, y, z] = sun.towards.to_array();
             let sum = l.add_f32(l.mul_f32(narrow[0], l.splat_f32(x)), l.mul_f32(narrow[1], l.splat_f32(y)));
@@ -145,6 +142,12 @@ impl Lights<'_> {
             }
             front.add(l, channels(sun.intensity, sun.channels), None, cosines, highlights);
         }
+        if lamps.is_empty() {
+            return front;
+        }
+        // With highlights they are computed again: kept, they would take registers where there are no lamps.
+        let points = if SHINES { core::hint::black_box(points) } else { points };
+        let (normals, places) = widened(l, narrow, points);
         for lamp in lamps {
             let to_lamp = from(l, &lamp.position, &places);
             let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.splat_f64(lamp.inverse_square));
@@ -167,6 +170,13 @@ impl Lights<'_> {
         }
         front
     }
+}
+
+/// The normals and the positions of the points in f64.
+#[inline(always)]
+fn widened<L: F32Lanes8>(l: L, normals: &[L::F32; 3], points: &Points) -> (Vectors<L>, Vectors<L>) {
+    let normals = [l.widen(normals[0]), l.widen(normals[1]), l.widen(normals[2])];
+    (normals, [l.widen(l.load_f32(&points[3])), l.widen(l.load_f32(&points[4])), l.widen(l.load_f32(&points[5]))])
 }
 
 /// The sum of all light on the points, for each channel.
