@@ -78,8 +78,13 @@ impl MedianCut {
         let Some((i, cut)) = self.best() else { return false };
         let range = self.boxes[i].range.clone();
         let part = &mut self.colors[range.clone()];
-        part.sort_unstable_by_key(|(color, _)| channels(*color)[cut.channel] >= cut.from);
-        let middle = range.start + part.partition_point(|(color, _)| channels(*color)[cut.channel] < cut.from);
+        let mut middle = range.start;
+        for i in 0..part.len() {
+            if channels(part[i].0)[cut.channel] < cut.from {
+                part.swap(i, middle - range.start);
+                middle += 1;
+            }
+        }
         self.boxes[i] = ColorBox::new(&self.colors, range.start..middle);
         self.boxes.push(ColorBox::new(&self.colors, middle..range.end));
         true
