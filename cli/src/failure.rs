@@ -17,9 +17,8 @@ use mode13h_lab::explain::ExplainError;
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
-  1    A check failed: `verify` found a wrong byte, `cost` exceeded a promised error
+  1    Failed: a file could not be read or written, `verify` found a wrong byte, `cost` exceeded a promised error
   2    Wrong arguments or wrong input
-  3    A file could not be read or written
   130  Interrupted";
 
 /// Line on standard error, and exit status.
@@ -30,19 +29,15 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// A check found something: status 1.
-    pub(crate) fn found(reason: impl fmt::Display) -> Failure {
-        Failure::new(&reason, 1)
-    }
-
     /// The command line or the input is wrong: status 2.
     pub(crate) fn words(reason: impl fmt::Display) -> Failure {
         Failure::new(&reason, 2)
     }
 
-    /// A file could not be read or written, or the system refused something else: status 3.
-    pub(crate) fn file(reason: impl fmt::Display) -> Failure {
-        Failure::new(&reason, 3)
+    /// The work failed: status 1. A check found something, a file could not be read or written, or the system refused
+    /// something else.
+    pub(crate) fn work(reason: impl fmt::Display) -> Failure {
+        Failure::new(&reason, 1)
     }
 
     fn new(reason: &dyn fmt::Display, status: u8) -> Failure {
@@ -85,11 +80,11 @@ failures! {
     ExplainError => words,
     CostError => words,
     PictureError => words,
-    AnimationError => file,
-    WindowError => file,
-    std::io::Error => file,
-    rayon::ThreadPoolBuildError => file,
-    serde_json::Error => file,
+    AnimationError => work,
+    WindowError => work,
+    std::io::Error => work,
+    rayon::ThreadPoolBuildError => work,
+    serde_json::Error => work,
 }
 
 impl From<ExportError> for Failure {
@@ -97,14 +92,14 @@ impl From<ExportError> for Failure {
         match error.kind {
             // The picture that was asked for is too large.
             ExportErrorKind::Picture(_) => Failure::words(error),
-            _ => Failure::file(error),
+            _ => Failure::work(error),
         }
     }
 }
 
 impl From<ModelFileError> for Failure {
     fn from(error: ModelFileError) -> Failure {
-        if is_unreadable(&error.kind) { Failure::file(error) } else { Failure::words(error) }
+        if is_unreadable(&error.kind) { Failure::work(error) } else { Failure::words(error) }
     }
 }
 
@@ -116,7 +111,7 @@ impl From<SceneError> for Failure {
             SceneErrorKind::Texture(error) => matches!(error.kind, LoadErrorKind::Read(_) | LoadErrorKind::NotAFile),
             _ => false,
         };
-        if is_unreadable { Failure::file(error) } else { Failure::words(error) }
+        if is_unreadable { Failure::work(error) } else { Failure::words(error) }
     }
 }
 

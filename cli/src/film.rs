@@ -273,5 +273,5 @@ fn plural(count: u64) -> &'static str {
 
 /// An error if the program has been told to end. It is never seen: [`output::long_file`] does not return then.
 fn go_on() -> Result<(), Failure> {
-    if output::is_interrupted() { Err(Failure::file("interrupted")) } else { Ok(()) }
+    if output::is_interrupted() { Err(Failure::work("interrupted")) } else { Ok(()) }
 }

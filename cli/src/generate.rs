@@ -58,9 +58,9 @@ pub(crate) fn run(options: &Options, mut all: clap::Command) -> Result<(), Failu
 /// Writes the page of the program and one for each command.
 fn write_pages(all: clap::Command, directory: &Path) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
-        return Err(Failure::file(format!("{}: is not a directory", directory.display())));
+        return Err(Failure::work(format!("{}: is not a directory", directory.display())));
     }
-    fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
+    fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
     let mut commands = vec![all];
     while let Some(command) = commands.pop() {
         let name = command.get_display_name().unwrap_or(command.get_name());

@@ -115,7 +115,7 @@ struct Stream {
 /// The stream that an INPUT names, if it names one.
 fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     let path = Path::new(words);
-    let failed = |error: io::Error| Failure::file(format!("{}: {error}", path.display()));
+    let failed = |error: io::Error| Failure::work(format!("{}: {error}", path.display()));
     let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
         (Box::new(standard_input().map_err(failed)?), PathBuf::from("standard input"))
     } else if output::has_extension(path, "gz") {
@@ -183,7 +183,7 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
     let stream = stream(words)?;
     let loaded = if let Some(Stream { mut bytes, path, is_scene: true }) = stream {
         let mut text = Vec::new();
-        let failed = |error| Failure::file(format!("{}: {error}", path.display()));
+        let failed = |error| Failure::work(format!("{}: {error}", path.display()));
         bytes.by_ref().take(LONGEST_SCENE).read_to_end(&mut text).map_err(failed)?;
         Scene::from_toml_bytes(&text, &path, model_file::open_named)
     } else if let Some(stream) = stream {
@@ -252,10 +252,10 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
     } else {
         let shown = path.display();
         Err(match path.metadata() {
-            Ok(metadata) if metadata.is_dir() => Failure::file(format!("{shown}: is a directory, not a model")),
+            Ok(metadata) if metadata.is_dir() => Failure::work(format!("{shown}: is a directory, not a model")),
             Ok(_) => Failure::words(format!("{shown}: unknown kind of file: {kinds}")),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Failure::words(format!("{shown}: {}", known())),
-            Err(error) => Failure::file(format!("{shown}: {error}")),
+            Err(error) => Failure::work(format!("{shown}: {error}")),
         })
     }
 }
@@ -371,13 +371,13 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
             );
             let reason = format!("{shown}: no such file or built-in palette; {known}");
             // A word without an extension is an unknown name.
-            if path.extension().is_some() { Failure::file(reason) } else { Failure::words(reason) }
+            if path.extension().is_some() { Failure::work(reason) } else { Failure::words(reason) }
         }
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::IsADirectory => {
-            Failure::file(format!("{shown}: is a directory, not a palette"))
+            Failure::work(format!("{shown}: is a directory, not a palette"))
         }
         LoadErrorKind::Palette(_) | LoadErrorKind::Picture(_) => Failure::words(error.to_string()),
-        _ => Failure::file(error.to_string()),
+        _ => Failure::work(error.to_string()),
     })?;
     read_files::add(path);
     Ok((name_of(words), palette))

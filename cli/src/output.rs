@@ -163,7 +163,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     if force || path.symlink_metadata().is_err() {
         return Ok(());
     }
-    Err(Failure::file(format!("{}: already exists; --force overwrites it, -o writes elsewhere", path.display())))
+    Err(Failure::work(format!("{}: already exists; --force overwrites it, -o writes elsewhere", path.display())))
 }
 
 /// Returns whether a name ends in an extension, in any case of its letters.

@@ -156,8 +156,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 fn verdict(failed: usize) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
-        1 => Err(Failure::found("1 check failed")),
-        _ => Err(Failure::found(format!("{failed} checks failed"))),
+        1 => Err(Failure::work("1 check failed")),
+        _ => Err(Failure::work(format!("{failed} checks failed"))),
     }
 }
 

@@ -28,7 +28,7 @@ fn is_of_a_study(path: &Path, mark: &str) -> bool {
 /// Files of an earlier study are overwritten if the user named the directory, others only by force.
 pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
-        return Err(Failure::file(format!("{}: is not a directory", directory.display())));
+        return Err(Failure::work(format!("{}: is not a directory", directory.display())));
     }
     if directory.is_dir() {
         return NAMES.iter().zip(MARKS).try_for_each(|(name, mark)| {
@@ -37,7 +37,7 @@ pub(super) fn check(directory: &Path, is_named: bool, forced: bool) -> Result<()
             if is_named && !forced && path.symlink_metadata().is_ok() && !is_of_a_study(&path, mark) {
                 let path = path.display();
                 let reason = "already exists and is not part of a study; --force overwrites it";
-                return Err(Failure::file(format!("{path}: {reason}")));
+                return Err(Failure::work(format!("{path}: {reason}")));
             }
             output::refuse_overwriting(&path, forced || is_named)?;
             export::check_writable(&path).map_err(Failure::from)
@@ -67,7 +67,7 @@ pub(super) fn write(
 }
 
 fn write_into(directory: &Path, contents: &[String; NAMES.len()]) -> Result<(), Failure> {
-    fs::create_dir_all(directory).map_err(|error| Failure::file(format!("{}: {error}", directory.display())))?;
+    fs::create_dir_all(directory).map_err(|error| Failure::work(format!("{}: {error}", directory.display())))?;
     NAMES.iter().zip(contents).try_for_each(|(name, text)| {
         let path = directory.join(name);
         output::bytes(&path, text.as_bytes())

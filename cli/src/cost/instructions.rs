@@ -86,13 +86,13 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         .arg("--counted")
         .output();
     let out = out.map_err(|error| match error.kind() {
-        ErrorKind::NotFound => Failure::file("--instructions needs valgrind, which was not found"),
-        _ => Failure::file(format!("valgrind: {error}")),
+        ErrorKind::NotFound => Failure::work("--instructions needs valgrind, which was not found"),
+        _ => Failure::work(format!("valgrind: {error}")),
     })?;
     if !out.status.success() {
         let said = String::from_utf8_lossy(&out.stderr);
         let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it failed without a message");
-        return Err(Failure::file(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
+        return Err(Failure::work(format!("valgrind: {}", said.trim_start_matches("mode13h: "))));
     }
     let mut of = BTreeMap::new();
     for (shading, number) in shadings.iter().zip(1..) {
@@ -100,7 +100,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
         let path = directory.path().join(format!("counts.{number}"));
         let all = fs::read_to_string(&path).ok().and_then(|text| sum(&text));
         let all = all
-            .ok_or_else(|| Failure::file("valgrind counted nothing: has the program been stripped of its symbols?"))?;
+            .ok_or_else(|| Failure::work("valgrind counted nothing: has the program been stripped of its symbols?"))?;
         of.insert(*shading, all / frames.max(1) as u64);
     }
     Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })

@@ -158,7 +158,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(directory) = written.filter(|_| *open) {
         let page = directory.join(files::REPORT);
         open::that_detached(&page)
-            .map_err(|error| Failure::file(format!("{}: cannot be opened in a browser: {error}", page.display())))?;
+            .map_err(|error| Failure::work(format!("{}: cannot be opened in a browser: {error}", page.display())))?;
     }
     verdict(&study)
 }
@@ -167,7 +167,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 fn verdict(study: &Study) -> Result<(), Failure> {
     match cost::promises_are_kept(study) {
         true => Ok(()),
-        false => Err(Failure::found("a budget or a shading has not kept its promise")),
+        false => Err(Failure::work("a budget or a shading has not kept its promise")),
     }
 }
 

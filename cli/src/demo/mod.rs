@@ -218,7 +218,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Ok(window) => window,
         Err(no_display) => {
             while demo.panels.scenes.is_loading {
-                let first = loader.wait(Duration::MAX).ok_or_else(|| Failure::file("the loader has ended"))?;
+                let first = loader.wait(Duration::MAX).ok_or_else(|| Failure::work("the loader has ended"))?;
                 demo.put_on(first)?;
             }
             return demo.save_each(&no_display);

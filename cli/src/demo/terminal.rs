@@ -74,7 +74,7 @@ impl Sending {
         let mut due = Instant::now();
         let mut begun_key = Vec::new();
         for number in 1_u32.. {
-            let typed = screen.keys.read().map_err(|error| Failure::file(format!("standard input: {error}")))?;
+            let typed = screen.keys.read().map_err(|error| Failure::work(format!("standard input: {error}")))?;
             motion.now = begun.elapsed().as_secs_f64();
             for key in keys(&whole_keys(&mut begun_key, &typed)) {
                 match key {

@@ -32,7 +32,7 @@ fn cases_without_a_name_says_where_and_overwrites_by_force_alone() {
     says_where("cases r5");
     let picture = read();
     folder.put("R5.png", "mine");
-    folder.fails("cases r5", 3, "mode13h: R5.png: already exists; --force ");
+    folder.fails("cases r5", 1, "mode13h: R5.png: already exists; --force ");
     assert_eq!(read(), b"mine");
     says_where("cases r5 --force");
     assert_eq!((read(), folder.names()), (picture, vec!["R5.png".to_string()]));
@@ -46,7 +46,7 @@ fn cases_of_wrong_words_is_one_line_and_status_2() {
         ("cases S4", 2, "no case 'S4'"),
         ("cases R5 -o r5.gif", 2, "r5.gif"),
         ("cases -o r5.png", 2, "<ID>"),
-        ("cases R5 -o no/such/place.png", 3, "place.png"),
+        ("cases R5 -o no/such/place.png", 1, "place.png"),
     ] {
         folder.fails(words, status, says);
         assert!(folder.names().is_empty(), "{words}");

@@ -40,9 +40,9 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
     let before = folder.names();
 
     for (words, status, says) in [
-        ("render none.obj -o x.png", 3, "none.obj: No such file"),
-        ("render directory.obj -o x.png", 3, "directory.obj: is a directory"),
-        ("render . -o x.png", 3, ".: is a directory"),
+        ("render none.obj -o x.png", 1, "none.obj: No such file"),
+        ("render directory.obj -o x.png", 1, "directory.obj: is a directory"),
+        ("render . -o x.png", 1, ".: is a directory"),
         ("render empty.obj -o x.png", 2, "empty.obj: no faces"),
         ("render vertices.obj -o x.png", 2, "vertices.obj: no faces"),
         ("render nan.obj -o x.png", 2, "nan.obj:2: `NaN`"),
@@ -65,20 +65,20 @@ fn f1_broken_input_is_one_line_with_file_and_place() {
         ("render cube -o x.png --palette empty.gpl", 2, "empty.gpl: "),
         (
             "render cube -o x.png --palette none.pal",
-            3,
+            1,
             "none.pal: no such file or built-in palette; built-in palettes are grey",
         ),
-        ("render cube -o x.png --palette .", 3, ".: is a directory"),
+        ("render cube -o x.png --palette .", 1, ".: is a directory"),
         ("palette broken.pal", 2, "broken.pal: line 5"),
         ("palette mauve", 2, "mauve: no such file or built-in palette; built-in palettes are grey"),
         ("palette auto", 2, "auto is a palette made for a model; mode13h palette --from MODEL"),
         ("generate", 2, "mode13h generate completions SHELL prints completions"),
         ("scenes copy", 2, "(mode13h scenes copy --help shows the options)"),
-        ("generate man -o nan.obj", 3, "nan.obj: is not a directory"),
+        ("generate man -o nan.obj", 1, "nan.obj: is not a directory"),
         ("render cube -o x.png --palette coper", 2, "coper: no such file or built-in palette; did you mean copper?"),
         ("demo nan.obj", 2, "nan.obj:2: "),
         ("nan.obj", 2, "nan.obj:2: "),
-        ("none.obj", 3, "none.obj: No such file"),
+        ("none.obj", 1, "none.obj: No such file"),
         ("plan nan.obj", 2, "nan.obj:2: "),
     ] {
         folder.fails(words, status, says);
@@ -197,7 +197,7 @@ fn f4_what_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         ("render torus -o x.png", "x.png: is a directory"),
         ("render torus -o none/%d.png --frames 9", "none does not exist"),
     ] {
-        folder.fails(words, 3, says);
+        folder.fails(words, 1, says);
         tried.add(1);
     }
     assert_eq!(folder.names(), ["x.png"]);
@@ -221,7 +221,7 @@ fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
 fn assert_old_one_is_whole(name: &str, blocks: usize) {
     let folder = Folder::new();
     folder.put(name, "what stood there");
-    failed(&folder.run_with_room(blocks, &format!("render torus -o {name}")), 3, &format!("{name}: "));
+    failed(&folder.run_with_room(blocks, &format!("render torus -o {name}")), 1, &format!("{name}: "));
     assert_eq!(folder.read(name), b"what stood there");
     assert_eq!(folder.names(), [name]);
 }
@@ -671,7 +671,7 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
         ("dos cube -o house.obj", 2, "house.obj: the name of a DOS program must end in .exe, that of a floppy in .img"),
         ("dos cube -o house", 2, "must end in .exe"),
         ("scenes copy torus -o house.obj", 2, "house.obj: the name of a scene file must end in .toml"),
-        (&format!("{cost} ."), 3, "report.html: already exists and is not part of a study"),
+        (&format!("{cost} ."), 1, "report.html: already exists and is not part of a study"),
     ] {
         folder.fails(words, status, line);
         tried.add(1);
@@ -722,10 +722,10 @@ fn input_comes_by_a_pipe_or_packed() {
         }
     }
     folder.put("broken.obj.gz", b"\x1f\x8b\x08 no");
-    folder.fails("render broken.obj.gz -o x.png", 3, "broken.obj.gz: ");
+    folder.fails("render broken.obj.gz -o x.png", 1, "broken.obj.gz: ");
     folder.put("empty.obj.gz", pack(b"v 0 0 0\n"));
     folder.fails("render empty.obj.gz -o x.png", 2, "empty.obj.gz: no faces");
-    folder.fails("render none.obj.gz -o x.png", 3, "none.obj.gz: No such file");
+    folder.fails("render none.obj.gz -o x.png", 1, "none.obj.gz: No such file");
 }
 
 /// Input from a pipe is kept until the program ends: the window shows it again after another input, and when a file that it
@@ -1146,7 +1146,7 @@ fn palettes_are_made_for_models() {
     folder.fails("palette grey --up z", 2, "--up");
     folder.fails("palette grey --crease 9", 2, "--crease");
     folder.fails("palette --from sphere --crease 999", 2, "--crease");
-    folder.fails("palette --from none.obj", 3, "none.obj: No such file");
+    folder.fails("palette --from none.obj", 1, "none.obj: No such file");
     folder.fails("palette --from torus -o x.txt", 2, "x.txt: ");
 }
 
@@ -1296,7 +1296,7 @@ fn names_need_not_be_text() {
     assert!(folder.path(name).is_file());
     let missing = OsStr::from_bytes(b"line\nend\x1B[2J\xFF.obj");
     let output = folder.program("render -o x.png").arg(missing).output().expect("started");
-    failed(&output, 3, "line end [2J");
+    failed(&output, 1, "line end [2J");
 }
 
 #[test]
@@ -1321,14 +1321,14 @@ fn f3_broken_scenes_are_one_line_with_their_place() {
             2,
             "type.toml:1:38: key `objects[0].scale`: expected a number above 0, or three in a list, found string",
         ),
-        ("missing.toml", 3, "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
+        ("missing.toml", 1, "missing.toml:3:20: key `objects[0].material.texture`: none.png: No such file"),
         ("model.toml", 2, "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
         ("no.toml", 2, "no.toml: no object: a scene needs at least one"),
         ("syntax.toml", 2, "syntax.toml:1:8: not TOML: "),
         ("binary.toml", 2, "binary.toml:1:1: not text in UTF-8"),
         ("control.toml", 2, "control.toml:1:22: key `objects[0].shape`: "),
-        ("directory.toml", 3, "directory.toml: is a directory"),
-        ("none.toml", 3, "none.toml: No such file"),
+        ("directory.toml", 1, "directory.toml: is a directory"),
+        ("none.toml", 1, "none.toml: No such file"),
     ] {
         folder.fails(&format!("render {input} -o x.png"), status, says);
         tried.add(1);
@@ -1355,9 +1355,9 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     let text = "fog".parse::<shipped::Shipped>().expect("a scene").text;
     assert!(folder.read("fog.toml") == text.as_bytes() && folder.read("other.toml") == text.as_bytes());
     folder.put("fog.toml", "what stood there");
-    folder.fails("scenes copy fog", 3, "fog.toml: already exists; --force");
+    folder.fails("scenes copy fog", 1, "fog.toml: already exists; --force");
     assert_eq!(folder.read("fog.toml"), b"what stood there");
-    folder.fails("scenes copy fog -o none/x.toml", 3, "none does not exist");
+    folder.fails("scenes copy fog -o none/x.toml", 1, "none does not exist");
     // A copy is the scene.
     assert!(folder.picture("other.toml --time 1") == folder.picture("fog --time 1"));
 }
@@ -1555,8 +1555,8 @@ fn explain_refuses_what_is_not_there() {
         ("explain cone --pixel 1,2 -o x.svg", 2, "--out is only for the chart of a --row"),
         ("explain cone --row 200", 2, "no row 200 in a frame of 200 rows"),
         ("explain cone --row 2 -o x.png", 2, "x.png: the name of a chart must end in .svg"),
-        ("explain none.obj --pixel 1,2", 3, "none.obj: No such file"),
-        ("explain cone --row 2 -o none/x.svg", 3, "none"),
+        ("explain none.obj --pixel 1,2", 1, "none.obj: No such file"),
+        ("explain cone --row 2 -o none/x.svg", 1, "none"),
     ] {
         folder.fails(words, status, says);
     }

@@ -187,7 +187,7 @@ fn f4_no_room_at_any_block() {
             let output = folder.run_with_room(limit, words);
             let stands = fs::read(&path).expect("something stands there");
             if limit < blocks {
-                failed(&output, 3, name);
+                failed(&output, 1, name);
                 assert!(stands == OLD, "{words:?}, {limit} of {blocks} blocks");
             } else {
                 assert!(output.status.success() && stands == new, "{words:?}, {limit} of {blocks} blocks: {output:?}");
@@ -207,7 +207,7 @@ fn f4_a_full_device() {
         let folder = Folder::new();
         let path = folder.path(name);
         std::os::unix::fs::symlink("/dev/full", &path).expect("linked");
-        folder.fails(words, 3, &format!("{name}: the disk is full\n"));
+        folder.fails(words, 1, &format!("{name}: the disk is full\n"));
         assert_eq!(fs::read_link(&path).expect("a link still"), Path::new("/dev/full"));
         tried.add(1);
     }
@@ -245,7 +245,7 @@ fn f4_no_right_to_write() {
             if fs::metadata("/proc/self").expect("Linux has it").uid() == 0 {
                 command.uid(65_534).gid(65_534);
             }
-            failed(&command.output().expect("started"), 3, &format!("{name}: no permission to write there\n"));
+            failed(&command.output().expect("started"), 1, &format!("{name}: no permission to write there\n"));
             // So that it can be removed.
             set(&place, 0o755);
             match stands {
@@ -269,7 +269,7 @@ fn f4_a_folder_that_is_not_there() {
         for (directory, says) in [("none", "the directory none does not exist"), ("file", "file is not a directory")] {
             let path = format!("{directory}/{name}");
             let words = words.replace(name, &path);
-            folder.fails(&words, 3, &format!("{path}: {says}\n"));
+            folder.fails(&words, 1, &format!("{path}: {says}\n"));
             assert_eq!(folder.names(), ["file"]);
             assert_eq!(folder.read("file"), OLD);
             tried.add(1);
@@ -316,7 +316,7 @@ fn f4_a_row_of_pictures_that_cannot_be_written() {
         // The fifth name is taken by a folder.
         fs::create_dir(folder.path("x4.png")).expect("made");
         let says = format!("x4.png: is a directory; written before that: {written}");
-        folder.fails(&format!("render torus -o x%d.png --frames 9 --threads {threads}"), 3, &says);
+        folder.fails(&format!("render torus -o x%d.png --frames 9 --threads {threads}"), 1, &says);
         for name in folder.names().into_iter().filter(|name| name != "x4.png") {
             let bytes = folder.read(&name);
             assert_eq!(&bytes[bytes.len() - 8..][..4], b"IEND", "{name} is not whole");
