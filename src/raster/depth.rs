@@ -4,7 +4,7 @@ use super::error::RasterError;
 use super::frame::Frame;
 #[cfg(feature = "alloc")]
 use super::frame::Rect;
-pub(crate) use crate::span::depth::Cell;
+pub use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
 /// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines, which cannot tell depths

@@ -71,9 +71,9 @@ pub(crate) mod triangles;
 pub(crate) mod vertex;
 pub(crate) mod vintage;
 
-pub use depth::DepthBuffer;
 #[cfg(feature = "alloc")]
 pub use depth::DepthMemory;
+pub use depth::{Cell, DepthBuffer};
 pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
