@@ -30,6 +30,12 @@ macro_rules! each {
 }
 pub(crate) use each;
 
+/// The blocks of eight in which the first `n` bytes lie, as far as there is room for whole ones.
+#[inline(always)]
+pub(crate) fn blocks(bytes: &mut [u8], n: usize) -> impl Iterator<Item = &mut Lanes<u8>> {
+    bytes.as_chunks_mut().0.iter_mut().take(n.div_ceil(LANES))
+}
+
 /// Like `array::map` for three values, usually one for each corner of a face, but always inlined.
 #[inline(always)]
 pub(crate) fn three<T, U>([a, b, c]: [T; 3], mut of: impl FnMut(T) -> U) -> [U; 3] {

@@ -42,10 +42,11 @@ use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
-use crate::lanes::{LANES, NUMBERS};
+use crate::lanes::LANES;
 use crate::simd::{Lanes8, compiled_for_each_level};
 #[cfg(feature = "alloc")]
-use crate::span::float::fill_float;
+use crate::span::float::fill_float_blocks;
+use crate::span::hyperbolic::fill_estimated_blocks;
 use crate::span::list::{DepthSteps, Span, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
 
 /// Shadings that are set up and filled here.
@@ -103,6 +104,42 @@ impl ShadedFaces<'_> {
         let (batch, lane) = Batches::of_face(face);
         self.steps[batch].fixed16[lane].cast_unsigned()
     }
+
+    /// Perspective-correct bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if
+    /// estimates cannot decide all of them.
+    #[inline(always)]
+    fn estimate<S: Lanes8>(&self, s: S, span: &Fill, bytes: &mut Bytes) -> bool {
+        let (batch, lane) = Batches::of_face(span.face);
+        let [dn, dd] = &self.steps[batch].sums;
+        let [n, d] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
+        HyperbolicPlane::is_sure(d, dd[lane], span.length)
+            && fill_estimated_blocks(s, (bytes, span.length), [n, dn[lane]], [d, dd[lane]])
+    }
+
+    /// [`estimate`](Self::estimate) in exact arithmetic.
+    #[cold]
+    #[inline(never)]
+    fn exact_bytes(&self, span: &Fill, offset: u32, bytes: &mut Bytes) {
+        let triangle = self.triangle(span.face);
+        let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
+        let FrameLayout { first_row, pitch, .. } = self.layout;
+        // In a frame: below 4,096.
+        let (x, y) = ((offset % pitch) as i32, (first_row + offset / pitch) as i32);
+        plane.fill(x, y, &mut bytes[..span.length]);
+    }
+
+    /// Bytes of a span in f32, and arbitrary ones after them to fill blocks of eight.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn quotients(&self, span: &Fill, bytes: &mut Bytes) {
+        let (batch, lane) = Batches::of_face(span.face);
+        let Steps8 { sums: [dn, dd], least, greatest, .. } = &self.steps[batch];
+        let [n, d] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
+        // Rounded once: dividing by 256 changes no bit of them.
+        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn[lane] as f32], [d as f32, dd[lane] as f32]);
+        let range = [least[lane] as f32 / 256.0, greatest[lane] as f32 / 256.0];
+        fill_float_blocks((bytes, span.length), span.first, n_and_step, d_and_step, range);
+    }
 }
 
 /// Triangles, the planes of eight of them, and the steps of those whose spans are listed.
@@ -157,9 +194,15 @@ impl<'a> Shaded8<'a> {
         let shades = basis.order.sort(s, [s.load_i32(shade_a), s.load_i32(shade_b), s.load_i32(shade_c)]);
         let depths = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
         let is_estimate = self.kind == Kind::Hyperbolic;
-        // 2¹⁶ times a byte with its half; or shades as they are.
-        let (half, scale) = if is_estimate { (128.0, 256.0) } else { (0.0, 1.0) };
-        let (half, scale) = (s.splat_f64(half), s.splat_f64(scale));
+        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see `HyperbolicPlane::estimates`. Or
+        // shades as they are.
+        let (half, scale) = if is_estimate {
+            let [a, b, c] = shades;
+            let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
+            (s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0)), s.splat_f64(256.0))
+        } else {
+            (zero, one)
+        };
         let mut sums = [zero; 2];
         let mut changes = [zero; 3];
         let (mut weights, mut values) = ([[zero; 3]; 3], [[zero; 2]; 3]);
@@ -220,7 +263,7 @@ impl<'a> Shaded8<'a> {
     }
 
     #[inline(always)]
-    fn draw_by<S: Lanes8>(&mut self, s: S, stage: &impl Stage, list: &mut SpanList, target: &mut Target<'_>) {
+    fn draw_by<S: Lanes8, const IS_ESTIMATE: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
         let (count, mut first, mut nearer) = (list.count(), 0, 0);
         while first < count {
             let end = count.min(first + SpanBytes::COUNT);
@@ -235,8 +278,13 @@ impl<'a> Shaded8<'a> {
                     length: (length as usize).min(SpanBytes::LENGTH),
                 };
                 let bytes = self.bytes.of_mut(k - first);
-                if !stage.fill(s, &self.listed, &fill, bytes) {
-                    exact_bytes(&self.listed, &fill, at, bytes);
+                if IS_ESTIMATE {
+                    if !self.listed.estimate(s, &fill, bytes) {
+                        self.listed.exact_bytes(&fill, at, bytes);
+                    }
+                } else {
+                    #[cfg(feature = "alloc")]
+                    self.listed.quotients(&fill, bytes);
                 }
             }
             for k in first..end {
@@ -391,9 +439,9 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
             let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
             list.clear(nearer);
         }
-        Kind::Hyperbolic => shades.draw_by(s, &Hyperbolic, list, target),
+        Kind::Hyperbolic => shades.draw_by::<S, true>(s, list, target),
         #[cfg(feature = "alloc")]
-        Kind::Float => shades.draw_by(s, &Float, list, target),
+        Kind::Float => shades.draw_by::<S, false>(s, list, target),
     }
 }
 
@@ -410,81 +458,3 @@ struct Fill {
 }
 
 type Bytes = [u8; SpanBytes::LENGTH];
-
-/// A pixel stage: the bytes of a span.
-trait Stage {
-    /// The bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if it cannot decide
-    /// all of them.
-    fn fill<S: Lanes8>(&self, s: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool;
-}
-
-/// The blocks of eight that hold this many bytes.
-#[inline(always)]
-fn blocks(bytes: &mut Bytes, length: usize) -> impl Iterator<Item = &mut [u8; LANES]> {
-    bytes.as_chunks_mut().0.iter_mut().take(length.div_ceil(LANES))
-}
-
-struct Hyperbolic;
-
-impl Stage for Hyperbolic {
-    #[inline(always)]
-    fn fill<S: Lanes8>(&self, s: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let (batch, lane) = Batches::of_face(span.face);
-        let [dn, dd] = &all.steps[batch].sums;
-        let (dn, dd) = (dn[lane], dd[lane]);
-        let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
-        if !HyperbolicPlane::is_sure(d0, dd, span.length) {
-            return false;
-        }
-        let (n0, dn, d0, dd) = (s.splat_f64(n0), s.splat_f64(dn), s.splat_f64(d0), s.splat_f64(dd));
-        let mut k = s.to_f64(s.load_i32(&NUMBERS));
-        let mut left = span.length as i32;
-        let mut undecided = 0;
-        for block in blocks(bytes, span.length) {
-            let quotient = s.div(s.mul_add(k, dn, n0), s.mul_add(k, dd, d0));
-            let estimate = s.low_bits(s.add(quotient, s.splat_f64(ROUND_MAGIC)));
-            *block = s.low_bytes(s.shr_i32(estimate, 16));
-            // As in `fill_estimated_quotients`.
-            let is_whole = s.is_equal(s.and_i32(estimate, s.splat_i32(0xFFFF)), s.splat_i32(0));
-            let is_there = s.is_greater(s.splat_i32(left), s.load_i32(&NUMBERS));
-            undecided |= s.to_bitmask(s.and(is_whole, is_there));
-            left -= LANES as i32;
-            k = s.add(k, s.splat_f64(LANES as f64));
-        }
-        undecided == 0
-    }
-}
-
-/// The bytes of a perspective-correct span in exact arithmetic.
-#[cold]
-#[inline(never)]
-fn exact_bytes(all: &ShadedFaces<'_>, span: &Fill, offset: u32, bytes: &mut Bytes) {
-    let triangle = all.triangle(span.face);
-    let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
-    let FrameLayout { first_row, pitch, .. } = all.layout;
-    // In a frame: below 4,096.
-    let (x, y) = ((offset % pitch) as i32, (first_row + offset / pitch) as i32);
-    plane.fill(x, y, &mut bytes[..span.length]);
-}
-
-#[cfg(feature = "alloc")]
-struct Float;
-
-#[cfg(feature = "alloc")]
-impl Stage for Float {
-    #[inline(always)]
-    fn fill<S: Lanes8>(&self, _: S, all: &ShadedFaces<'_>, span: &Fill, bytes: &mut Bytes) -> bool {
-        let (batch, lane) = Batches::of_face(span.face);
-        let Steps8 { sums: [dn, dd], least, greatest, .. } = &all.steps[batch];
-        let [n0, d0] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
-        // Rounded once: dividing by 256 changes no bit of them.
-        let (n_and_step, d_and_step) = ([(n0 / 256.0) as f32, dn[lane] as f32], [d0 as f32, dd[lane] as f32]);
-        let range = [least[lane] as f32 / 256.0, greatest[lane] as f32 / 256.0];
-        let mut first = span.first;
-        for block in blocks(bytes, span.length) {
-            fill_float(block, first, n_and_step, d_and_step, range);
-            first += LANES as i32;
-        }
-        true
-    }
-}

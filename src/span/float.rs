@@ -11,6 +11,8 @@
 //! The loop is floating-point by nature, so a processor without it pays for calling this (and only then: it is compiled
 //! where it is called).
 
+use crate::lanes::{LANES, blocks};
+
 /// The shade at k, clamped to `range`: what [`fill_float`] rounds.
 #[inline]
 pub(crate) fn quotient(k: i32, [n, dn]: [f32; 2], [d, dd]: [f32; 2], [low, high]: [f32; 2]) -> f32 {
@@ -45,5 +47,21 @@ pub fn fill_float(row: &mut [u8], first: i32, n: [f32; 2], d: [f32; 2], range: [
         let shade = quotient(first.wrapping_add(i as i32), n, d, range);
         // Bits 15 to 22.
         *pixel = ((shade + 256.5).to_bits() >> 15) as u8;
+    }
+}
+
+/// [`fill_float`] in whole blocks of eight, for which `row` has room, so that bytes after the first `length` are arbitrary.
+#[inline(always)]
+pub(crate) fn fill_float_blocks(
+    (row, length): (&mut [u8], usize),
+    first: i32,
+    n: [f32; 2],
+    d: [f32; 2],
+    range: [f32; 2],
+) {
+    let mut first = first;
+    for block in blocks(row, length) {
+        fill_float(block, first, n, d, range);
+        first += LANES as i32;
     }
 }

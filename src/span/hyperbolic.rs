@@ -6,7 +6,9 @@
 //!
 //! in exact arithmetic. Every divisor is positive and every quotient 0 to 255, as the raster ensures.
 
-use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
+use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide, nearest_whole};
+use crate::lanes::{LANES, NUMBERS, blocks};
+use crate::simd::Lanes8;
 
 /// Fills `row` with the quotients of two numbers that change linearly along it.
 ///
@@ -52,6 +54,32 @@ pub(crate) fn fill_estimated_quotients(
         }
         first += LANES;
     }
+}
+
+/// [`fill_estimated_quotients`] in whole blocks of eight, for which `row` has room, so that bytes after the first `length`
+/// are arbitrary. Returns false if an estimate cannot decide one of them.
+#[inline(always)]
+pub(crate) fn fill_estimated_blocks<S: Lanes8>(
+    s: S,
+    (row, length): (&mut [u8], usize),
+    [n, dn]: [f64; 2],
+    [d, dd]: [f64; 2],
+) -> bool {
+    let (n, dn, d, dd) = (s.splat_f64(n), s.splat_f64(dn), s.splat_f64(d), s.splat_f64(dd));
+    let mut k = s.to_f64(s.load_i32(&NUMBERS));
+    let mut left = length as i32;
+    let mut undecided = 0;
+    for block in blocks(row, length) {
+        let quotient = s.div(s.mul_add(k, dn, n), s.mul_add(k, dd, d));
+        let estimate = s.low_bits(s.add(quotient, s.splat_f64(ROUND_MAGIC)));
+        *block = s.low_bytes(s.shr_i32(estimate, 16));
+        let is_whole = s.is_equal(s.and_i32(estimate, s.splat_i32(0xFFFF)), s.splat_i32(0));
+        let is_there = s.is_greater(s.splat_i32(left), s.load_i32(&NUMBERS));
+        undecided |= s.to_bitmask(s.and(is_whole, is_there));
+        left -= LANES as i32;
+        k = s.add(k, s.splat_f64(LANES as f64));
+    }
+    undecided == 0
 }
 
 /// The floor of n / d for a quotient within ±2⁴⁸ and a positive d; n within ±2¹²⁶.

@@ -11,7 +11,7 @@ use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::shade::RESEED;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
-use crate::simd::compiled_for_each_level;
+use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::{self, SpanDepth, SpanList};
@@ -161,6 +161,17 @@ impl<'a> Spans<'a> {
         end
     }
 
+    /// The shader of the face of span `i`.
+    #[inline(never)]
+    fn shader(&self, i: usize, Shaded { value, interpolation, .. }: Shaded) -> RowShader {
+        let face = self.corners(&self.span(i));
+        let values = match value {
+            None => face.triangle.shades(),
+            Some(value) => face.value(value),
+        };
+        RowShader::of_values(&face.triangle, values, interpolation)
+    }
+
     /// The face of a span, and its corners' values.
     #[inline(never)]
     pub(super) fn corners(&self, span: &Span) -> FaceCorners<'a> {
@@ -274,24 +285,8 @@ impl<'a> Spans<'a> {
             Interpolation::Gouraud | Interpolation::GouraudReseeded => {
                 fill_linear_at_best(kernel, kernel, self, shaded, out);
             }
-            _ => self.fill_by_shader(shaded, out, kernel),
+            _ => fill_by_shader(kernel.simd_level(), self, shaded, out, kernel),
         }
-    }
-
-    /// Fills spans with a shader for each face.
-    #[inline(never)]
-    fn fill_by_shader(&self, Shaded { value, interpolation, dither }: Shaded, out: &mut [u8], kernel: Kernel) {
-        let shader = |face: &FaceCorners<'_>| {
-            let values = match value {
-                None => face.triangle.shades(),
-                Some(value) => face.value(value),
-            };
-            RowShader::of_values(&face.triangle, values, interpolation)
-        };
-        self.each(out, shader, |shader, span, out| {
-            let thresholds = dither.map(|dither| span.thresholds(dither));
-            shader.piece(&span.row(), span.x, out, thresholds, kernel);
-        });
     }
 
     /// Where the drawn pixels of span `i` lie in the frame, how many there are, and how many of its first pixels are
@@ -330,6 +325,32 @@ impl Shaded {
     /// A value that is reseeded with every span.
     pub(super) fn linear(value: Value) -> Self {
         Self { value: Some(value), interpolation: Interpolation::GouraudReseeded, dither: None }
+    }
+}
+
+compiled_for_each_level! {
+    /// Fills spans with a shader for each face.
+    #[inline(never)]
+    fn fill_by_shader[][](spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) = fill_by_shader_at;
+}
+
+#[inline(always)]
+fn fill_by_shader_at<S: Lanes8>(s: S, spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) {
+    let mut i = 0;
+    while i < spans.count() {
+        let end = spans.end_of_face(i);
+        let shader = spans.shader(i, shaded);
+        for i in i..end {
+            let span = spans.span(i);
+            match shaded.dither {
+                None => shader.blocks(s, (&span.row(), span.x), (&mut out[span.first..], span.len), kernel),
+                Some(dither) => {
+                    let thresholds = span.thresholds(dither);
+                    shader.piece(&span.row(), span.x, &mut out[span.pixels()], Some(thresholds), kernel);
+                }
+            }
+        }
+        i = end;
     }
 }
 

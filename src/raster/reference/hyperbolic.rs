@@ -70,18 +70,24 @@ impl HyperbolicPlane {
 
     /// The bytes from pixel (`x`, `y`) on, all of whose centres lie in the triangle.
     pub(in crate::raster) fn fill(&self, x: i32, y: i32, pixels: &mut [u8]) {
-        if self.fill_estimated(x, y, pixels) {
-            return;
+        if let Some([n, d]) = self.estimates(x, y, 128, pixels.len()) {
+            return fill_estimated_quotients(pixels, n, d, |k| {
+                // A column.
+                let (n, d) = self.quotient(x + k as i32, y);
+                // At most 255: the nearest byte to a mean of shades.
+                floor_quotient(n, d) as u8
+            });
         }
         let ((n, d), (dn, dd)) = (self.quotient(x, y), self.step());
         fill_quotients(pixels, n, dn, d, dd);
     }
 
-    /// Fills a row with quotients in f64, exact ones where these cannot decide. Returns whether it did.
+    /// Numerator and divisor in f64 at a pixel, and their changes per pixel: their quotients over a row of this many
+    /// pixels are 256 times the shades in 1/256, with `more` added, off by less than ½. A shade that all corners share is
+    /// half a unit greater, so that no quotient is a whole number. `None` where that is not sure.
     ///
-    /// The estimated value is t = 2¹⁶·I/256 with the half added: below T = 2²⁴. Let ε = 2⁻⁵³, N(k) and D(k) the exact
-    /// sums at pixel k, N and D their largest values, which are at the two ends, and R = D over the least D(k), which
-    /// is at an end too:
+    /// The quotient t is below T = 2²⁴. Let ε = 2⁻⁵³, N(k) and D(k) the exact sums at pixel k, N and D their largest
+    /// values, which are at the two ends, and R = D over the least D(k), which is at an end too:
     ///
     /// 1. Weights are exact, and so are depths times shades. There are three products and two sums of non-negative
     ///    numbers: N(0) is off by 3εN.
@@ -89,31 +95,23 @@ impl HyperbolicPlane {
     ///    ends; the step is off by 3ε of the sum of its terms' magnitudes, and k of them by 3ε·(N(0) + N(last)), 6εN.
     /// 3. Their product with k adds εN, the sum another: the numerator is off by less than 12εN, and the divisor by
     ///    12εD in the same way.
-    /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹. Rounded to a whole
-    ///    number it is less than 1 off, and unless it is a multiple of 2¹⁶ itself, t lies between the same two
-    ///    multiples.
-    fn fill_estimated(&self, x: i32, y: i32, pixels: &mut [u8]) -> bool {
+    /// 4. Since N ≤ T·D, the quotient is off by less than T·ε·(25R): for R ≤ 2¹⁵ less than 2⁻⁹.
+    #[inline(always)]
+    pub(in crate::raster) fn estimates(&self, x: i32, y: i32, more: i64, pixels: usize) -> Option<[[f64; 2]; 2]> {
         if !HAS_F64 {
-            return false;
+            return None;
         }
-        // Exact: 32 bits, and 49 of them times a power of two.
+        let [a, b, c] = self.shades;
+        // Exact: 32 bits, and 50 of them times a power of two.
+        let doubled = 2 * more + i64::from(a == b && b == c);
         let depths = three(self.depths, |depth| depth as f64);
-        let values = three([0, 1, 2], |i| (self.depths[i] * (self.shades[i] + 128)) as f64 * 256.0);
+        let values = three([0, 1, 2], |i| (self.depths[i] * (2 * self.shades[i] + doubled)) as f64 * 128.0);
         let sums = |weights: [i64; 3]| {
             let [a, b, c] = in_f64(weights);
-            (a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2])
+            [a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2]]
         };
-        let ((n, d), (dn, dd)) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));
-        let is_sure = Self::is_sure(d, dd, pixels.len());
-        if is_sure {
-            fill_estimated_quotients(pixels, [n, dn], [d, dd], |k| {
-                // A column.
-                let (n, d) = self.quotient(x + k as i32, y);
-                // At most 255: the nearest byte to a mean of shades.
-                floor_quotient(n, d) as u8
-            });
-        }
-        is_sure
+        let ([n, d], [dn, dd]) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));
+        Self::is_sure(d, dd, pixels).then_some([[n, dn], [d, dd]])
     }
 
     /// Returns whether the divisors of this many pixels, given by the first one and its change per pixel, are close
