@@ -8,10 +8,12 @@ use super::listing::FaceCorners;
 use super::lit::Lit;
 use super::pipeline::{Mix, PixelLighting, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
+use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::paint::{to_bytes, to_nearest_bytes};
-use crate::span::channels::{mix_cube, mix_nearest};
+use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::span::channels::{mix_cube, mix_nearest_eight};
 use crate::span::dither::Thresholds;
 use crate::span::{Kernel, lookup, lookup_row};
 
@@ -40,7 +42,7 @@ impl Spans<'_> {
             }
         }
         if let Some(mix) = mix {
-            self.mix(buffers, mix, pipeline.dither());
+            self.mix(buffers, mix, pipeline.dither(), kernel);
         }
     }
 
@@ -104,24 +106,55 @@ impl Spans<'_> {
     }
 
     /// Mixes three channels to one index.
-    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<Thresholds>) {
+    fn mix(&self, buffers: &mut Buffers, mix: Mix<'_>, dither: Option<Thresholds>, kernel: Kernel) {
         let dither = dither.unwrap_or(Thresholds::HALVES);
         let Buffers { bytes, channels, .. } = buffers;
-        if let Mix::Only(channel) = mix {
-            return bytes.copy_from_slice(&channels[channel.min(2)]);
-        }
-        for span in self.iter() {
-            let bytes = &mut bytes[span.pixels()];
-            let [red, green, blue] = &*channels;
-            let pixels = span.pixels();
-            let (red, green, blue) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels]);
-            let (thresholds, column) = (span.thresholds(dither), span.column());
-            match mix {
-                Mix::Nearest { map, spread } => {
-                    mix_nearest(bytes, red, green, blue, thresholds, column, spread, map);
-                }
-                Mix::Cube | Mix::Only(_) => mix_cube(bytes, red, green, blue, thresholds, column),
+        match mix {
+            Mix::Only(channel) => bytes.copy_from_slice(&channels[channel.min(2)]),
+            Mix::Nearest { map, spread } => {
+                mix_nearest_at(kernel.simd_level(), self, (channels, bytes), dither, (map, spread));
             }
+            Mix::Cube => {
+                let [red, green, blue] = &*channels;
+                for span in self.iter() {
+                    let pixels = span.pixels();
+                    let (red, green, blue) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels.clone()]);
+                    mix_cube(&mut bytes[pixels], red, green, blue, span.thresholds(dither), span.column());
+                }
+            }
+        }
+    }
+}
+
+compiled_for_each_level! {
+    /// Mixes three channels by a table of the nearest entries.
+    #[inline(never)]
+    fn mix_nearest_at[][](
+        spans: &Spans<'_>,
+        from_to: (&[Vec<u8>; 3], &mut [u8]),
+        dither: Thresholds,
+        table: (&[u8; 32_768], u8),
+    ) = mix_nearest_by;
+}
+
+#[inline(always)]
+fn mix_nearest_by<S: Lanes8>(
+    s: S,
+    spans: &Spans<'_>,
+    ([red, green, blue], to): (&[Vec<u8>; 3], &mut [u8]),
+    dither: Thresholds,
+    (map, spread): (&[u8; 32_768], u8),
+) {
+    for span in spans.iter() {
+        let (thresholds, column) = (span.thresholds(dither), span.column());
+        // Whole blocks: the next span overwrites what follows this one, and there is room after the last.
+        let pixels = span.first..span.first + span.len.next_multiple_of(LANES);
+        let (reds, greens, blues) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels.clone()]);
+        let eights = to[pixels].as_chunks_mut::<LANES>().0;
+        let (reds, greens, blues) = (reds.as_chunks().0, greens.as_chunks().0, blues.as_chunks().0);
+        for i in 0..eights.len().min(reds.len()).min(greens.len()).min(blues.len()) {
+            let thresholds = thresholds.next(column + i * LANES);
+            eights[i] = mix_nearest_eight(s, [&reds[i], &greens[i], &blues[i]], &thresholds, spread, map);
         }
     }
 }
