@@ -26,7 +26,7 @@ pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> 
     for (lane, place) in (0_u16..).zip(&mut places) {
         *place = f64::from(first) + f64::from(lane);
     }
-    interpolate_inlined(&places, a, da, d, dd)
+    divide(&numerators(&places, a, da, d, dd))
 }
 
 compiled_for_each_level! {
@@ -36,41 +36,18 @@ compiled_for_each_level! {
     pub fn interpolate_at[][](
         kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
     ) -> Points {
-        interpolate_inlined(places, a, da, d, dd)
+        divide(&numerators(places, a, da, d, dd))
     }
-}
-
-#[inline(always)]
-fn interpolate_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-    let reciprocals: Lanes<f64> = each!(lane => 1.0 / (d + places[lane] * dd));
-    let mut points = [[0.0; LANES]; 6];
-    // Index loops, as in `light::lanes`.
-    let mut i = 0;
-    while i < 6 {
-        points[i] = each!(lane => ((a[i] + places[lane] * da[i]) * reciprocals[lane]) as f32);
-        i += 1;
-    }
-    points
 }
 
 /// The numerators of six numbers at each of eight pixels, and their denominators.
-pub type Numerators = [Lanes<f64>; 7];
+pub(crate) type Numerators = [Lanes<f64>; 7];
 
-compiled_for_each_level! {
-    /// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of
-    /// different rows.
-    #[inline]
-    #[must_use]
-    pub fn numerators[][](
-        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
-    ) -> Numerators {
-        numerators_inlined(places, a, da, d, dd)
-    }
-}
-
+/// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of different rows.
 #[inline(always)]
-fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+pub(crate) fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
     let mut numerators = [[0.0; LANES]; 7];
+    // Index loops, as in `light::lanes`.
     let mut i = 0;
     while i < 6 {
         numerators[i] = each!(lane => a[i] + places[lane] * da[i]);
@@ -80,17 +57,9 @@ fn numerators_inlined(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, 
     numerators
 }
 
-compiled_for_each_level! {
-    /// The quotients of [`numerators`].
-    #[inline]
-    #[must_use]
-    pub fn divide[][](kernel: Kernel, numerators: &Numerators) -> Points {
-        divide_inlined(numerators)
-    }
-}
-
+/// The quotients of [`numerators`].
 #[inline(always)]
-fn divide_inlined(numerators: &Numerators) -> Points {
+pub(crate) fn divide(numerators: &Numerators) -> Points {
     let reciprocals: Lanes<f64> = each!(lane => 1.0 / numerators[6][lane]);
     let mut points = [[0.0; LANES]; 6];
     let mut i = 0;

@@ -38,7 +38,7 @@ use mode13h::internals::span::fixed16::fill_16_16;
 use mode13h::internals::span::float::fill_float;
 use mode13h::internals::span::hyperbolic::fill_quotients;
 use mode13h::internals::span::listed;
-use mode13h::internals::span::lit::{self, interpolate};
+use mode13h::internals::span::lit::{interpolate, interpolate_at};
 use mode13h::internals::span::lookup;
 use mode13h::internals::span::texture::{fill_affine, fill_perspective};
 use mode13h::span::Kernel;
@@ -140,7 +140,7 @@ fn check_copies<D: depth::NaiveCell>(cases: Cases) -> Checked {
 }
 
 /// Loops that have a separate form for each kernel.
-const BY_KERNEL: [(&str, CheckKernel); 11] = [
+const BY_KERNEL: [(&str, CheckKernel); 10] = [
     ("fill", |cases, kernel| spans::check_fill(cases, |row, shade, step| kernel.fill(row, shade, step))),
     ("listed::write_nearer, u32, depths are kept", copy::<u32, true>),
     ("listed::write_nearer, u32, depths stay", copy::<u32, false>),
@@ -150,12 +150,7 @@ const BY_KERNEL: [(&str, CheckKernel); 11] = [
     ("listed::fill_where_nearer, u32", list_nearer::<u32>),
     ("listed::fill_where_nearer, u16", list_nearer::<u16>),
     ("interpolate_at", |cases, kernel| {
-        light::check_interpolate_at(cases, |places, a, da, d, dd| lit::interpolate_at(kernel, places, a, da, d, dd))
-    }),
-    ("numerators and divide", |cases, kernel| {
-        light::check_interpolate_at(cases, |places, a, da, d, dd| {
-            lit::divide(kernel, &lit::numerators(kernel, places, a, da, d, dd))
-        })
+        light::check_interpolate_at(cases, |places, a, da, d, dd| interpolate_at(kernel, places, a, da, d, dd))
     }),
     ("curve", |cases, kernel| {
         light::check_curve(cases, |shades, parabola, least, most| curve(kernel, shades, parabola, least, most))

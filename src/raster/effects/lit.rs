@@ -6,6 +6,7 @@ use super::spans::{LONGEST, ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::paint::to_bytes;
 use crate::raster::reference::weights::{Weights, in_f64};
+use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::{self, Numerators};
@@ -37,8 +38,8 @@ impl Lit<3> for &dyn PixelLighting {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LitPlane {
     weights: Weights,
-    /// The values of each corner times its depth, then its depth.
-    values: [[f64; 7]; 3],
+    /// The values of each corner times its depth, then its depth, and 0.
+    values: [Lanes<f64>; 3],
     /// Change of their sum from one pixel to the next.
     step: ([f64; 6], f64),
 }
@@ -46,7 +47,7 @@ pub(super) struct LitPlane {
 impl LitPlane {
     pub(super) fn new(face: &FaceCorners<'_>) -> Self {
         let (triangle, corners) = (&face.triangle, face.lit());
-        let mut values = [[0.0; 7]; 3];
+        let mut values = [[0.0; LANES]; 3];
         for (k, values) in values.iter_mut().enumerate() {
             let depth = f64::from(triangle.vertices[k].depth().max(1));
             for (i, value) in corners[k].iter().enumerate() {
@@ -59,24 +60,21 @@ impl LitPlane {
     }
 
     /// The weighted sum of the corners' values, the corners in order from top to bottom.
-    #[inline]
-    fn sum([va, vb, vc]: &[[f64; 7]; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
-        let mut sums = [0.0; 6];
-        for (i, sum) in sums.iter_mut().enumerate() {
-            *sum = wa * va[i] + wb * vb[i] + wc * vc[i];
-        }
-        (sums, wa * va[6] + wb * vb[6] + wc * vc[6])
+    #[inline(always)]
+    fn sum([va, vb, vc]: &[Lanes<f64>; 3], [wa, wb, wc]: [f64; 3]) -> ([f64; 6], f64) {
+        let [nx, ny, nz, x, y, z, depth, _]: Lanes<f64> = each!(i => wa * va[i] + wb * vb[i] + wc * vc[i]);
+        ([nx, ny, nz, x, y, z], depth)
     }
 
     /// Numerators and denominator of the values at a pixel.
-    #[inline]
+    #[inline(always)]
     fn at(&self, (x, y): (i32, i32)) -> ([f64; 6], f64) {
         Self::sum(&self.values, in_f64(self.weights.at(x, y)))
     }
 }
 
 /// The indices of eight successive pixels.
-#[inline]
+#[inline(always)]
 fn places(first: usize) -> Lanes<f64> {
     // At most 64.
     each!(lane => (first + lane) as f64)
@@ -98,28 +96,31 @@ impl Waiting {
         Self { numerators, places: [0; 2 * LANES], count: 0 }
     }
 
-    /// Appends up to seven pixels, from `first` on, to the pending ones.
-    #[inline]
-    fn push(&mut self, numerators: &Numerators, pixels: core::ops::Range<usize>) {
+    /// Appends the first `count` of eight pixels, at most seven; `first` is the index of the first one.
+    #[inline(always)]
+    fn push(&mut self, numerators: &Numerators, first: usize, count: usize) {
+        // At most seven are pending.
+        let at = self.count % LANES;
         for (i, waiting) in self.numerators.iter_mut().enumerate() {
-            if let Some(to) = waiting[self.count..].first_chunk_mut() {
+            if let Some(to) = waiting[at..].first_chunk_mut() {
                 *to = numerators[i];
             }
         }
-        for pixel in pixels {
-            self.places[self.count] = pixel;
-            self.count += 1;
+        if let Some(to) = self.places[at..].first_chunk_mut() {
+            // Those after the last are not used.
+            *to = each!(lane => first + lane);
         }
+        self.count = at + count;
     }
 
     /// Lights the first eight.
-    #[inline]
-    fn light<const N: usize>(&mut self, kernel: Kernel, light: &impl Lit<N>, out: &mut [&mut [u16]; N]) {
+    #[inline(always)]
+    fn light<const N: usize>(&mut self, light: &impl Lit<N>, out: &mut [&mut [u16]; N]) {
         let mut numerators = [[0.0; LANES]; 7];
         for (i, eight) in numerators.iter_mut().enumerate() {
             *eight = each!(lane => self.numerators[i][lane]);
         }
-        let lit = light.at(&lit::divide(kernel, &numerators));
+        let lit = light.at(&lit::divide(&numerators));
         for (lane, &pixel) in self.places[..self.count.min(LANES)].iter().enumerate() {
             for (i, out) in out.iter_mut().enumerate() {
                 out[pixel] = lit[i][lane];
@@ -128,7 +129,7 @@ impl Waiting {
     }
 
     /// Removes the first eight.
-    #[inline]
+    #[inline(always)]
     fn advance(&mut self) {
         for waiting in &mut self.numerators {
             for lane in 0..LANES {
@@ -143,40 +144,6 @@ impl Waiting {
 }
 
 impl Spans<'_> {
-    /// Lights every pixel. Eight are lit together: successive ones of a row, or the remainders of several rows and
-    /// triangles. A pixel's point is computed from its own row's first pixel, so its shade does not depend on the other
-    /// seven.
-    #[inline(never)]
-    pub(super) fn light_each<const N: usize>(&self, kernel: Kernel, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
-        let mut waiting = Waiting::new();
-        let mut nothing = [(); ROOM];
-        self.each(&mut nothing, LitPlane::new, |plane, span, _| {
-            let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
-            let length = span.len;
-            let mut first = 0;
-            while length - first >= LANES {
-                let lit = light.at(&lit::interpolate_at(kernel, &places(first), &a, da, d, *dd));
-                for (i, out) in out.iter_mut().enumerate() {
-                    if let Some(to) = out[span.first + first..].first_chunk_mut() {
-                        *to = lit[i];
-                    }
-                }
-                first += LANES;
-            }
-            if first < length {
-                let numerators = lit::numerators(kernel, &places(first), &a, da, d, *dd);
-                waiting.push(&numerators, span.first + first..span.first + length);
-                if waiting.count >= LANES {
-                    waiting.light(kernel, light, &mut out);
-                    waiting.advance();
-                }
-            }
-        });
-        if waiting.count > 0 {
-            waiting.light(kernel, light, &mut out);
-        }
-    }
-
     /// Lights some pixels of each row, and fills in bytes of shades that are linear between them.
     #[inline(never)]
     pub(super) fn light_some<const N: usize>(
@@ -202,6 +169,57 @@ impl Spans<'_> {
                 knots.fill(lit, span.thresholds(thresholds), span.column(), &mut out[span.pixels()]);
             }
         });
+    }
+}
+
+compiled_for_each_level! {
+    /// Lights every pixel. Eight are lit together: successive ones of a row, or the remainders of several rows and
+    /// triangles. A pixel's point is computed from its own row's first pixel, so its shade does not depend on the other
+    /// seven.
+    #[inline(never)]
+    pub(super) fn light_each[const N: usize, L: Lit<N>][N, L](
+        kernel: Kernel,
+        spans: &Spans<'_>,
+        light: &L,
+        out: [&mut [u16]; N],
+    ) {
+        light_each_inlined(spans, light, out)
+    }
+}
+
+#[inline(always)]
+fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
+    let mut waiting = Waiting::new();
+    let mut nothing = [(); ROOM];
+    spans.each(
+        &mut nothing,
+        LitPlane::new,
+        #[inline(always)]
+        |plane, span, _| {
+            let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
+            let length = span.len;
+            let mut first = 0;
+            while length - first >= LANES {
+                let lit = light.at(&lit::divide(&lit::numerators(&places(first), &a, da, d, *dd)));
+                for (i, out) in out.iter_mut().enumerate() {
+                    if let Some(to) = out[span.first + first..].first_chunk_mut() {
+                        *to = lit[i];
+                    }
+                }
+                first += LANES;
+            }
+            if first < length {
+                let numerators = lit::numerators(&places(first), &a, da, d, *dd);
+                waiting.push(&numerators, span.first + first, length - first);
+                if waiting.count >= LANES {
+                    waiting.light(light, &mut out);
+                    waiting.advance();
+                }
+            }
+        },
+    );
+    if waiting.count > 0 {
+        waiting.light(light, &mut out);
     }
 }
 

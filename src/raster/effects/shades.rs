@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::Buffers;
 use super::curve::CurvePlane;
 use super::listing::FaceCorners;
-use super::lit::Lit;
+use super::lit::{Lit, light_each};
 use super::pipeline::{Mix, PixelLighting, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
 use crate::lanes::LANES;
@@ -80,7 +80,7 @@ impl Spans<'_> {
                 let bytes = bytes.each_mut().map(|of| &mut of[..]);
                 return self.light_some(kernel, (spacing, &light), dither.unwrap_or(Thresholds::HALVES), bytes);
             }
-            ShadeSource::Lit(light) => self.light_each(kernel, &light, shades.each_mut().map(|of| &mut of[..])),
+            ShadeSource::Lit(light) => light_each(kernel, self, &light, shades.each_mut().map(|of| &mut of[..])),
             ShadeSource::Curved(limits) => {
                 for (i, shades) in shades.iter_mut().enumerate() {
                     let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, N);
