@@ -144,8 +144,8 @@ mod blocks {
 ///
 /// `map` holds an entry for every colour of 5 bits per channel, red on top. `spread` is how far the thresholds move a
 /// value, from the lowest to the highest: about the distance of neighbouring colours in the palette; 0 is no dither.
+#[cfg(any(test, feature = "internals"))]
 #[expect(clippy::too_many_arguments, reason = "three rows in, one out, and what the pixels share")]
-#[inline(never)]
 pub fn mix_nearest(
     row: &mut [u8],
     red: &[u8],
@@ -167,7 +167,7 @@ pub fn mix_nearest(
     }
 }
 
-/// [`mix_nearest`] for eight pixels.
+/// What `mix_nearest` computes, for eight pixels.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn mix_nearest_eight<S: Lanes8>(
