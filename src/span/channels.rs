@@ -167,7 +167,7 @@ pub fn mix_nearest(
     }
 }
 
-/// What `mix_nearest` computes, for eight pixels.
+/// Mixes three channels into any palette at eight pixels, as `mix_nearest` does one by one.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn mix_nearest_eight<S: Lanes8>(
