@@ -164,6 +164,12 @@ pub(super) trait Shades8 {
     /// Further columns of eight spans.
     type Columns<S: Lanes8>: SpanColumns<S>;
 
+    /// Returns whether fills are computed from the planes of linear shades.
+    #[inline(always)]
+    fn has_planes(&self) -> bool {
+        !Self::IS_FLAT
+    }
+
     /// Returns whether spans have to be drawn before eight more triangles are set up.
     fn is_full(&self) -> bool;
 
@@ -173,13 +179,13 @@ pub(super) trait Shades8 {
     /// Completes the set-up of eight triangles whose edges and linear shades are already set up.
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
 
-    /// The fills of the spans of rows `j`, as columns of the list.
+    /// The fills of the spans of rows, as columns of the list.
     fn fill_of<S: Lanes8>(
         &self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
-        rows: (&RowEnds<S>, S::F64),
+        ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> (S::I32, Self::Columns<S>);
 
@@ -238,7 +244,7 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
-        (ends, _): (&RowEnds<S>, S::F64),
+        ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> (S::I32, ()) {
         (if FLAT { lane.load_i32(s, &self.paint) } else { ends.paint(s, lane, setup, parts.seed) }, ())
@@ -269,8 +275,8 @@ pub(super) struct RowEnds<S: Lanes8> {
     /// Columns relative to the box's first, as sums with `ROUND_MAGIC`: the first pixel, and the one after the last.
     pub(super) left: S::F64,
     right: S::F64,
-    /// The numerator of the shade at the box's first column.
-    shade_n: S::F64,
+    /// Their indices.
+    pub(super) j: S::F64,
 }
 
 impl<S: Lanes8> RowEnds<S> {
@@ -280,31 +286,30 @@ impl<S: Lanes8> RowEnds<S> {
         let long = edge(s, lane, &setup.long, j);
         let (upper, lower) = (edge(s, lane, &setup.upper, j), edge(s, lane, &setup.lower, j));
         let short = s.select(s.is_greater(lane.load_i32(s, &setup.split), number), upper, lower);
-        let shade_n = s.mul_add(lane.load_f64(s, &setup.shade.per_row), j, lane.load_f64(s, &setup.shade.n));
-        Self { left: s.min(long, short), right: s.max(long, short), shade_n }
+        Self { left: s.min(long, short), right: s.max(long, short), j }
     }
 
     /// The numerator of the shade at these columns; see [`ValuePlanes8`].
     #[inline(always)]
     pub(super) fn shade_numerator(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::F64 {
-        numerator_at(s, lane, &setup.shade, self.shade_n, columns)
+        numerator_at(s, lane, &setup.shade, self.j, columns)
     }
 
     /// The shade at these columns, with the step in the upper half.
     #[inline(always)]
     pub(super) fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
-        value_at(s, lane, (&setup.shade, &setup.inverse), self.shade_n, columns)
+        value_of(s, lane, (&setup.shade, &setup.inverse), self.j, columns)
     }
 }
 
-/// A numerator at these columns, from that at the first column.
+/// A numerator at these columns of rows `j`.
 #[inline(always)]
-fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, n: S::F64, columns: S::F64) -> S::F64 {
+fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, j: S::F64, columns: S::F64) -> S::F64 {
+    let n = s.mul_add(lane.load_f64(s, &planes.per_row), j, lane.load_f64(s, &planes.n));
     s.mul_add(lane.load_f64(s, &planes.per_column), s.sub(columns, s.splat_f64(ROUND_MAGIC)), n)
 }
 
 /// A value at these columns of rows `j`, with the step in the upper half.
-#[cfg(feature = "alloc")]
 #[inline(always)]
 pub(super) fn value_of<S: Lanes8>(
     s: S,
@@ -313,20 +318,7 @@ pub(super) fn value_of<S: Lanes8>(
     j: S::F64,
     columns: S::F64,
 ) -> S::I32 {
-    let n = s.mul_add(lane.load_f64(s, &planes.per_row), j, lane.load_f64(s, &planes.n));
-    value_at(s, lane, (planes, inverse), n, columns)
-}
-
-/// A value at these columns, with the step in the upper half, from the numerator at the first column.
-#[inline(always)]
-fn value_at<S: Lanes8>(
-    s: S,
-    lane: impl Lane<S>,
-    (planes, inverse): (&ValuePlanes8, &Floats),
-    n: S::F64,
-    columns: S::F64,
-) -> S::I32 {
-    let n = numerator_at(s, lane, planes, n, columns);
+    let n = numerator_at(s, lane, planes, j, columns);
     let value = s.low_bits(s.mul_add(n, lane.load_f64(s, inverse), s.splat_f64(ROUND_MAGIC)));
     s.or_i32(s.and_i32(value, s.splat_i32(0xFFFF)), lane.load_i32(s, &planes.step))
 }
@@ -397,7 +389,7 @@ impl<S: Lanes8> RowCursor8<S> {
             self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let (paint, columns) = shades.fill_of(s, lane, setup, (&ends, j), &parts);
+        let (paint, columns) = shades.fill_of(s, lane, setup, &ends, &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
@@ -504,8 +496,6 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
 /// Eight rows of a triangle.
 struct EightRows<S: Lanes8> {
     ends: RowEnds<S>,
-    /// Their indices.
-    j: S::F64,
     /// Offsets of their first pixels and cells.
     at: S::I32,
     cell: S::I32,
@@ -533,15 +523,15 @@ impl<S: Lanes8> EightRows<S> {
             z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
         }
         let length = s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0));
-        Self { ends, j, at: s.add_i32(at, left), cell: s.add_i32(cell, left), length, z }
+        Self { ends, at: s.add_i32(at, left), cell: s.add_i32(cell, left), length, z }
     }
 
     /// The whole rows as spans.
     #[inline(always)]
     fn spans<P: Shades8>(&self, s: S, setup: &TriangleSetup8, shades: &P, i: usize) -> Spans8<S, P::Columns<S>> {
-        let Self { ends, j, at, cell, length, z } = self;
+        let Self { ends, at, cell, length, z } = self;
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let (paint, columns) = shades.fill_of(s, OneTriangle(i), setup, (ends, *j), &parts);
+        let (paint, columns) = shades.fill_of(s, OneTriangle(i), setup, ends, &parts);
         Spans8 { at: *at, cell: *cell, length: *length, paint, z: *z, columns }
     }
 }
@@ -601,7 +591,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             right = s.min(right, side(clip.x1));
         }
         let parts = Parts { row: row_origin, end: last, seed: left, start };
-        let (mut paint, columns) = shades.fill_of(s, lane, setup, (ends, rows.j), &parts);
+        let (mut paint, columns) = shades.fill_of(s, lane, setup, ends, &parts);
         if P::IS_LINEAR && clip.is_some() {
             // A piece that begins left of the rectangle continues from its start.
             paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));

@@ -186,8 +186,7 @@ impl ValuePlanes8 {
     /// Sets up the planes of these values at the corners.
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &[Ints; 3]) {
-        let [v0, v1, v2] =
-            basis.order.sort(s, [s.load_i32(&corners[0]), s.load_i32(&corners[1]), s.load_i32(&corners[2])]);
+        let [v0, v1, v2] = basis.order.load(s, corners);
         let ([x, y], area) = (basis.first, basis.area);
         let value = s.to_f64(v0);
         let [gx, gy] = basis.gradient(s, [s.to_f64(s.sub_i32(v1, v0)), s.to_f64(s.sub_i32(v2, v0))]);
@@ -262,14 +261,15 @@ impl TriangleSetup8 {
     }
 
     /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth
-    /// planes of small ones too, and without `FLAT` the shade planes. Returns the basis for setting
-    /// up other planes.
+    /// planes of small ones too, and if it `has_planes` those of linear shades. Returns the basis for
+    /// setting up other planes.
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool, const FLAT: bool>(
+    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(
         &mut self,
         s: S,
         corners: &Corners8,
         layout: FrameLayout,
+        has_planes: bool,
     ) -> Basis<S> {
         let [ax, ay] = s.halves_of_i64(s.load_i64(&corners.at[0]));
         let [bx, by] = s.halves_of_i64(s.load_i64(&corners.at[1]));
@@ -319,12 +319,12 @@ impl TriangleSetup8 {
         let area = s.xor_sign(signed, signed);
         let inverse = s.div(s.splat_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
-        if FLAT {
-            // A single shade needs no plane.
-        } else if corners.are_flat {
-            self.shade.set_up_constant(s, &basis, &corners.shade[0]);
-        } else {
-            self.shade.set_up(s, &basis, &corners.shade);
+        if has_planes {
+            if corners.are_flat {
+                self.shade.set_up_constant(s, &basis, &corners.shade[0]);
+            } else {
+                self.shade.set_up(s, &basis, &corners.shade);
+            }
         }
         s.store_f64(inverse, &mut self.inverse);
         // Triangles without area have no rows.
@@ -332,9 +332,7 @@ impl TriangleSetup8 {
         s.store_i32(s.select_i32(has_area, rows, s.splat_i32(0)), &mut self.rows);
 
         if DEPTHS {
-            let [d0, d1, d2] = basis
-                .order
-                .sort(s, [s.load_i32(&corners.depth[0]), s.load_i32(&corners.depth[1]), s.load_i32(&corners.depth[2])]);
+            let [d0, d1, d2] = basis.order.load(s, &corners.depth);
             let depth = s.unsigned_to_f64(d0);
             let (dd1, dd2) = (s.sub(s.unsigned_to_f64(d1), depth), s.sub(s.unsigned_to_f64(d2), depth));
             let [nx, ny] = basis.gradient(s, [dd1, dd2]);
@@ -379,6 +377,16 @@ impl<S: Lanes8> Basis<S> {
         [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
+    /// The plane of a value times the area, given at the corners by height: at the box's first pixel, and its changes per
+    /// row and per column. Products and sums are rounded.
+    #[inline(always)]
+    pub(super) fn plane(&self, s: S, [a, b, c]: [S::F64; 3]) -> [S::F64; 3] {
+        let ([x, y], pixel) = (self.first, s.splat_f64(256.0));
+        let [gx, gy] = self.gradient(s, [s.sub(b, a), s.sub(c, a)]);
+        let at_first = s.neg_mul_add(gy, y, s.neg_mul_add(gx, x, s.mul(a, self.area)));
+        [at_first, s.mul(gy, pixel), s.mul(gx, pixel)]
+    }
+
     /// Change of a corner's weight per 1/256 pixel; then its weight at the box's first pixel, with
     /// its change per row and per column. All are exact whole numbers. Corners are numbered by
     /// height.
@@ -404,6 +412,12 @@ pub(super) struct Order<S: Lanes8> {
 }
 
 impl<S: Lanes8> Order<S> {
+    /// The values of corners, in the order of heights.
+    #[inline(always)]
+    pub(super) fn load(&self, s: S, [a, b, c]: &[Ints; 3]) -> [S::I32; 3] {
+        self.sort(s, [s.load_i32(a), s.load_i32(b), s.load_i32(c)])
+    }
+
     /// A value of each corner, in the order of heights.
     #[inline(always)]
     pub(super) fn sort(&self, s: S, [a, b, c]: [S::I32; 3]) -> [S::I32; 3] {
@@ -568,6 +582,6 @@ mod tests {
 
     #[inline(always)]
     fn set_up_by<S: Lanes8>(s: S, setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) {
-        setup.set_up::<S, true, false>(s, corners, layout);
+        setup.set_up::<S, true>(s, corners, layout, true);
     }
 }

@@ -23,9 +23,20 @@
 //!
 //! # Perspective-correct shades
 //!
-//! The corners' weights are whole numbers below 2⁴⁴ in a box of 2¹⁸ pixels, so they are exact whichever pixel they are
-//! computed from. The estimate's bound in [`hyperbolic`](super::reference::hyperbolic) requires no more than three
-//! products and two sums, each rounded at most once.
+//! Numerator and divisor are linear on the screen, so each has a plane in f64: its value N₀ at the box's first pixel, and
+//! its changes per row and per column. A corner's values of either are exact, with at most 51 bits, and so are their
+//! differences. With ε = 2⁻⁵³, a box of W × H units, and B = W·H times the greatest of the three values, in units of εB:
+//!
+//! | | magnitude | off by |
+//! |---|---:|---:|
+//! | change over the box's width, or its height: two products and a sum | 2 | 4 |
+//! | N₀: the first corner's value times the area, less a change over its column and one over its row | 5 | 21 |
+//! | with rows added | 7 | 34 |
+//! | with columns added up to the span's start, and pixels from there: no more columns than the box has | 9 | 60 |
+//!
+//! No quotient is above T = 2²⁴, so the numerator's B is at most T times the divisor's, and the quotient is off by at most
+//! 120·ε·T·B/D. The divisor D is at least the area A times the least depth. So quotients are off by less than a quarter
+//! where B ≤ 2²⁰ · A · least depth; other triangles get a numerator of 0, whose estimates decide nothing.
 //!
 //! Bytes in f32 depend on the order in which three products are added: corners by height, and at equal heights the left
 //! one first. The order of the first two does not change their sum. No product is fused with a sum. The changes per
@@ -42,12 +53,12 @@ use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float_blocks;
 use crate::span::hyperbolic::fill_estimated_blocks;
-use crate::span::list::{DepthSteps, Span, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target};
+use crate::span::list::{DepthSteps, Span, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target, Written};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -74,12 +85,10 @@ impl Kind {
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 struct Steps8 {
-    /// Changes of the numerator and of the divisor per pixel.
+    /// Perspective-correct: changes of the numerator and of the divisor per pixel.
     sums: [Floats; 2],
-    /// Steps in 16.16.
-    fixed16: Ints,
-    least: Ints,
-    greatest: Ints,
+    /// In 16.16, the steps. In f32, the bits of the same changes, and of the least and the greatest shade.
+    words: [Ints; 4],
 }
 
 const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
@@ -102,43 +111,45 @@ impl ShadedFaces<'_> {
     #[inline(always)]
     fn step_16_16(&self, face: usize) -> u32 {
         let (batch, lane) = Batches::of_face(face);
-        self.steps[batch].fixed16[lane].cast_unsigned()
+        self.steps[batch].words[0][lane].cast_unsigned()
     }
 
     /// Perspective-correct bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if
     /// estimates cannot decide all of them.
     #[inline(always)]
-    fn estimate<S: Lanes8>(&self, s: S, span: &Fill, bytes: &mut Bytes) -> bool {
-        let (batch, lane) = Batches::of_face(span.face);
-        let [dn, dd] = &self.steps[batch].sums;
-        let [n, d] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
-        HyperbolicPlane::is_sure(d, dd[lane], span.length)
-            && fill_estimated_blocks(s, (bytes, span.length), [n, dn[lane]], [d, dd[lane]])
+    fn estimate<S: Lanes8>(&self, s: S, (span, starts): (Span, [f64; 2]), bytes: &mut Bytes) -> bool {
+        let (batch, lane) = Batches::of_face(face_of(span));
+        let ([dn, dd], [n, d]) = (&self.steps[batch].sums, starts);
+        fill_estimated_blocks(s, (bytes, span.length as usize), [n, dn[lane]], [d, dd[lane]])
     }
 
     /// [`estimate`](Self::estimate) in exact arithmetic.
     #[cold]
     #[inline(never)]
-    fn exact_bytes(&self, span: &Fill, offset: u32, bytes: &mut Bytes) {
-        let triangle = self.triangle(span.face);
+    fn exact_bytes(&self, span: Span, bytes: &mut Bytes) {
+        let triangle = self.triangle(face_of(span));
         let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
         let FrameLayout { first_row, pitch, .. } = self.layout;
         // In a frame: below 4,096.
-        let (x, y) = ((offset % pitch) as i32, (first_row + offset / pitch) as i32);
-        plane.fill(x, y, &mut bytes[..span.length]);
+        let (x, y) = ((span.at % pitch) as i32, (first_row + span.at / pitch) as i32);
+        plane.fill(x, y, &mut bytes[..(span.length as usize).min(SpanBytes::LENGTH)]);
     }
 
     /// Bytes of a span in f32, and arbitrary ones after them to fill blocks of eight.
     #[cfg(feature = "alloc")]
     #[inline(always)]
-    fn quotients(&self, span: &Fill, bytes: &mut Bytes) {
-        let (batch, lane) = Batches::of_face(span.face);
-        let Steps8 { sums: [dn, dd], least, greatest, .. } = &self.steps[batch];
-        let [n, d] = span.starts.map(|bits| f64::from_bits(bits.cast_unsigned()));
-        // Rounded once: dividing by 256 changes no bit of them.
-        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn[lane] as f32], [d as f32, dd[lane] as f32]);
-        let range = [least[lane] as f32 / 256.0, greatest[lane] as f32 / 256.0];
-        fill_float_blocks((bytes, span.length), span.first, n_and_step, d_and_step, range);
+    fn quotients(&self, (span, [n, d]): (Span, [f64; 2]), bytes: &mut Bytes) {
+        let (batch, lane) = Batches::of_face(face_of(span));
+        let mut singles = [0.0; 4];
+        for (single, bits) in singles.iter_mut().zip(&self.steps[batch].words) {
+            *single = f32::from_bits(bits[lane].cast_unsigned());
+        }
+        let [dn, dd, least, greatest] = singles;
+        // Rounded once: dividing by 256 changes no bit.
+        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn], [d as f32, dd]);
+        // The index of the first pixel, relative to the pixel where the sums are.
+        let first = span.paint.cast_signed() >> 16;
+        fill_float_blocks((bytes, span.length as usize), first, n_and_step, d_and_step, [least, greatest]);
     }
 }
 
@@ -151,7 +162,9 @@ pub(super) struct Shaded8<'a> {
     /// 16.16: 255·h, and A.
     fraction: Floats,
     area: Floats,
-    /// The weight of each corner, by height: at the box's first pixel, its change per row, and per column.
+    /// Perspective-correct: numerator and divisor, each at the box's first pixel and its change per row.
+    planes: [[Floats; 2]; 2],
+    /// In f32: the weight of each corner, by height: at the box's first pixel, its change per row, and per column.
     weights: [[Floats; 3]; 3],
     /// Each corner's depth times its shade, and its depth.
     values: [[Floats; 2]; 3],
@@ -160,8 +173,8 @@ pub(super) struct Shaded8<'a> {
 impl<'a> Shaded8<'a> {
     #[inline(always)]
     pub(super) fn new(kind: Kind, triangles: &'a Triangles<'a>, picks: Picks<'a>, layout: FrameLayout) -> Self {
-        let (floats, ints) = ([0.0; LANES], [0; LANES]);
-        let steps = Steps8 { sums: [floats; 2], fixed16: ints, least: ints, greatest: ints };
+        let floats = [0.0; LANES];
+        let steps = Steps8 { sums: [floats; 2], words: [[0; LANES]; 4] };
         Self {
             kind,
             listed: ShadedFaces { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
@@ -169,6 +182,7 @@ impl<'a> Shaded8<'a> {
             bytes: SpanBytes::NONE,
             fraction: floats,
             area: floats,
+            planes: [[floats; 2]; 2],
             weights: [[floats; 3]; 3],
             values: [[floats; 2]; 3],
         }
@@ -183,49 +197,53 @@ impl<'a> Shaded8<'a> {
         s.store_f64(fraction, &mut self.fraction);
         s.store_f64(basis.area, &mut self.area);
         let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
-        s.store_i32(step, &mut self.listed.steps[self.listed.batches.current()].fixed16);
+        s.store_i32(step, &mut self.listed.steps[self.listed.batches.current()].words[0]);
     }
 
     #[inline(always)]
-    fn set_up_perspective<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
-        let (pixel, zero, one) = (s.splat_f64(256.0), s.splat_f64(0.0), s.splat_f64(1.0));
-        let [shade_a, shade_b, shade_c] = &corners.shade;
-        let [depth_a, depth_b, depth_c] = &corners.depth;
-        let shades = basis.order.sort(s, [s.load_i32(shade_a), s.load_i32(shade_b), s.load_i32(shade_c)]);
-        let depths = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
-        let is_estimate = self.kind == Kind::Hyperbolic;
-        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see `HyperbolicPlane::estimates`. Or
-        // shades as they are.
-        let (half, scale) = if is_estimate {
-            let [a, b, c] = shades;
-            let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
-            (s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0)), s.splat_f64(256.0))
-        } else {
-            (zero, one)
-        };
-        let mut sums = [zero; 2];
-        let mut changes = [zero; 3];
-        let (mut weights, mut values) = ([[zero; 3]; 3], [[zero; 2]; 3]);
-        for corner in 0..3 {
-            let gradient;
-            (gradient, weights[corner]) = basis.weight(s, corner);
-            // A depth counts as at least 1.
-            let depth = s.max(s.unsigned_to_f64(depths[corner]), one);
-            let shade = s.mul(s.add(s.to_f64(shades[corner]), half), scale);
-            values[corner] = [s.mul(shade, depth), depth];
-            changes[corner] = gradient;
-            for i in 0..2 {
-                sums[i] = s.mul_add(s.mul(gradient, pixel), values[corner][i], sums[i]);
-            }
+    fn set_up_hyperbolic<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
+        let [a, b, c] = basis.order.load(s, &corners.shade);
+        let depths = depths(s, basis, corners);
+        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see `HyperbolicPlane::estimates`.
+        let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
+        let half = s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0));
+        let numerators = three(
+            [(a, depths[0]), (b, depths[1]), (c, depths[2])],
+            #[inline(always)]
+            |(shade, depth)| s.mul(s.mul(s.add(s.to_f64(shade), half), s.splat_f64(256.0)), depth),
+        );
+        let is_sure = are_estimates_sure(s, basis, depths);
+        let (zero, one) = (s.splat_f64(0.0), s.splat_f64(1.0));
+        let steps = &mut self.listed.steps[self.listed.batches.current()];
+        for (i, (values, unsure)) in [(numerators, zero), (depths, one)].into_iter().enumerate() {
+            let [at_first, per_row, per_column] = basis.plane(s, values);
+            s.store_f64(s.select(is_sure, at_first, unsure), &mut self.planes[i][0]);
+            s.store_f64(s.select(is_sure, per_row, zero), &mut self.planes[i][1]);
+            s.store_f64(s.select(is_sure, per_column, zero), &mut steps.sums[i]);
         }
+    }
+
+    #[inline(always)]
+    fn set_up_float<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
+        let shades = basis.order.load(s, &corners.shade);
+        let depths = depths(s, basis, corners);
+        let [(change_a, weights_a), (change_b, weights_b), (change_c, weights_c)] = three(
+            [0, 1, 2],
+            #[inline(always)]
+            |corner| basis.weight(s, corner),
+        );
+        let (changes, mut weights) = ([change_a, change_b, change_c], [weights_a, weights_b, weights_c]);
+        let mut values = three(
+            [0, 1, 2],
+            #[inline(always)]
+            |corner: usize| [s.mul(s.to_f64(shades[corner]), depths[corner]), depths[corner]],
+        );
         let [first, second, third] = values;
-        if !is_estimate {
-            // If the last two corners are at the same height, the left one comes first.
-            let is_last_second =
-                s.and_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
-            swap_where(s, is_last_second, &mut weights);
-            swap_where(s, is_last_second, &mut values);
-        }
+        // If the last two corners are at the same height, the left one comes first.
+        let is_last_second =
+            s.and_not(s.is_less(basis.third[0], basis.second[0]), s.is_less(basis.second[1], basis.third[1]));
+        swap_where(s, is_last_second, &mut weights);
+        swap_where(s, is_last_second, &mut values);
         // Stored once: the compiler would store a swap in memory with `vmaskmovpd`, which takes 20 cycles on AMD
         // processors.
         for corner in 0..3 {
@@ -237,12 +255,8 @@ impl<'a> Shaded8<'a> {
             }
         }
         let steps = &mut self.listed.steps[self.listed.batches.current()];
-        if is_estimate {
-            s.store_f64(sums[0], &mut steps.sums[0]);
-            s.store_f64(sums[1], &mut steps.sums[1]);
-            return;
-        }
-        for (i, (unit, sums)) in [1.0, 256.0].into_iter().zip(&mut steps.sums).enumerate() {
+        let [dn, dd, least, greatest] = &mut steps.words;
+        for (i, (unit, steps)) in [(1.0, dn), (256.0, dd)].into_iter().enumerate() {
             // Whole numbers below 2⁴⁸ and 2¹², exact in sums with the magic number.
             let mut exact = [0; LANES];
             s.store_i64(
@@ -253,13 +267,18 @@ impl<'a> Shaded8<'a> {
                 &mut exact,
             );
             // 2⁸ for a pixel's width, and for shades 2⁻⁸ for their unit: no rounding but the first.
-            for (step, exact) in sums.iter_mut().zip(exact) {
-                *step = f64::from(exact as f32 * unit);
+            for (step, exact) in steps.iter_mut().zip(exact) {
+                *step = (exact as f32 * unit).to_bits().cast_signed();
             }
         }
         let [a, b, c] = shades;
-        s.store_i32(s.min_i32(s.min_i32(a, b), c), &mut steps.least);
-        s.store_i32(s.max_i32(s.max_i32(a, b), c), &mut steps.greatest);
+        for (shades, to) in [(s.min_i32(s.min_i32(a, b), c), least), (s.max_i32(s.max_i32(a, b), c), greatest)] {
+            let mut units = [0; LANES];
+            s.store_i32(shades, &mut units);
+            for (single, units) in to.iter_mut().zip(units) {
+                *single = (units as f32 / 256.0).to_bits().cast_signed();
+            }
+        }
     }
 
     #[inline(always)]
@@ -268,29 +287,28 @@ impl<'a> Shaded8<'a> {
         while first < count {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
-                let (Span { at, length, paint }, starts) = (list.span(k), self.starts.of(k));
-                // The face in the lower half, the first pixel in the upper.
-                let fill = Fill {
-                    face: (paint & 0xFFFF) as usize,
-                    #[cfg(feature = "alloc")]
-                    first: paint.cast_signed() >> 16,
-                    starts,
-                    length: (length as usize).min(SpanBytes::LENGTH),
-                };
+                let span = list.span(k);
+                let of = (span, self.starts.of(k).map(|bits| f64::from_bits(bits.cast_unsigned())));
                 let bytes = self.bytes.of_mut(k - first);
                 if IS_ESTIMATE {
-                    if !self.listed.estimate(s, &fill, bytes) {
-                        self.listed.exact_bytes(&fill, at, bytes);
+                    if !self.listed.estimate(s, of, bytes) {
+                        self.listed.exact_bytes(span, bytes);
                     }
                 } else {
                     #[cfg(feature = "alloc")]
-                    self.listed.quotients(&fill, bytes);
+                    self.listed.quotients(of, bytes);
                 }
             }
-            for k in first..end {
-                let (Span { at, length, .. }, depth) = (list.span(k), list.depth(k));
-                nearer += target.write(s, (at, depth), (self.bytes.of(k - first), length as usize), true);
-            }
+            nearer += target.write_each(
+                s,
+                first..end,
+                #[inline(always)]
+                |k| {
+                    let Span { at, length, .. } = list.span(k);
+                    Written { at, depth: list.depth(k), bytes: self.bytes.of(k - first), length: length as usize }
+                },
+                true,
+            );
             first = end;
         }
         list.clear(nearer);
@@ -304,6 +322,27 @@ fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), frac
     let rest = s.neg_mul_add(s.sub(whole, magic), area, n);
     let part = s.mul_add(s.mul_add(rest, s.splat_f64(256.0), fraction), inverse, magic);
     s.add_i32(s.shl_i32(s.low_bits(whole), 8), s.low_bits(part))
+}
+
+/// Depths by height; each counts as at least 1.
+#[inline(always)]
+fn depths<S: Lanes8>(s: S, basis: &Basis<S>, corners: &Corners8) -> [S::F64; 3] {
+    let [a, b, c] = basis.order.load(s, &corners.depth);
+    three(
+        [a, b, c],
+        #[inline(always)]
+        |depth| s.max(s.unsigned_to_f64(depth), s.splat_f64(1.0)),
+    )
+}
+
+/// The triangles whose quotients are off by less than a quarter: see the module's documentation.
+#[inline(always)]
+fn are_estimates_sure<S: Lanes8>(s: S, basis: &Basis<S>, [a, b, c]: [S::F64; 3]) -> S::Mask {
+    let ([dx1, _], [dx2, height], zero) = (basis.second, basis.third, s.splat_f64(0.0));
+    let width = s.sub(s.max(s.max(dx1, dx2), zero), s.min(s.min(dx1, dx2), zero));
+    let (least, greatest) = (s.min(s.min(a, b), c), s.max(s.max(a, b), c));
+    let most = s.mul(s.mul(basis.area, least), s.splat_f64(1_048_576.0));
+    s.is_less(s.mul(s.mul(width, height), greatest), most)
 }
 
 /// Swaps the values of the second and the third corner in the lanes that are set.
@@ -329,6 +368,11 @@ impl Shades8 for Shaded8<'_> {
     type Columns<S: Lanes8> = Starts8<S, 2>;
 
     #[inline(always)]
+    fn has_planes(&self) -> bool {
+        self.kind == Kind::Fixed16
+    }
+
+    #[inline(always)]
     fn is_full(&self) -> bool {
         self.listed.batches.are_full()
     }
@@ -342,7 +386,9 @@ impl Shades8 for Shaded8<'_> {
     fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
         match self.kind {
             Kind::Fixed16 => self.set_up_16_16(s, basis, setup),
-            _ => self.set_up_perspective(s, basis, corners),
+            Kind::Hyperbolic => self.set_up_hyperbolic(s, basis, corners),
+            #[cfg(feature = "alloc")]
+            Kind::Float => self.set_up_float(s, basis, corners),
         }
     }
 
@@ -352,10 +398,10 @@ impl Shades8 for Shaded8<'_> {
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
-        (ends, j): (&RowEnds<S>, S::F64),
+        ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> (S::I32, Starts8<S, 2>) {
-        let magic = s.splat_f64(ROUND_MAGIC);
+        let (j, magic) = (ends.j, s.splat_f64(ROUND_MAGIC));
         // At most 255.
         let face = self.listed.batches.faces(s, lane);
         let steps = &self.listed.steps[self.listed.batches.current()];
@@ -364,16 +410,24 @@ impl Shades8 for Shaded8<'_> {
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
-            let start = s.add_i32(start, s.mul_i32(lane.load_i32(s, &steps.fixed16), skipped));
+            let start = s.add_i32(start, s.mul_i32(lane.load_i32(s, &steps.words[0]), skipped));
             return (face, Starts8([s.to_i64(start), s.splat_i64(0)]));
         }
-        let (mut at, mut paint) = (parts.start, face);
-        if self.kind != Kind::Hyperbolic {
-            let falls = s.is_less(lane.load_f64(s, &steps.sums[1]), s.splat_f64(0.0));
-            at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
-            let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
-            paint = s.or_i32(face, s.shl_i32(first, 16));
+        if self.kind == Kind::Hyperbolic {
+            let columns = s.sub(parts.start, magic);
+            let mut starts = [s.splat_i64(0); 2];
+            for (i, start) in starts.iter_mut().enumerate() {
+                let [at_first, per_row] = &self.planes[i];
+                let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
+                *start = s.bits(s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row));
+            }
+            return (face, Starts8(starts));
         }
+        // A step of zero is not −0.
+        let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
+        let at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
+        let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
+        let paint = s.or_i32(face, s.shl_i32(first, 16));
         let columns = s.sub(at, magic);
         let mut sums = [s.splat_f64(0.0); 2];
         for (weights, values) in self.weights.iter().zip(&self.values) {
@@ -407,8 +461,8 @@ impl Shades8 for Shaded8<'_> {
         if self.kind == Kind::Float {
             let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
             let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps();
-            for (to, step) in self.listed.steps[self.listed.batches.current()].sums.iter_mut().zip(steps) {
-                to[i % LANES] = step.into();
+            for (to, step) in self.listed.steps[self.listed.batches.current()].words.iter_mut().zip(steps) {
+                to[i % LANES] = step.to_bits().cast_signed();
             }
         }
         let _ = i;
@@ -445,16 +499,11 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     }
 }
 
-/// The fill of a span.
-struct Fill {
-    /// The triangle, among those whose steps are stored.
-    face: usize,
-    /// The index of its first pixel, relative to the pixel where its sums are.
-    #[cfg(feature = "alloc")]
-    first: i32,
-    starts: [i64; 2],
-    /// At most [`SpanBytes::LENGTH`].
-    length: usize,
+/// The triangle of a span, among those whose steps are stored.
+#[inline(always)]
+fn face_of(span: Span) -> usize {
+    // The lower half.
+    (span.paint & 0xFFFF) as usize
 }
 
 type Bytes = [u8; SpanBytes::LENGTH];

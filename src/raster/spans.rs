@@ -287,18 +287,17 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             s,
             #[inline(always)]
             || {
-                let basis = if P::IS_FLAT {
-                    setup.set_up::<S, DEPTHS, true>(s, &corners, layout)
-                } else {
-                    setup.set_up::<S, DEPTHS, false>(s, &corners, layout)
-                };
+                let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout, shades.has_planes());
                 shades.set_up(s, &basis, &corners, &setup);
             },
         );
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
         gather::<P, DEPTHS>(&mut corners, triangles, &picks.range(count.min((number + 1) * LANES), count));
-        setup.rows[eight.len().min(LANES)..].fill(0);
+        // Rarely: it is a call.
+        if eight.len() < LANES {
+            setup.rows[eight.len()..].fill(0);
+        }
         if !list.has_room(LANES * LANES) {
             shades.draw::<S, LISTED>(s, list, target);
         }

@@ -57,7 +57,7 @@ pub(crate) fn fill_estimated_quotients(
 }
 
 /// [`fill_estimated_quotients`] in whole blocks of eight, for which `row` has room, so that bytes after the first `length`
-/// are arbitrary. Returns false if an estimate cannot decide one of them.
+/// are arbitrary. Returns false if an estimate cannot decide one of them; an arbitrary one counts, too.
 #[inline(always)]
 pub(crate) fn fill_estimated_blocks<S: Lanes8>(
     s: S,
@@ -67,16 +67,12 @@ pub(crate) fn fill_estimated_blocks<S: Lanes8>(
 ) -> bool {
     let (n, dn, d, dd) = (s.splat_f64(n), s.splat_f64(dn), s.splat_f64(d), s.splat_f64(dd));
     let mut k = s.to_f64(s.load_i32(&NUMBERS));
-    let mut left = length as i32;
     let mut undecided = 0;
     for block in blocks(row, length) {
         let quotient = s.div(s.mul_add(k, dn, n), s.mul_add(k, dd, d));
         let estimate = s.low_bits(s.add(quotient, s.splat_f64(ROUND_MAGIC)));
         *block = s.low_bytes(s.shr_i32(estimate, 16));
-        let is_whole = s.is_equal(s.and_i32(estimate, s.splat_i32(0xFFFF)), s.splat_i32(0));
-        let is_there = s.is_greater(s.splat_i32(left), s.load_i32(&NUMBERS));
-        undecided |= s.to_bitmask(s.and(is_whole, is_there));
-        left -= LANES as i32;
+        undecided |= s.to_bitmask(s.is_equal(s.and_i32(estimate, s.splat_i32(0xFFFF)), s.splat_i32(0)));
         k = s.add(k, s.splat_f64(LANES as f64));
     }
     undecided == 0

@@ -7,6 +7,8 @@
 //! or, with a depth test, `fill_nearer`. Rows of triangles are appended eight at a time; lanes without pixels, and
 //! spans that do not lie inside the pixels, are dropped by compression, so no branch depends on how many there are.
 
+use core::ops::Range;
+
 use super::Kernel;
 use super::depth::{Cell, Cells, copy_nearer, copy_nearer_keep_depth, fill_nearer};
 use super::depth_test::copy_span;
@@ -481,33 +483,73 @@ pub(crate) struct Target<'a> {
     pub(crate) kernel: Kernel,
 }
 
+/// Bytes for a span: its offset and depth, and the bytes, of which the first `length` are its own.
+pub(crate) struct Written<'a> {
+    pub(crate) at: u32,
+    pub(crate) depth: SpanDepth,
+    pub(crate) bytes: &'a [u8],
+    /// At most 64.
+    pub(crate) length: usize,
+}
+
 impl Target<'_> {
-    /// Writes the first `length` bytes, at most 64, to the pixels from `at` on, if there are cells only where they are
-    /// nearer, and with `keeps` their depths to the cells. Returns the number of nearer pixels.
+    /// Writes the bytes of these spans in order, if there are cells only where they are nearer, and with `keeps` their
+    /// depths to the cells. Returns the number of nearer pixels.
+    #[inline(always)]
+    pub(crate) fn write_each<'b, S: Lanes8>(
+        &mut self,
+        s: S,
+        spans: Range<usize>,
+        of: impl Fn(usize) -> Written<'b>,
+        keeps: bool,
+    ) -> u32 {
+        let (pixels, mut nearer) = (&mut *self.pixels, 0);
+        match &mut self.cells {
+            None => {
+                for span in spans {
+                    let Written { at, bytes, length, .. } = of(span);
+                    self.kernel.copy(length, pixels.get_mut(at as usize..).unwrap_or_default(), bytes);
+                }
+            }
+            Some(Cells::U32(cells)) => {
+                for span in spans {
+                    let Written { at, depth: SpanDepth { cell, z, dz }, bytes, length } = of(span);
+                    if let (Some(row), Some(cells)) = (pixels.get_mut(at as usize..), cells.get_mut(cell as usize..)) {
+                        nearer += copy_span(s, (row, cells), (bytes, length), keeps, [z, dz]);
+                    }
+                }
+            }
+            Some(Cells::U16(cells)) => {
+                for span in spans {
+                    let Written { at, depth: SpanDepth { cell, z, dz }, bytes, length } = of(span);
+                    let bytes = &bytes[..length.min(bytes.len())];
+                    if let (Some(row), Some(cells)) = (pixels.get_mut(at as usize..), cells.get_mut(cell as usize..)) {
+                        nearer += match keeps {
+                            true => copy_nearer(row, cells, bytes, z >> 8, dz >> 8),
+                            false => copy_nearer_keep_depth(row, cells, bytes, z >> 8, dz >> 8),
+                        };
+                    }
+                }
+            }
+        }
+        nearer
+    }
+
+    /// [`write_each`](Self::write_each) for one span.
     #[inline(always)]
     pub(crate) fn write<S: Lanes8>(
         &mut self,
         s: S,
-        (at, SpanDepth { cell, z, dz }): (u32, SpanDepth),
-        (bytes, length): (&[u8], usize),
+        Written { at, depth, bytes, length }: Written<'_>,
         keeps: bool,
     ) -> u32 {
-        let (row, cell) = (self.pixels.get_mut(at as usize..).unwrap_or_default(), cell as usize);
-        match &mut self.cells {
-            None => self.kernel.copy(length, row, bytes),
-            Some(Cells::U32(cells)) => {
-                let cells = cells.get_mut(cell..).unwrap_or_default();
-                return copy_span(s, (row, cells), (bytes, length), keeps, [z, dz]);
-            }
-            Some(Cells::U16(cells)) => {
-                let (bytes, cells) = (&bytes[..length.min(bytes.len())], cells.get_mut(cell..).unwrap_or_default());
-                return match keeps {
-                    true => copy_nearer(row, cells, bytes, z >> 8, dz >> 8),
-                    false => copy_nearer_keep_depth(row, cells, bytes, z >> 8, dz >> 8),
-                };
-            }
-        }
-        0
+        self.write_each(
+            s,
+            0..1,
+            #[inline(always)]
+            |_| Written { at, depth, bytes, length },
+            keeps,
+        )
     }
 }
 

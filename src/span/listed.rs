@@ -2,7 +2,7 @@
 
 use super::Kernel;
 use super::depth::Cell;
-use super::list::{DepthSteps, SpanBytes, SpanDepth, SpanList, Spans8, Target};
+use super::list::{DepthSteps, SpanBytes, SpanDepth, SpanList, Spans8, Target, Written};
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 
@@ -87,18 +87,18 @@ pub fn write_nearer<D: Cell>(
         let cell = first as u32;
         let depth = SpanDepth { cell, z: z.wrapping_add(dz.wrapping_mul(first as i64)) << 8, dz: dz << 8 };
         let n = (length - first).min(SpanBytes::LENGTH);
-        write(kernel.simd_level(), target, (cell, depth), (&bytes[first..], n), keeps)
+        write(kernel.simd_level(), target, Written { at: cell, depth, bytes: &bytes[first..], length: n }, keeps)
     };
     (0..length).step_by(SpanBytes::LENGTH).map(span).sum()
 }
 
 compiled_for_each_level! {
-    fn write[][](target: &mut Target<'_>, at: (u32, SpanDepth), bytes: (&[u8], usize), keeps: bool) -> u32 = write_by;
+    fn write[][](target: &mut Target<'_>, span: Written<'_>, keeps: bool) -> u32 = write_by;
 }
 
 #[inline(always)]
-fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, at: (u32, SpanDepth), bytes: (&[u8], usize), keeps: bool) -> u32 {
-    target.write(s, at, bytes, keeps)
+fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, span: Written<'_>, keeps: bool) -> u32 {
+    target.write(s, span, keeps)
 }
 
 fn lanes(spans: &[ListedSpan]) -> Spans8<Portable, ()> {

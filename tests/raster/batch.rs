@@ -136,6 +136,42 @@ fn small_triangles_are_the_oracles_with_every_kernel() {
     assert!(pixels > 50_000, "{pixels}");
 }
 
+/// Two far corners, whose edge goes through pixel centres, and a near one beside it. On the edge the shade is halfway
+/// between two bytes, as the quotient of small differences: the planes' terms are up to 2³⁰ times as large.
+#[test]
+fn perspective_correct_shades_on_far_edges_are_exact() {
+    const SIDE: i32 = 200;
+    let mut random = Random::named("far edges through pixel centres");
+    let mut pixels = 0;
+    for _ in 0..4_000 {
+        let (dx, dy) = (random.within(1, 7), random.within(1, 7));
+        let steps = random.within(1, 25);
+        let (x, y) = (128 + 256 * random.within(0, 10), 128 + 256 * random.within(0, 10));
+        let along = random.within(0, 256 * steps);
+        let beside = random.log_uniform(12) as i64;
+        let far = random.log_uniform(4) as i64;
+        let shade = 256 * random.within(0, 0xFE) + 128;
+        let near = random.one_of(&[0, 0xFF00, shade]);
+        let vertices = [
+            vertex(x, y, shade, far),
+            vertex(x + 256 * dx * steps, y + 256 * dy * steps, shade, far),
+            vertex(x + dx * along + beside, y + dy * along, near, (1 << 30) - random.log_uniform(20) as i64),
+        ];
+        let expected = oracle::pixels(&vertices, Interpolation::GouraudHyperbolic, SIDE, SIDE);
+        pixels += expected.len();
+        for kernel in Kernel::available() {
+            let mut bytes = vec![0; (SIDE * SIDE) as usize];
+            let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE as usize).expect("legal");
+            let mut raster = Raster::new(frame).with_kernel(kernel);
+            together(&mut raster, &[(vertices, Interpolation::GouraudHyperbolic)]);
+            for pixel in &expected {
+                assert_eq!(bytes[(pixel.y * SIDE + pixel.x) as usize], pixel.byte, "{kernel}, {pixel:?}, {vertices:?}");
+            }
+        }
+    }
+    assert!(pixels > 100_000, "{pixels}");
+}
+
 /// Where a test draws.
 struct Place {
     width: u32,

@@ -576,10 +576,10 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
-        (ends, j): (&RowEnds<S>, S::F64),
+        ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> (S::I32, Marks8<S, MAPPED>) {
-        let (row, seed) = (s.low_bits(parts.row), s.low_bits(parts.seed));
+        let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
         let before = s.sub_i32(seed, row);
         let Wanted { values: wanted, slots, reseeds, texture, .. } = &self.listed.wanted;
         let begin = if *reseeds { parts.seed } else { parts.row };

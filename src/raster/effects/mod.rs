@@ -91,7 +91,7 @@ use crate::fixed::{HAS_F64, IS_COMPACT};
 pub use crate::lanes::{Lanes, Points};
 use crate::mapping::Mapping;
 use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
-use crate::span::list::{Span, SpanList, Target};
+use crate::span::list::{Span, SpanList, Target, Written};
 pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
 
@@ -235,15 +235,27 @@ fn write_by<S: Lanes8>(
     target: &mut Target<'_>,
     keeps: bool,
 ) -> u32 {
+    let Some(table) = blend else {
+        return target.write_each(
+            s,
+            0..spans.count(),
+            #[inline(always)]
+            |i| {
+                let (first, Span { at, length, .. }) = spans.drawn(i);
+                Written { at, depth: spans.depth(i), bytes: &bytes[first..], length: length as usize }
+            },
+            keeps,
+        );
+    };
     let mut nearer = 0;
     for i in 0..spans.count() {
         let (first, Span { at, length, .. }) = spans.drawn(i);
-        let bytes = &mut bytes[first..];
-        if let (Some(table), Some(row)) = (blend, target.pixels.get(at as usize..)) {
-            let n = bytes.len().min(length as usize);
+        let (bytes, length) = (&mut bytes[first..], length as usize);
+        if let Some(row) = target.pixels.get(at as usize..) {
+            let n = bytes.len().min(length);
             lookup_row(&mut bytes[..n], row, table);
         }
-        nearer += target.write(s, (at, spans.depth(i)), (bytes, length as usize), keeps);
+        nearer += target.write(s, Written { at, depth: spans.depth(i), bytes, length }, keeps);
     }
     nearer
 }

@@ -73,10 +73,10 @@ impl Shades8 for Recorder<'_> {
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
-        rows: (&RowEnds<S>, S::F64),
+        ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> (S::I32, Marks8<S, { mapped::ANY }>) {
-        self.spans.fill_of(s, lane, setup, rows, parts)
+        self.spans.fill_of(s, lane, setup, ends, parts)
     }
 
     #[inline(always)]
