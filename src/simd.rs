@@ -29,9 +29,9 @@ mod sse2;
 #[expect(unsafe_code, reason = "vector loads and stores")]
 mod wasm;
 
-pub(crate) use lanes::Lanes8;
 #[cfg(simd_x86_64)]
 pub(crate) use lanes::SET_THEN_CLEAR;
+pub(crate) use lanes::{Lanes8, copy_block};
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;
 #[cfg(feature = "alloc")]

@@ -451,7 +451,11 @@ impl Shades8 for Shaded8<'_> {
         dz: DepthSteps<S>,
     ) {
         let places = list.append::<S, _, DEPTHS>(s, spans, dz);
-        self.starts.put(s, places, spans.columns);
+        if self.kind == Kind::Fixed16 {
+            self.starts.put_first(s, places, spans.columns.0[0]);
+        } else {
+            self.starts.put(s, places, spans.columns);
+        }
     }
 
     /// The exact steps in f32 of a triangle too large for 64-bit sums.

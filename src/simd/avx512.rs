@@ -126,6 +126,33 @@ impl Lanes8 for Avx512 {
     }
 
     #[inline(always)]
+    fn copy_nearer(
+        self,
+        (pixels, cells): (&mut [u8; 8], &mut [u32; 8]),
+        (bytes, count): ([u8; 8], usize),
+        [z, dz]: [i64; 2],
+        keeps: bool,
+    ) -> u32 {
+        // SAFETY: `self` proves that the processor has the instructions. Eight cells are loaded, and at most eight cells and
+        // pixels stored. Neither requires alignment.
+        unsafe {
+            // The lower eight bits.
+            let there = _bzhi_u32(0xFF, count.min(8) as u32) as u8;
+            let numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
+            let depths = _mm512_add_epi64(_mm512_mullo_epi64(_mm512_set1_epi64(dz), numbers), _mm512_set1_epi64(z));
+            let depths = _mm512_cvtepi64_epi32(_mm512_srli_epi64::<32>(depths));
+            let before = _mm256_loadu_si256(cells.as_ptr().cast());
+            let nearer = _mm256_mask_cmpgt_epu32_mask(there, depths, before);
+            if keeps {
+                _mm256_mask_storeu_epi32(cells.as_mut_ptr().cast(), nearer, depths);
+            }
+            let bytes = _mm_cvtsi64_si128(i64::from_le_bytes(bytes));
+            _mm_mask_storeu_epi8(pixels.as_mut_ptr().cast(), nearer.into(), bytes);
+            nearer.count_ones()
+        }
+    }
+
+    #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: __mmask8, from: [__m256i; N], to: [&mut [u32; 8]; N]) {
         for (i, to) in to.into_iter().enumerate() {
             // SAFETY: `self` proves that the processor has the instructions; the store goes to a whole array.

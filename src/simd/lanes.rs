@@ -205,6 +205,45 @@ pub(crate) trait Lanes8: Copy {
     fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         test_depths(cells, depths, count, keeps)
     }
+    /// [`test_four`](Self::test_four) for up to eight pixels, as few as will do.
+    #[inline(always)]
+    fn test_block(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
+        match cells.first_chunk_mut() {
+            Some(four) if count <= 4 => {
+                u64::from(u32::MAX) << 32 | u64::from(self.test_four(four, depths, count, keeps))
+            }
+            _ => self.test_eight(cells, depths, count, keeps),
+        }
+    }
+    /// Copies the first `count` of eight bytes to those pixels whose depths are greater than their cells; depths are as in
+    /// [`test_four`](Self::test_four). Returns the number of these pixels.
+    #[inline(always)]
+    fn copy_nearer(
+        self,
+        (pixels, cells): (&mut [u8; 8], &mut [u32; 8]),
+        (bytes, count): ([u8; 8], usize),
+        depths: [i64; 2],
+        keeps: bool,
+    ) -> u32 {
+        let stays = self.test_block(cells, depths, count, keeps);
+        copy_block(pixels, bytes, stays);
+        stays.count_zeros() / 8
+    }
+}
+
+/// Copies eight bytes, except where the mask lets pixels stay.
+#[inline(always)]
+pub(crate) fn copy_block(block: &mut [u8; 8], new: [u8; 8], stays: u64) {
+    if stays >> 32 == u64::from(u32::MAX) {
+        // Bytes just stored are then less often reloaded in different pieces.
+        if let (Some(four), Some(new)) = (block.first_chunk_mut(), new.first_chunk()) {
+            // The lower half.
+            let stay = stays as u32;
+            *four = (u32::from_le_bytes(*new) & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
+        }
+    } else {
+        *block = (u64::from_le_bytes(new) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
+    }
 }
 
 /// Compresses lane by lane, for levels without such an instruction.

@@ -93,6 +93,15 @@ fn check_depth_test<S: Lanes8>(s: S, name: &str, random: &mut Numbers) {
                 _ => s.test_eight(&mut cells, [z, dz], count, keeps),
             };
             assert_eq!((found, cells), (expected, after), "depth test of {lanes} by {name}: {z}, {dz}, {before:?}");
+            let (mut cells, mut pixels, bytes) = (before, [1, 2, 3, 4, 5, 6, 7, 8], [11, 12, 13, 14, 15, 16, 17, 18]);
+            let nearer = s.copy_nearer((&mut pixels, &mut cells), (bytes, count), [z, dz], keeps);
+            let copied =
+                [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| if stays[lane] == 0 { bytes[lane] } else { lane as u8 + 1 });
+            assert_eq!(
+                (nearer, cells, pixels),
+                (expected.count_zeros() / 8, after, copied),
+                "copy by {name}: {z}, {dz}"
+            );
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
-use crate::simd::{Lanes8, Portable};
+use crate::simd::{Lanes8, Portable, copy_block};
 
 /// The masks of a span of up to 64 pixels.
 pub(crate) type Masks = [u64; 64 / LANES];
@@ -49,21 +49,6 @@ pub(crate) fn test_span<S: Lanes8>(
     nearer
 }
 
-/// Tests up to eight pixels as [`test_span`] does. Returns their mask.
-#[inline(always)]
-pub(crate) fn test_block<S: Lanes8>(
-    s: S,
-    cells: &mut [u32; LANES],
-    depths: [i64; 2],
-    length: usize,
-    keeps: bool,
-) -> u64 {
-    match cells.first_chunk_mut() {
-        Some(four) if length <= FOUR => u64::from(u32::MAX) << 32 | u64::from(s.test_four(four, depths, length, keeps)),
-        _ => s.test_eight(cells, depths, length, keeps),
-    }
-}
-
 /// The test of the last pixels of the buffer, fewer than eight.
 #[cold]
 #[inline(never)]
@@ -96,21 +81,6 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
     }
 }
 
-/// Copies eight bytes, except where the mask lets pixels stay.
-#[inline(always)]
-fn copy_block(block: &mut [u8; LANES], new: [u8; LANES], stays: u64) {
-    if stays >> 32 == u64::from(u32::MAX) {
-        // Bytes just stored are then less often reloaded in different pieces.
-        if let (Some(four), Some(new)) = (block.first_chunk_mut(), new.first_chunk()) {
-            // The lower half.
-            let stay = stays as u32;
-            *four = (u32::from_le_bytes(*new) & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
-        }
-    } else {
-        *block = (u64::from_le_bytes(new) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
-    }
-}
-
 /// Copies the bytes of a span of up to 64 pixels where they are nearer, with depths as in
 /// [`test_span`]; the row and the cells have that many, or none. Returns the number of nearer
 /// pixels.
@@ -127,9 +97,7 @@ pub(crate) fn copy_span<S: Lanes8>(
         && let (Some(block), Some(eight), Some(new)) =
             (row.first_chunk_mut(), cells.first_chunk_mut(), bytes.first_chunk())
     {
-        let stays = test_block(s, eight, depths, length, keeps);
-        copy_block(block, *new, stays);
-        return stays.count_zeros() / 8;
+        return s.copy_nearer((block, eight), (*new, length), depths, keeps);
     }
     let mut masks = Masks::default();
     let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return 0 };

@@ -400,6 +400,13 @@ impl<const N: usize> SpanStarts<N> {
         s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
     }
 
+    /// [`put`](Self::put) for the first sums alone.
+    #[inline(always)]
+    pub(crate) fn put_first<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), first: S::I64) {
+        let [to, ..] = &mut self.0[..] else { return };
+        s.compress_i64(mask, [first], [eight(to, at)]);
+    }
+
     #[cfg(feature = "alloc")]
     pub(crate) fn set(&mut self, k: usize, starts: [i64; N]) {
         for (to, start) in self.0.iter_mut().zip(starts) {

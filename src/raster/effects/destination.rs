@@ -5,7 +5,7 @@ use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{F32Lanes8, Lanes8};
-use crate::span::depth_test::{Masks, test_block, test_span};
+use crate::span::depth_test::{Masks, test_span};
 use crate::span::list::SpanDepth;
 use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
@@ -167,7 +167,7 @@ impl Destination for Masked<'_> {
             match &mut cells {
                 Some(cells) => {
                     if let Some(eight) = cells.first_chunk_mut() {
-                        tested = Some(test_block(s, eight, depths, length, self.keeps));
+                        tested = Some(s.test_block(eight, depths, length, self.keeps));
                     }
                 }
                 None => tested = Some(behind(length)),
