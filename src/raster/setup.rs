@@ -40,7 +40,7 @@ use super::columns::{Columns, Picks, Triangles, eight_corners};
 use super::pick::Pick;
 use super::reference::depth::DepthPlane;
 use crate::fixed::ROUND_MAGIC;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, three};
 use crate::simd::Lanes8;
 
 /// Layout of a frame's pixels.
@@ -377,14 +377,51 @@ impl<S: Lanes8> Basis<S> {
         [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
-    /// The plane of a value times the area, given at the corners by height: at the box's first pixel, and its changes per
-    /// row and per column. Products and sums are rounded.
+    /// The planes of a value times the area, given at the corners by height: at the box's first pixel, and its changes per
+    /// row and per column. Products and sums are rounded: see [`conditions`](Self::conditions).
     #[inline(always)]
     pub(super) fn plane(&self, s: S, [a, b, c]: [S::F64; 3]) -> [S::F64; 3] {
         let ([x, y], pixel) = (self.first, s.splat_f64(256.0));
         let [gx, gy] = self.gradient(s, [s.sub(b, a), s.sub(c, a)]);
         let at_first = s.neg_mul_add(gy, y, s.neg_mul_add(gx, x, s.mul(a, self.area)));
         [at_first, s.mul(gy, pixel), s.mul(gx, pixel)]
+    }
+
+    /// How accurate [planes](Self::plane) are. For a value of up to V at the corners, each rounded once, a box of W × H units,
+    /// ε = 2⁻⁵³, and B = W·H·V, in units of εB:
+    ///
+    /// | | magnitude | off by |
+    /// |---|---:|---:|
+    /// | change over the box's width, or its height: two products of differences, and a sum | 2 | 14 |
+    /// | at the first pixel: a corner's value times the area, less a change over its column and one over its row | 5 | 42 |
+    /// | with rows added | 7 | 65 |
+    /// | with columns added up to a span's start, and from there to a pixel: no more than the box has | 9 | 101 |
+    ///
+    /// A quotient of two such sums, the divisor of depths of which the greatest is V and the least v, is at most Q. The
+    /// numerator's B is at most Q times the divisor's, and the divisor at a pixel at least the area A times v. So with
+    /// X = W·H·V / (A·v) the quotient is off by 202·ε·Q·X for each unit of Q's. Returns numerator and denominator of X, given
+    /// the depths.
+    #[inline(always)]
+    pub(super) fn conditions(&self, s: S, [least, greatest]: [S::F64; 2]) -> [S::F64; 2] {
+        let [width, height] = self.sides(s);
+        [s.mul(s.mul(width, height), greatest), s.mul(self.area, least)]
+    }
+
+    /// Width and height of the box.
+    #[inline(always)]
+    pub(super) fn sides(&self, s: S) -> [S::F64; 2] {
+        let ([dx1, _], [dx2, height], zero) = (self.second, self.third, s.splat_f64(0.0));
+        [s.sub(s.max(s.max(dx1, dx2), zero), s.min(s.min(dx1, dx2), zero)), height]
+    }
+
+    /// Depths of the corners, by height; each counts as at least 1.
+    #[inline(always)]
+    pub(super) fn depths(&self, s: S, corners: &Corners8) -> [S::F64; 3] {
+        three(
+            self.order.load(s, &corners.depth),
+            #[inline(always)]
+            |depth| s.max(s.unsigned_to_f64(depth), s.splat_f64(1.0)),
+        )
     }
 
     /// Change of a corner's weight per 1/256 pixel; then its weight at the box's first pixel, with
@@ -486,6 +523,12 @@ fn at_four<S: Lanes8>(s: S, e: S::I32, from: (S::I32, S::I32), to: (S::I32, S::I
 #[inline(always)]
 fn turn<S: Lanes8>(s: S, n: S::I32, turned: S::I32) -> S::I32 {
     s.sub_i32(s.xor_i32(n, turned), turned)
+}
+
+/// The least and the greatest of three.
+#[inline(always)]
+pub(super) fn ends<S: Lanes8>(s: S, [a, b, c]: [S::F64; 3]) -> [S::F64; 2] {
+    [s.min(s.min(a, b), c), s.max(s.max(a, b), c)]
 }
 
 /// Gradients with 24 fraction bits from numerators, areas and their inverses; arbitrary for a triangle without area.

@@ -7,9 +7,9 @@
 //! below the area of at most 2³⁴: with columns below 2¹⁰ and rows below 2¹², sums of remainders stay below 2⁴⁷, quotients
 //! below 2¹³, so they are off by less than 2⁻³⁷, with a margin of 2⁻³⁵.
 //!
-//! Coordinates that are linear on the face use the sums of an exact start: the weights of the corners, which are whole
-//! numbers below 2⁴⁴, times values that are each rounded once. So a sum is off by at most 4 parts in 2⁵³ of the sum of
-//! its terms' magnitudes. A triangle's coordinates are relative to the texel of a corner, its base,
+//! Coordinates that are linear on the face are quotients of two values with a plane each in f64; their accuracy is that of
+//! [`Basis::conditions`]. With Q the greatest coordinate and Q·X up to 2⁴³ they are off by less than 0.2; other triangles
+//! get a divisor below 0, which decides nothing. A triangle's coordinates are relative to the texel of a corner, its base,
 //! so that f32 resolves them if the other corners are near.
 
 use super::columns::{Picks, Triangles, eight_corners};
@@ -19,7 +19,7 @@ use super::reference::level;
 use super::reference::quotient::Divisor;
 use super::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture, depth};
 use super::rows::Lane;
-use super::setup::{Basis, Corners8, Floats, Ints};
+use super::setup::{Basis, Corners8, Floats, Ints, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, each};
 use crate::simd::Lanes8;
@@ -251,15 +251,33 @@ fn level_of<S: Lanes8>(s: S, quotient: S::F64) -> S::I32 {
     s.max_i32(s.sub_i32(s.shr_i32(upper, 20), s.splat_i32(1_023)), s.splat_i32(0))
 }
 
-/// Coordinates that are linear on the face, of eight triangles: numerators and divisor are sums over the corners of weights
-/// times values.
+/// Bounds of twice the length of a step, given u, v and 1 of the corners, times their depths, and the changes of the planes:
+/// the least and the greatest, times the square of the depth.
+#[inline(always)]
+fn steps_of_corners<S: Lanes8>(s: S, values: &[[S::F64; 3]; 3], steps: &[Floats; 3]) -> [S::F64; 2] {
+    let zero = s.splat_f64(0.0);
+    let (mut shortest, mut longest) = ([zero; 2], [zero; 2]);
+    let of_depth = s.load_f64(&steps[2]);
+    for i in 0..2 {
+        let step = s.load_f64(&steps[i]);
+        let mut corners = [zero; 3];
+        for corner in 0..3 {
+            corners[corner] = s.neg_mul_add(values[i][corner], of_depth, s.mul(step, values[2][corner]));
+        }
+        let [least, greatest] = ends(s, corners);
+        longest[i] = s.max(greatest, s.sub(zero, least));
+        // 0 if signs differ.
+        shortest[i] = s.max(s.max(least, s.sub(zero, greatest)), zero);
+    }
+    [doubled(s, shortest[0], shortest[1]), doubled(s, longest[0], longest[1])]
+}
+
+/// Coordinates that are linear on the face, of eight triangles: planes of u, v and 1, each times the depth and the area.
 #[derive(Clone, Debug)]
 pub(super) struct PerspectivePlanes8 {
-    /// The weights of the corners, by height: at the box's first pixel, their change per row, and per column.
-    weights: [[Floats; 3]; 3],
-    /// u, v and 1 of each corner, times its depth.
-    values: [[Floats; 3]; 3],
-    /// Change of the sums per pixel.
+    /// At the box's first pixel.
+    first: [Floats; 3],
+    /// Change per pixel.
     step: [Floats; 3],
     /// The base of u and v: what has been subtracted from the corners' coordinates, a whole number of texels.
     base: [Ints; 2],
@@ -267,7 +285,7 @@ pub(super) struct PerspectivePlanes8 {
     fits: u32,
     /// The steps rounded to f32.
     single_step: [[f32; LANES]; 3],
-    /// Change of the sums per row, for levels.
+    /// Change per row.
     row_step: [Floats; 3],
     /// A bit for each triangle whose levels may be estimated, see [`level`](Self::level).
     fits_levels: u32,
@@ -277,8 +295,7 @@ pub(super) struct PerspectivePlanes8 {
 
 impl PerspectivePlanes8 {
     pub(super) const NONE: Self = Self {
-        weights: [[[0.0; LANES]; 3]; 3],
-        values: [[[0.0; LANES]; 3]; 3],
+        first: [[0.0; LANES]; 3],
         step: [[0.0; LANES]; 3],
         base: [[0; LANES]; 2],
         fits: 0,
@@ -297,40 +314,36 @@ impl PerspectivePlanes8 {
         coordinates: &[[Ints; 3]; 2],
         last: Option<u32>,
     ) {
-        let [depth_a, depth_b, depth_c] = &corners.depth;
-        let depth = basis.order.sort(s, [s.load_i32(depth_a), s.load_i32(depth_b), s.load_i32(depth_c)]);
-        let one = s.splat_f64(1.0);
-        // A depth counts as at least 1.
-        let [a, b, c] = depth;
-        let depth =
-            [s.max(s.unsigned_to_f64(a), one), s.max(s.unsigned_to_f64(b), one), s.max(s.unsigned_to_f64(c), one)];
+        let depths = basis.depths(s, corners);
         let ([u, v], range) = self.rebase(s, basis, coordinates);
-        let [a, b, c] = depth;
-        let ends = [s.min(s.min(a, b), c), s.max(s.max(a, b), c)];
-        self.fits = s.to_bitmask(fits_singles(s, range, ends));
-        let zero = s.splat_f64(0.0);
-        let mut sums = [zero; 3];
-        for corner in 0..3 {
-            let (_, weight) = basis.weight(s, corner);
-            for (i, to) in self.weights[corner].iter_mut().enumerate() {
-                s.store_f64(weight[i], to);
-            }
-            let [_, _, per_column] = weight;
-            let depth = depth[corner];
-            let values = [s.mul(u[corner], depth), s.mul(v[corner], depth), depth];
-            for i in 0..3 {
-                s.store_f64(values[i], &mut self.values[corner][i]);
-                sums[i] = s.mul_add(per_column, values[i], sums[i]);
+        let ends = ends(s, depths);
+        let [spread, least] = basis.conditions(s, ends);
+        let spread = s.mul(s.add(range, s.splat_f64(65_536.0)), spread);
+        let is_sure = s.is_less(spread, s.mul(least, s.splat_f64(8_796_093_022_208.0)));
+        self.fits = s.to_bitmask(s.and(fits_singles(s, range, ends), is_sure));
+        let mut values = [u, v, depths];
+        for of_corners in &mut values[..2] {
+            for corner in 0..3 {
+                of_corners[corner] = s.mul(of_corners[corner], depths[corner]);
             }
         }
-        for (i, step) in self.step.iter_mut().enumerate() {
-            s.store_f64(sums[i], step);
-            let step = &*step;
+        let (zero, negative) = (s.splat_f64(0.0), s.splat_f64(-1.0));
+        for (i, &of_corners) in values.iter().enumerate() {
+            let [mut first, mut per_row, mut per_column] = basis.plane(s, of_corners);
+            if i == 2 {
+                first = s.select(is_sure, first, negative);
+                (per_row, per_column) = (s.select(is_sure, per_row, zero), s.select(is_sure, per_column, zero));
+            }
+            s.store_f64(first, &mut self.first[i]);
+            s.store_f64(per_row, &mut self.row_step[i]);
+            s.store_f64(per_column, &mut self.step[i]);
+            let step = &self.step[i];
             self.single_step[i] = each!(lane => step[lane] as f32);
         }
         if let Some(last) = last {
-            self.set_up_levels(s, (range, basis.area), ends);
-            self.set_up_single_levels(s, basis.area, ends, last);
+            let [width, height] = basis.sides(s);
+            self.set_up_levels(s, (spread, least), (s.add(width, height), ends));
+            self.set_up_single_levels(s, (basis.area, &values), ends, last);
         }
     }
 
@@ -363,42 +376,31 @@ impl PerspectivePlanes8 {
         (rebased, greatest)
     }
 
-    /// The sums of each lane at these columns of rows `j`. A product may be fused with a sum, which rounds less often.
+    /// The values of the planes at these columns of rows `j`.
     #[inline(always)]
     pub(super) fn starts<S: Lanes8>(&self, s: S, lane: impl Lane<S>, j: S::F64, columns: S::F64) -> [S::F64; 3] {
-        let i = s.sub(columns, s.splat_f64(ROUND_MAGIC));
-        let mut sums = [s.splat_f64(0.0); 3];
-        for (weights, values) in self.weights.iter().zip(&self.values) {
-            let weight = s.mul_add(lane.load_f64(s, &weights[1]), j, lane.load_f64(s, &weights[0]));
-            let weight = s.mul_add(lane.load_f64(s, &weights[2]), i, weight);
-            for (sum, values) in sums.iter_mut().zip(values) {
-                *sum = s.mul_add(weight, lane.load_f64(s, values), *sum);
-            }
+        let column = s.sub(columns, s.splat_f64(ROUND_MAGIC));
+        let mut starts = [s.splat_f64(0.0); 3];
+        for (i, start) in starts.iter_mut().enumerate() {
+            let at_row = s.mul_add(lane.load_f64(s, &self.row_step[i]), j, lane.load_f64(s, &self.first[i]));
+            *start = s.mul_add(lane.load_f64(s, &self.step[i]), column, at_row);
         }
-        sums
+        starts
     }
 
-    /// Sets up what [`level`](Self::level) needs, from the greatest difference of coordinates, the area, and the depths.
+    /// Finds where [`level`](Self::level) is accurate: given Q·W·H times the greatest depth, and A times the least, whose
+    /// quotient is Q·X; and W + H, and both depths.
     #[inline(always)]
-    fn set_up_levels<S: Lanes8>(&mut self, s: S, (range, area): (S::F64, S::F64), ends: [S::F64; 2]) {
-        let zero = s.splat_f64(0.0);
-        let (mut sums, mut sides) = ([zero; 3], zero);
-        for (weights, values) in self.weights.iter().zip(&self.values) {
-            let (per_row, per_column) = (s.load_f64(&weights[1]), s.load_f64(&weights[2]));
-            // Their magnitudes.
-            sides = s.add(sides, s.add(s.xor_sign(per_row, per_row), s.xor_sign(per_column, per_column)));
-            for i in 0..3 {
-                sums[i] = s.mul_add(per_row, s.load_f64(&values[i]), sums[i]);
-            }
-        }
-        for (i, step) in self.row_step.iter_mut().enumerate() {
-            s.store_f64(sums[i], step);
-        }
-        let [least, greatest] = ends;
-        let (a, b) = (s.mul(area, least), s.mul(sides, greatest));
-        let q = s.add(range, s.splat_f64(65_536.0));
-        let most = s.mul(s.mul(a, a), s.splat_f64(4_398_046_511_104.0));
-        let is_accurate = s.is_less(s.mul(s.mul(q, b), s.add(a, b)), most);
+    fn set_up_levels<S: Lanes8>(
+        &mut self,
+        s: S,
+        (spread, level): (S::F64, S::F64),
+        (sides, [least, greatest]): (S::F64, [S::F64; 2]),
+    ) {
+        // A·least·κ.
+        let changes = s.mul(s.mul(sides, s.splat_f64(512.0)), greatest);
+        let most = s.mul(s.mul(level, level), s.splat_f64(17_592_186_044_416.0));
+        let is_accurate = s.is_less(s.mul(spread, changes), most);
         self.fits_levels = s.to_bitmask(s.and(is_accurate, s.is_less(s.splat_f64(65_536.0), least)));
     }
 
@@ -412,9 +414,15 @@ impl PerspectivePlanes8 {
     /// Depths differ by a factor of at most 2, so the greatest D² is at most 4 times any other: where the level is above 0, G,
     /// which is off by less than 1.2 · D², and the square of the depth are together off by less than 2⁻¹⁴ of themselves.
     #[inline(always)]
-    fn set_up_single_levels<S: Lanes8>(&mut self, s: S, area: S::F64, [least, greatest]: [S::F64; 2], last: u32) {
-        let [shortest_across, longest_across] = self.steps_of_corners(s, &self.step);
-        let [shortest_down, longest_down] = self.steps_of_corners(s, &self.row_step);
+    fn set_up_single_levels<S: Lanes8>(
+        &mut self,
+        s: S,
+        (area, values): (S::F64, &[[S::F64; 3]; 3]),
+        [least, greatest]: [S::F64; 2],
+        last: u32,
+    ) {
+        let [shortest_across, longest_across] = steps_of_corners(s, values, &self.step);
+        let [shortest_down, longest_down] = steps_of_corners(s, values, &self.row_step);
         let unit = s.mul(area, s.splat_f64(185_344.0));
         let off = 1.0 / 8_192.0;
         let (low, high) = (s.mul(unit, s.mul(greatest, greatest)), s.mul(unit, s.mul(least, least)));
@@ -427,29 +435,6 @@ impl PerspectivePlanes8 {
         // Eight bits.
         let is_single = s.and(is_single, s.mask_from_bits((self.fits_levels & 0xFF) as u8));
         s.store_i32(s.select_i32(is_single, low, s.splat_i32(-1)), &mut self.single_level);
-    }
-
-    /// Bounds of twice the length of a step, given the changes of the sums: the least and the greatest, times the square of
-    /// the depth.
-    #[inline(always)]
-    fn steps_of_corners<S: Lanes8>(&self, s: S, steps: &[Floats; 3]) -> [S::F64; 2] {
-        let zero = s.splat_f64(0.0);
-        let (mut shortest, mut longest) = ([zero; 2], [zero; 2]);
-        for i in 0..2 {
-            let (step, of_depth) = (s.load_f64(&steps[i]), s.load_f64(&steps[2]));
-            let mut corners = [zero; 3];
-            for (corner, values) in corners.iter_mut().zip(&self.values) {
-                let (value, depth) = (s.load_f64(&values[i]), s.load_f64(&values[2]));
-                *corner = s.neg_mul_add(value, of_depth, s.mul(step, depth));
-            }
-            let [a, b, c] = corners;
-            let (least, greatest) = (s.min(s.min(a, b), c), s.max(s.max(a, b), c));
-            let negative = s.sub(zero, least);
-            longest[i] = s.max(greatest, negative);
-            // 0 if signs differ.
-            shortest[i] = s.max(s.max(least, s.sub(zero, greatest)), zero);
-        }
-        [doubled(s, shortest[0], shortest[1]), doubled(s, longest[0], longest[1])]
     }
 
     /// The level of all pixels of triangle `lane`, if it has only one.
@@ -466,9 +451,14 @@ impl PerspectivePlanes8 {
     ///
     /// [`LevelPlane`](super::reference::level::LevelPlane) takes the depth D / A in whole sixteenths, which are at least
     /// 2²⁰ where depths are at least 2¹⁶: its square is off by 2⁻¹⁹ of itself. With Q the greatest coordinate from the base
-    /// on, and κ = B · (greatest depth) / (A · least depth), sums and their changes are off by 2⁻⁵¹ of Q·D and of Q·κ·D,
-    /// 64 steps by 64 times as much, and G by less than 3 · (5κ + 192κ²) · Q · 2⁻⁵¹ · D². Where Q·κ·(1 + κ) < 2⁴² that is
-    /// 1.2 · D², 2⁻¹⁷ of the least G above level 0. So the quotient is off by less than 2⁻¹⁶ of itself, or below 1.
+    /// on, and κ = (magnitudes of the weights' changes) · (greatest depth) / (A · least depth), the changes of N and D are at
+    /// most Q·κ·D and κ·D. By [`Basis::conditions`], in units of 2⁻⁵¹, N is off by 26·Q·X·D, D by 26·X·D, and their changes
+    /// by 1.75·Q·κ·D and 1.75·κ·D; so with the roundings here, G, the sum of three differences of two products, is off by
+    /// less than 3 · (52·X + 6) · Q·κ·D², or 174·X·Q·κ·D². Where Q·X·κ is up to 2⁴⁴ that is 1.4 · D², 2⁻¹⁷ of the least G
+    /// above level 0. So the quotient is off by less than 2⁻¹⁶ of itself, or below 1.
+    ///
+    /// For a triangle [alone](Self::set_up_alone), whose sums are those of exact weights, 3 · (5κ + 192κ²) · Q takes the
+    /// place of 174·X·Q·κ: 64 steps are off by 64 times as much as one.
     #[inline(always)]
     pub(super) fn level(&self, lane: usize, [u, v, d]: [f64; 3], k: f64, last: u32) -> Option<u32> {
         let lane = lane % LANES;
@@ -502,7 +492,7 @@ impl PerspectivePlanes8 {
             (self.step[i][0], self.row_step[i][0]) = (steps[i], row_steps[i]);
         }
         (self.base, self.fits, self.single_level[0]) = ([[0; LANES]; 2], 0, -1);
-        // As in `set_up_levels`.
+        // Q·κ·(1 + κ) < 2⁴².
         let greatest_of = |most: u32, coordinate: &i32| most.max(coordinate.unsigned_abs());
         let q = f64::from(coordinates.as_flattened().iter().fold(0, greatest_of)) + 65_536.0;
         let depths = [0, 1, 2].map(|corner| depth(triangle, corner));

@@ -23,20 +23,9 @@
 //!
 //! # Perspective-correct shades
 //!
-//! Numerator and divisor are linear on the screen, so each has a plane in f64: its value N₀ at the box's first pixel, and
-//! its changes per row and per column. A corner's values of either are exact, with at most 51 bits, and so are their
-//! differences. With ε = 2⁻⁵³, a box of W × H units, and B = W·H times the greatest of the three values, in units of εB:
-//!
-//! | | magnitude | off by |
-//! |---|---:|---:|
-//! | change over the box's width, or its height: two products and a sum | 2 | 4 |
-//! | N₀: the first corner's value times the area, less a change over its column and one over its row | 5 | 21 |
-//! | with rows added | 7 | 34 |
-//! | with columns added up to the span's start, and pixels from there: no more columns than the box has | 9 | 60 |
-//!
-//! No quotient is above T = 2²⁴, so the numerator's B is at most T times the divisor's, and the quotient is off by at most
-//! 120·ε·T·B/D. The divisor D is at least the area A times the least depth. So quotients are off by less than a quarter
-//! where B ≤ 2²⁰ · A · least depth; other triangles get a numerator of 0, whose estimates decide nothing.
+//! Numerator and divisor are linear on the screen, so each has a plane in f64. Quotients are below 2²⁴. By
+//! [`Basis::conditions`] they are off by less than a quarter of a unit where X is at most 2¹⁹; other triangles get a
+//! numerator of 0, whose estimates decide nothing.
 //!
 //! Bytes in f32 depend on the order in which three products are added: corners by height, and at equal heights the left
 //! one first. The order of the first two does not change their sum. No product is fused with a sum. The changes per
@@ -51,7 +40,7 @@ use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
-use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8};
+use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
@@ -203,7 +192,7 @@ impl<'a> Shaded8<'a> {
     #[inline(always)]
     fn set_up_hyperbolic<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
         let [a, b, c] = basis.order.load(s, &corners.shade);
-        let depths = depths(s, basis, corners);
+        let depths = basis.depths(s, corners);
         // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see `HyperbolicPlane::estimates`.
         let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
         let half = s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0));
@@ -212,7 +201,8 @@ impl<'a> Shaded8<'a> {
             #[inline(always)]
             |(shade, depth)| s.mul(s.mul(s.add(s.to_f64(shade), half), s.splat_f64(256.0)), depth),
         );
-        let is_sure = are_estimates_sure(s, basis, depths);
+        let [spread, least] = basis.conditions(s, ends(s, depths));
+        let is_sure = s.is_less(spread, s.mul(least, s.splat_f64(524_288.0)));
         let (zero, one) = (s.splat_f64(0.0), s.splat_f64(1.0));
         let steps = &mut self.listed.steps[self.listed.batches.current()];
         for (i, (values, unsure)) in [(numerators, zero), (depths, one)].into_iter().enumerate() {
@@ -226,7 +216,7 @@ impl<'a> Shaded8<'a> {
     #[inline(always)]
     fn set_up_float<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
         let shades = basis.order.load(s, &corners.shade);
-        let depths = depths(s, basis, corners);
+        let depths = basis.depths(s, corners);
         let [(change_a, weights_a), (change_b, weights_b), (change_c, weights_c)] = three(
             [0, 1, 2],
             #[inline(always)]
@@ -322,27 +312,6 @@ fn sum_16_16<S: Lanes8>(s: S, n: S::F64, (area, inverse): (S::F64, S::F64), frac
     let rest = s.neg_mul_add(s.sub(whole, magic), area, n);
     let part = s.mul_add(s.mul_add(rest, s.splat_f64(256.0), fraction), inverse, magic);
     s.add_i32(s.shl_i32(s.low_bits(whole), 8), s.low_bits(part))
-}
-
-/// Depths by height; each counts as at least 1.
-#[inline(always)]
-fn depths<S: Lanes8>(s: S, basis: &Basis<S>, corners: &Corners8) -> [S::F64; 3] {
-    let [a, b, c] = basis.order.load(s, &corners.depth);
-    three(
-        [a, b, c],
-        #[inline(always)]
-        |depth| s.max(s.unsigned_to_f64(depth), s.splat_f64(1.0)),
-    )
-}
-
-/// The triangles whose quotients are off by less than a quarter: see the module's documentation.
-#[inline(always)]
-fn are_estimates_sure<S: Lanes8>(s: S, basis: &Basis<S>, [a, b, c]: [S::F64; 3]) -> S::Mask {
-    let ([dx1, _], [dx2, height], zero) = (basis.second, basis.third, s.splat_f64(0.0));
-    let width = s.sub(s.max(s.max(dx1, dx2), zero), s.min(s.min(dx1, dx2), zero));
-    let (least, greatest) = (s.min(s.min(a, b), c), s.max(s.max(a, b), c));
-    let most = s.mul(s.mul(basis.area, least), s.splat_f64(1_048_576.0));
-    s.is_less(s.mul(s.mul(width, height), greatest), most)
 }
 
 /// Swaps the values of the second and the third corner in the lanes that are set.

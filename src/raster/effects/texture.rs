@@ -573,8 +573,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3_000))]
         /// Every level sets up eight triangles as it would each one alone: affine coordinates and
-        /// depths to the bit, the sums of perspective ones within the four roundings of their
-        /// terms.
+        /// depths to the bit, the sums of perspective ones as accurate as their planes are.
         #[test]
         fn eight_triangles_are_each_its_own(given in given()) {
             let (mut at, mut depth, mut shade) = (Vec::new(), Vec::new(), Vec::new());
@@ -784,6 +783,83 @@ mod tests {
         assert!(all.get() > 100_000 && decided.get() > all.get() / 2, "{} of {}", decided.get(), all.get());
     }
 
+    /// Two far corners, whose edge goes through pixel centres, and a near one beside it: on the edge the planes' terms are up
+    /// to 2³⁰ times as large as the divisor. There u lies on the border of a texel, and v changes slowly. Quotients and levels
+    /// that are decided are right.
+    #[test]
+    fn far_edges_are_decided_right() {
+        let decided = core::cell::Cell::new([0; 3]);
+        let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(6_000));
+        let edge = ((1..8_i32, 1..8_i32), 1..16_i32, 0.0..1.0_f64, (0..13_u32, any::<i32>()));
+        let depths = (prop_oneof![0.0..4.0_f64, 15.9..18.0_f64, 24.0..30.0_f64], 18.0..30.0_f64);
+        let reach = || (8..27_u32, 0.8..1.25_f64).prop_map(|(bits, of)| (f64::from(1_u32 << bits) * of) as i32);
+        let given = (edge, depths, (-300..300_i32, reach(), reach()));
+        let found = runner.run(&given, |(((dx, dy), steps, along, (bits, beside)), depths, (texel, across, down))| {
+            let (x, y) = (1_000 * 256 + 128, 900 * 256 + 128);
+            let (dx, dy) = (256 * dx * steps, 256 * dy * steps);
+            let beside = 1 + (beside & ((1 << bits) - 1));
+            let at = |part: f64, more: i32| {
+                ScreenPos::new(x + (f64::from(dx) * part) as i32 + more, y + (f64::from(dy) * part) as i32)
+            };
+            let at = [at(0.0, 0), at(1.0, 0), at(along, beside)];
+            let depth = [depths.0, depths.0, depths.1].map(|bits| bits.exp2() as u32);
+            let (u, v) = (texel << 16, (texel >> 3) << 16);
+            let texture = [[u, v], [u, v + down], [u + across, v + (f64::from(down) * along) as i32]];
+            let shade = [[U8F8::default(); 2]; 3];
+            let effects = EffectColumns { texture: &texture, ..EffectColumns::default() };
+            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects };
+            let all = Triangles { columns, indices: &[[0, 1, 2]], by_corner: None };
+            let (texels, levels) = (std::vec![0; 65_536], std::vec![0; Levels::length(8, 8)]);
+            let texels = Texels::new(&texels, 8, 8).expect("an image");
+            let levels = Some(Levels::new(&levels, 8, 8).expect("its levels"));
+            let stage = TextureStage { texels, levels, mapping: Mapping::Perspective, tables: [&[0; 65_536]; 3] };
+            let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
+            let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
+            let vertices = [0, 1, 2].map(|k| {
+                let (x, y) = (I24F8::from_bits(at[k].x()), I24F8::from_bits(at[k].y()));
+                Vertex::new(x, y, U8F8::default(), depth[k]).expect("inside the guard band")
+            });
+            let (triangle, order) = SortedTriangle::with_order(&vertices);
+            let texture = order.map(|corner| texture[corner]);
+            let plane = PerspectiveTexture::new(&triangle, [0, 1].map(|i| texture.map(|corner| corner[i])));
+            for kernel in Kernel::available() {
+                let masks = cull(kernel.simd_level(), &at, &[[0, 1, 2]], clip, false);
+                let mut list = PickList::<16>::new();
+                pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
+                for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
+                    let image = PlaceLanes::of_level(BASELINE, (texels, 0));
+                    let end = found.span.len.min(LANES);
+                    let mut places = [[-1; LANES]; 2];
+                    BASELINE.store_i32(
+                        perspective_along(image, found.perspective, (0, end), unsure).next(),
+                        &mut places[0],
+                    );
+                    if let Some(singles) = found.singles {
+                        BASELINE.store_i32(singles_along(image, singles, 0, unsure).next(), &mut places[1]);
+                    }
+                    let mut count = decided.get();
+                    for (count, places) in count.iter_mut().zip(places).filter(|(_, places)| places[0] != -1) {
+                        for (k, place) in places.into_iter().enumerate().take(end) {
+                            let [u, v] = plane.at(found.span.x + k as i32, found.span.y).map(i32::cast_unsigned);
+                            prop_assert_eq!(place, texels.place(u, v) as i32);
+                            *count += 1;
+                        }
+                    }
+                    for (level, exact) in found.levels {
+                        prop_assert!(level.is_none_or(|level| level == exact), "{level:?}, not {exact:?}");
+                        count[2] += i32::from(level.is_some());
+                    }
+                    decided.set(count);
+                }
+            }
+            Ok(())
+        });
+        found.expect("right where decided");
+        let [in_f64, in_f32, levels] = decided.get();
+        assert!(in_f64 > 10_000 && in_f32 > 1_000 && levels > 10_000, "{in_f64}, {in_f32} and {levels}");
+    }
+
     /// Where all corners share a coordinate, quotients decide every pixel, even if it lies on the border of a texel. (It
     /// took a textured torus without coordinates four times as long when they did not.)
     #[test]
@@ -940,8 +1016,17 @@ mod tests {
         (x, y): (i32, i32),
     ) -> Result<(), TestCaseError> {
         prop_assert!(base.iter().all(|base| base % 65_536 == 0));
+        if divisors == [-1.0, 0.0] {
+            // A triangle whose quotients decide nothing.
+            return Ok(());
+        }
         let depths = [depth(triangle, 0), depth(triangle, 1), depth(triangle, 2)];
-        let weights = Weights::new(triangle);
+        let (weights, corners) = (Weights::new(triangle), &triangle.vertices);
+        let side = |of: fn(&Vertex) -> i32| {
+            let [a, b, c] = [0, 1, 2].map(|k| i128::from(of(&corners[k])));
+            a.max(b).max(c) - a.min(b).min(c)
+        };
+        let sides = [side(|vertex| vertex.x().to_bits()), side(|vertex| vertex.y().to_bits())];
         for i in 0..3 {
             let shared = |i: usize| texture.iter().all(|corner| corner[i] == texture[0][i]);
             let value = |k: usize, base: i32| {
@@ -949,13 +1034,16 @@ mod tests {
                 i128::from(i64::from(coordinate) - i64::from(base)) * i128::from(depths[k])
             };
             let values = [0, 1, 2].map(|k| base.get(i).map_or(depths[k].into(), |&base| value(k, base)));
+            let most = values.iter().fold(0, |most, value| value.abs().max(most));
             let [start, step] = [u, v, divisors][i];
-            for (weights, sum) in [(weights.at(x, y), start), (weights.per_column(), step)] {
-                let terms = [0, 1, 2].map(|k| i128::from(weights[k]) * values[k]);
-                let off = sum as i128 - terms.iter().sum::<i128>();
-                let terms: i128 = terms.iter().map(|term| term.abs()).sum();
-                // Four parts in 2⁵³ of the terms, and less than one for the fraction that `as` drops.
-                prop_assert!((off.abs() - 1) << 51 <= terms, "{} off of {}", off, terms);
+            // A step is 256 units wide.
+            for (weights, sum, parts, side) in
+                [(weights.at(x, y), start, 101, sides[0]), (weights.per_column(), step, 14, 256)]
+            {
+                let off = sum as i128 - [0, 1, 2].map(|k| i128::from(weights[k]) * values[k]).iter().sum::<i128>();
+                // Parts in 2⁵³, and less than one for the fraction that `as` drops.
+                let bound = parts * most * side * sides[1];
+                prop_assert!((off.abs() - 1) << 53 <= bound, "{} off of {}", off, bound);
             }
         }
         Ok(())

@@ -185,8 +185,9 @@ trait QuotientsAlong<S: Lanes8> {
 ///
 /// Only the integer texel counts. Let q be a quotient, |q| ≤ 2³², and t the integer nearest to its estimate. If |t − q|
 /// < 1 and no texel begins at t (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t: all bounds of texels are integers
-/// other than t, so at least 1 away. So the estimate may be off by less than ½. It is, if numerators are off by at most
-/// 12 parts in 2⁵³ of 2³²·D and divisors by 12 parts of D, D being the row's largest divisor:
+/// other than t, so at least 1 away. So the estimate may be off by less than ½. It is for the planes of the raster, which
+/// are off by less than 0.2; and it is if numerators are off by at most 12 parts in 2⁵³ of 2³²·D and divisors by 12 parts
+/// of D, D being the row's largest divisor:
 ///
 /// 1. Let R be D over the smallest divisor, ε = 2⁻⁵³.
 /// 2. The quotient is off by 2³²·12εR for the numerator, the same for the divisor, and 2ε of itself for the reciprocal
@@ -264,7 +265,7 @@ const SINGLES_MARGIN: i32 = 16;
 /// 2. In the divisor d is rounded (εD), dd is (|k·dd| ≤ D: εD), their product is (εD), and the sum is (εD): 4εD. In the
 ///    numerator |k·dn| ≤ 2Q·D, so the same steps make 6εQD.
 /// 3. So the ratio is off by εQ·(6 + 4)R, another 2εQ for the reciprocal and the product, and t by ½. The sums in f64
-///    are off by less than 2⁻²⁰ of this, and what is neglected here is less than εQ·(R + 1), since R < 400.
+///    add less than 0.2, and what is neglected here is less than εQ·(R + 1), since R < 400.
 ///
 /// Where Q·(11R + 3) ≤ 15·2²⁴ that is less than 16, the margin. Then a coordinate lies in the same texel, of any level, as
 /// t + 16 if the fraction of t + 16 is at least 32.
