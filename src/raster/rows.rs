@@ -518,7 +518,8 @@ impl<S: Lanes8> EightRows<S> {
         let (mut cell, mut z) = (at, s.splat_i64(0));
         if DEPTHS {
             cell = s.add_i32(lane.load_i32(s, &setup.cell), s.mul_i32(number, s.splat_i32(list.width)));
-            z = s.mul_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
+            // Not negative: below 2¹².
+            z = s.mul_low_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
             z = s.add_i64(z, lane.load_i64(s, &setup.z));
             z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), lane.load_i64(s, &setup.z_per_column)));
         }
