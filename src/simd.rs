@@ -30,7 +30,7 @@ mod sse2;
 mod wasm;
 
 #[cfg(simd_x86_64)]
-pub(crate) use lanes::SET_THEN_CLEAR;
+pub(crate) use lanes::FIRST_LANES;
 pub(crate) use lanes::{Lanes8, copy_block};
 pub(crate) use packed::Packed;
 pub(crate) use portable::Portable;

@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 use super::Avx2;
-use super::lanes::{Lanes8, SET_THEN_CLEAR, intrinsics};
+use super::lanes::{FIRST_LANES, Lanes8, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
 
@@ -226,14 +226,14 @@ impl Lanes8 for Avx2 {
 
     #[inline(always)]
     fn test_four(self, cells: &mut [u32; 4], [z, dz]: [i64; 2], count: usize, keeps: bool) -> u32 {
-        // SAFETY: `self` proves that the processor has the instructions. The mask is four of sixteen lanes, from at
-        // most the ninth on; cells are loaded and stored as a whole. Neither requires alignment.
+        // SAFETY: `self` proves that the processor has the instructions. The mask is the first four of sixteen lanes;
+        // cells are loaded and stored as a whole. Neither requires alignment.
         unsafe {
             let dz = _mm_set1_epi64x(dz);
             let first = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
             let last = _mm_castsi128_ps(_mm_add_epi64(first, _mm_slli_epi64::<1>(dz)));
             let upper = _mm_castps_si128(_mm_shuffle_ps::<0b11_01_11_01>(_mm_castsi128_ps(first), last));
-            let there = _mm_loadu_si128(SET_THEN_CLEAR.as_ptr().add(8 - count.min(8)).cast());
+            let there = _mm_loadu_si128(FIRST_LANES[count.min(16)].as_ptr().cast());
             let before = _mm_loadu_si128(cells.as_ptr().cast());
             let after = _mm_max_epu32(before, _mm_and_si128(upper, there));
             if keeps {
@@ -255,7 +255,7 @@ impl Lanes8 for Avx2 {
             let first = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
             let last = _mm256_castsi256_ps(_mm256_add_epi64(first, _mm256_slli_epi64::<1>(dz)));
             let upper = _mm256_shuffle_ps::<0b11_01_11_01>(_mm256_castsi256_ps(first), last);
-            let there = _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(8 - count.min(8)).cast());
+            let there = _mm256_loadu_si256(FIRST_LANES[count.min(16)].as_ptr().cast());
             let before = _mm256_loadu_si256(cells.as_ptr().cast());
             let after = _mm256_max_epu32(before, _mm256_and_si256(_mm256_castps_si256(upper), there));
             if keeps {

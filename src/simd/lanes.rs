@@ -281,10 +281,22 @@ fn test_depths<const N: usize>(cells: &mut [u32; N], [mut z, dz]: [i64; 2], coun
     stays
 }
 
-/// Eight set lanes and eight clear ones, for masks of the first lanes of eight.
+/// Masks of sixteen lanes, by the number of lanes at the front that are set.
 ///
 /// Masks are loaded from here, not computed by a comparison. From a comparison the compiler would
 /// infer that the cleared lanes are stored as they were read, and would store the others with
 /// `vpmaskmovd`, which takes 20 cycles on AMD processors.
 #[cfg(simd_x86_64)]
-pub(crate) static SET_THEN_CLEAR: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+pub(crate) static FIRST_LANES: [[i32; 16]; 17] = {
+    let mut masks = [[0; 16]; 17];
+    let mut count = 0;
+    while count <= 16 {
+        let mut lane = 0;
+        while lane < count {
+            masks[count][lane] = -1;
+            lane += 1;
+        }
+        count += 1;
+    }
+    masks
+};

@@ -12,7 +12,7 @@ use core::arch::x86_64::*;
 
 use super::super::depth::{fill_nearer, fill_nearer_16_16};
 use super::super::list::{Span, SpanDepth, SpanList};
-use crate::simd::{Avx2, SET_THEN_CLEAR};
+use crate::simd::{Avx2, FIRST_LANES};
 
 /// Pixels per iteration.
 const EIGHT: usize = 8;
@@ -68,69 +68,89 @@ enum Own {
 /// list: one for each span, which is too large to be inlined in the loop, is a quarter slower.)
 #[target_feature(enable = "avx2")]
 fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
-    // Pixels of all iterations, and per lane those that were not written, as a negative count. Sums are modulo 2³².
-    let mut turned = 0_u32;
-    let (mut of_eight, mut of_four) = (_mm256_setzero_si256(), _mm_setzero_si128());
+    // Pixels of all iterations, four for each span and these; and per lane those that were not written, as a negative
+    // count. Sums are modulo 2³².
+    let mut more = 0_u32;
+    let mut stayed = _mm256_setzero_si256();
     let (mut number, count) = (0, spans.count());
     while number < count {
-        // Spans are usually short: a loop of their own has registers for all its values.
+        // Spans are usually short: a loop of their own has registers for all its values. These are read behind the
+        // checks of bounds, so that each is broadcast from memory by one instruction.
         while number < count {
-            let (span, depth) = (spans.span(number), spans.depth(number));
-            let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
+            let length = spans.span(number).length as usize;
             // No overflow: both are below 2³², and usize has 64 bits.
             if length <= FOUR {
-                let row = pixels.get_mut(at..at + FOUR).and_then(|row| row.first_chunk_mut());
-                let near = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut());
-                let (Some(row), Some(near)) = (row, near) else { break };
-                of_four = _mm_add_epi32(of_four, four(row, near, span, depth, own(number, &span)));
-                turned = turned.wrapping_add(FOUR as u32);
+                let (at, cell) = (spans.span(number).at as usize, spans.depth(number).cell as usize);
+                if let Some(row) = pixels.get_mut(at..at + FOUR).and_then(|row| row.first_chunk_mut())
+                    && let Some(near) = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut())
+                {
+                    let (span, depth) = (spans.span(number), spans.depth(number));
+                    let stay = four(row, near, span, depth, own(number, &span));
+                    stayed = _mm256_add_epi32(stayed, _mm256_zextsi128_si256(stay));
+                    number += 1;
+                    continue;
+                }
             } else if length <= EIGHT {
-                let row = pixels.get_mut(at..at + EIGHT);
-                let (Some(row), Some(near)) = (row, cells.get_mut(cell..cell + EIGHT)) else { break };
-                of_eight = _mm256_add_epi32(of_eight, eights(row, near, span, depth, own(number, &span)));
-                turned = turned.wrapping_add(EIGHT as u32);
-            } else {
-                break;
+                let (at, cell) = (spans.span(number).at as usize, spans.depth(number).cell as usize);
+                if let Some(row) = pixels.get_mut(at..at + EIGHT)
+                    && let Some(near) = cells.get_mut(cell..cell + EIGHT)
+                {
+                    let (span, depth) = (spans.span(number), spans.depth(number));
+                    stayed = _mm256_add_epi32(stayed, eights(row, near, span, depth, own(number, &span)));
+                    more = more.wrapping_add((EIGHT - FOUR) as u32);
+                    number += 1;
+                    continue;
+                }
             }
-            number += 1;
+            break;
         }
         if number == count {
             break;
         }
         let (span, depth) = (spans.span(number), spans.depth(number));
-        let own = own(number, &span);
-        number += 1;
         let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
-        if let Own::Linear = own
+        let own_shades = own(number, &span);
+        if let Own::Linear = own_shades
             && length > EIGHT
         {
-            let whole = length.next_multiple_of(SIXTEEN);
-            if let (Some(row), Some(near)) = (pixels.get_mut(at..at + whole), cells.get_mut(cell..cell + whole)) {
-                of_eight = _mm256_add_epi32(of_eight, sixteens(row, near, span, depth));
-                turned = turned.wrapping_add(whole as u32);
+            let whole = (length + SIXTEEN - 1) & !(SIXTEEN - 1);
+            if let Some(row) = pixels.get_mut(at..at + whole)
+                && let Some(near) = cells.get_mut(cell..cell + whole)
+            {
+                stayed = _mm256_add_epi32(stayed, sixteens(row, near, span, depth));
+                more = more.wrapping_add((whole - FOUR) as u32);
+                number += 1;
                 continue;
             }
         }
-        let whole = length.next_multiple_of(EIGHT);
-        if let (Some(row), Some(near)) = (pixels.get_mut(at..at + whole), cells.get_mut(cell..cell + whole)) {
-            of_eight = _mm256_add_epi32(of_eight, eights(row, near, span, depth, own));
-            turned = turned.wrapping_add(whole as u32);
-            continue;
+        let whole = (length + EIGHT - 1) & !(EIGHT - 1);
+        if let Some(row) = pixels.get_mut(at..at + whole)
+            && let Some(near) = cells.get_mut(cell..cell + whole)
+        {
+            stayed = _mm256_add_epi32(stayed, eights(row, near, span, depth, own_shades));
+            more = more.wrapping_add((whole - FOUR) as u32);
+        } else {
+            let written = one_by_one(pixels, cells, spans, number, own_shades);
+            more = more.wrapping_add(written).wrapping_sub(FOUR as u32);
         }
-        if let (Some(row), Some(near)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-            turned = turned.wrapping_add(one_by_one(row, near, span, depth, own));
-        }
+        number += 1;
     }
-    let of_eight = _mm_add_epi32(_mm256_castsi256_si128(of_eight), _mm256_extracti128_si256(of_eight, 1));
-    let four = _mm_add_epi32(of_eight, of_four);
+    let four = _mm_add_epi32(_mm256_castsi256_si128(stayed), _mm256_extracti128_si256(stayed, 1));
     let two = _mm_add_epi32(four, _mm_srli_si128(four, 8));
-    turned.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
+    let all = more.wrapping_add((FOUR * count) as u32);
+    all.wrapping_add_signed(_mm_cvtsi128_si32(_mm_add_epi32(two, _mm_srli_si128(two, 4))))
 }
 
 /// Fills one span at the very end of the frame. Returns the number of pixels written.
 #[cold]
 #[inline(never)]
-fn one_by_one(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own) -> u32 {
+fn one_by_one(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, number: usize, own: Own) -> u32 {
+    let (span, depth) = (spans.span(number), spans.depth(number));
+    let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
+    // No overflow: all are below 2³², and usize has 64 bits.
+    let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) else {
+        return 0;
+    };
     let (z, dz) = (depth.z >> 8, depth.dz >> 8);
     match own {
         Own::Fixed16(start, step) => fill_nearer_16_16(row, cells, [start, step], z, dz),
@@ -138,13 +158,15 @@ fn one_by_one(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, o
     }
 }
 
-/// A mask with the first `count` lanes set, at most eight.
+/// Masks of sixteen lanes with the first `count` set, at most sixteen.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn first_eight(count: usize) -> __m256i {
-    let clear = EIGHT - count.min(EIGHT);
-    // SAFETY: eight of the sixteen, from at most the ninth on; the load requires no alignment.
-    unsafe { _mm256_loadu_si256(SET_THEN_CLEAR.as_ptr().add(clear).cast()) }
+fn first(count: usize) -> [__m256i; 2] {
+    let [low, high] = FIRST_LANES[count.min(SIXTEEN)].as_chunks::<EIGHT>().0 else {
+        unreachable!("sixteen are twice eight")
+    };
+    // SAFETY: eight i32 each; the loads require no alignment.
+    unsafe { [_mm256_loadu_si256(low.as_ptr().cast()), _mm256_loadu_si256(high.as_ptr().cast())] }
 }
 
 /// The depths of eight pixels per iteration.
@@ -153,30 +175,18 @@ struct Depths {
     z: [__m256i; 2],
     /// Change per iteration.
     step: __m256i,
-    /// Pixels from this iteration on.
-    left: usize,
 }
 
 impl Depths {
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn new(z: i64, dz: i64, length: usize) -> Self {
+    fn new(z: i64, dz: i64) -> Self {
         let dz = _mm256_set1_epi64x(dz);
         let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
         let later = _mm256_and_si256(_mm256_slli_epi64(dz, 2), _mm256_setr_epi64x(0, 0, -1, -1));
         let z = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
         let z = [z, _mm256_add_epi64(z, _mm256_slli_epi64(dz, 1))];
-        Self { z, step: _mm256_slli_epi64(dz, 3), left: length }
-    }
-
-    /// One iteration: −1 where a pixel stays, because it is not nearer than its cell, or is not part of the span. The
-    /// cells store nearer depths.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn stay(&mut self, cells: &mut [u32; EIGHT]) -> __m256i {
-        let there = first_eight(self.left);
-        let depths = _mm256_and_si256(self.next(), there);
-        stay(cells, depths)
+        Self { z, step: _mm256_slli_epi64(dz, 3) }
     }
 
     /// The depths of the next eight pixels.
@@ -185,7 +195,6 @@ impl Depths {
     fn next(&mut self) -> __m256i {
         let [z0, z1] = self.z;
         self.z = [_mm256_add_epi64(z0, self.step), _mm256_add_epi64(z1, self.step)];
-        self.left = self.left.saturating_sub(EIGHT);
         let upper = _mm256_shuffle_ps(_mm256_castsi256_ps(z0), _mm256_castsi256_ps(z1), 0b11_01_11_01);
         _mm256_castps_si256(upper)
     }
@@ -210,12 +219,12 @@ fn halves([first, second]: [__m256i; 2]) -> __m256i {
     _mm256_packs_epi32(first, second)
 }
 
-/// The lower bytes of two vectors of sixteen numbers below 256, which are arranged as by [`halves`]; the bytes are in
-/// order.
+/// The lower bytes of two vectors of sixteen numbers from −128 to 127, which are arranged as by [`halves`]; the bytes
+/// are in order.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
-    let both = _mm256_packus_epi16(a, b);
+    let both = _mm256_packs_epi16(a, b);
     let (low, high) = (_mm256_castsi256_si128(both), _mm256_extracti128_si256(both, 1));
     [_mm_unpacklo_epi32(low, high), _mm_unpackhi_epi32(low, high)]
 }
@@ -229,7 +238,7 @@ fn four_stay(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i
     let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
     let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
     // (From a comparison of the length, the compiler would make a masked store of the depths.)
-    let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first_eight(length)));
+    let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first(length)[0]));
     // SAFETY: four u32; the load requires no alignment.
     let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
     let after = _mm_max_epu32(before, depths);
@@ -243,7 +252,8 @@ fn four_stay(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i
 #[inline]
 #[target_feature(enable = "avx2")]
 fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: Own) -> __m256i {
-    let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
+    let mut depths = Depths::new(depth.z, depth.dz);
+    let mut left = span.length as usize;
     let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     let (mut shades, next_shade) = match own {
         // shade + k·step, of which bits 8 to 15 count, ...
@@ -264,7 +274,8 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
     let n = pixels.len().min(cells.len());
     let cells = &mut cells[..n];
     for (i, pixels) in pixels[..n].iter_mut().enumerate() {
-        let stay = depths.stay(&mut cells[i]);
+        let stay = stay(&mut cells[i], _mm256_and_si256(depths.next(), first(left)[0]));
+        left = left.saturating_sub(EIGHT);
         // SAFETY: eight bytes; the load requires no alignment.
         let bytes = _mm256_cvtepu8_epi32(unsafe { _mm_loadl_epi64(pixels.as_ptr().cast()) });
         let after = match own {
@@ -294,7 +305,7 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
     let numbers = _mm256_setr_epi16(0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15);
     let mut shades = _mm256_add_epi16(_mm256_mullo_epi16(steps, numbers), _mm256_set1_epi16(start));
     let next_shade = _mm256_slli_epi16(steps, 4);
-    let mut depths = Depths::new(depth.z, depth.dz, span.length as usize);
+    let mut depths = Depths::new(depth.z, depth.dz);
     let mut stayed = _mm256_setzero_si256();
     let (pixels, cells) = (row.as_chunks_mut::<SIXTEEN>().0, cells.as_chunks_mut::<SIXTEEN>().0);
     let n = pixels.len().min(cells.len());
@@ -305,7 +316,8 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
         stayed = _mm256_add_epi32(stayed, sixteen(&mut pixels[i], &mut cells[i], depths, shades));
         shades = _mm256_add_epi16(shades, next_shade);
     }
-    let there = [first_eight(depths.left), first_eight(depths.left.saturating_sub(EIGHT))];
+    // 1 to 16.
+    let there = first((span.length as usize).wrapping_sub(1) % SIXTEEN + 1);
     let depths = [_mm256_and_si256(depths.next(), there[0]), _mm256_and_si256(depths.next(), there[1])];
     _mm256_add_epi32(stayed, sixteen(&mut pixels[last], &mut cells[last], depths, shades))
 }
@@ -317,9 +329,7 @@ fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> 
 fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m256i; 2], shades: __m256i) -> __m256i {
     let [first, second] = cells.as_chunks_mut::<EIGHT>().0 else { unreachable!("sixteen are twice eight") };
     let stay = [stay(first, depths[0]), stay(second, depths[1])];
-    // 0 or 255.
-    let stays = _mm256_srli_epi16(halves(stay), 8);
-    let [bytes, stays] = bytes_of(_mm256_srli_epi16(shades, 8), stays);
+    let [bytes, stays] = bytes_of(_mm256_srai_epi16(shades, 8), halves(stay));
     // SAFETY: sixteen bytes; the load and the store require no alignment.
     unsafe {
         let before = _mm_loadu_si128(pixels.as_ptr().cast());
